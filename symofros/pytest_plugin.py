@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from symofros.commands.reading_options import OPTIONS
 from symofros.errors import SymofrosError
 from symofros.harness import harness_module
 
@@ -34,30 +35,15 @@ def pytest_addoption(parser: Any) -> None:
         "a plug-in (entry point symofros.engines) is held to the truth on each kind of joint that it has",
     )
     group.addoption("--symofros-tier", choices=TIERS, default="standard", help="how much is checked (standard)")
-    group.addoption(
-        "--symofros-floating-base", action="store_true", help="put what stands on the ground onto a free joint"
-    )
-    group.addoption(
-        "--symofros-dissipation",
-        metavar="WHAT",
-        default="",
-        help="what to keep of files' passive losses: none, viscous, all (dry friction, too)",
-    )
-    group.addoption("--symofros-limits", metavar="HOW", default="", help="what limits of coordinates are: data, stops")
-    group.addoption(
-        "--symofros-waive",
-        action="append",
-        metavar="CHECK",
-        default=[],
-        help="a check that every body may fail, such as massless_tip; repeatable",
-    )
-    group.addoption(
-        "--symofros-package",
-        action="append",
-        metavar="NAME=FOLDER",
-        default=[],
-        help="a further folder that models' files may be read from, by the name they give it; repeatable",
-    )
+    for item in OPTIONS:
+        stated: dict[str, Any] = {"default": item.default}
+        if item.default == ():
+            stated = {"action": "append", "default": []}
+        if item.default is False:
+            stated = {"action": "store_true"}
+        else:
+            stated["metavar"] = item.metadata["metavar"]
+        group.addoption(f"--symofros-{item.metadata['flag']}", help=item.metadata["help"], **stated)
     group.addoption(
         "--symofros-baseline",
         metavar="FILE",

@@ -32,7 +32,8 @@ ALLOWED = table("""
     errors:
     # Where the harness is, by name: it is loaded by those who are asked for it, and by nobody else.
     harness: errors
-    pytest_plugin: errors harness
+    # Options of reading are those of commands; tests/validation/ci/test_plugin.py tells where that loads more.
+    pytest_plugin: errors harness commands
     base: errors
     native:
     expr: base errors

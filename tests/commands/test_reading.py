@@ -7,6 +7,7 @@ import os
 import shlex
 import subprocess
 import sys
+from dataclasses import Field
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +16,9 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.__main__ import app
-from symofros.commands.reading import ReadingOptions, pairs, reading_of
+from symofros.commands.reading import OPTIONS, ReadingOptions, pairs, reading_of
 from symofros.errors import Argument, Problem, SymofrosError
+from symofros.pytest_plugin import pytest_addoption
 
 KINEMATIC = (
     '<robot name="k"><link name="base"/>{}</robot>',
@@ -213,3 +215,29 @@ def test_a_picture_says_what_it_leaves_out(tmp_path: Path) -> None:
     titles = [axis.get_title() for axis in run.plot().axes]
     assert "the first 12 of 14; others by their names" in titles
     assert [axis.get_title() for axis in run.plot("q13").axes][0] == ""
+
+
+_STATED: dict[type, Any] = {bool: True, str: "all", tuple: (("a", "b"),)}
+
+
+@pytest.mark.parametrize(
+    "item", [item for item in OPTIONS if item.name not in ("waive", "limits")], ids=lambda i: i.name
+)
+def test_options_are_left_out_where_load_refuses_them(item: Field[Any], tmp_path: Path) -> None:
+    stated = ReadingOptions(**{item.name: _STATED[type(item.default)]})
+    for suffix in (".yaml", ".urdf", ".xacro", ".sdf", ".world", ".xml", ".usda"):
+        path = tmp_path / f"a{suffix}"
+        path.write_text("")
+        kept = bool(stated.fit_for(path).keywords)
+        if not (kept and suffix == ".usda"):  # Which a process of its own would read.
+            with pytest.raises(SymofrosError) as refused:
+                sf.load(path, **stated.keywords)
+            assert (f"{item.name} applies to" in str(refused.value)) is not kept
+
+
+def test_the_plug_in_has_every_option() -> None:
+    parser = pytest.Parser(_ispytest=True)
+    pytest_addoption(parser)
+    parsed = vars(parser.parse(["--symofros-mimic", "--symofros-argument", "a=b", "--symofros-limits", "stops"]))
+    stated = {item.name: parsed[f"symofros_{item.metadata['flag'].replace('-', '_')}"] for item in OPTIONS}
+    assert reading_of(**stated) == ReadingOptions(mimic=True, arguments=(("a", "b"),), limits="stops")

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
-from symofros.commands.reading import ReadingOptions, reading_of
+from symofros.commands.reading import OPTIONS, ReadingOptions, reading_of
 
 from ..adapters import ROUTES
 from ..checking import ModelResult, Settings
@@ -199,9 +199,7 @@ def _cases(models: list[str], config: Any) -> list[Case]:
 
 def _reading(config: Any) -> ReadingOptions:
     """How the options say that models are read."""
-    options = {"packages": "package", "floating_base": "floating-base"}
-    options |= {name: name for name in ("waive", "dissipation", "limits")}
-    stated = {name: config.getoption(f"--symofros-{option}") for name, option in options.items()}
+    stated = {item.name: config.getoption(f"--symofros-{item.metadata['flag']}") for item in OPTIONS}
     try:
         return reading_of(**stated, prefix="--symofros-")
     except sf.SymofrosError as error:

@@ -122,5 +122,7 @@ def test_without_options_the_plug_in_loads_nothing() -> None:
         [sys.executable, "-c", code], env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
     )
     loaded = {name for name in done.stdout.split() if name.partition(".")[0] in ("numpy", "symofros", "validation")}
-    light = {f"symofros.{name}" for name in ("errors", "harness", "pytest_plugin")}
+    light = {
+        f"symofros.{name}" for name in ("commands", "commands.reading_options", "errors", "harness", "pytest_plugin")
+    }
     assert loaded == {"symofros"} | light, done.stdout + done.stderr
