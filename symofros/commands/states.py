@@ -25,7 +25,7 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
     parameters = {name: parameter for name, parameter in parameters.items() if parameter not in states}
     model = model.with_parameters(**{parameter: stated[name] for name, parameter in parameters.items()})
     q, v = model.neutral(), np.zeros(model.nv)
-    for name in stated.keys() - parameters.keys():
+    for name in (name for name in stated if name not in parameters):
         if coordinate := coordinate_of(name, model.names.q):
             q[model.names.q.index(coordinate)] = stated[name]
         elif speed := speed_of(name, model.names.v):

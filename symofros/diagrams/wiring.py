@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -64,9 +64,10 @@ class Wired:
         name, index = split(text)
         check_entry(text, index, self.shape(self.output(name)))
 
-    def behind(self, block: str, inputs: Iterable[str]) -> list[Source]:
-        """What feeds some inputs of a block; those on their defaults are left out."""
-        return [self.sources[block, port] for port in inputs if (block, port) in self.sources]
+    def behind(self, block: str, inputs: Collection[str] | None = None) -> list[Source]:
+        """What feeds some inputs of a block, or all, in the order of its ports; those on their defaults: nothing."""
+        wanted = [port.name for port in self.ports[block].inputs if inputs is None or port.name in inputs]
+        return [self.sources[block, port] for port in wanted if (block, port) in self.sources]
 
     def mechanisms(self) -> dict[str, str]:
         """Block that moves a mechanism -> the mechanism's model."""

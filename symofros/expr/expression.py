@@ -154,13 +154,13 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
         name = min(missing)
         rule, remedy = "each symbol of a formula has a value", did_you_mean(name, values)
         raise UnknownNameError(Problem(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy))
-    for name in expression.symbols():
+    used = sorted(expression.symbols())
+    for name in used:
         if not isinstance(values[name], float):
             check_argument(f"evaluate: the value of '{name}'", values[name], float)
     if expression.kind == "symbol" and expression.name not in CONSTANTS:
         return values[expression.name]
     graph = Graph()
-    used = expression.symbols()
     number = graph.number(lower(expression, graph, {name: graph.constant(values[name]) for name in used}))
     assert number is not None  # Everything was a number, and numbers fold.
     return number

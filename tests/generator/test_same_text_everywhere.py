@@ -1,8 +1,8 @@
 """Generated text does not depend on the machine: neither on its processor nor on what libraries choose for it.
 
-Processes differ in the kernels of OpenBLAS (OPENBLAS_CORETYPE), in the vector instructions of NumPy
-(NPY_DISABLE_CPU_FEATURES) and in those of the C library's functions (GLIBC_TUNABLES). Where a library does not read its
-variable, the processes are alike.
+Nor on the process: sets of strings have another order in each, by PYTHONHASHSEED. Processes also differ in the kernels
+of OpenBLAS (OPENBLAS_CORETYPE), in the vector instructions of NumPy (NPY_DISABLE_CPU_FEATURES) and in those of the C
+library's functions (GLIBC_TUNABLES). Where a library does not read its variable, the processes are alike.
 """
 
 from __future__ import annotations
@@ -50,6 +50,12 @@ def digests_elsewhere(choice: str, variables: dict[str, str]) -> dict[str, str]:
 def different(first: dict[str, str], second: dict[str, str]) -> list[str]:
     assert first.keys() == second.keys()
     return [name for name in first if first[name] != second[name]]
+
+
+def test_the_order_of_sets_does_not_reach_the_text() -> None:
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        texts = list(threads.map(lambda seed: digests_elsewhere("diagrams", {"PYTHONHASHSEED": seed}), "012"))
+    assert [different(texts[0], text) for text in texts] == [[], [], []]
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 """Digests of generated texts, printed for a parent process that compares them: python -m tests.generator.text_digests.
 
-Argument: "few", one system of each kind that has constants of its own, or "all" reference models and beam cases.
+Argument: "few", one system of each kind that has constants of its own, "all" reference models and beam cases, or
+"diagrams", the programs of diagrams with controllers, the order of their signals, and one system beside them.
 """
 
 from __future__ import annotations
@@ -8,11 +9,16 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
+import tempfile
+from pathlib import Path
 
 import reference_models
 import symofros as sf
+from reference_models.diagrams.square import square
+from reference_models.diagrams.two_arms import working
 from symofros.base.options import Options
 from symofros.compiler import Compilation
+from symofros.diagrams.program.compiled import resolve
 from tests.mechanics.beams.cases import CASES
 from validation.truth_data.catalogue import models as truth_models
 
@@ -52,8 +58,19 @@ def digest(system: sf.System, functions: tuple[str, ...]) -> str:
     return hashlib.sha256(f"{system!r}{compilation.record!r}{compilation.source()}".encode()).hexdigest()
 
 
+def diagram_digest(diagram: sf.Diagram) -> str:
+    """The digest of the files of a diagram's program, and of the order of its signals."""
+    with tempfile.TemporaryDirectory() as folder:
+        sf.export(diagram, "c", folder)
+        files = {file.name: file.read_text() for file in sorted(Path(folder).iterdir()) if file.is_file()}
+    return hashlib.sha256(f"{files}{resolve(diagram).order}".encode()).hexdigest()
+
+
 def digests(choice: str) -> dict[str, str]:
     """Digests by name of the system."""
+    if choice == "diagrams":
+        texts = {"square": diagram_digest(square(0)), "two_arms": diagram_digest(working())}
+        return texts | {"formulas": digest(formulas(), FEW_FUNCTIONS)}
     functions = ALL_FUNCTIONS if choice == "all" else FEW_FUNCTIONS
     texts = {name: digest(system, functions) for name, system in systems(choice).items()}
     return texts | {f"truth: {m.name}": hashlib.sha256(repr(m.tree).encode()).hexdigest() for m in truth_models()}

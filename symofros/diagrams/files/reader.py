@@ -328,7 +328,7 @@ class _Reader(Entries):
         if len(diagram.blocks) + len(inner.blocks) > MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
             return
-        for reserved in inputs.keys() & _ARGUMENTS:
+        for reserved in sorted(inputs.keys() & _ARGUMENTS):
             self.fault(
                 entries["inputs"],
                 f"{what}: no inlet can be called '{reserved}'",
@@ -341,7 +341,7 @@ class _Reader(Entries):
             diagram.include(name, inner, models, **inputs)
         except DescriptionError as error:
             self.take(node, error.problems)
-        for inlet in inputs.keys() & inner.inlets.keys():
+        for inlet in filter(inner.inlets.__contains__, inputs):
             for target in inner.inlets[inlet]:
                 block, _, port = f"{name}/{target}".rpartition(".")
                 diagram.origin["input", block, port] = self.where(entries["inputs"].value[inlet])

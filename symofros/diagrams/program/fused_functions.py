@@ -96,8 +96,9 @@ class Point:
     def edges(self, piece: Piece, edges: Sequence[Edge]) -> list[Edge]:
         """The same for edges."""
         groups = piece.groups(edges)
-        for port in sorted(group.removeprefix(INPUT) for group in groups if group.startswith(INPUT)):
-            self.signal(self._wired.sources[piece.name, port])
+        for group in groups:
+            if group.startswith(INPUT):
+                self.signal(self._wired.sources[piece.name, group.removeprefix(INPUT)])
         known = {group: self._group(piece, group) for group in groups}
         replacement = {
             node: known[slot.group][slot.index] for node, slot in piece.g.slot.items() if slot.group in known
@@ -333,7 +334,7 @@ class Fuser:
     def _due(self, g: Graph, name: str, due: frozenset[str]) -> Function:
         at = self._at(g, due, after=True)
         u = [g.input("u", i) for i in range(len(self._layout.u0))]
-        for block in due:
+        for block in filter(due.__contains__, self._pieces):  # A set has no order of its own.
             piece = self._pieces[block]
             for port in piece.outputs:
                 place = self._layout.held[block, port]

@@ -79,11 +79,11 @@ class Piece:
         """All that its mechanism's terms are."""
         return [edge for part in self.terms.stated().values() for edge in part.flat]
 
-    def groups(self, edges: Iterable[Edge]) -> frozenset[str]:
-        """Groups of inputs that some edges depend on."""
+    def groups(self, edges: Iterable[Edge]) -> tuple[str, ...]:
+        """Groups of inputs that some edges depend on, by the alphabet: their order reaches the text."""
         wanted = list(edges)
         nodes = {abs(arg) for node in needed_nodes(self.g, wanted) for arg in self.g.args[node]} | set(map(abs, wanted))
-        return frozenset(self.g.slot[node].group for node in nodes if node in self.g.slot)
+        return tuple(sorted({self.g.slot[node].group for node in nodes if node in self.g.slot}))
 
     def inputs_of(self, edges: Iterable[Edge]) -> frozenset[str]:
         """Input ports that some edges depend on."""
@@ -245,7 +245,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
 
 
 def _same(name: str, what: str, values: Values, shapes: Mapping[str, object]) -> None:
-    for key in values.keys() | shapes.keys():
+    for key in sorted(values.keys() | shapes.keys()):
         shape = values[key].shape if key in values else "nothing"
         if key not in shapes or shape != shapes[key]:
             raise DescriptionError(

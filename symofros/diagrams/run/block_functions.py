@@ -73,10 +73,10 @@ class Blocks:
         for which, outputs in stated.items():
             if outputs:
                 edges = [edge for value in outputs.values() for edge in value.flat]
-                groups = sorted(piece.groups(edges))
+                groups = piece.groups(edges)
                 sizes |= {group: self._memory_of(piece, group).size for group in groups}
                 made = tuple(Output(key, value.shape, tuple(value.flat)) for key, value in outputs.items())
-                functions.append(Function(which, "", tuple(groups), made))
+                functions.append(Function(which, "", groups, made))
         if not functions:
             return
         program = run_passes(Program(name, piece.g, sizes, tuple(functions)))
@@ -164,7 +164,7 @@ class Blocks:
     def update(self, due: frozenset[str]) -> None:
         """Memory of the sampled blocks that are due."""
         new = []
-        for name in due:
+        for name in sorted(due):
             if (name, "updates") in self.calls:
                 call, outputs = self.calls[name, "updates"]
                 call()

@@ -32,9 +32,8 @@ def save_run(run: Recording, path: Path, signals: Iterable[str]) -> list[Path]:
     if path.suffix == ".npz":
         _save_npz(run, path, wanted)
         return [path]
-    table, units = columns(run, wanted), {"t": "s"}
-    for name in table.keys() - {"t"}:
-        units[name] = run.unit(split(name)[0])
+    table = columns(run, wanted)
+    units = {name: "s" if name == "t" else run.unit(split(name)[0]) for name in table}
     write_columns(path, table, "run", units)
     files = [path]
     for block, arrays in run.kept.items():

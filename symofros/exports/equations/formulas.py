@@ -151,7 +151,7 @@ def _compact(terms: Sequence[Term]) -> Any:
 
 
 def _common(a: Mapping[Any, int], b: Mapping[Any, int]) -> dict[Any, int]:
-    return {factor: n for factor in a.keys() & b.keys() if (n := min(a[factor], b[factor]))}
+    return {factor: n for factor in a if factor in b and (n := min(a[factor], b[factor]))}
 
 
 def _grouped(terms: Sequence[Term], factors: set[Any]) -> Any:

@@ -114,8 +114,8 @@ def receivers(
 def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None:
     """Refuse an output that shares memory with another array of the caller: what is read would be overwritten."""
     for name, _ in signature.outputs:
-        for other in given.keys() - {name} if name in given else ():
-            if share_memory(given[name], given[other]):
+        for other in given if name in given else ():
+            if other != name and share_memory(given[name], given[other]):
                 rule = "an output shares no memory with another array: each is written while others are read"
                 raise _misfit(signature, name, f"memory of '{other}'", rule, "pass an array, or a copy, of its own")
 

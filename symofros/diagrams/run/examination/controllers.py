@@ -87,7 +87,7 @@ def _controllers(wired: Wired) -> Iterator[str]:
         seen.add(name)
         if wired.blocks[name].period is not None and _reads_motion(wired, name):
             yield name
-        nearest += [source[0] for source in wired.behind(name, (port.name for port in wired.ports[name].inputs))]
+        nearest += [source[0] for source in wired.behind(name)]
 
 
 def _reads_motion(wired: Wired, name: str) -> bool:
@@ -100,8 +100,7 @@ def _behind(wired: Wired, name: str) -> set[str]:
     seen: set[str] = set()
     open_blocks = [name]
     while open_blocks:
-        inputs = (port.name for port in wired.ports[open_blocks[-1]].inputs)
-        new = {source[0] for source in wired.behind(open_blocks.pop(), inputs)} - seen
+        new = {source[0] for source in wired.behind(open_blocks.pop())} - seen
         seen |= new
         open_blocks += new - set(wired.mechanisms())
     return seen
