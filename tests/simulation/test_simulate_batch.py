@@ -229,3 +229,20 @@ def test_shapes() -> None:
 def test_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(sf.SymofrosError, match=message):
         sf.simulate_batch(model("cart_pole"), **given)
+
+
+@pytest.mark.parametrize(
+    ("method", "dt"), [("euler", 0.05), ("semi_implicit_euler", 0.1), ("rk4", 0.1), ("rk4", 0.01), ("dopri5", None)]
+)
+def test_a_run_of_a_batch_that_records_its_end_alone_bears_the_notes_of_a_single_one(
+    method: str, dt: float | None
+) -> None:
+    """A hill turns a cart back, if steps see it: what they pass over does not depend on the samples."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    hill = sf.Potential("hill", "max(0, 1 - ((x - 5)/0.03)^2)^2")
+    cart = sf.System("cart", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), potentials=(hill,), gravity=(0, 0, 0))
+    model, options = sf.compile(cart), {} if dt is None else {"dt": dt}
+    single = sf.simulate(model, [0.0], [1.0], 10.0, method=method, **options)
+    many = sf.simulate_batch(model, np.zeros((2, 1)), np.ones((2, 1)), 10.0, method=method, **options)
+    assert many.q.shape == (2, 1, 1) and many.outcome(0).notes == single.outcome.notes
+    assert bool(single.outcome.notes) == (abs(float(single.v[-1, 0]) + 1.0) > 0.1)

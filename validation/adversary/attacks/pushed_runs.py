@@ -100,19 +100,22 @@ def judge(scene: Scene) -> Verdict:
     options: dict[str, Any] = {} if scene["method"] in _ADAPTIVE else {"dt": scene["step"]}
     if scene["records"]:
         options["output"] = np.linspace(0.0, _SPAN, scene["records"])
+    run = sf.simulate(
+        model, [0.0], [first], _SPAN, u=law, par=par, method=scene["method"], max_steps=200_000, **options
+    )
+    outcome, place, speed = run.outcome, float(run.q[-1, 0]), float(run.v[-1, 0])
     if scene["batch"] and scene["method"] != "cvode":
         runs = sf.simulate_batch(
             model, np.zeros((2, 1)), np.full((2, 1), first), _SPAN, u=law, par=par, method=scene["method"], **options
         )
         outcome, place, speed = runs.outcome(0), float(runs.q_last[0, 0]), float(runs.v_last[0, 0])
-    else:
-        run = sf.simulate(
-            model, [0.0], [first], _SPAN, u=law, par=par, method=scene["method"], max_steps=200_000, **options
-        )
-        outcome, place, speed = run.outcome, float(run.q[-1, 0]), float(run.v[-1, 0])
     exact = -first if hill else first + 1.0
     share = abs(speed - exact) / max(1.0, abs(exact))
-    if not hill:  # A push that is met late leaves the right speed, and a motion that is off.
+    if (
+        hill
+    ):  # Energy that is off while it is there is an error, too: that of speeds is half as large.
+        share = max(share, 0.5 * float(np.ptp(run.energy)) / float(run.kinetic_energy.max()))
+    else:  # A push that is met late leaves the right speed, and a motion that is off.
         begin, length = _pulse(scene)
         reached = first * _SPAN + _SPAN - begin - 0.5 * length
         share = max(share, abs(place - reached) / max(1.0, abs(reached)))

@@ -12,14 +12,18 @@ from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.input_faults import input_fault
+from symofros.simulation.results.examination.repetition import repeatable, repeated
 from symofros.simulation.results.examination.step_size import examine_run
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import InitialStates
 from symofros.simulation.stepping.resolution import Mode
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 # Share of the span after the last state in which an input is looked at, where steps have no length of their own.
 _NEXT = 1e-3
+# Steps of the longest run that is made once more for its ends of steps, and how many of these are kept.
+_MADE_AGAIN, _KEPT = 100_000, 4096
 
 
 @dataclass(frozen=True)
@@ -48,9 +52,24 @@ class BatchExamination:
             ended_well: Whether the run came to its end.
             failed: Whether it diverged.
         """
-        start = _row(self.initial.q, i), _row(self.initial.v, i)
+        stepper, start = self._stepper(i), (_row(self.initial.q, i), _row(self.initial.v, i))
         how = {"ended_well": ended_well, "failed": failed}
-        return examine_run(self._stepper(i), self.settings, start, states, steps, **how)
+        if ended_well and len(states[0]) < steps <= _MADE_AGAIN:
+            states = self._ends_of_steps(stepper, start, states, steps)
+        return examine_run(stepper, self.settings, start, states, steps, **how)
+
+    def _ends_of_steps(
+        self, stepper: Stepper, start: tuple[Array, Array], states: tuple[Array, ...], steps: int
+    ) -> tuple[Array, ...]:
+        """Ends of the steps of a run that is made once more, where its samples are fewer; the samples where it is not.
+
+        What steps pass over does not depend on what is recorded of them.
+        """
+        begin, every = (self.settings.t0, *start), -(-steps // _KEPT)
+        if not repeatable(stepper, self.settings, states):
+            return states
+        status, ends = repeated(stepper, self.settings, begin, float(states[0][-1]), self.settings.dt, every=every)
+        return tuple(ends) if status == Status.FINISHED and len(ends[0]) > len(states[0]) else states
 
     def input_fault(self, i: int, t: float, q: Array, v: Array) -> str:
         """The input of run i that is not finite about its last state, in words; "" where there is none."""
