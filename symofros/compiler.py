@@ -212,7 +212,7 @@ class Compilation:
         return self._model(units, None, units.functions(chosen))
 
     def _held_beams(self) -> Iterator[str]:
-        """In words, beams that a loop holds along an axis that does not stretch."""
+        """Messages about beams that a loop holds along an axis in which they do not stretch."""
         if may_be_held(self.tree):
             wanted = requested(self.tree, Options(("constraint", "constraint_jacobian")))
             units = self._units(None)

@@ -88,7 +88,7 @@ def load(
 
 @dataclass(frozen=True)
 class Asked(ImportOptions):
-    """How a file is to be read, as in `load`."""
+    """Options for reading a file, as those of `load`."""
 
     arguments: Mapping[str, str] = field(default_factory=dict)
     packages: Folders = field(default_factory=dict)

@@ -21,7 +21,7 @@ notice. Each name has its reason:
 | states_per_second | the rate of a kernel there |
 | write_atomically | files that a reader never sees half written |
 | stored_json, stored_lines, append_line, keep | what an earlier run left; damage counts as absent, with a warning |
-| Visual, visual_mesh, read_motion, Session, Workspace | what viewer and editor read files by, without windows: fuzz |
+| Visual, visual_mesh, read_motion, Session, Workspace | file readers of viewer and editor, for fuzzing |
 """
 
 from __future__ import annotations

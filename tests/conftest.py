@@ -107,8 +107,8 @@ def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> Non
 def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
-    # Models and modules that live on make each search for garbage dear; graphs of expressions, made by the hundred
-    # thousand, hold none. Searching less often saves a tenth of a run's time.
+    # Models and modules that live on make each garbage collection expensive; graphs of expressions, made by the
+    # hundred thousand, hold no garbage. Collecting less often saves a tenth of a run's time.
     gc.set_threshold(50_000)
 
 

@@ -78,7 +78,7 @@ class Choice:
         return ", ".join(f"{name.replace('_', ' ')} {value:.5g}" for name, value in self.figures.items() if value)
 
     def __str__(self) -> str:
-        """In one line: quantity, method, reason, and how to ask for others."""
+        """The choice on one line: quantity, method, reason, and how to ask for others."""
         others = " or ".join(f"{route.method} by {route.option}" for route in self.others if route.option)
         parts = (self.reason, self.counted, f"else {others}" if others else "")
         return f"{self.quantity}: {self.method}; {'; '.join(filter(None, parts))}"

@@ -159,7 +159,7 @@ class Rotation(metaclass=CheckedCalls):
         return self.kind == "rpy" and self.values == (0.0, 0.0, 0.0)
 
     def __iter__(self) -> Iterator[Value]:
-        """Its values."""
+        """Iterate over the values of the rotation."""
         return iter(self.values)
 
 

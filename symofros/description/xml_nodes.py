@@ -34,7 +34,7 @@ class Element:
 
     @property
     def where(self) -> str:
-        """Its place."""
+        """Place of the element in the file, as "file:line"."""
         return f"{self.file}:{self.line}"
 
     def all(self, tag: str) -> Iterator[Element]:

@@ -216,7 +216,7 @@ class Block(metaclass=CheckedCalls):
     paths: ClassVar[tuple[str, ...]] = ("file",)
 
     def ports(self, environment: Environment) -> Ports:
-        """Its ports; asked again while shapes of inputs become known."""
+        """The block's ports; called again while shapes of its inputs become known."""
         return Ports()
 
     def mechanism(self) -> str:
@@ -252,7 +252,7 @@ class Block(metaclass=CheckedCalls):
         return {}
 
     def motion(self, context: EvaluationContext) -> Terms:
-        """How its mechanism moves."""
+        """Accelerations of the block's mechanism, or else the terms of its constrained equations of motion."""
         return Terms()
 
     def crossings(self, context: EvaluationContext) -> Mapping[str, Crossing]:

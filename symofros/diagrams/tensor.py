@@ -61,7 +61,7 @@ class Tensor:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """As of an array."""
+        """Shape of the tensor, as that of a NumPy array."""
         return tuple(self.edges.shape)
 
     @property
@@ -156,7 +156,7 @@ class Tensor:
         return self.apply("max", low).apply("min", high)
 
     def sum(self) -> Tensor:
-        """Of all entries, a scalar."""
+        """Sum of all entries, a scalar tensor."""
         return Tensor.of(self.g, [self.g.sum(self.flat)], ())
 
     def norm(self) -> Tensor:

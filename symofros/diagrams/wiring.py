@@ -79,11 +79,11 @@ class Wired:
         return self.sources.get((block, "u")) if driven else None
 
     def shape(self, source: Source) -> Shape:
-        """Of an output."""
+        """Shape of a block's output; () for a scalar."""
         return next(port.shape or () for port in self.ports[source[0]].outputs if port.name == source[1])
 
     def unit(self, source: Source) -> str:
-        """Of an output."""
+        """Unit of a block's output."""
         return next(port.unit for port in self.ports[source[0]].outputs if port.name == source[1])
 
 

@@ -64,7 +64,7 @@ class UnitCompiler:
 
         Args:
             keys: The functions.
-            meanwhile: Called as a C compiler starts to work: begins what else has to be done before the first call.
+            meanwhile: Hook called as a C compiler starts: begins, in parallel, what else the first call needs.
         """
         requests = tuple(Request(*key) for key in keys)
         names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
@@ -130,7 +130,7 @@ class UnitCompiler:
             return self._told[requests]
 
     def _batches(self, function: Function) -> Choice:
-        """How large batches of a function are evaluated."""
+        """The choice of how large batches of a function are evaluated, with its reason."""
         asked = "state by state" if self._options.batch == "loop" else ""
         return choose("large batches", {"by_routine": function.solver is not None}, asked)
 

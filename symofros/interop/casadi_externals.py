@@ -28,7 +28,7 @@ class Input(NamedTuple):
 
     @property
     def sparsity(self) -> list[int]:
-        """As CasADi writes it: of a dense column its length, 1, 1."""
+        """Sparsity in CasADi's compressed-column format: (size, 1, 1) for a dense column."""
         return [self.size, 1, 1] if self.like is None else self.like.sparsity
 
 

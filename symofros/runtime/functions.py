@@ -129,12 +129,12 @@ class Functions(Arguments):
 
     @property
     def threads(self) -> int:
-        """How many share a large batch."""
+        """Number of threads that share a large batch."""
         return self._threads
 
     @property
     def precision(self) -> Precision:
-        """Of what functions take and return: "double" or "single"."""
+        """Floating-point type of inputs and outputs: "double" or "single"."""
         return self._precision
 
     def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:

@@ -299,7 +299,7 @@ def _sizes(M: Array, G: Array) -> Array:
 
 
 def _solve(M: Array, r: Array, G: Array, c: Array) -> tuple[Array, Array]:
-    """By the pseudo-inverse of G M^-1 G^T in the metric of M."""
+    """Accelerations and multipliers under constraints, by the pseudo-inverse of G M^-1 G^T in the metric of M."""
     if not np.all(np.isfinite(G)):
         return np.full(len(r), np.nan), np.full(len(c), np.nan)
     L = np.linalg.cholesky(M)

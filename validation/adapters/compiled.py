@@ -131,11 +131,11 @@ class SymofrosEngine:
         return self.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
 
     def frame_jacobian(self, states: States) -> Array:
-        """Of the frame's velocity."""
+        """Jacobians of the frames' velocities (N, F, 6, nv)."""
         return self._frames(lambda frame: self.model.frame_jacobian(frame, states.q, u=states.u))
 
     def frame_jacobian_rate(self, states: States) -> Array:
-        """Its time derivative."""
+        """Time derivatives of the frame Jacobians (N, F, 6, nv)."""
         return self._frames(lambda frame: self.model.frame_jacobian_rate(frame, states.q, states.v, u=states.u))
 
 

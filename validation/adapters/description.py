@@ -177,7 +177,7 @@ def evaluate(
 
 
 def build(subject: Subject) -> StatedForces | Unsupported:
-    """From the description alone."""
+    """Forces as the description alone states them; Unsupported where they need kinematics or derivatives."""
     kinds = {
         "loads": any(body.loads for body in subject.system.bodies),
         "connections": subject.system.connections,

@@ -58,7 +58,7 @@ class CheckPlan(_Strict):
 
     @property
     def reading(self) -> ReadingOptions:
-        """How files are read."""
+        """Options for reading the model files."""
         return ReadingOptions(self.floating_base, waive=self.waive)
 
     @model_validator(mode="after")
@@ -77,7 +77,7 @@ class CheckPlan(_Strict):
 
 
 class Motion(_Strict):
-    """How a sweep simulates; see `sf.simulate_batch`."""
+    """Settings of the simulations in a sweep; see `sf.simulate_batch`."""
 
     t_end: Annotated[float, Field(gt=0.0, le=1e6)]
     dt: Annotated[float, Field(gt=0.0)] = 1e-3
@@ -213,5 +213,5 @@ def _identity(case: Case) -> str:
 
 
 def plan_hash(plan: Plan, models: dict[str, str]) -> str:
-    """Of what is asked for and of the models it is asked of."""
+    """Hash that identifies a plan together with the models that it applies to."""
     return hashlib.sha256(f"{as_text(plan)}\n{json.dumps(models, sort_keys=True)}".encode()).hexdigest()[:16]

@@ -67,7 +67,7 @@ def _state(row: Data) -> str:
 
 
 def _share(row: Data) -> float:
-    """How much of its tolerance an error takes."""
+    """Error as a share of its tolerance; infinite if there is no error to judge."""
     return math.inf if row["error"] is None else row["error"] / (row["tolerance"] or 1.0)
 
 

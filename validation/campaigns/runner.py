@@ -124,7 +124,7 @@ class _Undisturbed(distributed.WorkerPlugin):  # type: ignore[misc]  # dask has 
     """Ctrl-C, which a terminal sends to all, is the client's business; it ends the workers."""
 
     def setup(self, worker: object) -> None:
-        """In the worker's main thread, before it is given work."""
+        """Ignore Ctrl-C in the worker; called in its main thread before it is given work."""
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 

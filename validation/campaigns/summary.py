@@ -46,7 +46,7 @@ def summarised(rows: pa.Table, provenance: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def checked(rows: pa.Table) -> dict[str, Any]:
-    """Of a cross-check: each model, engine and quantity over all states."""
+    """Summary of a cross-check: for each model, engine and quantity, agreement over all states and the worst error."""
     judged = rows.filter(pc.is_in(rows["status"], pa.array(["agree", "disagree"])))
     # What is not a number comes first: it is the worst.
     ranked = judged.append_column("rank", pc.fill_null(judged["error"], math.inf))

@@ -42,7 +42,7 @@ class Task(Protocol):
 
     @property
     def number(self) -> int:
-        """In the order of results."""
+        """Position of this task's part in the order of results."""
         ...
 
     @property
@@ -52,7 +52,7 @@ class Task(Protocol):
 
     @property
     def title(self) -> str:
-        """For people."""
+        """Human-readable title of the task."""
         ...
 
     def run(self) -> pa.Table:

@@ -198,7 +198,7 @@ def _cases(models: list[str], config: Any) -> list[Case]:
 
 
 def _reading(config: Any) -> ReadingOptions:
-    """How the options say that models are read."""
+    """Options for reading models, from those of the pytest command line."""
     stated = {item.name: config.getoption(f"--symofros-{item.metadata['flag']}") for item in OPTIONS}
     try:
         return reading_of(**stated, prefix="--symofros-")

@@ -188,6 +188,6 @@ def judge(
 
 
 def count(errors: Array) -> tuple[int, ...]:
-    """How many states fall into each bin; NaN goes to the last."""
+    """Number of states whose error falls into each bin; NaN goes to the last bin."""
     bins = np.digitize(np.where(np.isnan(errors), np.inf, errors), BIN_EDGES)
     return tuple(np.bincount(bins, minlength=len(BIN_EDGES) + 1).tolist())

@@ -72,7 +72,7 @@ class Engine(Protocol):
 
     @property
     def name(self) -> str:
-        """As tables show it."""
+        """Name of the engine as tables show it."""
 
     @property
     def version(self) -> str:
@@ -108,7 +108,7 @@ class TreeEngine(Engine, Protocol):
         """p_WF and the rows of R_WF (N, F, 12)."""
 
     def frame_velocity(self, states: States) -> Array:
-        """Of the frame's origin, in world axes (N, F, 6)."""
+        """Velocity of each frame, (linear; angular), of its origin and in world axes (N, F, 6)."""
 
     def frame_acceleration(self, states: States) -> Array:
         """The time derivative of frame_velocity (N, F, 6)."""

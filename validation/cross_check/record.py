@@ -74,7 +74,7 @@ class Record:
 
     @property
     def independent(self) -> int:
-        """How many of these are with engines that share no equations with us."""
+        """Number of comparisons with engines that share no equations with ours."""
         return sum(is_independent(row) for row in self.compared)
 
     def rows(self, *status: str) -> list[Comparison]:

@@ -72,7 +72,7 @@ def nearest(record: Record, each: bool) -> Table:
 
 
 def _engines(model: ModelResult) -> str:
-    """How many engines a model is compared with."""
+    """Number of engines that a model is compared with, as text."""
     return str(len({row.engine for row in model.comparisons if row.status in _JUDGED} - {*_OURS}))
 
 

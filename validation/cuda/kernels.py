@@ -59,7 +59,7 @@ class Kernel:
 
     @property
     def title(self) -> str:
-        """In words, for progress."""
+        """Human-readable title of the kernel, for progress messages."""
         fused = ", fused" if self.gpu.contract else ""
         return f"{self.subject.label}: {self.function}, {self.gpu.precision}{fused}"
 

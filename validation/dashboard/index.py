@@ -70,7 +70,7 @@ def _decisions(reports: Mapping[str, Report]) -> tuple[Block, ...]:
 
 
 def headline(entries: Mapping[str, Entry]) -> str:
-    """How the reports stand."""
+    """One sentence that counts the reports by verdict and by age of their sources."""
     named = {word: [n for n, e in entries.items() if e.verdict == word] for word in _VERDICTS}
     good, missed, measured, absent = named.values()
     said = [f"{len(good)} of {len(good) + len(missed)} reports with a verdict are good"]

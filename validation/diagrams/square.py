@@ -41,7 +41,7 @@ def traced(diagram: sf.Diagram) -> sf.DiagramRun:
 
 
 def off(run: sf.DiagramRun) -> Array:
-    """How far the tool is from where it should be (n) [m]."""
+    """Distance of the tool from its desired position (n) [m]."""
     distance: Array = np.linalg.norm(run["tip.p"][:, :2] - run["path.p"], axis=1)
     return distance
 
@@ -136,7 +136,7 @@ def _speeds(speed: float, ratio: float, agreement: float) -> tuple[Finding, ...]
 
 
 def _tracking(flexible: sf.DiagramRun, rigid: sf.DiagramRun) -> tuple[Finding, ...]:
-    """How far tool and motors are from where they should be."""
+    """Findings on tracking: deviations of tool and motors from their desired motion, flexible and rigid robot."""
     corners = [float(np.linalg.norm(flexible["tip.p"][at, :2] - point)) for at, point in _corners(flexible)]
     return (
         Finding(

@@ -237,7 +237,7 @@ class State:
 
 
 class HasLayout(Protocol):
-    """How an engine keeps the joints of a tree."""
+    """Layout of the coordinates q and speeds v in which an engine keeps the joints of a tree."""
 
     @property
     def nq(self) -> int:

@@ -24,7 +24,7 @@ def chosen_frames(assembly: Assembly) -> tuple[str, ...]:
 
 
 def _spread(items: list[int], most: int) -> list[int]:
-    """At most `most` of the items, evenly, beginning with the last."""
+    """At most `most` of the items, evenly spaced, from the last backwards."""
     if len(items) <= most:
         return items[::-1]
     return [items[-1 - (k * len(items)) // most] for k in range(most)]

@@ -97,7 +97,7 @@ def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:
 
 
 def cantilever_roots(count: int) -> Array:
-    """Of cos b cosh b = -1."""
+    """The first `count` positive roots of cos b cosh b = -1: the bending eigenvalues of a cantilever."""
     guess = [(k + 0.5) * np.pi for k in range(count)]
     return np.array(
         [scipy.optimize.brentq(lambda b: np.cos(b) + 1.0 / np.cosh(b), g - 0.5, g + 0.5, xtol=1e-15) for g in guess]

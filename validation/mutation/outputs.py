@@ -75,7 +75,7 @@ def _same(sound: Array, faulty: Array) -> bool:
 
 
 def _distance(name: str, sound: Array, faulty: Array) -> float:
-    """How many times the largest difference is what rounding explains."""
+    """Largest difference between sound and faulty values, as a multiple of what rounding explains."""
     if sound.shape != faulty.shape or sound.dtype.kind != "f" or faulty.dtype.kind != "f":
         return float("inf")
     if not np.array_equal(np.isfinite(sound), np.isfinite(faulty)):

@@ -70,7 +70,7 @@ def _served(task: dict[str, Any]) -> dict[str, Any]:
 
 
 def _work(task: dict[str, Any], writing: int) -> None:
-    """In the child: import, call, answer; never returns."""
+    """Run a task in the child process: import, call, answer; never returns."""
     code = 1
     try:
         os.setsid()

@@ -34,7 +34,7 @@ def stated_forces(scope: Scope) -> dict[str, Any]:
 
 
 def stored_energy(scope: Scope) -> Any:
-    """Of springs, stops and potentials by formula."""
+    """Potential energy of springs, stops and potentials by formula."""
     total = sum((scope.value(potential.energy) for potential in scope.system.potentials), sympy.Integer(0))
     for joint in _free_joints(scope):
         for element in joint.elements:

@@ -264,7 +264,7 @@ class _Model:
         return forces
 
     def pull_energy(self) -> Any:
-        """Of the connections' springs."""
+        """Potential energy of the connections' springs."""
         total = sympy.Integer(0)
         for connection in self.scope.system.connections:
             d = self._ends(connection)[2]

@@ -111,7 +111,7 @@ def _across(scope: Scope, joint: sf.Joint) -> Pose:
 
 
 def _kinetic(scope: Scope, bodies: _Bodies) -> Any:
-    """Of the bodies, the rotors and the armatures."""
+    """Kinetic energy of the bodies, rotors and armatures."""
     T = sympy.Integer(0)
     for body in scope.bodies:
         joint = body.joint
@@ -154,7 +154,7 @@ class _Line:
         )
 
     def energy(self) -> Any:
-        """Of the spring."""
+        """Potential energy of the connection's spring."""
         return self.k * (sympy.sqrt(self.d.dot(self.d)) - self.rest) ** 2 / 2
 
     def rayleigh(self) -> Any:

@@ -200,7 +200,7 @@ def at_rest(scene: Scene, guess: Array, held: tuple[str, ...] = ()) -> Iterator[
 
 
 def _spectra(ours: Any, wanted: Any) -> float:
-    """How far two sets of eigenvalues are apart."""
+    """Distance between two sets of eigenvalues, relative to the largest wanted one."""
     if len(ours) != len(wanted):
         return float("inf")
     distances = np.abs(np.asarray(ours)[:, None] - np.asarray(wanted)[None, :])

@@ -51,7 +51,7 @@ class Done:
     unfinished: tuple[str, ...] = ()
 
     def head(self, ok: bool, quick: bool) -> dict[str, Any]:
-        """How they went, for JSON; `ok`: whether the results are what was asked for."""
+        """Summary of the results' success for JSON; `ok`: whether the results are what was asked for."""
         good = ok and bool(self.results) and not self.failures and not self.unfinished
         return {"ok": good, "quick": quick, "failures": self.failures, "unfinished": self.unfinished}
 

@@ -13,7 +13,7 @@ DIGITS = 5
 
 
 def short(x: float | None) -> str:
-    """For people; an unbounded side of a bound is left empty."""
+    """A number as text for display; empty for an infinite one, the unbounded side of a bound."""
     if x is None or math.isnan(x):
         return "NaN"
     if math.isinf(x):
@@ -65,7 +65,7 @@ def named(values: Mapping[str, object], separator: str) -> str:
 
 
 def finite(x: float) -> float | None:
-    """For JSON, which has no NaN."""
+    """The number for JSON, which has no NaN: None if it is not finite."""
     return x if math.isfinite(x) else None
 
 

@@ -75,7 +75,7 @@ def _section(name: str, data: Data, findings: tuple[Finding, ...], quick: bool) 
 
 
 def _ends(one: Map, notes: list[str]) -> str:
-    """How the runs of a map ended, in words."""
+    """Summary, as text, of how the runs of a map ended."""
     cells = [c for row in one.cells for c in row]
     said = [f"{int(one.good.sum())} of {len(cells)} meet the criterion"]
     said += [f"{one.wrong} come to their end and miss it"] if one.wrong else []

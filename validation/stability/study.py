@@ -267,7 +267,7 @@ class ParameterStudy:
     sources: tuple[str, ...] = field(default=())
 
     def runs(self, quick: bool) -> int:
-        """How many runs it takes."""
+        """Number of runs that the study takes."""
         return len(self.subjects) * len(self.x.chosen(quick)) * len(self.y.chosen(quick))
 
 

@@ -54,7 +54,7 @@ class Following(Block):
         return Ports((Port("q", size), Port("v", size)), (Port("effort", size),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the model's inverse dynamics."""
+        """Motor effort by the model's inverse dynamics, at the desired acceleration with PD feedback."""
         q, v = context.inputs["q"], context.inputs["v"]
         phase = context.t * RATE
         sine, cosine = phase.apply("sin"), phase.apply("cos")

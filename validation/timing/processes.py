@@ -48,7 +48,7 @@ def follow(command: Sequence[str], take: Callable[[str], None], environment: Map
 
 
 def say(kind: str, value: Any) -> None:
-    """In a worker: print a message."""
+    """Print a message from a worker process, as a line of JSON."""
     print(json.dumps({kind: value}), flush=True)
 
 

@@ -68,12 +68,12 @@ def summary(times: Sequence[float]) -> Times:
 
 
 def _rounds(run: Callable[[int], None]) -> int:
-    """As many as take LEAST together; also what warms caches and branches."""
+    """Number of rounds that take at least LEAST together; finding it also warms caches and branches."""
     return max(1, math.ceil(LEAST / max(min(_nanoseconds(run, 1) for _ in range(2)), 1)))
 
 
 def _nanoseconds(run: Callable[[int], None], rounds: int) -> int:
-    """Of this thread on the processor: when others have it, no time passes."""
+    """Nanoseconds of this thread's processor time: time given to other threads is not counted."""
     start = thread_time_ns()
     run(rounds)
     return thread_time_ns() - start

@@ -74,7 +74,7 @@ class Integrator(Block):
         return x if self.high == math.inf else x.apply("min", self.high)
 
     def _now(self, context: EvaluationContext) -> Tensor:
-        """At a sample: what was reached, or the start."""
+        """The sampled integral at this instant: the stored value, or the start where the reset signal fires."""
         x = context.memory["x"]
         if self.reset == "none":
             return x
@@ -159,7 +159,7 @@ class Derivative(Block):
         return {} if self.period is None else {"u": self._first(environment), "y": np.zeros(environment.inputs["u"])}
 
     def compute(self, context: EvaluationContext) -> Values:
-        """How fast u moves."""
+        """Filtered time derivative of u."""
         if self.period is None:
             return {"y": (context.inputs["u"] - context.states["x"]) / self.tau}
         a = math.exp(-self.period / self.tau) if self.tau else 0.0

@@ -190,7 +190,7 @@ class PythonBlock(ExternalBlock):
         needs_period(self)
 
     def ports(self, environment: Environment) -> Ports:
-        """As stated."""
+        """The ports that the user stated; an input without a shape takes that of the signal connected to it."""
         given = {
             name: environment.inputs.get(name) if shape is None else tuple(shape)
             for name, shape in dict(self.inputs or {}).items()
@@ -201,7 +201,7 @@ class PythonBlock(ExternalBlock):
         )
 
     def begin(self, environment: Environment) -> Running:
-        """By the user's function."""
+        """Call the user's `on_begin`, if given, and return the running function."""
         if self.on_begin:
             self.on_begin()
         return _Function(self)
@@ -237,6 +237,6 @@ class _Function(Running):
         return outputs
 
     def end(self) -> None:
-        """By the user's function."""
+        """Call the user's `on_end`, if given."""
         if self._block.on_end:
             self._block.on_end()

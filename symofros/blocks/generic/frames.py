@@ -78,7 +78,7 @@ class Transform(Block):
         return Ports((*pose, of_units(Port("u", size), of)), (of_units(Port("y", size), of),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the pose."""
+        """Express u in the other frame by the pose (p, R), or by its inverse."""
         p, R, u = (context.inputs[name] for name in ("p", "R", "u"))
         if self.inverse:
             p, R = -(R.T @ p), R.T
@@ -115,7 +115,7 @@ class FrameTransform(Block):
         return Ports(inputs, (of_units(Port("y", size), of), Port("p", (3,), "m"), Port("R", (3, 3), NO_UNIT)))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By both poses in the world."""
+        """Express u in the target frame, by both frames' poses in the world; also outputs the transform (p, R)."""
         source, target = (
             context.call(self.model, "frame_pose", frame, q=context.inputs["q"], t=context.t)
             for frame in (self.source, self.target)
@@ -188,7 +188,7 @@ class Orientation(Block):
         return Ports((of_units(source, _form_units(self.source)),), (of_units(target, _form_units(self.target)),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By way of the matrix."""
+        """Convert the orientation from the source form to the target form, by way of the rotation matrix."""
         return {"y": FORMS[self.target][2](FORMS[self.source][1](context.inputs["u"]))}
 
 

@@ -91,7 +91,7 @@ class StateSpace(_Linear):
             raise refuse(self.name, "too many states", n, f"at most {MOST_STATES}", "reduce the system")
 
     def matrices(self) -> tuple[Array, Array, Array, Array]:
-        """As they are."""
+        """The matrices A, B, C, D as given; D is zero if left out."""
         A, B, C = (np.asarray(matrix, dtype=np.float64) for matrix in (self.A, self.B, self.C))
         return A, B, C, np.zeros((len(C), B.shape[1])) if self.D is None else np.asarray(self.D, dtype=np.float64)
 

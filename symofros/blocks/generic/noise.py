@@ -126,6 +126,6 @@ def _advance(state: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _remainder(x: Tensor, m: int) -> Tensor:
-    """Of whole numbers; the quotient, rounded, may be one too large."""
+    """Remainder of whole numbers x modulo m; corrected where the rounded quotient is one too large."""
     rest = x - (x / float(m)).apply("floor") * float(m)
     return rest + float(m) * (1.0 - rest.apply("step"))

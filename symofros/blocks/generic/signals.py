@@ -330,5 +330,5 @@ class Reshape(Block):
         return Ports((Port("u", into),), (Port("y", out),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """As they are."""
+        """The entries of u, unchanged, in the new shape."""
         return {"y": context.inputs["u"].reshape(*self.shape)}

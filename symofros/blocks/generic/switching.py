@@ -66,7 +66,7 @@ class Relay(Block):
         return {"y": is_on * context.parameters["on"] + (1.0 - is_on) * context.parameters["off"]}
 
     def update(self, context: EvaluationContext) -> Values:
-        """At samples."""
+        """Switch at samples, if sampled; a continuous relay keeps its state here and switches at crossings."""
         return {"is_on": context.memory["is_on"] if self.period is None else self._next(context)}
 
     def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
@@ -80,7 +80,7 @@ class Relay(Block):
         }
 
     def crossed(self, context: EvaluationContext, which: str) -> Values:
-        """On or off."""
+        """Memory after a crossing: on or off, as `which` names it."""
         return {"is_on": context.numbers(float(which == "on"))}
 
 
@@ -116,7 +116,7 @@ class RateLimit(Block):
         return {"before": np.zeros(environment.inputs["u"]), "began": 0.0}
 
     def compute(self, context: EvaluationContext) -> Values:
-        """As near to the input as the rates let it."""
+        """The signal that follows u as closely as the rate limits allow; u itself at the first sample."""
         u, before, began = context.inputs["u"], context.memory["before"], context.memory["began"]
         T = float(self.period or 0.0)
         limited = before + (u - before).clipped(-T * context.parameters["falling"], T * context.parameters["rising"])

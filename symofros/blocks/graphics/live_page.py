@@ -47,7 +47,7 @@ class Feed:
                 self.count += 1
 
     def since(self, seen: int) -> tuple[int, list[tuple[float, list[float]]]]:
-        """How many rows there have been, and those after the first `seen`."""
+        """Total number of rows so far, and the rows after the first `seen`, thinned to at most AT_ONCE."""
         with self.lock:
             new = min(self.count - seen, len(self.rows))
             rows = [self.rows[i] for i in range(len(self.rows) - new, len(self.rows))]

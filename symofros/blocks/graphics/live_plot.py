@@ -91,7 +91,7 @@ class _Showing(Running):
         return {}
 
     def kept(self) -> Mapping[str, Array]:
-        """How many samples were sent and dropped."""
+        """Number of samples sent to the page, and number dropped."""
         page = self._page
         return {"sent": np.asarray(float(page.sequence - page.dropped)), "dropped": np.asarray(float(page.dropped))}
 

@@ -130,7 +130,7 @@ class _Showing(Running):
         time.sleep(max(0.0, self._start + t - now))
 
     def kept(self) -> Mapping[str, Array]:
-        """How many samples were handed over, and how many of them dropped."""
+        """Number of samples handed to the viewer, and number of those dropped."""
         dropped = self._viewer.dropped - self._dropped_before
         return {"shown": np.asarray(float(self._shown)), "dropped": np.asarray(float(dropped))}
 

@@ -106,7 +106,7 @@ def _slopes(times: Array, table: Array) -> Array:
 
 
 def _coefficients(h: Array, change: Array, slopes: Array) -> tuple[Array, Array]:
-    """Of x^2 and x^3 in each interval."""
+    """Spline coefficients of x^2 and x^3 in each interval, from its length h, its change and the end slopes."""
     h = h[:, np.newaxis]
     chord = change / h
     return (3.0 * chord - 2.0 * slopes[:-1] - slopes[1:]) / h, (slopes[:-1] + slopes[1:] - 2.0 * chord) / h**2

@@ -88,7 +88,7 @@ class Square(Block):
 
     @property
     def durations(self) -> list[float]:
-        """Of each move [s]."""
+        """Duration of each move [s]: the approach, then the four sides of each lap."""
         return [float(self.approach)] + [float(self.side)] * (4 * self.laps)
 
     @property

@@ -31,7 +31,7 @@ class _Wave(Block):
 
     @property
     def shape(self) -> Shape:
-        """Of the signal."""
+        """Shape of the signal: that to which all tunable parameters broadcast."""
         arrays = [numbers(self.name, field, getattr(self, field)) for field in self.tunable]
         try:
             return np.broadcast_shapes(*(array.shape for array in arrays))
@@ -99,7 +99,7 @@ class Ramp(_Wave):
         return Ports((), (Port("y", self.shape, y), Port("rate", self.shape, rate)))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the time it has been rising."""
+        """Value and rate of the ramp; the rate is zero before `time` and after `duration`."""
         time, slope, start, duration = (context.parameters[key] for key in self.tunable)
         rising = context.t - time
         rises = rising.apply("step") * (1.0 - (rising - duration).apply("step"))
@@ -134,7 +134,7 @@ class Pulse(_Wave):
             raise refuse(self.name, "every", self.every, "seconds above zero", "give another")
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the place within the interval."""
+        """High or low level, by the position within the current period; low before `time`."""
         time, every, width, high, low = (context.parameters[key] for key in self.tunable)
         turns = (context.t - time) / every
         place = turns - turns.apply("floor")

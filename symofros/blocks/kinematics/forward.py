@@ -62,7 +62,7 @@ class ForwardKinematics(Block):
         return Ports(_motion_ports(environment, self.model, ("q", "v", "a")), _frame_ports())
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the model's own functions."""
+        """Pose and motion of the frame, by the model's generated functions."""
         return _frame_motion(context, self.model, self.frame)
 
 
@@ -122,7 +122,7 @@ class Jacobian(Block):
         )
 
     def compute(self, context: EvaluationContext) -> Values:
-        """By the model's own functions."""
+        """Frame Jacobian and its time derivative by the model's generated functions; also its two halves."""
         q, v = context.inputs["q"], context.inputs["v"]
         J = context.call(self.model, "frame_jacobian", self.frame, q=q, t=context.t)["J"]
         rate = context.call(self.model, "frame_jacobian_rate", self.frame, q=q, v=v, t=context.t)["dJ"]

@@ -121,7 +121,7 @@ class InverseKinematics(Block):
         }
 
     def rates(self, context: EvaluationContext) -> Values:
-        """Of the state."""
+        """Time derivatives of the joint coordinates, which are the state of the continuous block; none if sampled."""
         return {"joints": self._moved(context, context.states["joints"])[0]} if self.period is None else {}
 
     def update(self, context: EvaluationContext) -> Values:

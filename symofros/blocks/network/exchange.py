@@ -127,7 +127,7 @@ class Receiving(Running):
         return self._reception.outputs(t, self._began, self._block.on_silence, self._block.fallback)
 
     def kept(self) -> Mapping[str, Array]:
-        """How many packets became what."""
+        """Number of packets received, lost, late, duplicate, malformed and foreign."""
         return self._reception.counts()
 
 

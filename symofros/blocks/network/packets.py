@@ -138,7 +138,7 @@ class Reception:
         return {"signal": signal, "stamp": self.stamp, "age": age, "lost": self.lost, "alive": float(alive)}
 
     def counts(self) -> dict[str, Array]:
-        """How many packets became what."""
+        """Number of packets received, lost, late, duplicate, malformed and foreign."""
         names = ("received", "lost", "late", "duplicate", "malformed", "foreign")
         return {name: np.asarray(getattr(self, name), dtype=np.float64) for name in names}
 

@@ -28,7 +28,7 @@ class _ByUdp(Exchange):
     host: str = LOCALHOST
 
     def place(self) -> tuple[str, int]:
-        """As stated."""
+        """Host and port, as given to the block."""
         return self.host, self.port
 
     def opened(self) -> socket.socket:
@@ -73,7 +73,7 @@ class _Sending(Running):
         return {}
 
     def kept(self) -> Mapping[str, Array]:
-        """How many packets were sent and dropped."""
+        """Number of packets sent, and number dropped."""
         return {"sent": np.asarray(float(self._sent)), "dropped": np.asarray(float(self._dropped))}
 
     def end(self) -> None:

@@ -32,7 +32,7 @@ class _ByZenoh(Exchange):
     listens: bool = False
 
     def place(self) -> tuple[str, int]:
-        """Of the address."""
+        """Host and port, split from the address; port 0 if the address has no valid one."""
         host, _, port = self.address.rpartition(":")
         return host.strip("[]"), int(port) if port.isdigit() and len(port) < 6 else 0
 
@@ -90,7 +90,7 @@ class _Publishing(Running):
         return {}
 
     def kept(self) -> Mapping[str, Array]:
-        """How many packets were published."""
+        """Number of packets published."""
         return {"sent": np.asarray(float(self._sent))}
 
     def end(self) -> None:

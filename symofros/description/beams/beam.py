@@ -356,7 +356,7 @@ class Beam:
 
     @property
     def modes(self) -> int:
-        """How many elastic coordinates it has."""
+        """Number of elastic coordinates of the beam."""
         return sum(self.counts)
 
     @property

@@ -195,5 +195,5 @@ def _relative(file: str) -> str | None:
 
 
 def size(element: Element) -> int:
-    """How many elements an element is, itself counted."""
+    """Number of XML elements in the subtree of an element, itself included."""
     return 1 + sum(map(size, element.children))

@@ -119,7 +119,7 @@ class Meshes:
 
 
 def _mesh_name(mesh: Element) -> str:
-    """Its name; the file's where it has none."""
+    """Name of a mesh; the stem of its file's name if it has none."""
     return mesh.attributes.get("name") or PurePosixPath(mesh.attributes.get("file", "").replace("\\", "/")).stem
 
 

@@ -254,7 +254,7 @@ class _Importer:
         return shapes
 
     def _visuals(self) -> dict[str, tuple[Visual, ...]]:
-        """How bodies look."""
+        """Visual shapes of each body: body name -> visuals."""
         seen: dict[str, list[Visual]] = {}
         for shape in self.stage["shapes"]:
             if not shape["seen"]:

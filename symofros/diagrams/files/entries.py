@@ -22,7 +22,7 @@ class Entries:
         self.file, self.problems = file, problems
 
     def where(self, node: Node, key: bool = False) -> str:
-        """Of a node, or of its key."""
+        """Place of a node, or of its key, as "file:line"."""
         return f"{self.file}:{node.key_line if key else node.line}"
 
     def fault(self, node: Node, what: str, found: object, rule: str, remedy: str) -> None:

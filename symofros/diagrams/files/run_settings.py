@@ -16,7 +16,7 @@ SETTINGS = tuple(item.name for item in fields(RunSettings))
 
 
 def read_settings(entries: Entries, diagram: Diagram, node: Node) -> RunSettings:
-    """How to run a diagram; the lines of its plots are noted in it."""
+    """Read the settings of a run of the diagram; lines of its plots are noted in the diagram."""
     values: dict[str, Any] = {}
     for key, item in entries.mapping(node, "simulation", SETTINGS).items():
         if key == "plots":

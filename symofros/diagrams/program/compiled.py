@@ -270,7 +270,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
 
 
 def bare_record(name: str) -> ModelRecord:
-    """Of functions that belong to no mechanism."""
+    """A model record for functions that belong to no mechanism: no coordinates, parameters or frames."""
     return ModelRecord(
         name=name,
         hash="",

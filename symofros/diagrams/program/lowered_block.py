@@ -57,7 +57,7 @@ class Piece:
 
     @property
     def name(self) -> str:
-        """Of the block."""
+        """Name of the block."""
         return self.block.name
 
     @property

@@ -24,7 +24,7 @@ class EngagedApartError(Exception):
 
 
 def engaged_apart(t: float, gap: float, name: str, notes: tuple[str, ...] = ()) -> Outcome:
-    """How a run ends in which bodies would have to be moved to close a gap."""
+    """The outcome of a run that ends because closing a gap would require moving bodies instantaneously."""
     return Outcome(
         "constraints lost",
         t,

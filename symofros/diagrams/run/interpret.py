@@ -359,7 +359,7 @@ def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, reco
 
 
 def _outcome(watch: BeamWatch, t: float, steps: int, fault: str, *, failed: bool, within: bool) -> Outcome:
-    """How a run ended."""
+    """The outcome of a run: why it ended at time t, with advice and notes."""
     notes = bending_notes(watch.bendings)
     if failed:
         if fault:

@@ -36,7 +36,7 @@ class Jitter:
     spacing: float
 
     def __str__(self) -> str:
-        """For people."""
+        """Human-readable summary: lateness of instants [microseconds], and number of missed ones."""
         values = (self.minimum, self.median, self.p999, self.maximum)
         least, middle, most, worst = (f"{1e6 * value:.1f}" for value in values)
         return (

@@ -190,7 +190,7 @@ class Loop:
         self.native.sym_diagram_stop_threads(self.diagram)
 
     def advance(self, instants: int) -> int:
-        """At most `instants` instants further; returns a Status."""
+        """Advance the run by at most `instants` sampling instants; returns a Status."""
         return int(self.native.sym_diagram_advance(self.diagram, instants))
 
     def instants_until(self, t: float) -> int:
@@ -227,5 +227,5 @@ class Loop:
 
     @property
     def lateness(self) -> Array:
-        """How late each instant began (n) [s], in real time."""
+        """Lateness of each instant's beginning in real time (n) [s]."""
         return self._lateness[: int(self.diagram.n_lateness)].copy()

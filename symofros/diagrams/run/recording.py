@@ -84,12 +84,12 @@ class Records:
         return self._known[source]
 
     def unit(self, name: str) -> str:
-        """Of a signal."""
+        """Unit of a signal, by the signal's name."""
         wired = self.compiled.resolved.wired
         return wired.unit(wired.output(name))
 
     def shape(self, name: str) -> Shape:
-        """Of a signal at one time."""
+        """Shape of a signal at one time, by the signal's name."""
         wired = self.compiled.resolved.wired
         return wired.shape(wired.output(name))
 
@@ -155,7 +155,7 @@ class Recording(Records, Mapping[str, Array]):
         return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
 
     def __len__(self) -> int:
-        """How many outputs there are."""
+        """Number of outputs of all blocks of the diagram."""
         return sum(len(ports.outputs) for ports in self.compiled.resolved.wired.ports.values())
 
     def motion(self, block: str) -> tuple[Array, Array]:

@@ -99,7 +99,7 @@ class Moving(Protocol):
 
     @property
     def stepping(self) -> Stepping:
-        """How it steps."""
+        """How the exported plant steps: integration method, step and tolerances."""
         ...
 
     @property

@@ -138,7 +138,7 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
 
 
 def _placed(joint: Joint, system: System, numbers: Numbers) -> tuple[Array, Array]:
-    """From the parent's body frame to the joint's."""
+    """Position and rotation of a joint's frame in the parent's body frame."""
     position, rotation = np.zeros(3), np.eye(3)
     parent = next((body for body in system.bodies if body.name == joint.parent), None)
     if parent is None and joint.frame is not None:  # A frame of a base that goes by another name than "world".
@@ -189,7 +189,7 @@ def _inertia(inertia: Inertia | None, numbers: Numbers) -> tuple[float, Array, A
 
 
 def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
-    """Of the undeformed beam."""
+    """Mass, mass centre and inertia about it (3, 3) of the undeformed beam."""
     length = numbers.value(beam.length)
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     edges = np.linspace(0.0, length, _PIECES + 1)

@@ -101,7 +101,7 @@ def sine_and_cosine(x: Array) -> tuple[Array, Array]:
 
 
 def _polynomial(c: tuple[float, ...], z: Array, zz: Array) -> Array:
-    """By pairs of coefficients: a shorter wait than one after the other."""
+    """Evaluate a polynomial of degree 5 by pairs of coefficients: a shorter dependency chain than Horner's scheme."""
     return (c[0] + z * c[1]) + zz * ((c[2] + z * c[3]) + zz * (c[4] + z * c[5]))
 
 

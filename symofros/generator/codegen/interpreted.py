@@ -128,7 +128,7 @@ class InterpretedKernel:
         return terms, move
 
     def _differentiate(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        """At the motion that the terms determine."""
+        """Derivatives of accelerations and multipliers, at the solution of the equations of motion."""
         M, r, G, c = outputs
         measures = Measures(*solver.tables)
         a, lam, _ = constrained(M, r, G, c, measures)
@@ -138,7 +138,7 @@ class InterpretedKernel:
         return [np.array(values) for values in derivatives]
 
     def _transpose(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        """At the motion that the terms determine, by the adjoint of its equations."""
+        """Vector-Jacobian products of accelerations and multipliers, by the adjoint of the equations of motion."""
         at, _ = self._with_adjoint(solver, named, outputs)
         return self._interpret(solver.parts[0], at, len(at["a"]))
 

@@ -164,7 +164,7 @@ def _runs(shapes: Sequence[int], weights: Sequence[int]) -> Iterator[tuple[int, 
 
 
 def _count(shapes: Sequence[int], start: int, period: int) -> int:
-    """How often the statements from `start` on repeat with a period."""
+    """Number of repetitions of the pattern of `period` statements from `start` on, the first included."""
     at = start
     while at + period < len(shapes) and shapes[at] == shapes[at + period]:
         at += 1

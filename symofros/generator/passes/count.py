@@ -15,7 +15,7 @@ from symofros.expr.program import Program
 
 @dataclass(frozen=True)
 class Operations:
-    """How often each kind of operation is executed in one call."""
+    """Number of operations of each kind that are executed in one call."""
 
     mul: int = 0
     add: int = 0

@@ -282,7 +282,7 @@ class BeamTheory(ABC):
     @property
     @abstractmethod
     def judged(self) -> Judged:
-        """By what a deformation is judged."""
+        """What a deformation of this beam is judged by."""
 
     @abstractmethod
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:

@@ -81,7 +81,7 @@ def parent_acceleration(link: MovingLink, parent: LinkMotion) -> Vec3:
 
 
 def _across(link: MovingLink, parent: LinkMotion, rates: Sequence[Edge]) -> tuple[Vec3, Vec3, Vec3]:
-    """From the parent's motion to the link's w, alpha, a."""
+    """The link's w, alpha and a, propagated across the joint from those of the parent."""
     relative = relative_motion(link, rates)
     w_WA_L = link.R_AL.apply_inverse(parent.w_WL_L)
     w = (w_WA_L + relative.w).named(f"w_WL_L[{link.name}]")

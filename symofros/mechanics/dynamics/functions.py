@@ -288,7 +288,7 @@ def _residuals(e: Equations) -> tuple[Output, Output]:
 
 
 def _move(e: Equations) -> Function:
-    """How a step moves q."""
+    """The function "move", which moves q along a step in the coordinates' manifold."""
     return Function("move", "", ("q", "step"), (_vector("q_moved", retracted(e.kinematics)),))
 
 

@@ -145,7 +145,7 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
 
 
 def _of_coordinate(joint: Joint, number: int, units: tuple[str, ...]) -> tuple[str, ...]:
-    """Of units for a turn and for a translation, those of a coordinate."""
+    """Unit of one coordinate of a joint, selected from a pair of units for rotation and for translation."""
     known = joint_units(joint)
     if len(units) != 2 or not 0 <= number < len(known):
         return units

@@ -187,7 +187,7 @@ def bind_batch(
 
 
 def _running(kernel: Kernel, n: int, pre: Array, inputs: list[Array], outputs: list[Array]) -> Callable[[], None]:
-    """For functions that NumPy evaluates, in memory of its own."""
+    """A call of a function that NumPy evaluates; results, computed in NumPy's memory, are copied to the outputs."""
 
     def evaluate() -> None:
         for into, values in zip(outputs, kernel.run(n, pre, [*inputs]), strict=True):
@@ -197,7 +197,7 @@ def _running(kernel: Kernel, n: int, pre: Array, inputs: list[Array], outputs: l
 
 
 def _shapes(signature: Signature, given: Mapping[str, Array]) -> dict[str, tuple[int, ...]]:
-    """Of one state's inputs and outputs; whatever is given is one of them."""
+    """Shapes of one state's inputs and outputs, by name; each name in `given` must be one of them."""
     shapes = {group: (size,) for group, size in signature.inputs} | dict(signature.outputs)
     for name in given:
         if name not in shapes:

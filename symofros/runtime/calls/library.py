@@ -1,4 +1,4 @@
-"""A compiled library in the hand: its struct read, its functions callable without the interpreter lock."""
+"""A loaded model library: reads its table of functions and calls them without the interpreter lock."""
 
 from __future__ import annotations
 
@@ -265,7 +265,7 @@ class CompiledKernel:
         return [y.reshape(n, *shape) if place is None else place for place, y, (_, shape) in made]
 
     def _own_work(self) -> Any:
-        """Of this thread."""
+        """Scratch memory of the current thread."""
         if self._scratch.work is None:
             self._scratch.work = self._work()
         return self._scratch.work
@@ -322,7 +322,7 @@ class CompiledKernel:
         return self._unit.ffi.new("sym_strided[]", [(self._unit.nowhere + at, *by) for at, *by in described])
 
     def _pointers(self, *arrays: Array) -> Any:
-        """To arrays, which it does not keep."""
+        """A C array of pointers to arrays, which it does not keep alive."""
         ffi = self._unit.ffi
         return ffi.new("double *[]", [ffi.from_buffer("double[]", array) for array in arrays])
 

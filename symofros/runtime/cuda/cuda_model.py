@@ -386,7 +386,7 @@ def _check_rollout(dt: float, steps: int, every: int) -> None:
 
 
 def _batch(array: Placed, n: int) -> Strided:
-    """As kernels take an input: one for all states has no stride."""
+    """An input array as kernels take it: address and strides; the stride between states is zero if all share one."""
     if len(array.shape) == 1 or n == 1:
         return Strided(array.address, array.strides[-1], 0)
     return Strided(array.address, array.strides[1], array.strides[0])

@@ -32,7 +32,7 @@ class Routes(Mapping[str, tuple[Choice, ...]]):
         return iter([" of ".join(filter(None, key)) for key in self._made()])
 
     def __len__(self) -> int:
-        """How many functions were made so far."""
+        """Number of functions made so far."""
         return len(list(self._made()))
 
     def __str__(self) -> str:

@@ -45,7 +45,7 @@ class Outcome:
         return self.kind in ("finished", "event")
 
     def __str__(self) -> str:
-        """For people."""
+        """Human-readable summary: how and when the run ended, advice, and notes."""
         lines = [f"{self.kind} at t = {self.t:.6g} s: {self.reason}"]
         lines += [f"  try: {self.advice}"] if self.advice else []
         return "\n".join([*lines, *(f"  note: {note}" for note in self.notes)])

@@ -123,11 +123,11 @@ class Trajectories:
 
     @property
     def kinds(self) -> npt.NDArray[np.str_]:
-        """How each ended, in a word (...): the kind of its Outcome."""
+        """Kind of each run's Outcome, as a word (...): how the run ended."""
         return np.asarray(np.vectorize(lambda status: _ENDS[int(status)][0], otypes=["U16"])(self.status))
 
     def outcome(self, index: Index) -> Outcome:
-        """How one run ended; its steps and inputs are examined now."""
+        """Outcome of one run; its steps and inputs are examined at this call."""
         kind, reason, advice = _ENDS[int(self.status[index])]
         bendings = self.bendings(index)
         t, reached = float(self.t_last[index]), self._states(index)

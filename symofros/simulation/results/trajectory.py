@@ -82,7 +82,7 @@ class Frames(Mapping[str, tuple[Array, Array]]):
         return iter(self._trajectory.model.names.frames)
 
     def __len__(self) -> int:
-        """How many."""
+        """Number of frames."""
         return len(self._trajectory.model.names.frames)
 
 

@@ -159,7 +159,7 @@ class Advice:
         return f"the full model {taken}: {self.gain:.1f} times as many"
 
     def __str__(self) -> str:
-        """For people, without a table."""
+        """Human-readable summary, without a table."""
         return "\n".join([f"{self.full.name}:", *(f"  {one}" for one in self.choices), *self.summary(), *self.notes])
 
     def to_json(self) -> dict[str, Any]:

@@ -112,7 +112,7 @@ class BeamLoads:
         return estimators.first_frequency(self.rhoA, self.stiffness[direction], self.length, self.outboard)
 
     def periods(self, direction: Direction) -> float:
-        """How many periods of the first mode the load takes to come and go."""
+        """Number of periods of the first bending mode within the time that the load takes to come and go."""
         return self.frequency(direction) * self.period[direction == "bend_z"] / (2.0 * math.pi)
 
     def stiffening(self, direction: Direction) -> float:

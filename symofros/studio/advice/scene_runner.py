@@ -49,7 +49,7 @@ class Stepping:
 
     @property
     def settings(self) -> dict[str, float]:
-        """As `sf.simulate` takes them."""
+        """Keyword arguments for `sf.simulate`."""
         tight = {} if self.rtol is None else {"rtol": self.rtol, "atol": 1e-3 * self.rtol}
         return tight if self.dt is None else {**tight, "dt": self.dt}
 
@@ -112,7 +112,7 @@ class SceneRunner:
 
     @property
     def given(self) -> Stepping:
-        """For a model without speeds: all motion is given, and any step is exact."""
+        """Time stepping for a model without speeds: all motion is prescribed, and any step is exact."""
         return Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:

@@ -116,7 +116,7 @@ class Viewer(ViewerPage):
 
     @property
     def clients(self) -> int:
-        """How many browsers look at it."""
+        """Number of browsers connected to the viewer."""
         return len(self._server.get_clients())
 
     @property

@@ -177,7 +177,7 @@ def movement(
 
 
 def distance(known: Array, errors: dict[int, Array], apart: Array) -> Figure:
-    """How far from the rod."""
+    """Figure of the distance from the exact rod: over time, and against the number of shape functions."""
     floor, y = (Mark("floor of the theory, 2.1 mm", FLOOR),), "error  [m]"
     through = curves(known, {f"{n} function{'s' * (n > 1)}": error[:, 1] for n, error in errors.items()})
     worst = np.array([error.max(axis=0) for error in errors.values()])

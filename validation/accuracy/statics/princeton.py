@@ -72,7 +72,7 @@ def rod_tips(load: float, angles: Array) -> tuple[Array, Array]:
 
 
 def twist(R: Array) -> float:
-    """How far the section's z axis has turned about the undeformed beam [rad]."""
+    """Rotation of the section's z axis about the undeformed beam's axis [rad]."""
     return float(np.arctan2(R[2, 1], R[1, 1]))
 
 

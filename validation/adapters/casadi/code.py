@@ -37,5 +37,5 @@ def c_text(function: Any) -> str:
 
 
 def work_sizes(function: Any) -> tuple[int, int]:
-    """Of the integers and of the doubles that its C works with."""
+    """Sizes of the integer and double work arrays that the function's C code needs."""
     return int(function.sz_iw()), int(function.sz_w())

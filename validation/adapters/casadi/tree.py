@@ -237,7 +237,7 @@ class CasadiTree:
         return solve(whole, [sub(given, [*linear, *angular])])[0]
 
     def _jacobian(self, body: int) -> list[list[Scalar]]:
-        """Of a body's origin, (linear; angular) in world axes."""
+        """Jacobian of a body's origin (6, nv), (linear; angular) in world axes."""
         support = [body]
         while self.links[support[-1]].parent != BASE:
             support.append(self.links[support[-1]].parent)

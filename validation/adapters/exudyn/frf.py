@@ -87,7 +87,7 @@ class FloatingFrameEngine:
         return self.chart.bias(states.q, states.v, h, M)
 
     def generalized_force(self, states: States) -> Array:
-        """Of strain and damping."""
+        """Generalised forces of strain and damping (N, nv)."""
         limp, elastic = (self._evaluated(states, system)[1] for system in (self.limp, self.elastic))
         return self.chart.our_forces(states.q, limp - elastic)
 

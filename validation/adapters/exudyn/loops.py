@@ -67,7 +67,7 @@ class JointedEngine:
     capabilities: frozenset[str] = CAPABILITIES
 
     def forward_dynamics(self, states: States) -> Array:
-        """Of joints, from the accelerations of the bodies that they join."""
+        """Joint accelerations v' (N, nv), from the accelerations of the bodies that the joints connect."""
         return self._each(states, lambda at: joint_accelerations(self.assembly, at.moving, at.a, at.alpha))
 
     def frame_response(self, states: States) -> Array:

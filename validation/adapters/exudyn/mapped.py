@@ -89,7 +89,7 @@ class MappedEngine:
         return np.asarray(np.einsum("ni,nij,nj->n", v, self._terms(states).M, v) / 2.0)
 
     def potential_energy(self, states: States) -> Array:
-        """Of the weight of rigid bodies."""
+        """Gravitational potential energy of the rigid bodies (N,) [J]."""
         return self.solids.potential_energy(self._solid(self._all(states, moving=False)))
 
     def inverse_dynamics(self, states: States) -> Array:

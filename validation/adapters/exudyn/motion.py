@@ -92,7 +92,7 @@ def linkage(
 
 
 def _velocity(at: tuple[float, float], half: Array, angle: float, speed: float, links: Sequence[Link]) -> Array:
-    """Of the middle: a bar that starts on another's end moves along with it."""
+    """Velocity of the bar's middle; a bar that starts on another's end moves along with it."""
     own = speed * np.array([-half[1], half[0]])
     for (x, z), other, spin in links:
         end = np.array([x + np.cos(other), z + np.sin(other)])

@@ -96,7 +96,7 @@ class Solids:
     assembly: Assembly
 
     def potential_energy(self, nodal: Nodal) -> Array:
-        """Of the weight, from the places of Exudyn's mass centres (N,)."""
+        """Gravitational potential energy (N,) [J], from the places of Exudyn's mass centres."""
         masses = [mover.merged() for mover in self.assembly.movers]
         gravity = self.assembly.gravity
         place = exudyn.OutputVariableType.Position

@@ -48,7 +48,7 @@ class Solver:
 
     @property
     def name(self) -> str:
-        """For people."""
+        """Human-readable name of the solver and its options."""
         names = {"GeneralizedAlpha": f"generalised alpha {self.radius:g}", "TrapezoidalIndex2": "trapezoidal"}
         newton = "" if self.kind in EXPLICIT else ", full Newton" if self.full else ", modified Newton"
         return (

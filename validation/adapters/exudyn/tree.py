@@ -81,7 +81,7 @@ class KinematicTreeEngine:
         return np.asarray(np.einsum("ni,nij,nj->n", states.v, self.mass_matrix(states), states.v) / 2.0)
 
     def potential_energy(self, states: States) -> Array:
-        """Of the weight, from the places of mass centres."""
+        """Gravitational potential energy (N,) [J], from the places of mass centres."""
         masses = np.array([mover.merged().mass for mover in self.assembly.movers])
 
         def weight() -> Array:

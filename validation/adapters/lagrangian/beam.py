@@ -58,12 +58,12 @@ class Flexible:
 
     @property
     def modes(self) -> int:
-        """How many elastic coordinates it has, in the order v, w, twist."""
+        """Number of elastic coordinates of the beam, in the order v, w, twist."""
         return len(self.v) + len(self.w) + len(self.twist)
 
 
 class Angles(NamedTuple):
-    """Of sections: twist, pitch, yaw, at n stations each."""
+    """Angles of sections: twist F, pitch T and yaw P, at n stations each."""
 
     F: SX
     T: SX

@@ -72,11 +72,11 @@ class LagrangianEngine:
         return self.stated.generalized_force(states) + self._each(self.tree.applied, states)
 
     def kinetic_energy(self, states: States) -> Array:
-        """Of bodies, of sections, of rotors."""
+        """Kinetic energy of bodies, beam sections and rotors (N,) [J]."""
         return self._each(self.tree.kinetic, states)[:, 0]
 
     def potential_energy(self, states: States) -> Array:
-        """Of the weight, of strain, of joints' springs."""
+        """Potential energy of gravity, strain, and joint springs and stops (N,) [J]."""
         return self._each(self.tree.potential, states)[:, 0] + self.stated.stored_energy(states)
 
     def inverse_dynamics(self, states: States) -> Array:
@@ -84,7 +84,7 @@ class LagrangianEngine:
         return self._each(self.tree.force, states) - states.passive
 
     def forward_dynamics(self, states: States) -> Array:
-        """By solving for them."""
+        """Accelerations v' (N, nv), by solving the equations of motion with the mass matrix."""
         left = states.applied - self.bias(states)
         return np.asarray(np.linalg.solve(self.mass_matrix(states), left[:, :, None])[:, :, 0])
 

@@ -66,7 +66,7 @@ class ExactRod:
 
     @property
     def modes(self) -> int:
-        """How many strain coordinates it has."""
+        """Number of strain coordinates of the rod."""
         return len(self.strains)
 
     @cached_property

@@ -122,7 +122,7 @@ class Symbols:
 
     @staticmethod
     def of(nodes: Sequence[Node], inputs: int = 0) -> Symbols:
-        """As many as a tree needs."""
+        """New symbols of the sizes that a tree's nodes need."""
         modes = sum(node.modes for node in nodes)
         nq, nv = ([node.coordinates for node in nodes], [node.count for node in nodes])
         free = [not node.prescribed for node in nodes]
@@ -138,7 +138,7 @@ class Symbols:
         )
 
     def function(self, name: str, output: SX) -> Any:
-        """Of q, v, a, s, ds, dds, u, at the state itself: without displacements."""
+        """CasADi function of (q, v, a, s, ds, dds, u), evaluated at the state itself: displacements are set to zero."""
         moved = ca.vertcat(self.e, self.es, self.seen)
         stayed = ca.vertcat(self.e * 0, self.es * 0, self.v)
         at_state = ca.substitute(output, moved, stayed)

@@ -49,7 +49,7 @@ class MjcfEngine(MujocoEngine):
         return self.chart.our_forces(states.q, self._each(states, result)) + states.applied - states.passive
 
     def frame_pose(self, states: States) -> Array:
-        """Of sites and bodies."""
+        """Poses of sites and bodies: p_WF and the rows of R_WF (N, F, 12)."""
 
         def one(d: Any, kind: str, i: int) -> Array:
             return np.append(d.site_xpos[i], d.site_xmat[i]) if kind == "site" else np.append(d.xpos[i], d.xmat[i])

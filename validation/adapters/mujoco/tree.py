@@ -50,11 +50,11 @@ class MujocoEngine:
     version: str = VERSION
 
     def write(self, path: Path) -> None:
-        """Its model as a file for programs in C."""
+        """Write the MuJoCo model to a binary file, for programs in C."""
         mujoco.mj_saveModel(self.model, str(path))
 
     def body(self, name: str) -> int:
-        """Its index of one of our moving bodies."""
+        """MuJoCo's index of one of our moving bodies, by name."""
         return int(self.model.body(name).id)
 
     def _each(self, states: States, result: Callable[[Any], Any]) -> Array:
@@ -102,7 +102,7 @@ class MujocoEngine:
         return self._each(states, result)
 
     def potential_energy(self, states: States) -> Array:
-        """Of gravity."""
+        """Gravitational potential energy (N,) [J]."""
 
         def result(d: Any) -> float:
             mujoco.mj_energyPos(self.model, d)
@@ -135,11 +135,11 @@ class MujocoEngine:
         return self.chart.our_accelerations(states.q, states.v, self._each(states, result))
 
     def frame_pose(self, states: States) -> Array:
-        """Of sites."""
+        """Poses of the sites: p_WF and the rows of R_WF (N, F, 12)."""
         return self._each(states, lambda d: [np.append(d.site_xpos[s], d.site_xmat[s]) for s in self.sites])
 
     def frame_velocity(self, states: States) -> Array:
-        """Of sites."""
+        """Velocities of the sites (linear; angular) in world axes (N, F, 6)."""
 
         def one(d: Any, site: int) -> Array:
             velocity = np.zeros(6)
@@ -180,11 +180,11 @@ class MujocoEngine:
         return self._each(states, lambda d: [one(d, site) for site in self.sites])
 
     def frame_jacobian(self, states: States) -> Array:
-        """Of sites."""
+        """Jacobians of the sites (linear; angular) in world axes (N, F, 6, nv)."""
         return self.chart.jacobian(states.q, self._jacobians(states, self._site_jacobian))
 
     def frame_jacobian_rate(self, states: States) -> Array:
-        """Of points fixed on the sites' bodies."""
+        """Time derivatives of the Jacobians of points fixed on the sites' bodies (N, F, 6, nv)."""
         J = self._jacobians(states, self._site_jacobian)
         J_rate = self._jacobians(states, self._site_jacobian_rate)
         return self.chart.jacobian_rate(states.q, states.v, J, J_rate)

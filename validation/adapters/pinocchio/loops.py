@@ -98,7 +98,7 @@ class LoopEngine:
         return self.tree.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
 
     def derivatives(self, states: States) -> tuple[Array, Array, Array]:
-        """Of v' by q, v and the forces (N, nv, nv), on the constraints."""
+        """Derivatives of v' by q, v and the forces, on the constraints (N, nv, nv) each."""
 
         def result(solved: _Solved) -> Any:
             derivatives = pin.computeConstraintDynamicsDerivatives(

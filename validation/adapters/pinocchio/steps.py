@@ -21,12 +21,12 @@ class Held:
         self.targets, self.stiffness, self.damping = targets, stiffness, damping
 
     def acceleration(self, q: Array, v: Array) -> Array:
-        """Of the joints (nv)."""
+        """Accelerations of the joints (nv)."""
         force = self.stiffness * (self.targets - q) - self.damping * v
         return np.asarray(pin.aba(self.model, self.data, q, v, force))
 
     def rate(self, _: float, y: Array) -> Array:
-        """Of (q, v)."""
+        """Time derivative of the state y = (q, v)."""
         q, v = np.split(y, 2)
         return np.concatenate([v, self.acceleration(q, v)])
 

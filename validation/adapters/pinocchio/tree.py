@@ -65,11 +65,11 @@ class PinocchioEngine:
         return self.chart.our_forces(states.q, h)
 
     def kinetic_energy(self, states: States) -> Array:
-        """From body velocities."""
+        """Kinetic energy, from body velocities (N,) [J]."""
         return self._each(states, lambda data, q, v, a, f: pin.computeKineticEnergy(self.model, data, q, v))
 
     def potential_energy(self, states: States) -> Array:
-        """Of gravity."""
+        """Gravitational potential energy (N,) [J]."""
         return self._each(states, lambda data, q, v, a, f: pin.computePotentialEnergy(self.model, data, q))
 
     def inverse_dynamics(self, states: States) -> Array:
@@ -94,7 +94,7 @@ class PinocchioEngine:
         return self.chart.our_accelerations(states.q, states.v, a)
 
     def frame_pose(self, states: States) -> Array:
-        """From forward kinematics."""
+        """Poses of the frames, from forward kinematics: p_WF and the rows of R_WF (N, F, 12)."""
 
         def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
             pin.framesForwardKinematics(self.model, data, q)
@@ -104,7 +104,7 @@ class PinocchioEngine:
         return self._each(states, result)
 
     def frame_velocity(self, states: States) -> Array:
-        """From forward kinematics."""
+        """Velocities of the frames, from forward kinematics, (linear; angular) in world axes (N, F, 6)."""
 
         def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
             pin.forwardKinematics(self.model, data, q, v)
@@ -123,7 +123,7 @@ class PinocchioEngine:
         return self._each(states, result)
 
     def frame_jacobian(self, states: States) -> Array:
-        """From joint Jacobians."""
+        """Jacobians of the frames, from joint Jacobians, (linear; angular) in world axes (N, F, 6, nv)."""
 
         def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
             pin.computeJointJacobians(self.model, data, q)
@@ -134,7 +134,7 @@ class PinocchioEngine:
         return self.chart.jacobian(states.q, self._each(states, result))
 
     def frame_jacobian_rate(self, states: States) -> Array:
-        """From joint Jacobians and their rates."""
+        """Time derivatives of the frame Jacobians, from joint Jacobians and their rates (N, F, 6, nv)."""
 
         def result(data: Any, q: Array, v: Array, a: Array, f: Array) -> Any:
             pin.computeJointJacobiansTimeVariation(self.model, data, q, v)

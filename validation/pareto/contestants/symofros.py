@@ -69,7 +69,7 @@ class SymofrosModel:
             return Measured(float(self.judge(run)), seconds)
 
     def _run(self, settings: Mapping[str, Any]) -> tuple[sf.Trajectory, float]:
-        """With the seconds of the processor."""
+        """Run the simulation; returns the motion and the processor time it took [s]."""
         if self.alone:
             run = sf.simulate(self.model, **self.arguments, **settings)
             return run, run.statistics.worked

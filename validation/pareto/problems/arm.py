@@ -128,7 +128,7 @@ def in_mujoco() -> MujocoModel:
 
 
 def mujoco_all(quick: bool) -> list[Contestant]:
-    """Its four integrators."""
+    """Contestants that run MuJoCo's four integrators at several steps."""
     one = in_mujoco()
     if quick:
         return one.by("RK4", (2e-3, 1e-3))

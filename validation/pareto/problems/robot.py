@@ -86,7 +86,7 @@ def reference() -> Array:
 
 @cache
 def size() -> float:
-    """How far flexibility moves the tool from that of the rigid robot [m]."""
+    """Distance by which flexibility displaces the tool from that of the rigid robot [m]."""
     rigid = path(sf.compile(system(0)), method="dop853", rtol=1e-9)
     return float(np.linalg.norm(rigid - reference(), axis=1).max())
 

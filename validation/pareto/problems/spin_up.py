@@ -137,7 +137,7 @@ def exudyn_all(quick: bool) -> list[Contestant]:
 
 
 def judged(recorded: Recorded) -> float:
-    """Of Exudyn's sensor."""
+    """Error of Exudyn's tip positions, as recorded by its sensor, relative to the largest deflection."""
     return far(seen_from_hub(recorded.values), reference())
 
 

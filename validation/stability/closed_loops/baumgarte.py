@@ -41,7 +41,7 @@ def pendulum() -> sf.Model:
 
 
 def swing(method: str, h: float, gain: float, t_end: float = END) -> sf.Trajectory:
-    """From rest at (-1, 0), with equal gains."""
+    """Swing of the pendulum from rest at (-1, 0), with Baumgarte's stabilisation and equal gains."""
     return simulate(
         pendulum(),
         [-1.0, 0.0],
@@ -91,7 +91,7 @@ def limit(method: str) -> Limit:
 
 
 def judge(maps: Maps) -> Verdict:
-    """From the edges of the maps, and from edges runs by bisection."""
+    """Verdict from the stability edges of the maps, and from the edges that bisection finds."""
     steps = np.array([1e-2, 1e-3, 1e-4])
     edges = np.array([largest("rk4", h) for h in steps])
     gaps = REAL["rk4"] / edges - 1.0

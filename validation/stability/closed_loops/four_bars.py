@@ -43,7 +43,7 @@ def system(loops: int, spacing: float = 1.0) -> sf.System:
 
 
 def crank(i: int, spacing: float = 1.0) -> sf.RigidBody:
-    """On the ground."""
+    """A crank of a four-bar linkage, hinged to the ground; `spacing` is the distance between cranks [m]."""
     pivot = sf.Joint(f"a{i}", "revolute", position=(i * spacing, 0, 0), axis=AXIS)
     return sf.RigidBody(f"crank{i}", pivot, BAR, END_OF_BAR)
 

@@ -84,7 +84,7 @@ def exact(third: bool) -> float:
 
 
 def measure(stabilisation: str) -> Callable[[float, float], Cell]:
-    """By misfit and kind."""
+    """A function that evaluates one cell of the map, by misfit and kind."""
 
     def run(misfit: float, kind: float) -> Cell:
         try:

@@ -69,7 +69,7 @@ def crossing(loops: int, h: float, kind: str, gain: float | None) -> sf.Trajecto
 
 
 def off(loops: int, run: sf.Trajectory) -> float:
-    """Of the first crank's end [m]."""
+    """Position error of the first crank's end at the end of the run [m]."""
     return four_bars.tip_error(loops, END, run.frames["crank0.end"][0][-1, [0, 2]])
 
 
@@ -91,7 +91,7 @@ def ends_of_crank(q: Array) -> Array:
 
 
 def exudyn(loops: int, h: float) -> Cell:
-    """Its generalised-alpha solver in absolute coordinates."""
+    """Position error [m] of Exudyn's generalised-alpha solver in absolute coordinates, for `loops` and step h."""
     hinges = [(i, 1.0, loops + 1 + i, 0.0) for i in range(loops)]
     hinges += [(loops + 1 + i, 1.0, i + 1, 1.0) for i in range(loops)]
     ends = exudyn_motion.bars(four_bars.links(loops), hinges, range(loops + 1), h, END, RADIUS)

@@ -54,7 +54,7 @@ def measure(integrator: str) -> Callable[[float, float], Cell]:
 
 
 def judge(maps: Maps) -> Verdict:
-    """From the maps, known runs, and the same model stated elsewhere."""
+    """Verdict from the maps, from known runs, and from the same model stated elsewhere."""
     rows = [row for row in data("four_bars")["soft"] if row["h"] in (0.002, 0.001) and row["N"] == 1]
     factors = []
     for row in rows:

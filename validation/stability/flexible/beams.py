@@ -57,7 +57,7 @@ def strip(modes: int) -> sf.Model:
 
 @cache
 def frequencies(modes: int) -> Array:
-    """Of the model (modes) [rad/s]."""
+    """Natural frequencies of the strip's model (modes) [rad/s]."""
     m = strip(modes)
     frequencies: Array = sf.modes(m, np.zeros(modes)).frequencies
     return frequencies
@@ -78,7 +78,7 @@ def ring(modes: int, method: str, h: float, c: float = 0.0) -> sf.Trajectory:
 
 
 def measure(method: str) -> Callable[[float, float], Cell]:
-    """By number of modes and step."""
+    """A function that evaluates one cell of the map, by number of modes and step."""
     return lambda modes, h: cell(ring(int(modes), method, h), growth)
 
 
@@ -93,7 +93,7 @@ def rk4_factor(z: Array) -> float:
 
 
 def roots(c: float, omega: float) -> Array:
-    """Of s^2 + c omega^2 s + omega^2 = 0."""
+    """Roots of s^2 + c omega^2 s + omega^2 = 0, the characteristic equation of a damped mode."""
     return np.roots([1.0, c * omega**2, omega**2]).astype(complex)
 
 

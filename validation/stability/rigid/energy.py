@@ -38,7 +38,7 @@ def pendulum() -> sf.Model:
 
 
 def swing(method: str, h: float, steps: int) -> sf.Trajectory:
-    """From the horizontal, at rest."""
+    """Swing of the pendulum from the horizontal, at rest."""
     return simulate(pendulum(), [0.0], t_end=steps * h, method=method, dt=h, adaptive=False, every=10)
 
 

@@ -101,7 +101,7 @@ def effort(m: sf.Model, nearest: float) -> int:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Of the maps, and of what adaptive steps cost."""
+    """Verdict from the maps, and from the cost of adaptive steps."""
     angles, quaternion = maps[ANGLES], maps[QUATERNION]
     rows = [row for row in data("euler_angles")["rows"] if row["min_cos_pitch"] in (0.3, 0.1, 0.01)]
     factors = []

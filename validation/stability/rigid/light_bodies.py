@@ -51,7 +51,7 @@ def pendulum(stiffness: float) -> sf.Model:
 
 
 def swing(mass: float, h: float, stiffness: float, method: str) -> sf.Trajectory:
-    """From a small angle; gravity and spring."""
+    """Swing of the double pendulum from a small angle, under gravity and a spring; `mass` is that of the last link."""
     # A mass of zero is one of the points, whose verdict is the subject.
     m = pendulum(stiffness).with_parameter_checks(False).with_parameters(m2=mass)
     return simulate(m, [0.02, 0.02], t_end=STEPS * h, method=method, dt=h, adaptive=False, every=10)
@@ -63,7 +63,7 @@ def growth(run: sf.Trajectory) -> float:
 
 
 def measure(stiffness: float, method: str) -> Callable[[float, float], Cell]:
-    """By mass and step."""
+    """A function that evaluates one cell of the map, by mass and step."""
     return lambda mass, h: cell(swing(mass, h, stiffness, method), growth)
 
 
@@ -175,7 +175,7 @@ def acceleration(angle: float, inertia: float) -> Cell:
 
 
 def condition(degrees: float) -> float:
-    """Of M, massless cross."""
+    """Condition number of the mass matrix of the cross without mass, by the angle in degrees."""
     mass_matrix: Array = cross().with_parameters(a=math.radians(degrees), J=0.0).mass_matrix(np.zeros(2))
     return float(np.linalg.cond(mass_matrix))
 

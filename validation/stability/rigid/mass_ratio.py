@@ -50,7 +50,7 @@ def chain(links: int, ratio: float | sf.Expression) -> sf.System:
 
 @cache
 def compiled(links: int, way: Literal["auto", "articulated", "factors"] = "auto") -> sf.Model:
-    """With the ratio as a parameter."""
+    """Compiled model of the chain of links, with the mass ratio as a parameter."""
     return sf.compile(chain(links, sf.formula("ratio", "mass")), sf.Options(forward_dynamics=way))
 
 

@@ -72,7 +72,7 @@ def exact(times: Array) -> Array:
 
 
 def jump() -> float:
-    """How far it slips at once [m]."""
+    """Distance that the block slips in each stick-slip period [m]."""
     omega = math.sqrt(SPRING)
     amplitude, phase = (STATIC - DYNAMIC) / SPRING, PULL / omega
     return PULL * (2 * (math.pi - math.atan2(amplitude, phase)) / omega + 2 * amplitude / PULL)

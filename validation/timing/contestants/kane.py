@@ -53,7 +53,7 @@ def kane_source(system: sf.System, name: str) -> Source:
 
 
 def _rounded(value: Any) -> Any:
-    """With doubles in place of the fractions that the oracle computes with."""
+    """The expression with the fractions that the oracle computes with replaced by floating-point numbers."""
     return value.xreplace({x: sympy.Float(x, _DIGITS) for x in value.atoms(sympy.Rational) if x.q != 1})
 
 

@@ -63,7 +63,7 @@ def rectangle_torsion(y: Term, z: Term) -> Term:
 
 
 def _number(term: Term) -> float:
-    """Of a term that was made of numbers."""
+    """Numerical value of a term that was made of numbers."""
     return float(evaluate(term.value, {}))
 
 

@@ -74,7 +74,7 @@ class _Revisited:
         )
 
     def resolution(self, method: Method) -> Resolution:
-        """How well the steps resolve the modes about a few records."""
+        """How well the time steps resolve the modes of the motion, linearised about a few recorded states."""
         run, nv, h = self._run, self._run.v.shape[1], self._course.step
         wanted = int(min(_STATES, _SHARE * run.steps * method.tableau.stages / (2 * nv + 1)))
         if wanted < 1 or not len(run.t):

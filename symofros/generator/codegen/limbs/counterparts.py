@@ -74,7 +74,7 @@ class Counterparts:
         graph: Graph of the program.
         nodes: Nodes that the function computes, operands first.
         given: Nodes that the function reads from an input array.
-        scalars: Nodes that are in no row, whatever they correspond to; others are if they are arithmetic.
+        scalars: Nodes that must stay scalar; of the rest only arithmetic nodes are grouped.
 
     Attributes:
         rows: What was found.

@@ -97,7 +97,7 @@ class LimbPlan:
             self._rows.remove(-x for x in group if isinstance(x, int) and x < 0)
 
     def _remove_single(self) -> None:
-        """Leave out vectors that go into no others and come from none, or from what is put together for them alone."""
+        """Drop isolated vectors: no vector user, and no vector operand or one packed from scalars for them alone."""
         while True:
             rows = self._rows.by_leader
             put = Counter(edges for row in rows.values() for edges in row.operands if self._is_put_together(edges))

@@ -26,7 +26,7 @@ class SecondOrderTheory(BeamTheory):
     def family_functions(
         cls, family: Family, direction: Direction, count: int, user: tuple[UserShape, ...] = ()
     ) -> Sequence[tuple[Piecewise, bool]]:
-        """Of displacements and twist angles, which meet the clamped end."""
+        """Shape functions of displacements and twist angles, which satisfy the conditions at the clamped end."""
         return [(shape.phi, shape.length) for shape in shapes(family, direction, count, user)]
 
     @property
@@ -45,7 +45,7 @@ class SecondOrderTheory(BeamTheory):
 
     @property
     def judged(self) -> Judged:
-        """By its slopes and its twist, and by how much its stiffnesses differ."""
+        """What a deformation is judged by: slopes and twist of the sections, and how EI_y and EI_z differ."""
         beam, shape = self.beam, deformation_of(self.beam)
         xi, angles = shape.station_angles
         EI_z, EI_y = (at_middle(EI, beam) for EI in (beam.EI_z, beam.EI_y))

@@ -32,7 +32,7 @@ class StrainTheory(BeamTheory):
     def family_functions(
         cls, family: Family, direction: Direction, count: int, user: tuple[UserShape, ...] = ()
     ) -> Sequence[tuple[Piecewise, bool]]:
-        """Of strains, the same for all directions."""
+        """Shape functions of strains, the same for all directions."""
         return [(function, False) for function in strain_functions(family, count, user)]
 
     @property
@@ -50,7 +50,7 @@ class StrainTheory(BeamTheory):
         return strains_of(self.beam).sizes
 
     def resolved(self, number: Callable[[Value, float], float]) -> Beam:
-        """With the sections that its curvature without stress needs."""
+        """The beam with the sections that its stress-free curvature needs."""
         return with_sections(self.beam, number)
 
     @property
@@ -68,7 +68,7 @@ class StrainTheory(BeamTheory):
 
     @property
     def judged(self) -> Judged:
-        """By the turn of its sections, and by the error of its shape's integration."""
+        """What a deformation is judged by: rotations of sections, and the error of the shape's integration."""
         beam, strains = self.beam, strains_of(self.beam)
         xi = tuple(k / _INTERVALS for k in range(_INTERVALS + 1))
         return Judged(

@@ -36,7 +36,7 @@ class ArticulatedInertia:
 
     @staticmethod
     def of_rows(g: Graph, rows: Rows) -> ArticulatedInertia:
-        """From the lower triangle of its 6 x 6 matrix, f and a before n and alpha."""
+        """The articulated inertia from the lower triangle of its 6 x 6 matrix, ordered (f, a), then (n, alpha)."""
 
         def block(at: int) -> Sym3:
             return Sym3(g, *(rows[at + i][at + j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 0), (2, 0), (2, 1))))

@@ -105,7 +105,7 @@ class Task:
         return np.concatenate(parts)
 
     def jacobian(self, q: Array) -> Array:
-        """How speeds reduce the error, row by row, where it is small."""
+        """Jacobian of the error: the speeds' effect on each row of the task, valid where the error is small."""
         parts = [np.zeros((0, self.model.nv))]
         for frame, (position, rotation) in self.wanted.items():
             J = self.model.frame_jacobian(frame, q, **self.inputs)

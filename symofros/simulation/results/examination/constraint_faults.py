@@ -46,7 +46,7 @@ def jump(stepper: Stepper, status: int) -> Jump | None:
 
 
 def lost_energy(stepper: Stepper) -> str:
-    """How much energy projections have taken."""
+    """Message that states the energy which projections have removed, as a share of the largest kinetic energy."""
     run = stepper.run
     share = float(run.lost_energy) / max(float(run.kinetic_energy), 1e-300)
     return f"keeping the constraints has taken {share:.3g} of the largest kinetic energy"

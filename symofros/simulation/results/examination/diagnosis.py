@@ -124,7 +124,7 @@ def _outcome(
 
 
 def _stopped(end: _End) -> Outcome | None:
-    """By Ctrl-C, an event, an input."""
+    """Outcome of a run stopped by Ctrl-C, a terminal event or an invalid input; None otherwise."""
     failure = end.stepper.failure
     if end.interrupted or isinstance(failure, KeyboardInterrupt):
         return end.outcome("interrupted", "Ctrl-C; the part up to here is kept")
@@ -142,7 +142,7 @@ def _stopped(end: _End) -> Outcome | None:
 
 
 def _without_direction(end: _End) -> Outcome | None:
-    """At a posture in which a row of G is not continuous."""
+    """Outcome of a run that ends at a posture in which a row of G is discontinuous; None otherwise."""
     turning = jump(end.stepper, end.status)
     if turning is None:
         return None
@@ -156,7 +156,7 @@ def _without_direction(end: _End) -> Outcome | None:
 
 
 def _grown(end: _End) -> Outcome | None:
-    """With states that have grown without bound."""
+    """Outcome of a run whose states have grown without bound; None otherwise."""
     settings, (_, q, v) = end.settings, end.stepper.state
     if end.failed and end.mode is not None and end.mode.amplified:
         reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(end.stepper, q, v)}"
@@ -170,7 +170,7 @@ def _grown(end: _End) -> Outcome | None:
 
 
 def _stuck(end: _End) -> Outcome | None:
-    """At a step that can't be taken."""
+    """Outcome of a run that ends at a step which can't be taken; None otherwise."""
     settings, (_, q, v) = end.settings, end.stepper.state
     if end.status == Status.SINGULAR:
         return end.outcome(
@@ -191,7 +191,7 @@ def _stuck(end: _End) -> Outcome | None:
 
 
 def _unconstrained(end: _End) -> Outcome | None:
-    """With constraints that projection no longer keeps."""
+    """Outcome of a run whose constraints projection no longer keeps; None otherwise."""
     stepper = end.stepper
     if end.status == Status.PROJECTION_FAILED:
         t_open, q_open, _ = stepper.evaluation_point
@@ -213,7 +213,7 @@ def _unconstrained(end: _End) -> Outcome | None:
 
 
 def _beyond_theory(end: _End) -> Outcome | None:
-    """With a beam bent further than its theory holds."""
+    """Outcome of a run with a beam bent further than its theory holds; None otherwise."""
     most_bent, limit = end.most_bent, end.settings.beam_limit
     if most_bent is None:
         return None
@@ -236,7 +236,7 @@ def _unfinished(end: _End) -> Outcome | None:
 
 
 def _violating(end: _End) -> Outcome | None:
-    """With a condition on speeds that was not kept."""
+    """Outcome of a run in which a condition on speeds was violated; None otherwise."""
     broken = violation(end.stepper, end.states, end.settings.project)
     if broken is None:
         return None

@@ -32,7 +32,7 @@ class Job:
         self.over = threading.Event()
 
     def as_json(self, whole: bool = True) -> Json:
-        """For the page; not whole: without the result, which may be large."""
+        """The job as JSON for the page; with `whole=False` without the result, which may be large."""
         summary = {
             "id": self.key,
             "kind": self.kind,

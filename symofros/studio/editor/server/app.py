@@ -200,7 +200,7 @@ class Editor:
         return JSONResponse({"id": job.key}, 202)
 
     async def job(self, request: Request) -> Response:
-        """How far a job is; of a page that simulates its address."""
+        """State, progress and result of a job as JSON; for a simulated page, the result is its address and notes."""
         job = self.jobs.get(request.path_params["key"])
         stated = job.as_json()
         if job.kind == "page" and job.result is not None:

@@ -225,7 +225,7 @@ class _DrawingBuilder:
         return cylinder(-length / 2 * axis, length / 2 * axis, radius)
 
     def _visuals(self) -> Iterator[DrawnPart]:
-        """How bodies look by their file."""
+        """Parts that draw the visuals of bodies, as stated in the model's file."""
         for body in self.tree.system.bodies:
             for k, visual in enumerate(self.tree.system.visuals.get(body.name, ())):
                 mesh = visual_mesh(visual)
