@@ -111,9 +111,7 @@ def judge(scene: Scene) -> Verdict:
         outcome, place, speed = runs.outcome(0), float(runs.q_last[0, 0]), float(runs.v_last[0, 0])
     exact = -first if hill else first + 1.0
     share = abs(speed - exact) / max(1.0, abs(exact))
-    if (
-        hill
-    ):  # Energy that is off while it is there is an error, too: that of speeds is half as large.
+    if hill:  # Energy that is off while it is there is an error, too: that of speeds is half as large.
         share = max(share, 0.5 * float(np.ptp(run.energy)) / float(run.kinetic_energy.max()))
     else:  # A push that is met late leaves the right speed, and a motion that is off.
         begin, length = _pulse(scene)
