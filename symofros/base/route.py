@@ -53,7 +53,7 @@ class Choice:
     """
 
     route: Route
-    figures: Mapping[str, float] = field(default_factory=dict)
+    figures: Mapping[str, float] = field(default_factory=dict, hash=False)
     asked: bool = False
     others: tuple[Route, ...] = ()
 

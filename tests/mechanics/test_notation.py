@@ -19,7 +19,7 @@ from symofros.base.names import local_name
 
 PACKAGE = Path(symofros.__file__).parent
 NOTATION = (PACKAGE / "NOTATION.md").read_text(encoding="utf-8")
-FOLDERS = ("kinematics", "dynamics")
+FOLDERS = ("spatial", "kinematics", "dynamics")
 
 # Frames: NOTATION.md lists them. A point is the origin of a frame, or the mass centre of a body.
 FRAME = "[WAKLBPDEFCST]"
