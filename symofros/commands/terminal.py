@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 from rich.console import Console, ConsoleDimensions
 
@@ -13,11 +14,17 @@ _PIPED = 400
 class _Output(Console):
     """A console that lays out as wide as its window, or as its text where there is none."""
 
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._width = None  # COLUMNS counts as it is when something is printed, not when this module is imported.
+
     @property
     def size(self) -> ConsoleDimensions:
         """Columns and rows: those of the window, or as the environment has them."""
-        window = super().size
-        return window if self.is_terminal or "COLUMNS" in os.environ else ConsoleDimensions(_PIPED, window.height)
+        window, stated = super().size, os.environ.get("COLUMNS", "")
+        if stated.isdigit():
+            return ConsoleDimensions(int(stated), window.height)
+        return window if self.is_terminal else ConsoleDimensions(_PIPED, window.height)
 
     @size.setter
     def size(self, new_size: tuple[int, int]) -> None:
