@@ -100,11 +100,13 @@ def judge(scene: Scene) -> Verdict:
     options: dict[str, Any] = {} if scene["method"] in _ADAPTIVE else {"dt": scene["step"]}
     if scene["records"]:
         options["output"] = np.linspace(0.0, _SPAN, scene["records"])
-    run = sf.simulate(
-        model, [0.0], [first], _SPAN, u=law, par=par, method=scene["method"], max_steps=200_000, **options
-    )
-    outcome, place, speed = run.outcome, float(run.q[-1, 0]), float(run.v[-1, 0])
-    if scene["batch"] and scene["method"] != "cvode":
+    in_batch = scene["batch"] and scene["method"] != "cvode"
+    if hill or not in_batch:
+        run = sf.simulate(
+            model, [0.0], [first], _SPAN, u=law, par=par, method=scene["method"], max_steps=200_000, **options
+        )
+        outcome, place, speed = run.outcome, float(run.q[-1, 0]), float(run.v[-1, 0])
+    if in_batch:
         runs = sf.simulate_batch(
             model, np.zeros((2, 1)), np.full((2, 1), first), _SPAN, u=law, par=par, method=scene["method"], **options
         )

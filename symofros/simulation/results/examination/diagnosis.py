@@ -69,6 +69,7 @@ class _End:
         most_bent: The beam that bends most, if there is one.
         notes: Notes of the run.
         fault: Input that is no number, in words; "" for none.
+        failed: Whether the states themselves are wrong.
         mode: Mode of the motion that the step follows worst, if one was looked for.
     """
 
@@ -81,19 +82,11 @@ class _End:
     most_bent: BeamBending | None
     notes: tuple[str, ...]
     fault: str
+    failed: bool
     mode: Mode | None
 
     def outcome(self, kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, self.stepper.state[0], reason, advice, self.notes)
-
-    @property
-    def failed(self) -> bool:
-        """Whether the states themselves are wrong."""
-        return _has_failed(self.status, self.fault)
-
-
-def _has_failed(status: int, fault: str) -> bool:
-    return status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
 
 
 def _outcome(
@@ -108,13 +101,12 @@ def _outcome(
     told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
     notes = _notes(stepper, settings, states, told)
     fault = input_fault(stepper) if status < 0 else ""
-    failed = _has_failed(status, fault)
+    failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
     steps = _steps_meant(settings) if failed else int(stepper.run.steps)
     mode, remarks = examine_run(stepper, settings, start, states, steps, ended_well=status >= 0, failed=failed)
     most_bent = largest_bending(bendings)
-    end = _End(
-        stepper, settings, status, recorded.interrupted, states, start, most_bent, (*notes, *remarks), fault, mode
-    )
+    notes = (*notes, *remarks)
+    end = _End(stepper, settings, status, recorded.interrupted, states, start, most_bent, notes, fault, failed, mode)
     told_by = (_stopped, _without_direction, _grown, _stuck, _unconstrained, _beyond_theory, _unfinished, _violating)
     for said in told_by:
         outcome = said(end)
