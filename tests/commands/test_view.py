@@ -49,8 +49,3 @@ def test_it_serves_until_it_is_interrupted(motion: Path, monkeypatch: pytest.Mon
 def test_a_motion_of_another_model_is_refused(motion: Path, tmp_path: Path) -> None:
     found = run(FOUR_BAR, "--trajectory", motion, "--record", tmp_path / "run.gif")
     assert found.exit_code == 2 and "coordinates q1, q2" in found.output and "q1, q2, q3" in found.output
-
-
-def test_help_names_it() -> None:
-    found = CliRunner().invoke(app, ["--help"])
-    assert "three dimensions" in found.output

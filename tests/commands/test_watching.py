@@ -49,13 +49,6 @@ def test_a_model_is_played(seen: list[sf.Viewer]) -> None:
     assert viewer.exaggeration == 2.0 and viewer.is_closed
 
 
-def test_a_diagram_is_played(seen: list[sf.Viewer], tmp_path: Path) -> None:
-    found = run(folder_with(tmp_path), "--view")
-    (viewer,) = seen
-    assert found.exit_code == 0 and viewer._player is not None and viewer.is_closed, found.output
-    assert viewer._player.motion.end == pytest.approx(0.2) and viewer.painted > 0
-
-
 def test_a_diagram_in_real_time_is_shown_as_it_goes(seen: list[sf.Viewer], tmp_path: Path) -> None:
     found = run(folder_with(tmp_path), "--view", "--realtime")
     (viewer,) = seen

@@ -1,4 +1,4 @@
-"""`symofros advise`."""
+"""`symofros advise`, and what its advice is good for."""
 
 from __future__ import annotations
 
@@ -46,3 +46,18 @@ def test_it_tells_programs_and_people(tmp_path: Path, monkeypatch: pytest.Monkey
     for words in ("no foreshortening", "refused", "allowed 0.02", "times as many", "measured:"):
         assert words in found.stdout
     assert asked == [None, {"tip": 0.05}]
+    reads_back_and_its_functions_are_enough(made[0], tmp_path)
+
+
+def reads_back_and_its_functions_are_enough(advice: sf.Advice, folder: Path) -> None:
+    """Compiled with them and nothing else, the reduced model does what the scene asks."""
+    path, how, scene = folder / "reduced.yaml", advice.stepping, advice.scene
+    advice.write(path)
+    assert sf.load(path) == advice.system
+    assert path.read_text().startswith(f"# Reduced from '{advice.full.name}'")
+    with pytest.raises(sf.DescriptionError, match="unknown format"):
+        advice.write(folder / "robot.urdf")
+    model = sf.compile(advice.system, advice.options)
+    run = sf.simulate(model, t_end=0.1, u=dict(scene.inputs), method=how.method, **how.settings)  # type: ignore[arg-type]
+    assert run.outcome.ok and run.frames[scene.outputs[0].of][0].shape == (len(run), 3)
+    assert "inverse_dynamics" not in advice.options.functions

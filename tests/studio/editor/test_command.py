@@ -155,11 +155,3 @@ def test_a_port_that_is_taken_and_a_file_that_is_none_are_told(file: Path, tmp_p
     (tmp_path / "odd.yaml").write_bytes(b"\xff\xff")
     odd = CliRunner().invoke(app, ["edit", str(tmp_path / "odd.yaml"), "--no-browser"])
     assert odd.exit_code == 2 and "is not UTF-8" in odd.output
-
-
-def test_without_its_packages_it_says_which_extra_has_them(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("symofros.studio.editor")]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, "uvicorn", None)
-    found = CliRunner().invoke(app, ["edit", str(file)])
-    assert found.exit_code == 2 and "pip install 'symofros[gui]'" in found.output

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 from playwright.sync_api import Page, expect
 
 import symofros as sf
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Picture, Serve
 
 pytestmark = pytest.mark.browser
 
-JOB = 60_000
 
-
-def test_a_double_pendulum_from_an_empty_canvas(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("double.yaml")
-    steps.open_editor(page, server.url)
+def test_a_double_pendulum_from_an_empty_canvas(opened: Serve, page: Page, picture: Picture) -> None:
+    server = opened("double.yaml")
     picture("empty")
 
     # The first body is dragged from the palette, the second put on the selected one by a click.
@@ -60,7 +53,9 @@ def test_a_double_pendulum_from_an_empty_canvas(
     steps.problems(page, 0)
 
     steps.run(page, "Compile")
-    expect(steps.results(page).get_by_role("rowheader", name="mass matrix", exact=True)).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_role("rowheader", name="mass matrix", exact=True)).to_be_visible(
+        timeout=steps.JOB
+    )
     picture("compiled")
     steps.run(page, "Simulate")
     steps.fill(page, "Duration", "2")
@@ -68,7 +63,7 @@ def test_a_double_pendulum_from_an_empty_canvas(
     picture("simulate")
     steps.window(page).get_by_role("button", name="Simulate").click()
     plot = steps.results(page).get_by_role("img", name="q1, q2 over time")
-    expect(plot).to_be_visible(timeout=JOB)
+    expect(plot).to_be_visible(timeout=steps.JOB)
     plot.hover()
     expect(steps.results(page).get_by_text("t = 0.9").first).to_be_visible()
     picture("simulated")

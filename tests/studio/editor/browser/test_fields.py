@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve, Server
 from tests.studio.waiting import fits, until
 
 pytestmark = pytest.mark.browser
 
-PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
-JOB = 60_000
 FREE = """symofros: 1
 system: {gravity: [0, 0, 0]}
 bodies:
@@ -27,11 +24,7 @@ bodies:
 WHOLE = "(element) => element.scrollWidth <= element.clientWidth"
 
 
-def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(
-    serve: Callable[..., Server], page: Page
-) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(arm: Server, page: Page) -> None:
     steps.open_window(page, "bodies/upper")
     steps.tab(page, "Forces")
     field = steps.fill(page, "Effort", "-tauu*3", nth=1)
@@ -51,9 +44,8 @@ def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet
     expect(alert).to_contain_text("unknown symbol 'weight'")
 
 
-def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(opened: Serve, serve: Serve, page: Page) -> None:
+    server = opened("arm.yaml", source=steps.PENDULUM)
     page.get_by_role("tab", name="YAML").click()  # The text editor is loaded.
     expect(page.get_by_label("Text of the file")).to_be_visible()
     page.get_by_role("tab", name="Parameters").click()
@@ -88,9 +80,9 @@ def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(serve: Callabl
     assert "value: 2.5" in again.file.read_text()
 
 
-def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Callable[..., Server], chromium: Browser) -> None:
+def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Serve, chromium: Browser) -> None:
     """The text editor is loaded when it is opened: then the server may be gone."""
-    server = serve("arm.yaml", source=PENDULUM)
+    server = serve("arm.yaml", source=steps.PENDULUM)
     page = chromium.new_page()
     steps.open_editor(page, server.url)
     server.kill()
@@ -102,10 +94,9 @@ def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Callable[..., Serv
     page.close()
 
 
-def test_units_are_shown_whole(serve: Callable[..., Server], page: Page) -> None:
-    text = PENDULUM.read_text().replace("unit: kg,", "unit: kg m^2/s,").replace("unit: kg}", "unit: kg m^2/s}")
-    server = serve("arm.yaml", content=text)
-    steps.open_editor(page, server.url)
+def test_units_are_shown_whole(opened: Serve, page: Page) -> None:
+    text = steps.PENDULUM.read_text().replace("unit: kg,", "unit: kg m^2/s,").replace("unit: kg}", "unit: kg m^2/s}")
+    opened("arm.yaml", content=text)
     for width in (1280, 900, 640, 400):
         page.set_viewport_size({"width": width, "height": 760})
         if page.get_by_role("complementary").count() == 0:
@@ -118,20 +109,7 @@ def test_units_are_shown_whole(serve: Callable[..., Server], page: Page) -> None
         fits(page, width)
 
 
-def test_the_sample_time_is_called_so(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("wave.yaml", content="symofros_diagram: 1\nblocks: {wave: {kind: sine}}\n")
-    steps.open_editor(page, server.url)
-    steps.open_window(page, "blocks/wave")
-    field = steps.window(page).get_by_label("Sample time", exact=True)
-    expect(field).to_be_visible()
-    expect(steps.window(page).get_by_text("Period", exact=True)).to_have_count(0)
-    row = steps.window(page).locator(".row").filter(has=page.get_by_label("Sample time", exact=True))
-    expect(row.locator(".row-unit")).to_have_text("s")
-
-
-def test_an_export_goes_to_a_folder_of_its_own(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_an_export_goes_to_a_folder_of_its_own(arm: Server, page: Page, tmp_path: Path) -> None:
 
     def export(kind: str, folder: str = "") -> None:
         steps.run(page, "Export…")
@@ -141,21 +119,18 @@ def test_an_export_goes_to_a_folder_of_its_own(serve: Callable[..., Server], pag
         steps.window(page).get_by_role("button", name="Export", exact=True).click()
 
     export("URDF")
-    expect(steps.results(page)).to_contain_text("arm_urdf/", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("arm_urdf/", timeout=steps.JOB)
     export("MJCF (MuJoCo)")
-    expect(steps.results(page)).to_contain_text("arm_mjcf/", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("arm_mjcf/", timeout=steps.JOB)
     export("MJCF (MuJoCo)", "arm_urdf")
-    expect(steps.results(page)).to_contain_text("holds another export, which would be removed", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("holds another export, which would be removed", timeout=steps.JOB)
     assert list((tmp_path / "arm_urdf").glob("*.urdf")) and list((tmp_path / "arm_mjcf").glob("*.xml"))
     export("URDF", "arm_urdf")  # The same again is written anew.
-    expect(steps.results(page)).to_contain_text(".urdf", timeout=JOB)
+    expect(steps.results(page)).to_contain_text(".urdf", timeout=steps.JOB)
 
 
-def test_joints_of_several_coordinates_are_started_and_driven(
-    serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
-    server = serve("free.yaml", content=FREE)
-    steps.open_editor(page, server.url)
+def test_joints_of_several_coordinates_are_started_and_driven(opened: Serve, page: Page, tmp_path: Path) -> None:
+    opened("free.yaml", content=FREE)
     steps.run(page, "Simulate…")
     typed = {
         "Duration": "0.2",
@@ -176,7 +151,7 @@ def test_joints_of_several_coordinates_are_started_and_driven(
         steps.fill(page, label, text)
     with page.expect_request(lambda request: request.url.endswith("/api/jobs")) as asked:
         steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
-    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=steps.JOB)
     expect(steps.results(page).locator(".bad")).to_have_count(0)
     options = asked.value.post_data_json["options"]
     assert options["inputs"] == {label.split()[-1]: text for label, text in typed.items() if "Formula" in label}

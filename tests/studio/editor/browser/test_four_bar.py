@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,12 +10,11 @@ from playwright.sync_api import Locator, Page, expect
 
 import symofros as sf
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Picture, Serve
 from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
 
-JOB = 60_000
 FOUR_BAR = Path(__file__).parents[4] / "reference_models" / "closed" / "four_bar.yaml"
 
 
@@ -45,9 +43,8 @@ def add(page: Page, name: str, on: str) -> None:
     steps.accept(page)
 
 
-def test_a_loop_is_closed_by_a_link(serve: Callable[..., Server], page: Page, picture: Callable[[str], None]) -> None:
-    server = serve("four_bar.yaml")
-    steps.open_editor(page, server.url)
+def test_a_loop_is_closed_by_a_link(opened: Serve, page: Page, picture: Picture) -> None:
+    server = opened("four_bar.yaml")
     add(page, "crank", "world")
     add(page, "coupler", "bodies/crank")
     add(page, "rocker", "world")
@@ -82,7 +79,7 @@ def test_a_loop_is_closed_by_a_link(serve: Callable[..., Server], page: Page, pi
     picture("four-bar")
 
     steps.run(page, "Compile")
-    expect(steps.results(page)).to_contain_text("constraints 2", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("constraints 2", timeout=steps.JOB)
     steps.saved(page)
     model = sf.compile(sf.load(server.file))
     assert (model.nq, model.nc) == (3, 2)
@@ -90,26 +87,25 @@ def test_a_loop_is_closed_by_a_link(serve: Callable[..., Server], page: Page, pi
     # Its links lie in one line, and it is simulated nevertheless, from the pose that the 3-D pane closes.
     page.get_by_role("tab", name="3-D").click()
     pose = page.get_by_role("group", name="Pose")
-    expect(pose).to_contain_text("Loops closed within", timeout=JOB)
+    expect(pose).to_contain_text("Loops closed within", timeout=steps.JOB)
     shown = float(pose.get_by_role("slider").first.input_value())
     pose.get_by_role("button", name="Start here").click()
     start = steps.window(page).get_by_label("Start of q1", exact=True)
     assert float(start.input_value()) == pytest.approx(shown, abs=0.02)
     steps.fill(page, "Duration", "0.1")
     steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
-    expect(steps.results(page)).to_contain_text("of computing", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("of computing", timeout=steps.JOB)
 
     # Out of reach, the pane says by how much.
     steps.open_window(page, "bodies/rocker")
     steps.fill(page, "Position x", "9")
     steps.accept(page)
-    expect(pose).to_contain_text(re.compile(r"A loop is open by [\d.]+ m"), timeout=JOB)
+    expect(pose).to_contain_text(re.compile(r"A loop is open by [\d.]+ m"), timeout=steps.JOB)
     expect(pose.get_by_role("button", name="Start here")).to_be_disabled()
 
 
-def test_what_is_typed_of_a_start_is_held_or_refused_in_words(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("bar.yaml", source=FOUR_BAR)
-    steps.open_editor(page, server.url)
+def test_what_is_typed_of_a_start_is_held_or_refused_in_words(opened: Serve, page: Page) -> None:
+    opened("bar.yaml", source=FOUR_BAR)
 
     def simulate(**starts: str) -> None:
         steps.run(page, "Simulate")
@@ -119,6 +115,6 @@ def test_what_is_typed_of_a_start_is_held_or_refused_in_words(serve: Callable[..
         steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
 
     simulate(q1="1", q2="-0.5", q3="0.3")
-    expect(steps.results(page)).to_contain_text("q2 = -0.5 would be", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("q2 = -0.5 would be", timeout=steps.JOB)
     simulate(q1="1", q2="", q3="")
-    expect(steps.results(page)).to_contain_text("of computing", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("of computing", timeout=steps.JOB)

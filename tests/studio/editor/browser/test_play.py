@@ -4,28 +4,15 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, Request, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Picture, Serve
 from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
-
-MODELS = Path(__file__).parents[4] / "reference_models"
-JOB = 60_000
-
-
-def simulate(page: Page, q1: str) -> None:
-    steps.run(page, "Simulate…")
-    steps.fill(page, "Start of q1", q1)
-    steps.fill(page, "Duration", "0.8")
-    steps.window(page).get_by_role("button", name="Simulate").click()
-    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
 
 
 def is_seek(request: Request) -> bool:
@@ -33,19 +20,18 @@ def is_seek(request: Request) -> bool:
 
 
 def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+    opened: Serve, page: Page, picture: Picture
 ) -> None:
-    server = serve("pendulum.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
-    steps.open_editor(page, server.url)
-    simulate(page, "1.2")
+    opened("pendulum.yaml", source=steps.PENDULUM)
+    steps.job(page, "Simulate", Start_of_q1="1.2", Duration="0.8")
     results = steps.results(page)
     motion = results.get_by_role("group", name="Motion")
 
     # It plays: the 3-D pane opens, and stands at the end where the slider does.
     motion.get_by_role("button", name="Play").click()
     angle = page.get_by_role("slider", name="q1 [rad]")
-    expect(angle).to_be_visible(timeout=JOB)
-    expect(motion.get_by_role("button", name="Play")).to_be_visible(timeout=JOB)
+    expect(angle).to_be_visible(timeout=steps.JOB)
+    expect(motion.get_by_role("button", name="Play")).to_be_visible(timeout=steps.JOB)
     expect(motion.get_by_role("status")).to_have_text("0.8 s")
     # The slider's time is the cursor's of every plot and the view's.
     with page.expect_request_finished(is_seek):
@@ -57,15 +43,13 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     with page.expect_request_finished(is_seek):
         page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + box["height"] / 2)
     expect(motion.get_by_role("status")).not_to_have_text("0 s")
-    picture("play")
 
     # Frames are seen through the bodies; the motion is saved as a film.
     page.get_by_label("Frames").click()
     expect(page.get_by_label("Frames")).to_be_checked()
-    picture("frames")
     page.get_by_label("Frames").click()
     # Its pictures take seconds of processor time, which a busy machine gives in minutes.
-    with page.expect_download(timeout=5 * JOB) as film:
+    with page.expect_download(timeout=5 * steps.JOB) as film:
         results.get_by_label("Film of run 1, GIF").click()
     assert film.value.suggested_filename == "run_1.gif" and film.value.path().read_bytes()[:6] == b"GIF89a"
 
@@ -74,13 +58,13 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
     for colours in ("dark", "light"):
         page.get_by_role("button", name="Dark or light").click()
         expect(scheme).to_have_attribute("data-mantine-color-scheme", colours)
-        if colours == "dark":
-            picture("play-dark")
 
     # A second run beside the first, which keeps the name that it was given.
     results.get_by_label("Name of run 1").fill("from 1.2")
-    simulate(page, "0.7")
-    expect(results.get_by_label("Name of run 2")).to_be_visible(timeout=JOB)  # Results of the first stood until then.
+    steps.job(page, "Simulate", Start_of_q1="0.7", Duration="0.8")
+    expect(results.get_by_label("Name of run 2")).to_be_visible(
+        timeout=steps.JOB
+    )  # Results of the first stood until then.
     curves = results.get_by_role("img", name="q1, q2 over time").locator("path.series")
     expect(curves).to_have_count(2)
     results.get_by_label("Draw from 1.2").check()

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve
 from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
 
-PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
 PICKED = """symofros_diagram: 1
 models: {arm: {file: arm.yaml}}
 blocks:
@@ -25,21 +23,16 @@ blocks:
 """
 
 
-def port(page: Page, name: str) -> Locator:
-    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
-
-
 def wire(page: Page, source: str, target: str) -> None:
     """Drag from port to port; blocks that are being arranged move both."""
-    at_rest(port(page, source))
-    at_rest(port(page, target))
-    port(page, source).drag_to(port(page, target))
+    at_rest(steps.port(page, source))
+    at_rest(steps.port(page, target))
+    steps.port(page, source).drag_to(steps.port(page, target))
 
 
-def test_ports_of_blocks_of_a_diagram(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    shutil.copy(PENDULUM, tmp_path / "arm.yaml")
-    server = serve("picked.yaml", content=PICKED)
-    steps.open_editor(page, server.url)
+def test_ports_of_blocks_of_a_diagram(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    opened("picked.yaml", content=PICKED)
     # The block gets its output when it is told which entries it picks.
     steps.open_window(page, "blocks/choice")
     steps.fill(page, "Entries", "q1")
@@ -54,8 +47,8 @@ def test_ports_of_blocks_of_a_diagram(serve: Callable[..., Server], page: Page, 
     page.keyboard.press("Control+z")
     expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(0)
     page.keyboard.press("Control+z")
-    expect(port(page, "input u2 of total")).to_have_count(0)
+    expect(steps.port(page, "input u2 of total")).to_have_count(0)
     page.keyboard.press("Control+y")
-    expect(port(page, "input u2 of total")).to_have_count(1)
+    expect(steps.port(page, "input u2 of total")).to_have_count(1)
     wire(page, "output y of choice", "input u2 of total")
     expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)

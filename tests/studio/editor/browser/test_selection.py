@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve
 from tests.studio.editor.browser.scene import open_view, settled
 from tests.studio.waiting import at_rest, until
 
 pytestmark = pytest.mark.browser
-
-ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_robot.yaml"
 
 
 def tab(page: Page, name: str) -> None:
@@ -35,11 +30,8 @@ def marked(picture: np.ndarray) -> np.ndarray:
     return (red > 120) & (green < red / 3) & (blue > red / 4)
 
 
-def test_what_is_chosen_is_marked_everywhere(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("robot.yaml", source=ROBOT)
-    steps.open_editor(page, server.url)
+def test_what_is_chosen_is_marked_everywhere(opened: Serve, page: Page) -> None:
+    opened("robot.yaml", source=steps.ROBOT)
 
     # On the canvas: a body. The tree and the text show it.
     steps.block(page, "bodies/link2").get_by_text("link2").click()
@@ -63,7 +55,6 @@ def test_what_is_chosen_is_marked_everywhere(
     steps.block(page, "bodies/load").get_by_text("tool").click()
     expect(rows.get_by_role("treeitem", selected=True)).to_have_text(["tool frame"])
     expect(rows.get_by_role("treeitem", selected=True)).to_be_in_viewport()
-    picture("tree")
 
     # In the picture: what is chosen has a colour of its own; a click there chooses.
     rows.get_by_role("treeitem").get_by_text("link1", exact=True).click()
@@ -74,7 +65,6 @@ def test_what_is_chosen_is_marked_everywhere(
     until(page, lambda: bool(marked(settled(page)).sum() > 20))
     shown = marked(settled(page))
     y, x = np.argwhere(shown)[len(np.argwhere(shown)) // 2]
-    picture("chosen")
     page.locator(".react-flow__pane").click(position={"x": 5, "y": 5})
     expect(page.locator(".react-flow__node.selected")).to_have_count(0)
     until(page, lambda: bool(marked(settled(page)).sum() < shown.sum() / 4))

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 from playwright.sync_api import Page, Response, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Picture, Serve
 from tests.studio.editor.browser.scene import MANY, changed, differing, open_view, settled
 from tests.studio.waiting import until
 
 pytestmark = pytest.mark.browser
 
-MODELS = Path(__file__).parents[4] / "reference_models"
-ROBOT = MODELS / "flexible" / "planar_robot.yaml"
 PANEL = '[class*="tabler-icon-cloud"]'  # viser's sign of the connection, at the head of its panel.
 
 
@@ -32,11 +27,8 @@ def slide(page: Page, label: str, value: float) -> dict[str, float]:
     return found
 
 
-def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("robot.yaml", source=ROBOT)
-    steps.open_editor(page, server.url)
+def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(opened: Serve, page: Page, picture: Picture) -> None:
+    opened("robot.yaml", source=steps.ROBOT)
     open_view(page)
     # Neither viser's panel nor a second scale bar lies over the picture.
     inside = page.frame_locator("iframe.view")

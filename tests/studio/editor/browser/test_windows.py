@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 from playwright.sync_api import Page, expect
 
 import symofros as sf
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve
 
 pytestmark = pytest.mark.browser
 
-MODELS = Path(__file__).parents[4] / "reference_models"
 # All kinds of joints; rotors and friction; closures and springs; both conditions; beams; nested forms of inertia.
 FILES = (
     "rigid/joint_zoo.yaml",
@@ -28,9 +24,8 @@ FILES = (
 
 
 @pytest.mark.parametrize("file", FILES)
-def test_a_window_that_is_only_looked_at_changes_nothing(serve: Callable[..., Server], page: Page, file: str) -> None:
-    server = serve("model.yaml", source=MODELS / file)
-    steps.open_editor(page, server.url)
+def test_a_window_that_is_only_looked_at_changes_nothing(opened: Serve, page: Page, file: str) -> None:
+    opened("model.yaml", source=steps.MODELS / file)
     seen = page.locator(".react-flow__node, .react-flow__edge.closure, .react-flow__edge.connection")
     for index in range(seen.count()):
         steps.open_window(page, str(seen.nth(index).get_attribute("data-id")))
@@ -42,9 +37,8 @@ def test_a_window_that_is_only_looked_at_changes_nothing(serve: Callable[..., Se
     expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
 
 
-def test_coordinates_are_coupled_by_formula(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("pair.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
-    steps.open_editor(page, server.url)
+def test_coordinates_are_coupled_by_formula(opened: Serve, page: Page) -> None:
+    server = opened("pair.yaml", source=steps.PENDULUM)
     page.get_by_role("button", name="Coupling…").click()
     steps.fill(page, "Name of a new entry of couplings of coordinates", "gear")
     page.keyboard.press("Enter")
@@ -64,11 +58,8 @@ def test_coordinates_are_coupled_by_formula(serve: Callable[..., Server], page: 
     expect(steps.window(page).get_by_label("Couplings of coordinates gear", exact=True)).to_have_value("q2 - 3*q9")
 
 
-def test_mass_and_moments_follow_what_is_typed(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("arm.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
-    steps.open_editor(page, server.url)
+def test_mass_and_moments_follow_what_is_typed(opened: Serve, page: Page) -> None:
+    opened("arm.yaml", source=steps.PENDULUM)
     steps.open_window(page, "bodies/upper")
     steps.tab(page, "Inertia")
     steps.window(page).get_by_label("Inertia by").select_option("solid")
@@ -76,15 +67,13 @@ def test_mass_and_moments_follow_what_is_typed(
     expect(figures).to_contain_text("mass 1.08 kg")  # 2700 kg/m^3 x 1 m x 2 cm x 2 cm.
     steps.fill(page, "Y", "0.04")
     expect(figures).to_contain_text("mass 2.16 kg · mass centre [0.5, 0, 0] m")
-    picture("inertia")
     steps.fill(page, "Y", "")
     expect(figures).to_contain_text("once every field has a number")
 
 
 @pytest.mark.parametrize("how", ["a base that is a body", "the ground alone"])
-def test_gravity_is_in_the_window_of_the_ground(serve: Callable[..., Server], page: Page, how: str) -> None:
-    server = serve("pair.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
-    steps.open_editor(page, server.url)
+def test_gravity_is_in_the_window_of_the_ground(opened: Serve, page: Page, how: str) -> None:
+    server = opened("pair.yaml", source=steps.PENDULUM)
     if how == "a base that is a body":
         page.get_by_role("button", name="Base", exact=True).click()
         expect(steps.block(page, "world")).to_contain_text("ground")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from starlette.testclient import TestClient
 
 from tests.late import require
@@ -10,6 +11,7 @@ from tests.studio.editor.conftest import TOKEN, finished
 require("ziglang", "zig")
 
 
+@pytest.mark.slow  # In every run: that addresses of pages have their own token (test_document_viewer.py).
 def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: TestClient) -> None:
     job = finished(client, "page", 300.0, q0={"q1": 1.2}, v0={"q1": 0.5}, method="rk4", dt=1e-3)
     assert job["state"] == "done" and set(job["result"]) == {"address", "notes"}

@@ -25,15 +25,11 @@ def test_there_and_back(name: str, rng: np.random.Generator) -> None:
         assert np.allclose(m.difference(q, again), 0.0, atol=1e-12)
 
 
-def test_they_are_named_and_bounded() -> None:
+def test_they_are_named_and_bounded_and_units_are_those_of_coordinates_and_of_turns() -> None:
     m = model("joint_zoo")
     sliders = sliders_of(m, (False,) * m.nq)
     assert tuple(slider.speed for slider in sliders) == m.names.v
-    assert all(slider.low < slider.high for slider in sliders)
-    assert len({slider.label for slider in sliders}) == m.nv
-
-
-def test_units_are_those_of_coordinates_and_of_turns() -> None:
+    assert all(slider.low < slider.high for slider in sliders) and len({slider.label for slider in sliders}) == m.nv
     m = model("torque_free_body")
     assert [slider.unit for slider in sliders_of(m, (False,) * m.nq)] == ["", "", "", "rad", "rad", "rad"]
     system = MODELS["planar_robot"]
