@@ -110,15 +110,6 @@ def test_a_beam_that_may_be_rigid_is_said_to() -> None:
     assert sf.compile(advice.system).names.v == ("swing",)
 
 
-@pytest.mark.slow  # In every run: estimators against benchmark numbers.
-def test_tighter_tolerances_keep_more() -> None:
-    """Estimates are in units of what is allowed: a hundredth of it, a hundred times the estimate."""
-    system, scene = crane()
-    loose, tight = (sf.advise(system, scene, size) for size in (2e-3, 2e-5))
-    for estimated in ("rigid", "foreshortening", "elastic joint"):
-        assert tight.choice(estimated).estimate == pytest.approx(100 * loose.choice(estimated).estimate, rel=0.05)
-
-
 @pytest.mark.slow  # In every run: foreshortening, beams and joints that may be rigid.
 def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
     system, scene = crane(retain="all", rotary_inertia=True, bend_z=0, twist=0)
@@ -139,19 +130,6 @@ def test_what_a_law_reads_is_not_removed() -> None:
     choice = advice.choice("elastic joint", "wrist")
     assert choice.verdict == "refused" and choice.error is not None and math.isinf(choice.error)
     assert advice.to_json()["choices"][0]["kind"]
-
-
-def test_a_model_without_speeds_is_not_integrated() -> None:
-    scene = sf.load_scene(SCENES / "spinning_beam.yaml")
-    advice = sf.advise(MODELS["spinning_beam"], replace(scene, t_end=4.0), 1.0)
-    assert advice.choice("rigid").verdict == "taken" and advice.cost.total == 0 and advice.stepping.dt is not None
-
-
-@pytest.mark.slow
-def test_a_coarse_description_is_refined_first() -> None:
-    beam = replace(MODELS["spinning_beam"].body("beam"), bend_y=1)
-    advice = sf.advise(MODELS["spinning_beam"].with_bodies(beam), sf.load_scene(SCENES / "spinning_beam.yaml"))
-    assert advice.truncation > 1.0 and any("refined" in note for note in advice.notes) and advice.ok
 
 
 @pytest.mark.parametrize(
@@ -218,17 +196,6 @@ def test_a_soft_pendulum_is_a_geometrically_exact_rod() -> None:
     right = independent(advice, system.with_bodies(replace(beam, bend_y=6)), "dop853", rtol=1e-9, atol=1e-12)
     found = independent(advice, advice.system, advice.stepping.method, **advice.stepping.settings)
     assert np.linalg.norm(found - right, axis=1).max() <= advice.bounds["end"]
-
-
-@pytest.mark.slow  # In every run: the soft pendulum.
-def test_a_rod_that_hardly_bends_becomes_what_it_may_be() -> None:
-    """Stated as a rod where the scene bends it by hundredths: second order serves, with fewer operations."""
-    system, scene = soft_pendulum()
-    stiff = replace(system.body("rope"), EI_z=20.0, theory="strain")
-    advice = sf.advise(system.with_bodies(stiff), scene)
-    beam = advice.system.body("rope")
-    assert isinstance(beam, sf.Beam) and beam.theory == "second_order" and beam.modes and advice.ok
-    assert advice.choice("theory", "rope").verdict == "taken" and advice.gain > 1.0
 
 
 def bowed(absolute: float) -> tuple[sf.System, sf.Scene]:

@@ -53,15 +53,6 @@ def test_a_film_is_as_long_as_the_motion(tmp_path: Path) -> None:
     assert frames == 21 and seconds == pytest.approx(21 / 20, abs=0.03)
 
 
-def test_a_picture_is_of_the_last_state(tmp_path: Path) -> None:
-    images = import_module("PIL.Image")
-    t, q = swing(1.0)
-    one = sf.record(SYSTEM, (t, q), tmp_path / "a.png", size=(160, 120))
-    other = sf.record(SYSTEM, (t[-1:], q[-1:]), tmp_path / "b.png", size=(160, 120))
-    with images.open(one) as a, images.open(other) as b:
-        assert np.array_equal(np.asarray(a), np.asarray(b)) and a.size == (160, 120)
-
-
 def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> None:
     file = sf.record(SYSTEM, swing(0.5), tmp_path / "m.html", rate=10)
     page = file.read_text()

@@ -58,19 +58,6 @@ def test_coordinates_are_coupled_by_formula(opened: Serve, page: Page) -> None:
     expect(steps.window(page).get_by_label("Couplings of coordinates gear", exact=True)).to_have_value("q2 - 3*q9")
 
 
-def test_mass_and_moments_follow_what_is_typed(opened: Serve, page: Page) -> None:
-    opened("arm.yaml", source=steps.PENDULUM)
-    steps.open_window(page, "bodies/upper")
-    steps.tab(page, "Inertia")
-    steps.window(page).get_by_label("Inertia by").select_option("solid")
-    figures = steps.window(page).get_by_role("status", name="What the body has")
-    expect(figures).to_contain_text("mass 1.08 kg")  # 2700 kg/m^3 x 1 m x 2 cm x 2 cm.
-    steps.fill(page, "Y", "0.04")
-    expect(figures).to_contain_text("mass 2.16 kg · mass centre [0.5, 0, 0] m")
-    steps.fill(page, "Y", "")
-    expect(figures).to_contain_text("once every field has a number")
-
-
 @pytest.mark.parametrize("how", ["a base that is a body", "the ground alone"])
 def test_gravity_is_in_the_window_of_the_ground(opened: Serve, page: Page, how: str) -> None:
     server = opened("pair.yaml", source=steps.PENDULUM)

@@ -128,6 +128,10 @@ def test_a_broken_wire_goes_to_the_body_itself_and_one_to_nowhere_is_left_out() 
     body = {"joint": {"kind": "fixed", "parent": "a", "frame": "none"}}
     found = diagram({"bodies": {"a": {"joint": {"kind": "fixed"}}, "b": body, "c": {"joint": {"parent": "zz"}}}})
     assert [(edge["source"], edge["source_port"]) for edge in found["edges"]] == [("world", ""), ("bodies/a", "")]
+    # The body without a joint is the ground.
+    found = diagram({"bodies": {"ground": {"frames": {"m": {}}}, "a": {"joint": {"parent": "ground", "frame": "m"}}}})
+    assert found["nodes"][0]["title"] == "ground" and found["nodes"][0]["path"] == ["bodies", "ground"]
+    assert found["edges"][0]["source_port"] == "m"
 
 
 def test_frames_may_be_called_like_ports() -> None:
@@ -142,12 +146,6 @@ def test_frames_may_be_called_like_ports() -> None:
         ("body", "frame"),
     ]
     assert found["edges"][1]["source_port"] == "body"
-
-
-def test_the_body_without_a_joint_is_the_ground() -> None:
-    found = diagram({"bodies": {"ground": {"frames": {"m": {}}}, "a": {"joint": {"parent": "ground", "frame": "m"}}}})
-    assert found["nodes"][0]["title"] == "ground" and found["nodes"][0]["path"] == ["bodies", "ground"]
-    assert found["edges"][0]["source_port"] == "m"
 
 
 @pytest.mark.parametrize("value", ["0,5", "1e999"])

@@ -103,11 +103,6 @@ def reference(image: np.ndarray) -> tuple[slice, slice]:
     return slice(0, 300), slice(0, int(columns[0]) + 10)
 
 
-def test_exaggeration_is_a_multiple_of_the_bending() -> None:
-    assert np.array_equal(robot_picture(0.02, 5.0), robot_picture(0.1, 1.0))
-    assert not np.array_equal(robot_picture(0.02, 5.0), robot_picture(0.02, 1.0))
-
-
 def test_layers_are_shown_or_not() -> None:
     everything = robot_picture(0.0, 1.0)
     without = robot_picture(0.0, 1.0, frozenset({"bodies"}))
