@@ -120,7 +120,7 @@ def test_a_robot_is_checked_beside_a_validation_of_the_users(repository: Path, i
     ("start", "name", "layout"),
     [
         pytest.param("", "validation", "checkout", marks=pytest.mark.slow),  # In every run: this one.
-        (EDITABLE, "symofros.validation", "elsewhere"),
+        pytest.param(EDITABLE, "symofros.validation", "elsewhere", marks=pytest.mark.slow),
         pytest.param(EDITABLE, "validation", "checkout", marks=pytest.mark.slow),
         ("", "symofros.validation", "installed"),
     ],

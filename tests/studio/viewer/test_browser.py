@@ -5,10 +5,8 @@
 
 from __future__ import annotations
 
-import io
 import threading
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics
 from symofros.blocks.graphics.view import with_view
+from tests.studio.pictures import differing, settled, shot
 from tests.studio.waiting import PATIENCE, until
 
 pytestmark = pytest.mark.browser
@@ -40,45 +39,13 @@ def open_page(chromium: Any) -> Iterator[Open]:
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(url)
         page.wait_for_selector("canvas", timeout=PATIENCE_MS)
-        until(page, lambda: (image_of(page) < 200).any(axis=2).sum() > 200)
+        until(page, lambda: (shot(page) < 200).any(axis=2).sum() > 200)
         return page
 
     yield opened
     for context in contexts:
         context.close()
     assert not errors
-
-
-def image_of(page: Any) -> np.ndarray:
-    """The canvas (height, width, 3), without what floats over it.
-
-    The page's picture is cut to it: a picture of the element waits until the page's animations let it through, which a
-    busy machine may not do within any time.
-    """
-    page.add_style_tag(content=".mantine-Notifications-root, .mantine-Notification-root {display: none !important}")
-    return whole(page, page.locator("canvas").first.bounding_box())
-
-
-def whole(page: Any, clip: Any = None) -> np.ndarray:
-    """The page, or its part within a box (height, width, 3)."""
-    shot = page.screenshot(clip=clip, timeout=PATIENCE_MS)
-    return np.asarray(import_module("PIL.Image").open(io.BytesIO(shot)).convert("RGB")).astype(int)
-
-
-def settled(page: Any) -> np.ndarray:
-    """The canvas once two looks at it agree, up to what antialiasing does."""
-    before = image_of(page)
-    for _ in range(100):
-        page.wait_for_timeout(300)
-        after = image_of(page)
-        if before.shape == after.shape and (np.abs(after - before).max(axis=2) > 20).sum() < 20:
-            return after
-        before = after
-    pytest.fail("the picture does not come to rest")
-
-
-def changed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.abs(a - b).max(axis=2) > 40
 
 
 def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
@@ -99,7 +66,7 @@ def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
         page.get_by_text("q1 [rad]").first.wait_for(timeout=PATIENCE_MS)
         assert page.title() == "planar_robot - SYMOFROS"
         until(page, lambda: page.locator("html").get_attribute("data-mantine-color-scheme") == "dark")
-        until(page, lambda: np.median(image_of(page)) < 100)
+        until(page, lambda: np.median(shot(page)) < 100)
         # Two pages have two cameras: there is no one scale.
         other = context.new_page()
         other.goto(viewer.url)
@@ -121,7 +88,7 @@ def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
     runs: list[sf.DiagramRun] = []
     worker = threading.Thread(target=lambda: runs.append(simulation.run(10.0, dt=0.01)))
     worker.start()
-    until(page, lambda: changed(first, image_of(page)).sum() > 200)
+    until(page, lambda: differing(first, shot(page)) > 200)
     assert worker.is_alive()  # It moved before the end.
     worker.join()
     until(page, lambda: np.array_equal(block.viewer.state.q, runs[0]["plant.q"][-1]))

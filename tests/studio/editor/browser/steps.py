@@ -5,7 +5,11 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
 from playwright.sync_api import Locator, Page, expect
+
+from tests.studio.pictures import MANY, settled, shot
+from tests.studio.waiting import PATIENCE, until
 
 MODELS = Path(__file__).parents[4] / "reference_models"
 PENDULUM = MODELS / "rigid" / "double_pendulum.yaml"
@@ -140,3 +144,11 @@ def set_parameter(page: Page, name: str, value: str) -> None:
 def has_value(page: Page, name: str, value: str) -> None:
     """Wait for a value in the table of parameters."""
     expect(page.get_by_label(f"Value of {name}", exact=True)).to_have_value(value)
+
+
+def open_view(page: Page) -> np.ndarray:
+    """Open the 3-D pane, and wait until the mechanism is drawn: its picture."""
+    run(page, "3-D")
+    page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
+    until(page, lambda: bool((shot(page) < 200).any(axis=2).sum() >= MANY), "nothing is drawn")
+    return settled(page)

@@ -16,7 +16,7 @@ import symofros as sf
 from tests.exports.cases import build
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Picture, Serve
-from tests.studio.editor.browser.scene import changed, open_view
+from tests.studio.pictures import changed
 from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
@@ -132,7 +132,7 @@ def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
     with action("run it for 3 s"):
         steps.job(page, "Run", End="3")
     with action("see it in three dimensions"):
-        still = open_view(page)
+        still = steps.open_view(page)
         pose = page.get_by_role("group", name="Pose")
         expect(pose.get_by_label("q1 [rad]")).to_have_value("0")
     with action("play it at five times its speed"):

@@ -8,7 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Serve
-from tests.studio.editor.browser.scene import open_view, settled
+from tests.studio.pictures import settled
 from tests.studio.waiting import at_rest, until
 
 pytestmark = pytest.mark.browser
@@ -58,10 +58,7 @@ def test_what_is_chosen_is_marked_everywhere(opened: Serve, page: Page) -> None:
 
     # In the picture: what is chosen has a colour of its own; a click there chooses.
     rows.get_by_role("treeitem").get_by_text("link1", exact=True).click()
-    open_view(page)
-    page.frame_locator("iframe.view").locator("body").evaluate(
-        "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
-    )
+    steps.open_view(page)
     until(page, lambda: bool(marked(settled(page)).sum() > 20))
     shown = marked(settled(page))
     y, x = np.argwhere(shown)[len(np.argwhere(shown)) // 2]

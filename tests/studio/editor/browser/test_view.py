@@ -7,7 +7,7 @@ from playwright.sync_api import Page, Response, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Picture, Serve
-from tests.studio.editor.browser.scene import MANY, changed, differing, open_view, settled
+from tests.studio.pictures import MANY, changed, differing, settled
 from tests.studio.waiting import until
 
 pytestmark = pytest.mark.browser
@@ -29,16 +29,12 @@ def slide(page: Page, label: str, value: float) -> dict[str, float]:
 
 def test_a_flexible_robot_is_drawn_bends_and_follows_its_file(opened: Serve, page: Page, picture: Picture) -> None:
     opened("robot.yaml", source=steps.ROBOT)
-    open_view(page)
+    steps.open_view(page)
     # Neither viser's panel nor a second scale bar lies over the picture.
     inside = page.frame_locator("iframe.view")
     expect(inside.locator(PANEL).first).to_be_hidden()
     expect(inside.get_by_role("img", name="Scale: ")).to_be_hidden()
     expect(page.get_by_role("img", name="Scale: ")).to_be_visible()
-    # A word on machines without a graphics card floats over the picture.
-    page.frame_locator("iframe.view").locator("body").evaluate(
-        "body => body.insertAdjacentHTML('beforeend', '<style>.mantine-Notification-root {display: none}</style>')"
-    )
     for fold in ("Elastic coordinates", "Parameters"):
         page.get_by_role("group", name="Pose").get_by_text(fold, exact=True).click()
     straight = settled(page)

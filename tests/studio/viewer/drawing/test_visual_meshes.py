@@ -18,9 +18,9 @@ from reference_models import MODELS
 from symofros.description.visual import Visual
 from symofros.studio.viewer.drawing import visual_meshes
 from symofros.studio.viewer.drawing.layers import shown_at_first
-from symofros.studio.viewer.drawing.meshes import Mesh
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+from tests.studio.viewer.drawing.test_meshes import volume
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -39,12 +39,6 @@ def obj(file: Path) -> None:
 def off(file: Path) -> None:
     corners = "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS)
     file.write_text(f"OFF\n4 4 0\n{corners}\n" + "\n".join(f"3 {a} {b} {c}" for a, b, c in FACES))
-
-
-def volume(mesh: Mesh) -> float:
-    """Above zero where all triangles are seen from outside."""
-    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
-    return float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6)
 
 
 @pytest.mark.parametrize(

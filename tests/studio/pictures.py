@@ -1,29 +1,34 @@
-"""The 3-D pane as tests see it: its picture, and when that has come to rest."""
+"""What a page draws in three dimensions, as tests see it: its picture, and when that has come to rest."""
 
 from __future__ import annotations
 
 import io
+from importlib import import_module
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
-from playwright.sync_api import Page
 
-from tests.studio.editor.browser import steps
 from tests.studio.waiting import PATIENCE, at_rest, until
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Page
 
 # Of 255: what antialiasing does stays below it.
 SEEN = 40
 # Of a picture of some 500 x 300.
 FEW, MANY = 20, 300
+_HIDDEN = "<style>.mantine-Notifications-root, .mantine-Notification-root {display: none !important}</style>"
 
 
 def shot(page: Page) -> np.ndarray:
-    """What the frame shows, without what floats over the picture (height, width, 3)."""
-    canvas = page.frame_locator("iframe.view").locator("canvas").first
+    """What the canvas shows, the page's own or the 3-D pane's, without what floats over it (height, width, 3)."""
+    framed = page.locator("iframe.view").count() > 0
+    inside = page.frame_locator("iframe.view") if framed else page
+    inside.locator("body").evaluate("(body, style) => body.insertAdjacentHTML('beforeend', style)", _HIDDEN)
+    canvas = inside.locator("canvas").first
     # A picture of the element waits until its page's animations let it through, for which a busy machine has no time.
-    clip = canvas.bounding_box() or at_rest(canvas)
-    data = page.screenshot(clip=clip, timeout=1000 * PATIENCE)
-    return np.asarray(Image.open(io.BytesIO(data)).convert("RGB")).astype(int)
+    data = page.screenshot(clip=canvas.bounding_box() or at_rest(canvas), timeout=1000 * PATIENCE)
+    return np.asarray(import_module("PIL.Image").open(io.BytesIO(data)).convert("RGB")).astype(int)
 
 
 def differing(a: np.ndarray, b: np.ndarray) -> int:
@@ -49,12 +54,4 @@ def settled(page: Page) -> np.ndarray:
 def changed(page: Page, before: np.ndarray, least: int = MANY) -> np.ndarray:
     """The picture once it differs from the one before, and has come to rest."""
     until(page, lambda: differing(shot(page), before) >= least, "the picture stays as it was")
-    return settled(page)
-
-
-def open_view(page: Page) -> np.ndarray:
-    """Open the pane, and wait until the mechanism is drawn."""
-    steps.run(page, "3-D")
-    page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
-    until(page, lambda: bool((shot(page) < 200).any(axis=2).sum() >= MANY), "nothing is drawn")
     return settled(page)
