@@ -10,7 +10,7 @@ from playwright.sync_api import Page, Position, expect
 
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Picture, Serve, Server
-from tests.studio.waiting import until
+from tests.studio.waiting import at_rest, until
 
 pytestmark = pytest.mark.browser
 
@@ -20,6 +20,18 @@ name: drawn   # a comment that stays
 blocks:
   source: {kind: sine, unit: rad}
   speed: {kind: gain, unit_in: rad/s, unit_out: "rad/s", inputs: {}}
+"""
+# Position and speed of an arm exchanged, a scalar that a vector of one takes.
+EXCHANGED = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm, inputs: {u: pd}}
+  place: {kind: pick, entries: [q1, q2], model: arm, of: q, inputs: {u: plant.q}}
+  speed: {kind: pick, entries: [q1, q2], model: arm, of: v, inputs: {u: plant.v}}
+  one: {kind: constant, value: 1, unit: rad}
+  first: {kind: pick, entries: [0], inputs: {u: one}}
+  pd: {kind: joint_pd, kp: 3, kd: 1, inputs: {q_desired: goal, q: speed, v: place}}
+  goal: {kind: constant, value: [0.1, 0.2], unit: rad}
 """
 HELD = """symofros_diagram: 1
 models: {arm: {file: arm.yaml}}
@@ -99,6 +111,21 @@ def test_a_model_has_a_canvas_of_its_own_and_a_way_back(opened: Serve, page: Pag
     assert server.file.read_text() == changed
 
 
+def copied_and_taken_back(page: Page) -> None:
+    """Blocks are copied with the wires between them, as text; the loops show though the copies are not fed."""
+    for name in ("speed", "sum"):
+        steps.block(page, f"blocks/{name}").click(modifiers=["Control"] if name == "sum" else [], position=MIDDLE)
+    page.keyboard.press("Control+c")
+    page.keyboard.press("Control+v")
+    expect(steps.wire(page, "blocks/sum2/inputs/u1")).to_have_count(1)
+    expect(steps.block(page, "blocks/speed2")).to_be_visible()
+    steps.problems(page, 3)
+    expect(page.locator(".react-flow__edge.loop")).to_have_count(2)
+    assert '"symofros_blocks"' in page.evaluate("navigator.clipboard.readText()")
+    page.keyboard.press("Control+z")
+    expect(steps.block(page, "blocks/sum2")).to_have_count(0)
+
+
 def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_it_was(
     opened: Serve, page: Page, picture: Picture
 ) -> None:
@@ -133,18 +160,7 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     expect(page.locator(".wire-label")).to_have_text("algebraic loop")
     picture("diagram-loop")
 
-    # Blocks are copied with the wires between them, as text; the loops show though the copies are not fed.
-    for name in ("speed", "sum"):
-        steps.block(page, f"blocks/{name}").click(modifiers=["Control"] if name == "sum" else [], position=MIDDLE)
-    page.keyboard.press("Control+c")
-    page.keyboard.press("Control+v")
-    expect(steps.wire(page, "blocks/sum2/inputs/u1")).to_have_count(1)
-    expect(steps.block(page, "blocks/speed2")).to_be_visible()
-    steps.problems(page, 3)
-    expect(page.locator(".react-flow__edge.loop")).to_have_count(2)
-    assert '"symofros_blocks"' in page.evaluate("navigator.clipboard.readText()")
-    page.keyboard.press("Control+z")
-    expect(steps.block(page, "blocks/sum2")).to_have_count(0)
+    copied_and_taken_back(page)
 
     # Fed by a signal of the same unit, by the keyboard alone; a scope on a signal; then it runs.
     steps.open_window(page, "blocks/sum")
@@ -167,3 +183,53 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
         "  sum: {kind: sum, inputs: {u1: speed.y, u2: speed.y}}\n"
         "  scope: {kind: scope, signals: [y], inputs: {y: speed.y}}\n"
     )
+
+
+PICKED = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm}
+  choice: {kind: pick, model: arm, inputs: {u: plant.q}}
+  total: {kind: sum, signs: "+", unit: rad}
+"""
+
+
+def wire(page: Page, source: str, target: str) -> None:
+    """Drag from port to port; blocks that are being arranged move both."""
+    at_rest(steps.port(page, source))
+    at_rest(steps.port(page, target))
+    steps.port(page, source).drag_to(steps.port(page, target))
+
+
+def test_ports_of_blocks_of_a_diagram(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    opened("picked.yaml", content=PICKED)
+    # The block gets its output when it is told which entries it picks.
+    steps.open_window(page, "blocks/choice")
+    steps.fill(page, "Entries", "q1")
+    steps.accept(page)
+    # And the other one a second input.
+    steps.open_window(page, "blocks/total")
+    steps.fill(page, "Signs", "+-")
+    steps.accept(page)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+    # Undo takes wire and input away; the input comes back at its place.
+    page.keyboard.press("Control+z")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(steps.port(page, "input u2 of total")).to_have_count(0)
+    page.keyboard.press("Control+y")
+    expect(steps.port(page, "input u2 of total")).to_have_count(1)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+
+
+def test_states_that_are_exchanged_are_refused_in_units(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    opened("law.yaml", content=EXCHANGED)
+    steps.problems(page, 2)
+    page.get_by_role("banner").get_by_role("button", name="2 problems").click()
+    for words in ("speed.y -> pd.q: units differ", "place.y -> pd.v: units differ", "rad/s"):
+        expect(steps.results(page)).to_contain_text(words)
+    expect(steps.results(page)).not_to_contain_text("shapes differ")

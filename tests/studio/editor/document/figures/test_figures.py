@@ -1,12 +1,14 @@
-"""Figures of a rigid body as one types it."""
+"""Figures of a rigid body, and of a beam, as one types it."""
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
 import pytest
 
+from symofros.studio.editor.document.figures.beam_figures import beam_figures
 from symofros.studio.editor.document.figures.inertia_figures import inertia_figures
 from symofros.studio.editor.editing.data_edits import EditError
 
@@ -43,3 +45,28 @@ def test_moments_about_the_body_frame_are_moved_to_the_mass_centre_and_turned_to
 def test_what_is_not_complete_has_none(stated: dict[str, Any]) -> None:
     with pytest.raises(EditError, match="the inertia is not complete"):
         inertia_figures(stated, {"p": 0.0})
+
+
+BEAM = {"length": 1.0, "rhoA": 1.0, "EI_y": 1.0, "EI_z": 4.0, "GJ": 1.0}
+
+
+def test_a_cantilever_has_the_frequencies_of_its_two_bending_stiffnesses() -> None:
+    frequencies = beam_figures(BEAM, {})["frequencies"]
+    np.testing.assert_allclose(frequencies["bend_z"][0], 1.8751040687**2 / (2.0 * np.pi), rtol=1e-9)
+    np.testing.assert_allclose(frequencies["bend_y"], 2.0 * np.array(frequencies["bend_z"]), rtol=1e-12)
+
+
+@pytest.mark.parametrize("stated", [{"length": 1e-300}, {"rhoA": 1e-300, "EI_y": 1e300}, {"rhoA": "1/p"}])
+def test_frequencies_beyond_all_numbers_are_left_out(stated: dict[str, float | str]) -> None:
+    figures = beam_figures({**BEAM, **stated}, {"p": 0.0})
+    json.dumps(figures, allow_nan=False)
+    assert "bend_z" not in figures["frequencies"]
+
+
+def test_how_far_its_theory_reaches_follows_from_the_length_alone() -> None:
+    validity = beam_figures({**BEAM, "length": "2*L"}, {"L": 0.5})["validity"]
+    assert [line["error"] for line in validity] == [0.01, 0.1, 0.5]
+    # A force at the tip deflects it by 2/3 of slope times length; small slopes err by 16/35 of their square.
+    assert validity[0]["slope"] == pytest.approx(np.sqrt(0.01 / 0.457), rel=0.01)
+    assert validity[0]["deflection"] == pytest.approx(2.0 / 3.0 * validity[0]["slope"], rel=1e-12)
+    assert beam_figures({**BEAM, "theory": "strain"}, {})["validity"] == []
