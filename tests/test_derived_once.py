@@ -65,7 +65,7 @@ def test_a_model_that_is_known_is_not_derived(work: Counter[str]) -> None:
     assert work["derivations"] == work["programs"] == work["compilations"] == 0
 
 
-@pytest.mark.parametrize("kind", ["tree", pytest.param("loop", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", ["tree", "loop"])
 def test_a_simulation_after_a_click_on_compile_derives_and_compiles_nothing(work: Counter[str], kind: str) -> None:
     """One derivation for what is counted and for what is compiled; units of functions as a run calls them."""
     text = ARM if kind == "tree" else FOUR_BAR.read_text()

@@ -77,7 +77,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return site
 
 
-@pytest.fixture
+@pytest.fixture(params=["a module", "packages"])
 def repository(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     """Somebody's: with a module, or a package, of the harness's name, and tests that use it."""
     used = "import sys\nfrom pathlib import Path\nimport validation\n\n\ndef test_own():\n    assert validation.MINE\n"
@@ -102,13 +102,11 @@ def pytest_in(repository: Path, site: Path, *arguments: str) -> subprocess.Compl
     return subprocess.run(command, cwd=repository, env=variables, capture_output=True, text=True, timeout=300)
 
 
-@pytest.mark.parametrize("repository", ["packages", "a module"], indirect=True)
 def test_the_tests_of_a_repository_with_a_validation_of_its_own_run(repository: Path, installed: Path) -> None:
     done = pytest_in(repository, installed)
     assert done.returncode == 0 and "1 passed" in done.stdout, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("repository", ["packages", pytest.param("a module", marks=pytest.mark.slow)], indirect=True)
 def test_a_robot_is_checked_beside_a_validation_of_the_users(repository: Path, installed: Path) -> None:
     (repository / "conftest.py").write_text(f"{TWICE}\ndef pytest_unconfigure():\n    print(twice('symofros'))\n")
     asked = ("--symofros-model", "robot.urdf", "--symofros-engine", "mujoco", "--symofros-tier", "smoke")
@@ -119,9 +117,9 @@ def test_a_robot_is_checked_beside_a_validation_of_the_users(repository: Path, i
 @pytest.mark.parametrize(
     ("start", "name", "layout"),
     [
-        pytest.param("", "validation", "checkout", marks=pytest.mark.slow),  # In every run: this one.
-        pytest.param(EDITABLE, "symofros.validation", "elsewhere", marks=pytest.mark.slow),
-        pytest.param(EDITABLE, "validation", "checkout", marks=pytest.mark.slow),
+        ("", "validation", "checkout"),
+        (EDITABLE, "symofros.validation", "elsewhere"),
+        (EDITABLE, "validation", "checkout"),
         ("", "symofros.validation", "installed"),
     ],
 )

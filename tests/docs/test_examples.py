@@ -34,12 +34,12 @@ PRINTED = {
 }
 
 
-# What README's own lines do in every run, a cross-check and C from a URDF, and scripts that compute for ten seconds.
-SLOW = {"cross_check", "urdf_to_c", "trajectory_optimisation", "learned_residual"}
+# What README's own lines do in every run: a cross-check, and C from a URDF.
+ELSEWHERE = {"cross_check", "urdf_to_c"}
 
 
 @pytest.mark.parametrize(
-    "script", [pytest.param(s, id=s.stem, marks=pytest.mark.slow if s.stem in SLOW else ()) for s in SCRIPTS]
+    "script", [pytest.param(s, id=s.stem, marks=pytest.mark.slow if s.stem in ELSEWHERE else ()) for s in SCRIPTS]
 )
 def test_an_example_runs(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
     if script.stem == "urdf_to_c" and not shutil.which("cc"):

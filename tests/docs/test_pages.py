@@ -28,11 +28,9 @@ from validation.dashboard.catalogue import TOPICS
 LANGUAGES = {"text": "", "js": "tests/exports/wasm/test_wasm.py"}
 SCHEMA = json.loads((ROOT / "symofros/description/yaml/schema.json").read_text())
 # Pages whose code takes minutes: frameworks that compile and train.
-LONG = {"docs/interop.md": pytest.mark.slow(minutes=4)}
-# Others whose models take ten seconds to compile: in every run are the pages that say the same at length.
-LONG |= dict.fromkeys(("docs/tour.md", "docs/reference/checking.md"), pytest.mark.slow)
+LONG = {"docs/interop.md": 4}
 WITH_CODE = [
-    pytest.param(page, marks=LONG[page]) if page in LONG else page
+    pytest.param(page, marks=pytest.mark.slow(minutes=LONG[page])) if page in LONG else page
     for page in pages()
     if blocks(page) and page not in ELSEWHERE and "tutorial/" not in page
 ]

@@ -78,7 +78,6 @@ def test_what_is_typed_of_a_loop_s_start_is_held_or_refused(client: TestClient) 
     assert any("q2 = -1.2004 was taken as -1.2001" in note for note in notes)
 
 
-@pytest.mark.slow  # In every run: it is shown closed.
 def test_a_loop_that_was_just_drawn_is_simulated(client: TestClient) -> None:
     """Its links lie in one line."""
     text = client.get("/api/document").json()["text"].replace("[L, 0, 0], axis", "[0.7*L, 0, 0], axis")

@@ -262,11 +262,10 @@ def test_a_film_is_refused_where_somebody_changes_the_document_between_two_steps
     assert outdated.status_code == 422 and "has changed since" in outdated.json()["error"]["object"]
 
 
-require("ziglang", "zig")
-
-
-@pytest.mark.slow  # In every run: that addresses of pages have their own token (test_document_viewer.py).
+@pytest.mark.slow  # In every run: that its address needs the view's token.
 def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: TestClient) -> None:
+    """A page that simulates by itself: the job that makes it, its address, what it may do."""
+    require("ziglang", "zig")
     job = finished(client, "page", 300.0, q0={"q1": 1.2}, v0={"q1": 0.5}, method="rk4", dt=1e-3)
     assert job["state"] == "done" and set(job["result"]) == {"address", "notes"}
     address = job["result"]["address"]
