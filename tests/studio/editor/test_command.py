@@ -19,8 +19,7 @@ import pytest
 from typer.testing import CliRunner
 
 from symofros.__main__ import app
-from symofros.studio.editor.document.workspace import autosave_of
-from tests.studio.editor.texts import FILES, TEXTS
+from tests.studio.editor.texts import FILES
 
 ROOT = Path(__file__).parents[3]
 
@@ -65,23 +64,6 @@ def edit(client: httpx.Client, value: float) -> dict[str, Any]:
 
 
 @pytest.mark.slow
-def test_work_survives_a_server_that_is_killed(file: Path) -> None:
-    with served(str(file)) as (process, client):
-        edit(client, 2.5)
-        process.send_signal(signal.SIGKILL)
-    assert file.read_text() == TEXTS["four_bar"]
-    with served(str(file)) as (_, client), served(str(file)) as (_, other):
-        assert len(other.headers["Authorization"]) > 40  # A token of its own.
-        assert client.get("/api/document", headers=other.headers).status_code == 401
-        found = client.get("/api/document").json()
-        assert found["recovered"] and "m: {value: 2.5" in found["text"]
-        saved = client.post("/api/save", json={"revision": found["revision"]}).json()
-        assert not saved["recovered"]
-    assert file.read_text() == TEXTS["four_bar"].replace("m: {value: 1.0", "m: {value: 2.5")
-    assert not autosave_of(file).exists()
-
-
-@pytest.mark.slow
 def test_a_worker_ends_with_a_server_that_is_killed(file: Path) -> None:
     with served(str(file)) as (process, client):
         client.post("/api/jobs", json={"kind": "simulate", "options": {"t_end": 1e7}})
@@ -110,7 +92,9 @@ def alive(pid: int) -> bool:
 
 @pytest.mark.slow
 def test_pages_are_told_of_each_other_s_edits_of_jobs_and_of_the_disk(file: Path) -> None:
-    with served(str(file)) as (process, client):
+    with served(str(file)) as (process, client), served(str(file)) as (_, other):
+        assert len(other.headers["Authorization"]) > 40  # A token of its own.
+        assert client.get("/api/document", headers=other.headers).status_code == 401
         token = client.headers["Authorization"].removeprefix("Bearer ")
         with httpx.stream("GET", f"{client.base_url}/api/events?token={token}", timeout=60) as stream:
             assert stream.headers["content-type"].startswith("text/event-stream")
