@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from scipy.integrate import solve_ivp
 
 import symofros as sf
 from symofros.mechanics.beams.strain.shape import StrainShape
-from tests.exports.cases import build, run
 from tests.mechanics.beams.rods import HUB, STIFF, rod
 
 # Without contraction, so that C and NumPy round alike.
@@ -66,37 +64,3 @@ def test_c_and_numpy_give_the_same_bits_at_small_and_no_curvature(size: float, r
     for a, b in zip(compiled.dynamics(q, v, ()), m.dynamics(q, v, ()), strict=True):
         assert np.isfinite(a).all()
         assert np.array_equal(a, b)
-
-
-@pytest.mark.parametrize("frame", ["tip", "middle"])
-def test_jacobians_of_sections_and_their_rates_are_derivatives(frame: str, rng: np.random.Generator) -> None:
-    m, eps = interpreted(), 1e-6
-    q, v = rng.standard_normal((2, m.nv)) * 0.5
-    J, rate = m.frame_jacobian(frame, q), m.frame_jacobian_rate(frame, q, v)
-    assert m.frame_velocity(frame, q, v) == pytest.approx(J @ v, abs=1e-13)
-    (ahead, R_ahead), (behind, R_behind) = (m.frame_pose(frame, q + s * eps * v) for s in (1.0, -1.0))
-    turn = R_ahead @ R_behind.T / (4 * eps)
-    spin = [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
-    assert J @ v == pytest.approx([*((ahead - behind) / (2 * eps)), *spin], abs=1e-8)
-    differences = (m.frame_jacobian(frame, q + eps * v) - m.frame_jacobian(frame, q - eps * v)) / (2 * eps)
-    assert rate == pytest.approx(differences, abs=1e-7)
-
-
-PLANE = sf.System("plane", (rod((2, 0, 0), sf.Joint("pin", "revolute", actuated=True), rhoJ=0.0),))
-START = {"pin": 0.3}
-
-
-def moved() -> sf.Trajectory:
-    m = sf.compile(PLANE)
-    return sf.simulate(m, q0=START, t_end=0.2, method="rk4", dt=1e-3)
-
-
-def test_a_package_in_c_moves_a_rod_as_python_does(tmp_path: Path) -> None:
-    folder = tmp_path / "package"
-    sf.export(PLANE, "c", folder, start=START, dt=1e-3)
-    build(folder, "../example")
-    lines = [line.split() for line in run("../example", "0.2", "0.001", "--fast", cwd=folder).splitlines()]
-    found = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("q", "v", "selftest")}
-    assert found["selftest"][0] < 1e-11
-    assert found["q"] == pytest.approx(moved().q[-1], abs=1e-11)
-    assert found["v"] == pytest.approx(moved().v[-1], abs=1e-10)

@@ -77,16 +77,6 @@ def test_rates_of_conditions_are_their_derivatives_along_the_motion(case: str) -
     assert np.abs(drift + gamma).max() < 1e-8 * max(1.0, np.abs(gamma).max())
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_c_evaluates_conditions_as_the_interpreter_does(case: str) -> None:
-    m = model(case)
-    c = sf.compile(CASES[case], sf.Options(functions=FUNCTIONS, flags=("-O2", "-ffp-contract=off", "-fno-math-errno")))
-    q, v = state(m, 1)
-    assert np.array_equal(c.constraint_jacobian(q), m.constraint_jacobian(q))
-    assert np.array_equal(c.constraint_bias(q, v), m.constraint_bias(q, v))
-    assert np.array_equal(c.constraint(q), m.constraint(q))
-
-
 def test_rates_at_the_closed_posture_are_the_blocked_spins() -> None:
     """Both frames of a ball on the ground: G is the identity in the blocked directions."""
     for axes in ROTATIONS:
