@@ -7,26 +7,6 @@ from pathlib import Path
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "four_bar",
-        "parallelogram",
-        "rolling_disc",
-        "sleigh",
-        "bricard",
-        "stewart",
-        "delta",
-        "grasp",
-        "flexible_slider_crank",
-    ],
-)
-def test_written_and_read(tmp_path: Path, name: str) -> None:
-    sf.save(MODELS[name], tmp_path / "model.yaml")
-    assert sf.load(tmp_path / "model.yaml") == MODELS[name]
 
 
 def test_conditions_by_formula(tmp_path: Path) -> None:

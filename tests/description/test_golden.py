@@ -1,19 +1,24 @@
 """How formulas are read, or why they are not, and what is wrong with files, as text.
 
 Cases: formulas.txt and unclear.txt, one formula a line; faults.txt, one change a line of a sound file, "old => new".
+For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt) a line is such a change, too, or what a file has beside a
+sound one, "+ ...", or in its place. What is said of it is a line of notes, or the fault with its place.
 """
 
 from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import pytest
 
 import symofros as sf
 from symofros.description.parser import ExpressionError, parse
+from tests.description import mjcf_models, sdf_models, urdf_models
 from tests.models import interpreted
 from tests.program_text import Case, assert_golden, golden_cases
 
@@ -86,3 +91,57 @@ def test_formulas_that_could_mean_something_else_are_refused_as_stated(
 @pytest.mark.parametrize("case", golden_cases(__file__, "faults"))
 def test_faults_of_files_are_named_with_their_lines(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     assert_golden(case, lambda lines: "\n".join(fault(line, tmp_path) for line in lines.split("\n")), request)
+
+
+class Format(NamedTuple):
+    """How cases of a foreign format are read.
+
+    Attributes:
+        file: Name of the file.
+        inside: What a sound file has within its outermost element.
+        around: A whole file of what it has inside.
+        options: Further arguments of `load`.
+    """
+
+    file: str
+    inside: str
+    around: Callable[[str], str]
+    options: dict[str, Any] = {}  # noqa: RUF012 - nobody changes it
+
+
+FORMATS = {
+    "mjcf": Format("model.xml", f"<worldbody>{mjcf_models.PENDULUM}</worldbody>", mjcf_models.document),
+    "sdf": Format("model.sdf", sdf_models.ONE, sdf_models.document),
+    "urdf": Format("arm.urdf", urdf_models.ROBOT, urdf_models.document),
+    "mimic": Format("arm.urdf", urdf_models.MIMIC, urdf_models.document, {"mimic": True}),
+}
+
+
+def notes(text: str, of: Format, folder: Path) -> tuple[str, ...]:
+    (folder / of.file).write_text(text)
+    return sf.load(folder / of.file, **of.options).notes
+
+
+def said(line: str, of: Format, folder: Path) -> str:
+    """The notes that a sound file does not have, or why the file is refused."""
+    line = line.encode().decode("unicode_escape")
+    sound = of.around(of.inside)
+    old, changed, new = line.partition(" => ")
+    if changed:
+        assert old in sound
+        text = sound.replace(old, new)
+    elif line.startswith("+ "):
+        text = of.around(of.inside + line.removeprefix("+ "))
+    else:
+        text = line if line.startswith(("<!", "<sdf", "<robot")) else of.around(line)
+    known = notes(sound, of, folder)
+    try:
+        return "; ".join(note for note in notes(text, of, folder) if note not in known) or "(nothing is said)"
+    except sf.DescriptionError as error:
+        return str(error).replace(f"{folder}/", "")
+
+
+@pytest.mark.parametrize("case", [case for name in FORMATS for case in golden_cases(__file__, name)])
+def test_what_is_said_of_foreign_files(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    of = FORMATS[case.path.stem]
+    assert_golden(case, lambda lines: "\n".join(said(line, of, tmp_path) for line in lines.split("\n")), request)

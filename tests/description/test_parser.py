@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description.parser import MAX_DEPTH, MAX_LENGTH, ExpressionError, parse, tokenize
+from symofros.description.parser import MAX_DEPTH, MAX_LENGTH, ExpressionError, parse
 from symofros.expr.expression import Expression, evaluate
 
 NAMES = {"a": 0.7, "b": -1.3, "c": 2.1}
@@ -88,31 +88,3 @@ def test_random_text_never_crashes(text: str) -> None:
         assert problem.found and problem.rule and problem.remedy
     else:
         assert isinstance(value, float) or value.symbols() is not None
-
-
-@given(st.text(alphabet="ab1.+-*/^(), sincosq_[]e", max_size=80))
-def test_random_near_formulas_never_crash(text: str) -> None:
-    try:
-        expression = parse(text)
-    except ExpressionError:
-        return
-    assert str(parse(str(expression))) == str(expression)
-
-
-def test_tokens_are_a_partition_of_the_text() -> None:
-    text = " 2.5e-1*sin( q.x[3] ) ^ -dq "
-    tokens = tokenize(text)
-    assert [kind for kind, _, _ in tokens] == [
-        "number",
-        "sign",
-        "name",
-        "sign",
-        "name",
-        "sign",
-        "sign",
-        "sign",
-        "name",
-        "end",
-    ]
-    assert all(text[start : start + len(token)] == token for _, token, start in tokens)
-    assert "".join(token for _, token, _ in tokens) == text.replace(" ", "")

@@ -78,11 +78,6 @@ def test_a_tube_is_a_circle_without_its_core() -> None:
         )
 
 
-def test_an_ellipse_of_equal_axes_is_a_circle() -> None:
-    circle, ellipse = sections.circle(STEEL, 0.7), sections.ellipse(STEEL, 0.7, 0.7)
-    assert ellipse.beam_properties("strain") == pytest.approx(circle.beam_properties("strain"), rel=1e-14)
-
-
 def test_sizes_may_be_formulas() -> None:
     stated = sections.rectangle(Material("E", "G", "rho"), "b*(1 - x/2)", "h")
     values = {"E": 2.6, "G": 1.0, "rho": 3.0, "b": 0.4, "h": 0.3, "x": 1.0}
@@ -278,14 +273,6 @@ def test_a_rod_takes_a_section_off_its_axis_as_it_is() -> None:
     assert (beam.EI_yz, beam.rhoI_yz) == (0.5, 0.004)
     # Shears along y and z are coupled then, by what is not known.
     assert not {"GA_y", "GA_z"} & entries.keys()
-
-
-@pytest.mark.parametrize(
-    "entries", [{"tension_center": [1.0]}, {"mass_center": None}, {"shear_center": 5.0}, {"stiffness": [[1.0, 0.0]]}]
-)
-def test_sections_of_other_sizes_are_refused(entries: dict[str, Any]) -> None:
-    with pytest.raises(DescriptionError, match="wrong number of entries|1 rows"):
-        replace(COUPLED, **entries)
 
 
 def test_a_product_is_small_beside_both_stiffnesses() -> None:
