@@ -106,26 +106,6 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
     assert not system.visuals and any("visual shapes that can't be drawn ignored" in note for note in system.notes)
 
 
-@pytest.mark.parametrize(
-    "inside",
-    [
-        "<visual/>",
-        "<visual><geometry/></visual>",
-        visual("<torus/>"),
-        visual('<box size="1 2"/>'),
-        visual("<sphere/>"),
-        visual('<box size="1 2 0"/>'),
-        visual('<sphere radius="nan"/>'),
-        visual('<cylinder radius="1"/>'),
-        visual(BOX, '<origin xyz="1 2"/>'),
-        visual(BOX, '<origin rpy="a b c"/>'),
-    ],
-)
-def test_what_is_not_understood_is_no_fault(inside: str, tmp_path: Path) -> None:
-    system = load(tmp_path, inside)
-    assert not system.visuals and any("can't be drawn ignored: 1 link (upper)" in note for note in system.notes)
-
-
 def test_no_more_are_kept_than_can_be_shown(tmp_path: Path) -> None:
     assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
 

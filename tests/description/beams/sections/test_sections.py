@@ -127,19 +127,6 @@ def test_principal_axes_of_an_l_section() -> None:
     assert number(turned.EI_z) > number(turned.EI_y)
 
 
-@pytest.mark.slow
-@elements
-def test_symmetric_outlines_serve_beams_at_any_size() -> None:
-    size = 1e-6
-    unit = sections.i_section(STEEL, 2.0, 1.0, 0.1, 0.15).beam_properties()
-    scaled = sections.i_section(STEEL, 2.0 * size, size, 0.1 * size, 0.15 * size).beam_properties()
-    powers = dict.fromkeys(("EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z"), 4)
-    powers |= dict.fromkeys(("rhoA", "EA", "GA_y", "GA_z"), 2)
-    assert scaled == pytest.approx({label: number(unit[label]) * size ** powers[label] for label in unit}, rel=1e-9)
-    # 2 b f ((h - f)/2)^2 and so on, by hand.
-    assert number(unit["EI_z"]) == pytest.approx(2.6 * (1.0 * 2.0**3 - 0.9 * 1.7**3) / 12)
-
-
 @pytest.mark.parametrize(
     "outline",
     [
@@ -178,22 +165,6 @@ def test_a_section_in_the_file_is_that_of_python(tmp_path: Path) -> None:
     (beam,) = sf.load(tmp_path / "a.yaml").bodies
     expected = sections.rectangle(Material(70e9, 26e9, 2700.0), "b*(2 - x/L)", 0.005).beam_properties()
     assert {label: getattr(beam, label) for label in expected} == expected
-
-
-@pytest.mark.parametrize(
-    ("entry", "fault"),
-    [
-        ("section: {shape: tube, E: 1, G: 1, rho: 1, radius: 1}", "add thickness"),
-        ("section: {shape: circle, E: 1, G: 1, rho: 1, radius: 1, y: 2}", "remove y"),
-        ("section: {shape: hexagon, E: 1, G: 1, rho: 1}", "rectangle"),
-        ("section: {shape: circle, E: 1, G: 1, rho: 1, radius: 1}\n      rhoA: 2", "keep the one or the other"),
-        ("twist: 0", "a beam without mass"),
-    ],
-)
-def test_faults_of_sections_are_said(tmp_path: Path, entry: str, fault: str) -> None:
-    (tmp_path / "a.yaml").write_text(FILE.format(section=entry))
-    with pytest.raises(sf.DescriptionError, match=fault):
-        sf.load(tmp_path / "a.yaml")
 
 
 COUPLED = Section(
