@@ -1,8 +1,9 @@
 """How formulas are read, or why they are not, and what is wrong with files, as text.
 
 Cases: formulas.txt and unclear.txt, one formula a line; faults.txt, one change a line of a sound file, "old => new".
-For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt) a line is such a change, too, or what a file has beside a
-sound one, "+ ...", or in its place. What is said of it is a line of notes, or the fault with its place.
+For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt; usd.txt, in calls of usd_models.py) a line is such a
+change, too, or what a file has beside a sound one, "+ ...", or in its place. What is said of it is a line of notes, or
+the fault with its place.
 """
 
 from __future__ import annotations
@@ -12,13 +13,15 @@ import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import pytest
 
 import symofros as sf
 from symofros.description.parser import ExpressionError, parse
-from tests.description import mjcf_models, sdf_models, urdf_models
+from tests.description import mjcf_models, sdf_models, urdf_models, usd_models
+from tests.late import needs_extra
 from tests.models import interpreted
 from tests.program_text import Case, assert_golden, golden_cases
 
@@ -113,6 +116,7 @@ FORMATS = {
     "mjcf": Format("model.xml", f"<worldbody>{mjcf_models.PENDULUM}</worldbody>", mjcf_models.document),
     "sdf": Format("model.sdf", sdf_models.ONE, sdf_models.document),
     "urdf": Format("arm.urdf", urdf_models.ROBOT, urdf_models.document),
+    "usd": Format("robot.usda", usd_models.SOUND, usd_models.stated),
     "mimic": Format("arm.urdf", urdf_models.MIMIC, urdf_models.document, {"mimic": True}),
 }
 
@@ -122,19 +126,26 @@ def notes(text: str, of: Format, folder: Path) -> tuple[str, ...]:
     return sf.load(folder / of.file, **of.options).notes
 
 
-def said(line: str, of: Format, folder: Path) -> str:
+@cache
+def notes_of_the_sound_one(name: str) -> tuple[str, ...]:
+    of = FORMATS[name]
+    with TemporaryDirectory() as folder:
+        return notes(of.around(of.inside), of, Path(folder))
+
+
+def said(line: str, name: str, folder: Path) -> str:
     """The notes that a sound file does not have, or why the file is refused."""
-    line = line.encode().decode("unicode_escape")
-    sound = of.around(of.inside)
+    of, line = FORMATS[name], line.encode().decode("unicode_escape")
     old, changed, new = line.partition(" => ")
     if changed:
+        sound = of.around(of.inside)
         assert old in sound
         text = sound.replace(old, new)
     elif line.startswith("+ "):
         text = of.around(of.inside + line.removeprefix("+ "))
     else:
         text = line if line.startswith(("<!", "<sdf", "<robot")) else of.around(line)
-    known = notes(sound, of, folder)
+    known = notes_of_the_sound_one(name)
     try:
         return "; ".join(note for note in notes(text, of, folder) if note not in known) or "(nothing is said)"
     except sf.DescriptionError as error:
@@ -143,5 +154,7 @@ def said(line: str, of: Format, folder: Path) -> str:
 
 @pytest.mark.parametrize("case", [case for name in FORMATS for case in golden_cases(__file__, name)])
 def test_what_is_said_of_foreign_files(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
-    of = FORMATS[case.path.stem]
-    assert_golden(case, lambda lines: "\n".join(said(line, of, tmp_path) for line in lines.split("\n")), request)
+    name = case.path.stem
+    if name == "usd":
+        pytest.importorskip("pxr", reason=needs_extra("usd", "pxr"))
+    assert_golden(case, lambda lines: "\n".join(said(line, name, tmp_path) for line in lines.split("\n")), request)

@@ -107,33 +107,6 @@ def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
     assert slope(energy, 1e-4) == pytest.approx(sum(powers), abs=1e-9 * np.abs(powers).sum())
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_power_of_the_wrench_at_the_root_of_a_bent_beam(seed: int) -> None:
-    """Its root is moved in all six directions at once: the drive's efforts are the wrench, d(T + V)/dt its power."""
-    base = sf.Joint("base", "free", prescribed=True)
-    beam = sf.Beam(
-        "beam", base, 1.0, 0.5, 20.0, 30.0, 10.0, 0.01, bend_y=2, bend_z=2, twist=1, rotary_inertia=True, retain="all"
-    )
-    load = sf.RigidBody("load", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0), (0.1,) * 3))
-    m = sf.compile(sf.System("s", [beam, load]), INTERPRETED)
-    pose = sf.compile(sf.System("p", [sf.RigidBody("b", sf.Joint("p", "free"), sf.Inertia(1.0))]), INTERPRETED)
-    rng = np.random.default_rng(seed)
-    start, (twist, rate) = pose.random_state(rng)[0], rng.normal(size=(2, 6))
-    q, v = 0.1 * rng.normal(size=m.nv), rng.normal(size=m.nv)
-    u = np.concatenate([start, twist, rate])
-    a = m.forward_dynamics(q, v, u)
-
-    def energy(s: float) -> float:
-        moved = np.concatenate([pose.integrate(start, s * twist), twist + s * rate, rate])
-        x, w = q + s * v, v + s * a
-        return float(m.kinetic_energy(x, w, u=moved) + m.potential_energy(x, u=moved))
-
-    efforts = m.prescribed_efforts(q, v, a, u)
-    np.testing.assert_allclose(m.joint_wrenches(q, v, a, u)[0], efforts, rtol=1e-13)
-    powers = efforts * twist
-    assert slope(energy, 1e-4) == pytest.approx(powers.sum(), abs=1e-8 * np.abs(powers).sum())
-
-
 def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
     """Wrenches through the loop are those of its multipliers: without them the drive of the crank would be wrong."""
     system = MODELS["flexible_slider_crank"]

@@ -69,20 +69,6 @@ def test_forces_jump_by_what_a_station_carries(theory: str) -> None:
     assert forces[1, 4] == pytest.approx(bending, rel=1e-12)
 
 
-@pytest.mark.parametrize("theory", THEORIES)
-def test_a_cantilever_under_its_weight_and_a_load_at_its_tip(theory: str) -> None:
-    """Undeformed: V(x) = -(w (L - x) + P), M(x) = w (L - x)^2/2 + P (L - x), whatever the shape functions."""
-    P, w, N, T = 3.0, SECTION["rhoA"] * G, 0.7, 0.4
-    load = sf.BeamLoad(force=(N, 0, -P), torque=(T, 0, 0), at=1.0)
-    m = compiled([beam(sf.Joint("clamp", "fixed"), loads=(load,), **THEORIES[theory])])
-    none = np.zeros(m.nv)
-    rest = L * (1.0 - np.array(STATIONS))
-    wanted = np.zeros((len(STATIONS), 6))
-    wanted[:, 0], wanted[:, 2], wanted[:, 3] = N, -(w * rest + P), T
-    wanted[:, 4] = w * rest**2 / 2 + P * rest
-    np.testing.assert_allclose(m.section_forces(none, none, none, []), wanted, atol=1e-10)
-
-
 @pytest.mark.parametrize("theory", ["first order", "strain"])
 @pytest.mark.parametrize("n", [2, 3])
 def test_segments_carry_what_the_whole_does(theory: str, n: int) -> None:
