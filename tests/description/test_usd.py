@@ -119,29 +119,30 @@ def test_a_joint_named_at_a_prim_within_a_scaled_body_lies_there(load: Load) -> 
     assert not any("posture" in note for note in system.notes)
 
 
-@pytest.mark.parametrize(
-    ("free", "kind"),
-    [
-        ({}, "fixed"),
-        ({"rotY"}, "continuous"),
-        ({"transZ"}, "prismatic"),
-        ({"rotX", "rotY", "rotZ"}, "ball"),
-        ({"rotY", "transY"}, "cylindrical"),
-        ({"transX", "transZ", "rotY"}, "planar"),
-    ],
-)
-def test_degrees_of_freedom_name_the_joint(load: Load, free: set[str], kind: str) -> None:
+KINDS: dict[str, set[str]] = {
+    "fixed": set(),
+    "continuous": {"rotY"},
+    "prismatic": {"transZ"},
+    "ball": {"rotX", "rotY", "rotZ"},
+    "cylindrical": {"rotY", "transY"},
+    "planar": {"transX", "transZ", "rotY"},
+}
+
+
+def test_degrees_of_freedom_name_the_joint(load: Load) -> None:
     names = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-    limits = {name: LOCKED for name in names if name not in free}
-    system = load(stage(body("arm", **ARM), joint("", "j", "", "arm", **freedoms(limits)), body("other", **ARM)))
-    made = system.bodies[0].joint
-    assert made is not None and made.kind == kind and made.name == "j"
-    if kind == "planar":  # Its normal is y of the joint, z of ours.
-        model = sf.compile(system, sf.Options(backend="interpreter"))
-        q = model.neutral()
-        q[[list(model.names.q).index(f"j.{name}") for name in ("x", "y", "angle")]] = 0.2, 0.3, 0.5
-        p, R = model.frame_pose("arm", q)
-        assert p[1] == pytest.approx(0.0, abs=1e-15) and R[1, 1] == pytest.approx(1.0)
+    bodies, joints = [body(kind, **ARM) for kind in KINDS], []
+    for kind, free in KINDS.items():
+        joints.append(joint("", f"on_{kind}", "", kind, **freedoms({n: LOCKED for n in names if n not in free})))
+    system = load(stage(*bodies, *joints))
+    made = {item.name: item.joint for item in system.bodies if item.joint is not None}
+    assert {name: (of.kind, of.name) for name, of in made.items()} == {kind: (kind, f"on_{kind}") for kind in KINDS}
+    # The normal of the planar joint is y of the joint, z of ours.
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    q = model.neutral()
+    q[[list(model.names.q).index(f"on_planar.{name}") for name in ("x", "y", "angle")]] = 0.2, 0.3, 0.5
+    p, R = model.frame_pose("planar", q)
+    assert p[1] == pytest.approx(0.0, abs=1e-15) and R[1, 1] == pytest.approx(1.0)
 
 
 def test_a_joint_outside_of_the_articulation_closes_the_loop(load: Load) -> None:
@@ -204,14 +205,19 @@ def test_what_a_body_leaves_out_follows_from_its_collision_shapes(
 
 
 def test_the_density_of_a_shape_comes_before_that_of_its_body_and_a_mass_before_both(load: Load) -> None:
-    def mass(*lines: str, **stated: Any) -> float:
-        (made,) = load(stage(body("arm", shape("Cube", "c", *lines, size=1.0), **stated))).bodies
-        assert isinstance(made, sf.RigidBody) and made.inertia is not None
-        return float(made.inertia.mass)  # type: ignore[arg-type]
-
-    assert mass() == 1000.0 and mass(density=10.0) == 10.0 and mass(mass=3.0, density=10.0) == 3.0
-    assert mass("float physics:density = 20", density=10.0) == 20.0
-    assert mass("float physics:mass = 7", "float physics:density = 20", density=10.0) == 7.0
+    own, both = "float physics:density = 20", {"density": 10.0}
+    stated: list[tuple[float, tuple[str, ...], dict[str, float]]] = [
+        (1000.0, (), {}),
+        (10.0, (), both),
+        (3.0, (), {"mass": 3.0} | both),
+        (20.0, (own,), both),
+        (7.0, ("float physics:mass = 7", own), both),
+    ]
+    bodies = [body(f"b{k}", shape("Cube", "c", *on, size=1.0), **of) for k, (_, on, of) in enumerate(stated)]
+    masses = [
+        made.inertia.mass for made in load(stage(*bodies)).bodies if isinstance(made, sf.RigidBody) and made.inertia
+    ]
+    assert masses == [mass for mass, *_ in stated]
 
 
 @pytest.mark.parametrize("axis", "XYZ")

@@ -42,7 +42,7 @@ def strains_at_the_axis(nv: int) -> np.ndarray:
     # Sections err by the sixth power of their distance, in either rod by itself.
     [
         ({"sections": 6}, (4e-8, 4e-10)),
-        ({"sections": 12}, (2e-9, 1e-11)),
+        pytest.param({"sections": 12}, (2e-9, 1e-11), marks=pytest.mark.slow),
         ({"sections": 8, "stretch": 2, "shear_y": 2, "shear_z": 2, "rotary_inertia": True} | STIFF, (1e-8, 2e-11)),
     ],
     ids=["6 sections", "12 sections", "stretched and sheared"],
@@ -92,6 +92,6 @@ def test_a_force_through_the_shear_centre_does_not_twist() -> None:
 
 def test_a_rod_of_the_most_sections_is_judged() -> None:
     """Twice as many would be more than there may be: it is compared with half of them."""
-    m = sf.compile(sf.System("s", (rod((2, 1, 0), sections=40),), gravity=(0, 0, 0)))
-    run = sf.simulate(m, [0.3, 0.1, 0.2], t_end=0.01)
+    m = sf.compile(sf.System("s", (rod((2, 0, 0), sections=40),), gravity=(0, 0, 0)))
+    run = sf.simulate(m, [0.3, 0.1], t_end=0.01)
     assert run.bendings[0].error < 1e-6

@@ -70,7 +70,7 @@ def test_a_soft_pendulum_swings_as_the_exact_rod() -> None:
 def test_a_soft_pendulum_without_damping_keeps_its_energy_by_a_rosenbrock_method() -> None:
     """Tolerances below which a Rosenbrock method's speeds once rounded; its steps follow the highest vibration."""
     m = pendulum(5, 0.0)
-    run = sf.simulate(m, t_end=END, method="rodas4", rtol=1e-9, atol=1e-11, output=OUTPUT)
-    assert run.t[-1] == END
+    run = sf.simulate(m, t_end=1.0, method="rodas4", rtol=1e-9, atol=1e-11, output=OUTPUT)
+    assert run.t[-1] == 1.0
     stored = m.potential_energy(run.q)
     assert np.ptp(m.kinetic_energy(run.q, run.v) + stored) < 1e-9 * np.ptp(stored)
