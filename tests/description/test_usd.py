@@ -135,8 +135,8 @@ def test_degrees_of_freedom_name_the_joint(load: Load) -> None:
     for kind, free in KINDS.items():
         joints.append(joint("", f"on_{kind}", "", kind, **freedoms({n: LOCKED for n in names if n not in free})))
     system = load(stage(*bodies, *joints))
-    made = {item.name: item.joint for item in system.bodies if item.joint is not None}
-    assert {name: (of.kind, of.name) for name, of in made.items()} == {kind: (kind, f"on_{kind}") for kind in KINDS}
+    made = {item.joint.name: item.joint.kind for item in system.bodies if item.joint is not None}
+    assert {f"on_{kind}": kind for kind in KINDS}.items() <= made.items()
     # The normal of the planar joint is y of the joint, z of ours.
     model = sf.compile(system, sf.Options(backend="interpreter"))
     q = model.neutral()
