@@ -3,7 +3,7 @@
 Cases: formulas.txt and unclear.txt, one formula a line; faults.txt, one change a line of a sound file, "old => new".
 For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt; usd.txt, in calls of usd_models.py) a line is such a
 change, too, or what a file has beside a sound one, "+ ...", or in its place. What is said of it is a line of notes, or
-the fault with its place.
+the fault with its place. Cases of *_read.txt are whole files, or what is inside, and what is read of them.
 """
 
 from __future__ import annotations
@@ -152,9 +152,43 @@ def said(line: str, name: str, folder: Path) -> str:
         return str(error).replace(f"{folder}/", "")
 
 
+def digits(match: re.Match[str]) -> str:
+    """A number to twelve digits, without what is rounding beside one."""
+    number = float(match[0])
+    return f"{number if abs(number) > 1e-14 else 0.0:.12g}"
+
+
+def read(stated: str, name: str, folder: Path) -> str:
+    """What is read of a file, numbers to twelve digits: the description without its head, looks and notes."""
+    of = FORMATS[name]
+    text = stated if stated.startswith(("<sdf", "<robot")) else of.around(stated)
+    (folder / of.file).write_text(text)
+    system = sf.load(folder / of.file, **of.options)
+    sf.save(system, folder / "read.yaml")
+    lines = re.sub(r", *\n +", ", ", (folder / "read.yaml").read_text()).splitlines()[2:]
+    lines += [f"look of {body}: {look}" for body, looks in system.visuals.items() for look in looks]
+    return re.sub(
+        r"-?\b\d+(\.\d+)?(e-?\d+)?\b", digits, "\n".join([*lines, *(f"note: {note}" for note in system.notes)])
+    )
+
+
+def needs(name: str) -> None:
+    if name.startswith("usd"):
+        pytest.importorskip("pxr", reason=needs_extra("usd", "pxr"))
+
+
+READ = [case for name in FORMATS if name != "mimic" for case in golden_cases(__file__, f"{name}_read")]
+
+
+@pytest.mark.parametrize("case", READ)
+def test_foreign_files_are_read_as_stated(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    name = case.path.stem.removesuffix("_read")
+    needs(name)
+    assert_golden(case, lambda stated: read(stated, name, tmp_path), request)
+
+
 @pytest.mark.parametrize("case", [case for name in FORMATS for case in golden_cases(__file__, name)])
 def test_what_is_said_of_foreign_files(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     name = case.path.stem
-    if name == "usd":
-        pytest.importorskip("pxr", reason=needs_extra("usd", "pxr"))
+    needs(name)
     assert_golden(case, lambda lines: "\n".join(said(line, name, tmp_path) for line in lines.split("\n")), request)

@@ -120,25 +120,6 @@ def test_names_and_places(tmp_path: Path) -> None:
     assert system.origin["body", "b"].endswith("model.xml:7")
 
 
-def test_nameless_things_get_free_names(tmp_path: Path) -> None:
-    taken = MODELS["nameless"].replace('name="c"', 'name="body2"').replace('name="q"', 'name="joint0"')
-    system = sf.load(write(tmp_path, taken))
-    joints = [body.joint.name for body in system.bodies if body.joint is not None]
-    assert joints == ["joint0_", "joint1", "joint2", "joint0"]
-    assert [body.name for body in system.bodies] == ["world", "body1_at_joint0_", "body1", "body2_", "body2"]
-
-
-def test_limits_and_inputs(tmp_path: Path) -> None:
-    drive = '<actuator><motor joint="q1" gear="50"/></actuator>'
-    system = sf.load(write(tmp_path, MODELS["degrees_and_euler_sequence"] + drive))
-    first, second = (system.body(name).joint for name in "ab")
-    assert first is not None and second is not None
-    assert (first.kind, first.actuated, second.actuated) == ("revolute", False, False)
-    assert [str(value) for value in first.effort] == ["50*actuator0"]
-    assert first.limits is not None and first.limits.lower == pytest.approx(-np.pi / 2)
-    assert [item.name for item in system.inputs] == ["actuator0"]
-
-
 def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> None:
     path = write(tmp_path, world(f'<frame euler="90 0 0">{PENDULUM}</frame>'))
 

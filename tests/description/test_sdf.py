@@ -104,31 +104,10 @@ def test_springs_dampers_limits_and_mimics(tmp_path: Path) -> None:
     assert first is not None and first.limits == sf.Limits(-1.0, None, 3.0, None)
 
 
-def test_worlds_have_gravity_and_models_with_their_names(tmp_path: Path) -> None:
-    box = '<model name="{}"><pose>{} 0 0 0 0 0</pose>' + link("l", "", 1) + "{}</model>"
-    models = box.format("m", 0, joint("q", "world", "l")) + box.format("n", 1, "<static>true</static>")
-    world = f'<sdf version="1.10"><world name="w"><gravity>0 0 -1.6</gravity>{models}</world></sdf>'
-    system = load(tmp_path, world, "scene.world")
-    assert system.gravity == (0.0, 0.0, -1.6)
-    assert [body.name for body in system.bodies] == ["m::l", "n::l"]
-    assert interpreted(system).names.q == ("m::q",)
-    assert load(tmp_path, world.replace("<gravity>0 0 -1.6</gravity>", "")).gravity == (0.0, 0.0, -9.8)
-
-
 def test_gravity_of_a_link_can_be_switched_off(tmp_path: Path) -> None:
     off = link("a", "<gravity>false</gravity>", 2) + joint("q", "world", "a")
     model = interpreted(load(tmp_path, document(off)))
     np.testing.assert_allclose(model.bias([0.4], [0.0]), model.generalized_force([0.4], [0.0], [0.0]), atol=1e-13)
-
-
-def test_visual_shapes_are_kept(tmp_path: Path) -> None:
-    shape = (
-        '<visual name="v"><pose>0 0 1 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>'
-        "<material><diffuse>1 0 0</diffuse></material></visual>"
-    )
-    system = load(tmp_path, document(link("a", shape, 1) + joint("q", "world", "a")))
-    (visual,) = system.visuals["a"]
-    assert (visual.kind, visual.size, visual.position, visual.color) == ("box", (1, 2, 3), (0, 0, 1), (255, 0, 0))
 
 
 def test_meshes_lie_in_the_folder_of_the_file(tmp_path: Path) -> None:
@@ -139,24 +118,3 @@ def test_meshes_lie_in_the_folder_of_the_file(tmp_path: Path) -> None:
         text = document(link("a", mesh.format(file), 1) + joint("q", "world", "a"))
         folder = tmp_path if drawn else tmp_path / "inner"
         assert len(load(folder, text).visuals.get("a", ())) == drawn, file
-
-
-def test_models_are_static_by_their_whole_name(tmp_path: Path) -> None:
-    """Model 'box2' floats beside the static model 'box'."""
-    models = (
-        f'<model name="box"><static>1</static>{link("l", "", 1)}</model><model name="box2">{link("l", "", 1)}</model>'
-    )
-    system = load(tmp_path, f'<sdf version="1.9"><world name="w">{models}</world></sdf>')
-    kinds = [body.joint.kind for body in system.bodies if body.joint is not None]
-    assert kinds == ["fixed", "free"]
-
-
-@pytest.mark.parametrize("version", ["1.5", "1.6"])
-def test_poses_of_old_versions_name_their_frame(tmp_path: Path, version: str) -> None:
-    """What `frame` was before 1.7 is relative_to; measured in Drake 1.51.1, whose matrices agree."""
-    placed = link("a", "<pose>0.5 0.2 0 0 0.3 0</pose>", 1) + joint("q", "world", "a") + joint("r", "a", "b")
-    old = load(tmp_path, document(placed + link("b", '<pose frame="a">0.5 0 1 0.1 0.3 0</pose>', 1), version))
-    new = load(tmp_path, document(placed + link("b", '<pose relative_to="a">0.5 0 1 0.1 0.3 0</pose>', 1), "1.7"))
-    assert old.bodies == new.bodies
-    no_frame = load(tmp_path, document(placed + link("b", '<pose frame="">0.5 0 1 0.1 0.3 0</pose>', 1), version))
-    assert no_frame.bodies != new.bodies

@@ -59,23 +59,6 @@ def test_a_link_on_a_hinge_is_what_it_states(load: Load) -> None:
         np.testing.assert_allclose(mine, stated, rtol=1e-15)
 
 
-def test_units_of_the_stage_are_taken_into_account(load: Load) -> None:
-    """Centimetres and grams, y upwards: the same mechanism in SI units, gravity along -y."""
-    link = {"mass": 2000.0, "centerOfMass": (10.0, 20.0, -30.0), "diagonalInertia": (3.0e6, 4.0e6, 5.0e6)}
-    text = stage(
-        body("arm", at=(50, 0, 100), **link),
-        hinge(localPos0=(50.0, 0.0, 100.0)),
-        meters=0.01,
-        kilograms=0.001,
-        up="Y",
-    )
-    system = load(text)
-    assert system.gravity == pytest.approx((0.0, -9.81, 0.0))
-    reference = arm(gravity=(0.0, -9.81, 0.0))
-    for mine, stated in zip(dynamics(system, [0.4], [0.7]), dynamics(reference, [0.4], [0.7]), strict=True):
-        np.testing.assert_allclose(mine, stated, rtol=1e-14)
-
-
 @pytest.mark.parametrize("kind", ["Revolute", "Prismatic"])
 def test_a_joint_stated_from_child_to_parent_is_the_same_joint(load: Load, kind: str) -> None:
     """Coordinates, limits and directions stay: only who carries whom is turned round."""
@@ -106,17 +89,6 @@ def test_a_body_that_turns_about_another_point_than_its_origin_has_the_pose_that
         own = angle - math.pi / 2
         np.testing.assert_allclose(R[:2, 0], [math.cos(own), math.sin(own)], atol=1e-15)
         np.testing.assert_allclose(p + R @ [0.25, 0, 0], [0.5, 0, 0], atol=1e-15)
-
-
-def test_a_joint_named_at_a_prim_within_a_scaled_body_lies_there(load: Load) -> None:
-    site = prim("Xform", "site", *placed((5, 0, 0)))
-    base = body("base", site, at=(1, 0, 0), scale=(2, 2, 2), mass=1.0, diagonalInertia=(1, 1, 1))
-    link = body("arm", at=(13, 0, 0), **ARM)
-    text = stage(base, link, joint("Revolute", "j", "base/site", "arm", axis="Z", localPos0=(1, 0, 0)))
-    system = load(text)
-    carried = next(b for b in system.bodies if b.name == "arm")
-    assert carried.joint is not None and carried.joint.position == (12.0, 0.0, 0.0)
-    assert not any("posture" in note for note in system.notes)
 
 
 KINDS: dict[str, set[str]] = {
@@ -173,18 +145,6 @@ def test_a_joint_outside_of_the_articulation_closes_the_loop(load: Load) -> None
     q = np.array([{"a": 0.3, "b": 0.3, "c": -0.3}[name] for name in names])
     assert np.abs(model.constraint(q)).max() < 1e-15
     assert np.linalg.matrix_rank(model.constraint_jacobian(q)) == 2
-
-
-def test_a_distance_that_is_kept_is_a_rod(load: Load) -> None:
-    text = stage(
-        body("arm", at=(1, 0, 0), **ARM),
-        joint("Distance", "d", "", "arm", minDistance=1.0, maxDistance=1.0),
-        joint("Distance", "e", "", "arm", minDistance=0.5, maxDistance=2.0),
-    )
-    system = load(text)
-    (rod,) = system.constraints
-    assert isinstance(rod, sf.Rod) and rod.length == 1.0
-    assert any("bounds of distances ignored" in note for note in system.notes)
 
 
 @pytest.mark.parametrize(
@@ -251,39 +211,6 @@ def test_shapes_scale_shift_and_add_up(load: Load) -> None:
     whole = sf.solids.box(1000.0, 2.0, 2.0, 3.0)
     assert isinstance(made, sf.RigidBody) and made.inertia is not None
     assert made.inertia.mass == pytest.approx(whole.mass) and made.inertia.moments == pytest.approx(whole.moments)
-
-
-def test_principal_axes_turn_the_moments(load: Load) -> None:
-    (made,) = load(stage(body("arm", **ARM, principalAxes=(HALF, HALF, 0, 0)))).bodies
-    assert isinstance(made, sf.RigidBody) and made.inertia is not None
-    assert made.inertia.moments == pytest.approx((0.3, 0.5, 0.4, 0, 0, 0), abs=1e-15)
-
-
-def test_drives_limits_and_entries_of_extensions(load: Load) -> None:
-    extra = (
-        "float drive:angular:physics:maxForce = 12",
-        "float drive:angular:physics:stiffness = 3",
-        "float physxJoint:armature = 0.25",
-        "float newton:damping = 0.5",
-        "float newton:velocityLimit = 180",
-    )
-    driven = joint("Revolute", "j", "", "arm", ("PhysicsDriveAPI:angular", "FooAPI"), extra, axis="Z")
-    other = joint("Prismatic", "k", "arm", "tip", axis="Z", localPos0=(0, 0, 1))
-    system = load(stage(body("arm", **ARM), body("tip", at=(0, 0, 1), **ARM), driven, other))
-    first, second = (b.joint for b in system.bodies)
-    assert first is not None and first.actuated and first.armature == 0.25
-    assert second is not None and not second.actuated, "a stage with drives says which joints have none"
-    (damper,) = first.elements
-    assert isinstance(damper, sf.Damper) and damper.coefficient == pytest.approx(0.5 * math.degrees(1.0))
-    notes = " ".join(system.notes)
-    assert "gains and targets of drives ignored" in notes and "API schema FooAPI ignored" in notes
-
-
-def test_gravity_of_the_scene(load: Load) -> None:
-    stated = "vector3f physics:gravityDirection = (0, 3, 4)", "float physics:gravityMagnitude = 500"
-    scene = prim("PhysicsScene", "scene", *stated)
-    system = load(stage(body("arm", **ARM), scene, meters=0.01))
-    assert system.gravity == pytest.approx((0.0, 3.0, 4.0))
 
 
 def test_bodies_that_stand_still_or_float(load: Load) -> None:

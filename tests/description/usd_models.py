@@ -24,8 +24,9 @@ SOUND = 'body("arm", **ARM), joint("Revolute", "j", "", "arm"), '
 
 
 def stated(parts: str) -> str:
-    """A stage of prims that are stated by calls of this module."""
-    return stage(*eval(f"[{parts}]", {**globals(), "inf": math.inf}))
+    """A stage that is stated by calls of this module: its prims, or the whole."""
+    (*made,) = eval(f"[{parts}]", {**globals(), "inf": math.inf})
+    return str(made[0]) if parts.startswith("stage(") else stage(*made)
 
 
 def stage(*parts: str, meters: float = 1.0, kilograms: float = 1.0, up: str = "Z") -> str:
