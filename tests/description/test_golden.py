@@ -20,6 +20,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.parser import ExpressionError, parse
+from symofros.expr.expression import evaluate
 from tests.description import mjcf_models, sdf_models, urdf_models, usd_models
 from tests.late import needs_extra
 from tests.models import interpreted
@@ -32,7 +33,7 @@ def text_of(line: str) -> str:
 
 
 def reading(line: str) -> str:
-    """The formula as it is printed and its symbols, or the reason, the place and the remedy."""
+    """The formula as it is printed with its symbols or its value, or the reason, the place and the remedy."""
     try:
         formula = parse(text_of(line))
     except ExpressionError as error:
@@ -40,7 +41,9 @@ def reading(line: str) -> str:
         assert problem.found and problem.remedy and "nothing in it is run" in problem.rule
         place = re.search(r" \(character \d+\)$", problem.found)
         return f"{error.reason}{place[0] if place else ''}; {problem.remedy}"
-    return f"{formula} of {', '.join(sorted(formula.symbols())) or 'nothing'}"
+    if symbols := ", ".join(sorted(formula.symbols())):
+        return f"{formula} of {symbols}"
+    return f"{formula} = {evaluate(formula, {}):.12g}"
 
 
 @cache

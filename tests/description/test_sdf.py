@@ -1,21 +1,19 @@
-"""SDFormat: Drake's numbers for the same files, a URDF of the same robot, loops, what is left out, what is refused."""
+"""SDFormat: Drake's numbers for the same files, a URDF of the same robot, loops, meshes; the rest is in sdf.txt."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from tests.description import reading
 from tests.description.sdf_models import MODELS, document, link
 from tests.models import interpreted
 
-
-def load(folder: Path, text: str, name: str = "model.sdf") -> sf.System:
-    path = folder / name
-    path.write_text(text)
-    return sf.load(path)
+load = partial(reading.load, name="model.sdf")
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.closing import closing_remedy
-from tests.description import urdf_models
+from tests.description import reading, urdf_models
 from validation.inputs.cases import robot_case
 
 ROBOT, MIMIC = map(urdf_models.document, (urdf_models.ROBOT, urdf_models.MIMIC))
@@ -23,16 +24,7 @@ def robots_folder() -> Path:
     return next(parent for parent in path.parents if parent.name == "robots")
 
 
-def load(folder: Path, text: str, **options: object) -> sf.System:
-    path = folder / "arm.urdf"
-    path.write_text(text)
-    return sf.load(path, **options)  # type: ignore[arg-type]
-
-
-def faults(folder: Path, text: str, **options: object) -> str:
-    with pytest.raises(sf.DescriptionError) as caught:
-        load(folder, text, **options)
-    return str(caught.value)
+load = partial(reading.load, name="arm.urdf")
 
 
 def test_links_and_joints(tmp_path: Path) -> None:

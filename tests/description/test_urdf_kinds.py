@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.description.urdf.planar import planar_frames
+from tests.description import reading
 from tests.models import interpreted
 
 INERTIAL = (
@@ -32,9 +33,8 @@ def joint(name: str, kind: str, parent: str, child: str, inside: str = "") -> st
     return f'<joint name="{name}" type="{kind}">{ends}{inside}</joint>'
 
 
-def load(folder: Path, text: str, **given: object) -> sf.System:
-    (folder / "r.urdf").write_text(f"{text}</robot>")
-    return sf.load(folder / "r.urdf", **given)  # type: ignore[arg-type]
+def load(folder: Path, text: str) -> sf.System:
+    return reading.load(folder, f"{text}</robot>", "r.urdf")
 
 
 ORIGIN = '<origin xyz="0.3 -0.2 0.5" rpy="0.4 -0.3 0.7"/>'
