@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from validation.adversary.attacks.step_sizes import pendulum
-from validation.adversary.motion import against_finer, predictable
+from validation.adversary.motion import against_finer
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.5])
@@ -23,10 +23,3 @@ def test_a_chaotic_run_is_judged_before_it_is_unpredictable(speed: float) -> Non
     assert against_finer(one.model, run, par, 1.0).kind == "agreed"
     wrong = replace(run, v=2.0 * run.v)
     assert against_finer(one.model, wrong, par, 1.0, start).kind == "contradicted"
-
-
-def test_the_last_predictable_record_comes_before_the_first_sensitive_one() -> None:
-    growth = np.array([0.0, 1e-6, 1e-4, 1e-2, 1e-5])
-    assert predictable(growth, 1.0) == 2
-    assert predictable(growth, 100.0) == 4
-    assert predictable(np.array([np.nan, 1.0]), 1.0) == 0

@@ -81,10 +81,10 @@ def test_the_steps_of_a_template_ask_for_what_there_is(server) -> None:
     assert "--baseline" in asked and set(asked) <= known
 
 
-# In every run: the same of the plug-in, in test_plugin.py.
+# In every run: the same of the plug-in, in test_plugin.py, which also has a regression.
 @pytest.mark.slow
 @pytest.mark.parametrize("server", [github, gitlab])
-def test_the_steps_of_a_template_pass_and_catch_a_regression(project: Path, server) -> None:
+def test_the_steps_of_a_template_pass(project: Path, server) -> None:
     environment, commands = server()
     install, check, compare = commands
     assert run(project, install, environment).returncode == 0
@@ -97,9 +97,3 @@ def test_the_steps_of_a_template_pass_and_catch_a_regression(project: Path, serv
     data = json.loads((project / "stored/check.json").read_text())
     (project / "symofros-baseline.json").write_text(json.dumps(data))
     assert run(project, compare, environment).returncode == 0
-    for row in data["comparisons"]:
-        row["engine"] = "engine of before" if row["engine"] == "mujoco" else row["engine"]
-    (project / "symofros-baseline.json").write_text(json.dumps(data))
-    done = run(project, compare, environment)
-    assert done.returncode == 1 and "worse than the baseline" in done.stdout
-    assert any("engine of before" in name for name in cases(project / "results/baseline.xml"))

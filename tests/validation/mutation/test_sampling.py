@@ -8,20 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from validation.mutation import sampling
 from validation.mutation.fault import KINDS
 from validation.mutation.sampling import drawn, modules
 
 ROOT = Path(__file__).parents[3]
-
-
-@pytest.mark.slow
-def test_faults_are_drawn_alike_by_one_seed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of some files, Python and C: those of all are listed for a second and a half, thrice."""
-    monkeypatch.setattr(sampling, "SCOPE", ("symofros/description/*.py", "symofros/native/stepping/*"))
-    first = list(islice(drawn(ROOT, 0), 5))
-    assert len({fault.id for fault in first}) == 5
-    assert first == list(islice(drawn(ROOT, 0), 5)) != list(islice(drawn(ROOT, 1), 5))
 
 
 @pytest.mark.slow

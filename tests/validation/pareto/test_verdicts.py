@@ -49,18 +49,6 @@ def test_the_fastest_run_that_keeps_an_error_is_chosen_and_below_the_floor_an_en
     assert len(verdicts.choices(PROBLEM, result(1e-4, 1e-1, best=3e-3))) == 1, "no run goes below the floor"
 
 
-def test_below_the_floor_of_second_order_rods_of_ours_count() -> None:
-    found = result(1e-4, 1e-1)
-    least = min(found.floors.values()) / 2.0
-    rod = replace(found.points[0], who="symofros", model="rod of 4 strains", error=least, seconds=1e-3)
-    _, finer = verdicts.choices(PROBLEM, replace(found, points=(*found.points, rod)))
-    assert finer.best == rod and finer.other is not None and finer.other.who == "Exudyn"
-
-
-def test_runs_that_did_not_come_to_their_end_are_named() -> None:
-    assert any("lost" in said for said in verdicts.refused(result(1e-4, 1e-1)))
-
-
 def test_a_quick_run_in_which_nobody_keeps_the_error_is_no_miss() -> None:
     target = Target("MuJoCo", 1e-6, 2.0)
     nobody = verdicts.Verdict(target, math.inf, math.inf, math.nan, quick=True)

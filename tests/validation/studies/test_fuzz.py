@@ -19,7 +19,7 @@ from validation.studies import fuzz
 from validation.studies.fuzz import KINDS, TEXT_KINDS
 from validation.studies.fuzz_file_inputs import FILE_KINDS, PLACE, mutated_files, sound_files
 from validation.studies.fuzz_files import feed_file
-from validation.studies.fuzz_inputs import CORPUS, corpus, mutated
+from validation.studies.fuzz_inputs import corpus, mutated
 
 
 @pytest.mark.slow
@@ -31,11 +31,6 @@ def test_no_input_crashes_or_hangs_the_readers() -> None:
         assert answers.read > 1 and answers.read + answers.refused == 100, kind
         assert answers.refused > (2 if kind == "document" else 30), kind  # Faults of a document are part of the answer.
     assert result.answers["yaml"].compiled and result.answers["urdf"].compiled
-
-
-@pytest.mark.parametrize("name", ["everything.yaml", "arm.urdf"])
-def test_the_corpus_is_sound(name: str) -> None:
-    assert sf.load(CORPUS / name).bodies
 
 
 @pytest.mark.parametrize("data", corpus("diagram"))
@@ -59,12 +54,6 @@ def test_the_files_that_mutations_start_from_are_sound(kind: str, tmp_path: Path
         feed_file(kind, tmp_path, data, 1)
 
 
-@pytest.mark.parametrize("kind", FILE_KINDS)
-def test_hostile_files_are_the_same_for_the_same_seed(kind: str) -> None:
-    first = list(islice(mutated_files(kind, 3), 20))
-    assert first == list(islice(mutated_files(kind, 3), 20)) != list(islice(mutated_files(kind, 4), 20))
-
-
 @pytest.mark.parametrize("kind", ["stl", "motion.npz", "motion.csv", "samples.csv", "document"])
 @pytest.mark.parametrize("place", ["folder", "pipe", "socket", "loop", "endless", "dangling", "nothing"])
 def test_what_is_no_file_is_refused_or_begun(kind: str, place: str, tmp_path: Path) -> None:
@@ -73,11 +62,11 @@ def test_what_is_no_file_is_refused_or_begun(kind: str, place: str, tmp_path: Pa
             feed_file(kind, tmp_path, PLACE + place.encode(), number)
 
 
-@pytest.mark.parametrize("kind", TEXT_KINDS)
+@pytest.mark.parametrize("kind", [*TEXT_KINDS, *FILE_KINDS])
 def test_inputs_are_the_same_for_the_same_seed(kind: str) -> None:
-    first = list(islice(mutated(kind, 3), 50))
-    assert first == list(islice(mutated(kind, 3), 50)) != list(islice(mutated(kind, 4), 50))
-    assert not set(first) <= set(corpus(kind))
+    made = mutated if kind in TEXT_KINDS else mutated_files
+    first = list(islice(made(kind, 3), 20))
+    assert first == list(islice(made(kind, 3), 20)) != list(islice(made(kind, 4), 20))
 
 
 def test_a_crash_is_reported_with_its_input(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -111,12 +100,3 @@ def test_a_change_by_writing_is_reported(monkeypatch: pytest.MonkeyPatch) -> Non
     read = iter(sf.System(name, [sf.RigidBody("b", sf.Joint("q", "free"))]) for name in "abcdef")
     monkeypatch.setattr(sf, "load", lambda path, **options: next(read))
     assert "another system" in fuzz.fuzz(1, seed=0).faults[0].what
-
-
-def test_the_report_counts_every_input(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["fuzz", "--count", str(2 * len(KINDS)), "--seed", "5", "--report", str(tmp_path)])
-    assert done.exit_code == 0, done.output
-    data = json.loads((tmp_path / "fuzz.json").read_text())
-    assert data["ok"] and data["inputs"] == 2 * len(KINDS) and data["seed"] == 5 and data["peak_memory_mib"] > 10
-    assert [data["kinds"][kind]["inputs"] for kind in KINDS] == [2] * len(KINDS)
-    assert f"{2 * len(KINDS)} hostile inputs" in (tmp_path / "fuzz.md").read_text()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 import sys
 from dataclasses import asdict
@@ -12,17 +11,16 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from tests.late import with_utilities
 from tests.validation.timing.records import cubic, entry, made
 from validation.__main__ import app
 from validation.reporting.command import write
 from validation.reporting.record import Table
-from validation.timing import measure, run, worker
+from validation.timing import measure, worker
 from validation.timing.contestants import engines
 from validation.timing.models import TIMED_MODELS
 from validation.timing.record import Record, as_data
 from validation.timing.report import TOPIC
-from validation.timing.run import jobs, peaks, take
+from validation.timing.run import take
 from validation.timing.tables import sections
 from validation.timing.worker import Job
 
@@ -60,21 +58,6 @@ def test_a_worker_ends_with_the_process_that_started_it() -> None:
         assert process.wait(30) == 1
 
 
-def test_a_model_that_is_timed_again_has_failed_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
-    record = Record(failed=[("panda", run.LEFT, "symofros", "it died"), ("ur5", run.LEFT, "symofros", "it died")])
-    monkeypatch.setattr(sys, "executable", shutil.which("true", path=with_utilities()["PATH"]))
-    run.run_job(JOB, record)
-    assert [model for model, *_ in record.failed] == ["ur5"]
-
-
-def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
-    found = jobs(["panda", "chain7"], ("mujoco",), ["dynamics", "step"], 5, 100)
-    assert [(job.model, job.functions) for job in found] == [("panda", ("dynamics", "step")), ("chain7", ("dynamics",))]
-    assert jobs(["chain7"], ("mujoco",), ["bias"], 5, 100) == []
-    left = jobs(["panda"], ("mujoco",), ["dynamics", "step"], 5, 100, Record([entry("panda", "dynamics")]))
-    assert [job.functions for job in left] == [("step",)], "resumed"
-
-
 @pytest.mark.slow
 def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
     """Whole, in this process; Pinocchio's minutes of compilation are left to the run."""
@@ -97,19 +80,6 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
     (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
-
-
-def test_only_the_programs_that_the_models_need_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    built: list[str] = []
-    monkeypatch.setattr(run, "pinocchio_builds", lambda program, say: built.append(program))
-    for model, peers in (("planar2R", ("pinocchio",)), ("planar2R", ("mujoco",)), ("four_bar", ("pinocchio",))):
-        assert run.prepare([Job(model, peers, ("forward_dynamics",), 3, 100)], print) == []
-    assert built == [engines.TREES, engines.CLOSED]
-
-
-def test_a_core_has_a_peak() -> None:
-    found = peaks()
-    assert found["vector_flops"] > found["scalar_flops"] > 1e8 and found["copied_bytes"] > 1e8
 
 
 def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: Path) -> None:

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from validation.reporting.record import Table
-from validation.timing import calls
 from validation.timing.record import Record, Wait, as_data
 from validation.timing.report import TOPIC
 from validation.timing.tables import sections
@@ -29,14 +28,6 @@ def test_each_run_with_an_empty_cache_has_a_new_one() -> None:
 def test_runs_with_a_full_cache_share_it_and_failures_are_told(tmp_path: Path) -> None:
     with pytest.raises(RuntimeError, match="the cache is not empty"):
         process_time(("-c", MARK), tmp_path, 2)
-
-
-def test_calls_are_timed_in_turns_and_batches_by_the_state(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(calls, "STATES", 16)
-    monkeypatch.setattr(calls, "REPEATS", 2)
-    monkeypatch.setattr(calls, "CALLS", 3)
-    times = calls.times("reference_models/arm.urdf", False)
-    assert {"call", "batch", "kernel"} <= set(times) and all(seconds > 0.0 for seconds in times.values())
 
 
 def test_the_report_shows_waits_and_what_is_missed() -> None:

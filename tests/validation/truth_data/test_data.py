@@ -119,13 +119,6 @@ def test_the_reader_in_python_needs_nothing_of_ours(read_by_python: list[list[st
     assert len(read_by_python) == len(MODELS) * 3 * len(FUNCTIONS)
 
 
-def test_the_reader_in_python_without_its_folder_says_what_it_takes(tmp_path: Path) -> None:
-    for arguments, told in (([], "usage: python read.py FOLDER"), ([str(tmp_path)], "no file values/*.json in ")):
-        command = [sys.executable, "-I", str(FOLDER / "readers/read.py"), *arguments]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 1 and done.stderr.startswith(told) and "Traceback" not in done.stderr
-
-
 @pytest.mark.tools
 def test_the_reader_in_cpp_reads_the_same(read_by_python: list[list[str]], tmp_path: Path) -> None:
     if not (compiler := shutil.which("g++") or shutil.which("clang++")):

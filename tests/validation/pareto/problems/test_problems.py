@@ -14,7 +14,7 @@ from validation.adapters.exudyn.steps import Solver
 from validation.adapters.exudyn.timed_systems import SlenderBeam, pendulum
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
-from validation.pareto.problems import andrews, arm, closed_forms, four_bar, robot, rod, soft_pendulum, spin_up
+from validation.pareto.problems import closed_forms, four_bar, robot, rod, soft_pendulum, spin_up
 from validation.pareto.problems import pendulum as swing
 from validation.pareto.race import race
 
@@ -71,11 +71,3 @@ def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:
     exact = np.pi / 2 + closed_forms.swinging(-np.pi / 2, swing.GRAVITY, np.arange(6.0))
     np.testing.assert_allclose(recorded.values[:, 0], exact, atol=1e-8)
     assert recorded.seconds > 0 and recorded.t.tolist() == pytest.approx(list(range(6)))
-
-
-@pytest.mark.slow
-def test_errors_are_of_the_motion() -> None:
-    names = tuple(andrews.known()["end"])
-    end = np.array(list(andrews.known()["end"].values()))
-    assert andrews.far(end, names) == 0.0 and andrews.far(end + 1e-3, names) == pytest.approx(1e-3)
-    assert arm.far(arm.reference()) == 0.0
