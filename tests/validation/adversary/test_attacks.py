@@ -113,8 +113,9 @@ def test_each_attack_has_a_planted_fault() -> None:
     assert FAULTS.keys() == ATTACKS.keys()
 
 
-# Runs of loops and of steps that are too long show in every run what those of beams and of wheels would.
-LONG = ("beam_runs", "rolling_runs")
+# Runs of loops, of steps that are too long and of constraints that engage show in every run what those of beams, wheels
+# and diagrams would; the least posture that is not reached takes most of a minute to be found.
+LONG = ("beam_runs", "rolling_runs", "diagram_runs", "inverse_kinematics")
 
 
 @pytest.mark.parametrize("name", [pytest.param(x, marks=pytest.mark.slow) if x in LONG else x for x in FAULTS])
@@ -130,13 +131,13 @@ def test_a_planted_fault_is_found_and_its_scene_is_plain(
     assert attack.verdict(find.scene).sound
 
 
-@pytest.mark.parametrize(("scenes", "agreed"), [(8, 1), pytest.param(200, 11, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("scenes", "agreed"), [(4, 1), pytest.param(200, 11, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ATTACKS)
 def test_scenes_contradict_nothing(name: str, scenes: int, agreed: int, tmp_path: Path) -> None:
-    find, tally = hunted(name, tmp_path, scenes, seed=int(scenes > 8))
+    find, tally = hunted(name, tmp_path, scenes, seed=int(scenes > 4))
     assert find is None, find
     # What can't be is refused by each.
-    assert tally.tried >= 8 and (tally.refused if name == "held_apart" else tally.agreed) >= agreed, tally
+    assert tally.tried >= 4 and (tally.refused if name == "held_apart" else tally.agreed) >= agreed, tally
 
 
 @pytest.mark.parametrize("name", ATTACKS)
