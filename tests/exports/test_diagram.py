@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.settings import RunSettings
-from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
+from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Spoken, arm
 from tests.diagrams.run.test_runs import First, Given
 from tests.exports.cases import build, run
 from tests.models import sampled
@@ -68,16 +68,6 @@ def ball() -> sf.Diagram:
     return diagram
 
 
-def two() -> sf.Diagram:
-    """Parts that meet at samples."""
-    diagram = sf.Diagram("two")
-    diagram.add(Wave(name="wave"))
-    diagram.add(Lag(name="first"), x="wave")
-    diagram.add(Hold(name="hold", period=0.02), x="first")
-    diagram.add(Lag(name="second"), x="hold")
-    return diagram
-
-
 def still() -> sf.Diagram:
     """Nothing moves between samples."""
     diagram = sf.Diagram("still")
@@ -91,7 +81,6 @@ CASES: dict[str, tuple[Any, list[str]]] = {
     "loop": (loop, ["plant.q", "plant.lam"]),
     "table": (table, ["given", "lag", "held"]),
     "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
-    "two": (two, ["first", "second"]),
     "still": (still, ["ticks"]),
 }
 
@@ -203,11 +192,3 @@ def test_what_is_no_program() -> None:
         sf.export(pendulum(), "fmu2", "unused")
     with pytest.raises(sf.DescriptionError, match="no output 'z'"):
         sf.export(pendulum(), "c", "unused", outputs=["pd.z"])
-
-
-def test_names_that_c_does_not_take(tmp_path: Path) -> None:
-    diagram = sf.Diagram("for")
-    diagram.add(Number(name="while", value=1.0))
-    diagram.add(Lag(name="double"), x="while")
-    exported = sf.export(diagram, "c", tmp_path / "c", outputs=["double"])
-    assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 0

@@ -97,15 +97,6 @@ def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> No
     assert result.exit_code == 130 and "Interrupted: 1 model not checked" in result.stdout
 
 
-def test_no_word_is_the_standard_set(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    asked: list[str] = []
-    monkeypatch.setattr(
-        "validation.cross_check.measure.run_cases", lambda cases, *rest: asked.extend(case.label for case in cases)
-    )
-    CliRunner().invoke(app, ["--report", str(tmp_path)])
-    assert {"ur5", "talos"} < set(asked)
-
-
 def unasked(*arguments: str) -> Result:
     return CliRunner().invoke(app, ["check", "--states", "10", *arguments])
 

@@ -49,16 +49,6 @@ def libraries(cache: Path) -> list[Path]:
     return sorted(path for path in cache.glob("*.so") if extension not in path.with_suffix(".c").read_text())
 
 
-def test_equal_content_compiles_once(cache: Path) -> None:
-    compiled(random_tree(31))
-    first = {path: path.stat().st_mtime_ns for path in libraries(cache)}
-    compiled(random_tree(31))
-    assert {path: path.stat().st_mtime_ns for path in libraries(cache)} == first and len(first) == 1
-    compiled(random_tree(32))
-    compiled(random_tree(31), sf.Options(flags=("-O1",)))
-    assert len(libraries(cache)) == 3
-
-
 def test_concurrent_processes_agree(cache: Path) -> None:
     root = Path(__file__).parents[3]
     started = [

@@ -82,15 +82,6 @@ def test_functions_that_a_solver_finishes(n: int, rng: np.random.Generator) -> N
     assert q[:, 0] + q[:, 1] == pytest.approx(np.zeros(n), abs=1e-9)
 
 
-def test_the_interpreter_has_them_too(rng: np.random.Generator) -> None:
-    m = model("double_pendulum", "interpreter")
-    bound = m.bind("bias", n=4, layout="columns")
-    given = written(bound, states(m, 4, rng))
-    bound()
-    h = m.bias(given["q"], given["v"])
-    assert h.all() and np.array_equal(bound.outputs["h"], h)
-
-
 @pytest.mark.parametrize("n", [6, MANY + 1])
 def test_memory_of_the_caller_as_it_lies(n: int, rng: np.random.Generator) -> None:
     """A column of a wider array, every second state in reverse, states side by side: read and written in place."""
@@ -106,19 +97,6 @@ def test_memory_of_the_caller_as_it_lies(n: int, rng: np.random.Generator) -> No
     bound()
     state = given["q"], given["v"], given["u"]
     check(bound, m.dynamics(*state), model("parametrised0").dynamics(*state))
-
-
-@pytest.mark.parametrize("n", [6, MANY])
-def test_parameters_of_each_state_and_inputs_of_all(n: int, rng: np.random.Generator) -> None:
-    m = model("parametrised0", "c")
-    q, v = m.normalized(rng.normal(size=(n, m.nq))), rng.normal(size=m.nv)
-    par = m.parameter_values * rng.uniform(1, 2, (n, 1))
-    bound = m.bind("bias", n=n, par=par, v=v)
-    bound.inputs["q"][:] = q
-    for _ in range(2):
-        bound()
-        check(bound, m.bias(q, v, par=par), model("parametrised0").bias(q, v, par=par))
-        v *= 2.0
 
 
 def test_frames_and_times(rng: np.random.Generator) -> None:
@@ -152,12 +130,6 @@ def test_a_call_keeps_no_memory(layout: Layout) -> None:
     assert peak < 8192  # M alone is of 131072 bytes.
 
 
-@pytest.mark.parametrize("n", [0, -1, True, 2.5, "many"])
-def test_numbers_of_states_are_whole_and_positive(n: object) -> None:
-    with pytest.raises(sf.ShapeError, match=rf"mass_matrix: 'n' can't be bound\n  found:  '?{n}(.|\n)*from 1 on"):
-        model("double_pendulum", "c").bind("mass_matrix", n=n)  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     "array",
     [
@@ -174,23 +146,3 @@ def test_numbers_of_states_are_whole_and_positive(n: object) -> None:
 def test_other_arrays_are_refused(array: np.ndarray) -> None:
     with pytest.raises(sf.ShapeError, match=r"'q' can't be bound(.|\n)*shape \(4, 2\), or \(2,\) for all states"):
         model("double_pendulum", "c").bind("mass_matrix", n=4, q=array)
-
-
-@pytest.mark.parametrize("M", [np.zeros((2, 2)), np.zeros((4, 2, 2), order="F")])
-def test_results_lie_in_even_steps_one_a_state(M: np.ndarray) -> None:
-    with pytest.raises(sf.ShapeError, match=r"'M' can't be bound(.|\n)*shape \(4, 2, 2\), by rows or by columns"):
-        model("double_pendulum", "c").bind("mass_matrix", n=4, M=M)
-
-
-def test_what_else_is_refused() -> None:
-    m = model("parametrised0", "c")
-    with pytest.raises(sf.UnknownNameError, match="did you mean 'mass_matrix'"):
-        m.bind("mass_matrx", n=4)
-    with pytest.raises(sf.UnknownNameError, match="neither input nor output 'w'"):
-        m.bind("mass_matrix", n=4, w=np.zeros((4, 2)))
-    with pytest.raises(sf.ShapeError, match=r"'layout' can't be bound(.|\n)*'rows' or 'columns'"):
-        m.bind("mass_matrix", n=4, layout="diagonal")  # type: ignore[arg-type]
-    with pytest.raises(sf.ShapeError, match=rf"'par' can't be bound(.|\n)*\(4, {m.npar}\): of each state"):
-        m.bind("mass_matrix", n=4, par=np.tile(m.parameter_values, (3, 1)))
-    with pytest.raises(sf.ShapeError, match=r"'par' can't be bound(.|\n)*of one state"):
-        m.bind("mass_matrix", par=np.tile(m.parameter_values, (3, 1)))

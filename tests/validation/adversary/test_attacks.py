@@ -113,9 +113,8 @@ def test_each_attack_has_a_planted_fault() -> None:
     assert FAULTS.keys() == ATTACKS.keys()
 
 
-# Runs of loops, of steps that are too long and of constraints that engage show in every run what those of beams, wheels
-# and diagrams would; the least posture that is not reached takes most of a minute to be found.
-LONG = ("beam_runs", "rolling_runs", "diagram_runs", "inverse_kinematics")
+# Runs of loops and of steps that are too long show in every run what those of beams and of wheels would.
+LONG = ("beam_runs", "rolling_runs")
 
 
 @pytest.mark.parametrize("name", [pytest.param(x, marks=pytest.mark.slow) if x in LONG else x for x in FAULTS])

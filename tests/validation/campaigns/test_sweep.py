@@ -62,13 +62,6 @@ def test_frequencies_are_those_of_the_steady_motion() -> None:
         assert [row["frequency_1"], row["frequency_2"]] == pytest.approx(expected, rel=1e-12)
 
 
-def test_a_point_that_fails_is_null_and_says_why() -> None:
-    data = END_STATE | {"over": {"m1": {"low": 1.0, "high": 1.0}}, "points": 1}
-    data = data | {"start": {"v": {"q2": 1e200}}}
-    (row,) = sweeper(data).table(0, 0, 1).to_pylist()
-    assert row["q:q1"] is None and row["outcome"] != DONE
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -18,11 +18,10 @@ from symofros.runtime.cuda.nvrtc import KernelUsage
 from tests import runtime
 from tests.cuda_on_host import on_host
 from validation.cuda import kernels, measure, report, states, warp
-from validation.cuda.record import PEER, KernelRow, PeerRow, Record, RolloutRow
+from validation.cuda.record import PEER, KernelRow, Record, RolloutRow
 from validation.cuda.states import Subject
 from validation.reporting.command import Run
 from validation.reporting.markdown import page
-from validation.reporting.plain import plain
 from validation.reporting.provenance import Provenance, stamp
 
 USAGE = KernelUsage(registers=40, stack=16, spill_stores=8, spill_loads=24)
@@ -104,29 +103,3 @@ def test_what_was_run_and_is_no_number_is_wrong() -> None:
 def shown(data: Mapping[str, object]) -> str:
     data = json.loads(json.dumps({"seconds": 1.0, **stamp(), **data}))
     return page(report.TOPIC.compose(data), Provenance.of(data), "")
-
-
-def measured(rate: float, error: float = 1e-15) -> Record:
-    rows = [
-        KernelRow("panda", "dynamics", precision, False, 168, 40, 0, size, rate, error)
-        for precision, size in (("double", 680), ("single", 340))
-    ]
-    rollouts = [RolloutRow("panda", "step", "semi_implicit_euler", "single", 1e10, 1e-7)]
-    peers = [PeerRow("panda", "dynamics", 8192, 1e8, 1e-6), PeerRow("panda", "step", 8192, 2e8, 1e-6)]
-    return Record("A processor", "sm_90", 4e12, rows, rollouts, peers)
-
-
-def test_the_report_says_which_goals_are_missed() -> None:
-    some = measured(3e9)
-    text = shown({"ok": some.ok, **plain(some)})
-    assert "| Panda, 7 joints | M + h | single | 5.0e+09 | **missed** 3.00e+09 |" in text
-    assert "| Panda, 7 joints | M + h | double | 2.5e+09 | 3.00e+09 |" in text
-    assert "51%" in text and "26%" in text  # Of 4e12 B/s: 680 B and 340 B at 3e9 states a second.
-    assert "30×" in text and "50×" in text  # Beside the peer: functions by functions, steps by rollouts.
-
-
-def test_without_a_processor_the_report_gives_what_kernels_take() -> None:
-    some = measured(math.nan, math.nan)
-    some.device, some.copied, some.rollouts, some.peers, some.absent = "", math.nan, [], [], "MuJoCo Warp: no module"
-    text = shown({"ok": some.ok, **plain(some)})
-    assert "no graphics processor was at hand" in text and "not measured" in text and "168" in text

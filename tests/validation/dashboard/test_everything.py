@@ -129,7 +129,7 @@ def parent(folder: Path, way: str, *words: str) -> subprocess.Popen[bytes]:
     )
 
 
-@pytest.mark.parametrize("how", [pytest.param(signal.SIGINT, marks=pytest.mark.slow), signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_a_run_that_is_ended_goes_on_where_it_was(tmp_path: Path, how: signal.Signals) -> None:
     """Ctrl-C reaches the whole group of processes; a kill leaves no time for words."""
     process = parent(tmp_path, "endless")

@@ -57,11 +57,6 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
     assert found.topic.command == "python -m validation fuzz"
 
 
-def test_an_absent_report_says_so(tmp_path: Path) -> None:
-    assert {one.verdict for one in gather(tmp_path, {}, digest).values()} == {"absent"}
-    assert entry(tmp_path).remarks == ("is not made yet",)
-
-
 @pytest.mark.parametrize(
     ("text", "says"),
     [("{", "can't be read"), ("[]", "layout that is not known"), ('{"ok": true}', "layout that is not known")],

@@ -14,10 +14,8 @@ from validation.environments.in_torch import TORCH
 from validation.environments.measure import take
 from validation.environments.record import NATIVE, OURS, Absent, Record, Row
 from validation.environments.report import TOPIC
-from validation.reporting import markdown
 from validation.reporting.command import composed
 from validation.reporting.plain import plain
-from validation.reporting.provenance import Provenance
 from validation.reporting.record import Report
 
 
@@ -39,13 +37,6 @@ ROWS = [
 def report(ok: bool = True, **of: Any) -> Report:
     record = Record(**{"rows": ROWS, "packages": {"jax": "0.10"}} | of)
     return composed(TOPIC, {"ok": ok, "failures": {}, "unfinished": [], "turns": 3, **plain(record)})
-
-
-def test_a_side_that_differs_is_told_at_the_top() -> None:
-    failed = [("torch", "forward_dynamics", "adam", "differs from native C by 1.0e-03: its time means nothing")]
-    missed = report(False, failed=failed)
-    assert missed.ok is False and "1 side could not be raced" in missed.summary
-    assert "PyTorch: forward_dynamics, adam: differs" in markdown.page(missed, Provenance(), "")
 
 
 def test_a_record_is_good_where_something_was_measured_and_nothing_differs() -> None:

@@ -5,17 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import reference_models
 import symofros as sf
 from symofros.commands.reading import ReadingOptions, reading_of
 from tests.validation.subjects import URDF
-from validation.inputs.cases import FILES, ROBOTS, Case, file_case, named, standard_set
+from validation.inputs.cases import Case, file_case, named
 from validation.inputs.sampling import DEFAULT_STATES
-
-
-def test_the_standard_set_is_robots_reference_models_and_files() -> None:
-    labels = [case.label for case in standard_set()]
-    assert labels == [*ROBOTS, *reference_models.MODELS, *FILES] and len(labels) == len(set(labels))
 
 
 def test_files_of_the_standard_set_turn_inertias_where_it_counts() -> None:

@@ -35,12 +35,6 @@ def test_the_winner_is_named(mine: float, theirs: float, winner: str, met: bool)
     assert verdict.ratio == pytest.approx(theirs / mine)
 
 
-def test_who_alone_keeps_an_error_wins() -> None:
-    problem = replace(PROBLEM, targets=(Target("Exudyn", 1.5e-3, 1.0),))
-    (verdict,) = verdicts.verdicts(problem, result(1e-4, 1e-1).points)
-    assert verdict.winner == "Exudyn alone" and not verdict.ok
-
-
 def test_the_fastest_run_that_keeps_an_error_is_chosen_and_below_the_floor_an_engine() -> None:
     kept, finer = verdicts.choices(PROBLEM, result(1e-4, 1e-1))
     assert (kept.best.method, kept.best.setting, kept.best.seconds) == ("rk4", "20 ms", 1e-4)

@@ -35,22 +35,12 @@ def test_every_label_is_a_reference_model() -> None:
     assert set(PROCEDURES) <= set(MODELS)
 
 
-def test_a_file_that_is_called_like_a_reference_model_is_none() -> None:
-    other = replace(MODELS["heavy_top"], name="heavy_top")
-    assert not list(judge_procedures("heavy_top", other, assemble(other)))
-
-
 @pytest.mark.slow
 def test_a_wrong_coefficient_of_a_method_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     """On the side of the formulas, which stands for one in C."""
     rk4 = steps.EXPLICIT["rk4"]
     monkeypatch.setitem(steps.STEPS, "rk4", replace(rk4, b=rk4.b + [1e-6, -1e-6, 0, 0]).step)
     assert wrong(runs.fixed_steps(scene("heavy_top"))) == ["steps by rk4"]
-
-
-def test_a_wrong_safety_factor_shows(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(steps, "SAFETY", 0.91)
-    assert "steps chosen by dopri5" in wrong(runs.chosen_steps(scene("heavy_top")))
 
 
 def test_a_wrong_sign_of_the_gyroscopic_terms_shows(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,7 @@ from validation.stability.catalogue import STUDIES as MAPPED
 from validation.stability.study import Verdict
 
 # Studies of half a second each, whose models other tests compile; the others take most of the time.
-FEW = {"accuracy": ("modes_needed", "elastica"), "stability": ("stick_slip",)}
+FEW = {"accuracy": ("modes_needed", "elastica"), "stability": ("stick_slip", "spin")}
 
 
 def asked(topic: str, folder: Path, *studies: str) -> tuple[int, dict[str, Any]]:

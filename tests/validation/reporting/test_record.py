@@ -69,11 +69,3 @@ def test_a_finding_survives_its_json() -> None:
     assert restored(tuple[Finding, ...], plain(FINDINGS)) == FINDINGS
     lost = restored(Finding, plain(Finding("x", np.nan, 1.0)))
     assert np.isnan(lost.value) and not lost.ok
-
-
-def test_a_section_without_content_is_left_out() -> None:
-    folded = Section("All", (Bullets(()),))
-    empty = Section("Finds", ("These were found:", Table.of("finds", ()), Figure("", ()), folded))
-    report = Report("T", "s", True, (), (empty, Section("Words", ("alone.",)), SECTION))
-    assert [one.title for one in report.sections] == ["Words", "How | wide?"] and report.first_chart == (CHART,)
-    assert "Finds" not in html.page(report) + markdown.page(report, NOWHERE, "")

@@ -30,7 +30,7 @@ def maps() -> dict[str, Maps]:
 JUDGED = ("baumgarte", "stiff_beam", "damped_beam", "light_link", "spin", "deflection")
 
 
-@pytest.mark.parametrize("name", sampled(JUDGED, ("damped_beam", "light_link")))
+@pytest.mark.parametrize("name", sampled(JUDGED, JUDGED[2:]))
 def test_a_verdict_follows_from_its_maps(maps: dict[str, Maps], name: str) -> None:
     """Maps without a bad run have no edge: words change, and a claim about the edge is missed."""
     study = STUDIES[name]

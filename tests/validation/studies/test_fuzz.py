@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import re
 import time
 from itertools import islice
 from pathlib import Path
@@ -37,13 +36,6 @@ def test_no_input_crashes_or_hangs_the_readers() -> None:
 def test_the_diagrams_of_the_corpus_are_sound(tmp_path: Path, data: bytes) -> None:
     fuzz._diagram(tmp_path, data)
     assert sf.load_diagram(tmp_path / "again.yaml").blocks
-
-
-def test_parameters_that_a_model_refuses_are_a_fault_of_the_diagram(tmp_path: Path) -> None:
-    data = next(data for data in corpus("diagram") if b"parameters: {" in data and b"m: " in data)
-    hostile = re.sub(rb"parameters: {[^}]*}", b"parameters: {m: -1}", data, count=1)
-    with pytest.raises(sf.DescriptionError, match="mass"):
-        fuzz._diagram(tmp_path, hostile)
 
 
 @pytest.mark.parametrize("kind", FILE_KINDS)
@@ -94,9 +86,3 @@ def test_a_hang_is_interrupted_and_reported(monkeypatch: pytest.MonkeyPatch) -> 
     result = fuzz.fuzz(3, seed=0)
     assert [fault.kind for fault in result.faults] == ["yaml", "urdf"]
     assert all("longer than 0.1 s" in fault.what for fault in result.faults)
-
-
-def test_a_change_by_writing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    read = iter(sf.System(name, [sf.RigidBody("b", sf.Joint("q", "free"))]) for name in "abcdef")
-    monkeypatch.setattr(sf, "load", lambda path, **options: next(read))
-    assert "another system" in fuzz.fuzz(1, seed=0).faults[0].what

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from validation.timing import race as racing
-from validation.timing.contestants.arrays import Turns
 from validation.timing.race import DisagreementError, checked, error, race
 from validation.timing.task import Loop
 
@@ -31,20 +30,6 @@ def test_sides_run_in_turn_and_times_are_per_state(monkeypatch: pytest.MonkeyPat
     assert Counter(order)["a"] == Counter(order)["b"]
 
 
-def test_short_loops_run_for_many_rounds(monkeypatch: pytest.MonkeyPatch) -> None:
-    clock = [0]
-    asked = []
-    monkeypatch.setattr(racing, "thread_time_ns", lambda: clock[0])
-
-    def run(rounds: int) -> None:
-        asked.append(rounds)
-        clock[0] += rounds * 10_000
-
-    times = race({"a": Loop("bias", "", run, lambda: np.zeros((1, 1)))}, 1000, 3)
-    assert asked[-1] == racing.LEAST // 10_000
-    assert times["a"].median == 10.0
-
-
 def test_an_error_is_relative_to_the_largest_entry_of_a_state() -> None:
     expected = np.array([[1.0, 100.0], [0.0, 2.0]])
     assert error(expected + [[0.0, 0.0], [0.5, 0.0]], expected) == 0.25
@@ -57,11 +42,3 @@ def test_sides_that_disagree_are_named() -> None:
         checked("bias", "them", np.array([[1.0 + 1e-11]]), np.array([[1.0]]))
     with pytest.raises(DisagreementError, match="2 numbers a state, not 1"):
         checked("bias", "them", np.zeros((1, 2)), np.zeros((1, 1)))
-
-
-def test_copies_run_in_turn() -> None:
-    order: list[tuple[str, int]] = []
-    turns = Turns([lambda rounds: order.append(("a", rounds)), lambda rounds: order.append(("b", rounds))])
-    for rounds in (1, 2, 3):
-        turns(rounds)
-    assert order == [("a", 1), ("b", 2), ("a", 3)]

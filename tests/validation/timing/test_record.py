@@ -7,11 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.validation.timing.records import cubic, entry, made
-from validation.timing.growth import growth
+from tests.validation.timing.records import entry, made
 from validation.timing.record import Record, Wait, as_data, read
-from validation.timing.report import TOPIC
-from validation.timing.targets import TARGETS, Target, Verdict, reverse_costs, verdicts
+from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 
 
 def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
@@ -27,14 +25,6 @@ def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
     assert best is not None and best.variant == "clang 19, world"
     assert gcc is not None and gcc.ratio == 9.0
     assert record.best("panda", "bias", "pinocchio") is None
-
-
-def test_growth_is_of_each_side_and_quantity() -> None:
-    found = {(curve.who, curve.quantity): curve.exponent for curve in growth(cubic())}
-    assert found["symofros", "time [ns]"] == pytest.approx(3.0)
-    assert found["pinocchio", "time [ns]"] == pytest.approx(1.5)
-    assert found["symofros", "operations"] == pytest.approx(2.0)
-    assert ("mujoco", "time [ns]") not in found
 
 
 @pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
@@ -60,16 +50,6 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
     assert ratios == {("state by state", ""): 8.0, ("state by state", "gcc"): 12.0, ("batch by columns", ""): 50.0}
     assert {v.by_rows for v in found} == {None, 40.0}
-
-
-@pytest.mark.parametrize(("time", "met"), [(399.0, True), (401.0, False)])
-def test_a_gradient_is_judged_by_the_time_of_its_function(time: float, met: bool) -> None:
-    costs = [made(function="inverse_dynamics"), made(function="inverse_dynamics_vjp", time=time), made("ur5")]
-    costs.append(made("ur5", "forward_dynamics_vjp"))  # Whose function was not timed.
-    (found,) = reverse_costs(Record(costs=costs))
-    assert (found.model, found.ratio, found.met) == ("panda", time / 100.0, met)
-    report = TOPIC.compose(as_data(Record([entry()], costs)))
-    assert any("reverse mode" in text for text in report.missed) == (not met)
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:

@@ -163,7 +163,7 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
     return text.code
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.booleans(), st.integers(0, 3))
 @example(_ENDS, 2, False, 0)
 @example(_ENDS, 3, True, 0)
