@@ -11,17 +11,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from tests.validation.timing.records import cubic, entry, made
+from tests.validation.timing.records import entry, made
 from validation.__main__ import app
-from validation.reporting.command import write
-from validation.reporting.record import Table
 from validation.timing import measure, worker
 from validation.timing.contestants import engines
-from validation.timing.models import TIMED_MODELS
-from validation.timing.record import Record, as_data
-from validation.timing.report import TOPIC
+from validation.timing.record import Record
 from validation.timing.run import take
-from validation.timing.tables import sections
 from validation.timing.worker import Job
 
 JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
@@ -80,37 +75,6 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
     (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
-
-
-def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: Path) -> None:
-    record = cubic()
-    record.entries.append(entry(peer_time=650.0))
-    record.costs.append(made())
-    record.skipped.append(("panda", "bias", "sympy", "too large\nwith details"))
-    record.machine = {
-        "processor": "P",
-        "load": [0.5, 1.0],
-        "scalar_flops": 1e10,
-        "vector_flops": 8e10,
-        "copied_bytes": 1e11,
-        "versions": {"pinocchio": "4.1.0"},
-    }
-    made_of_it = write(TOPIC, as_data(record), tmp_path)
-    assert made_of_it.ok is False and made_of_it.summary.startswith("0 of 43 targets are met, 40 were not measured")
-    page = (tmp_path / "timing.html").read_text()
-    for text in (page, (tmp_path / "timing.md").read_text()):
-        assert "missed by 7%" in text and "too large" in text and "with details" not in text
-        assert "4.1.0" in text and "n^3.0" in page
-    (cost,) = (
-        block
-        for section in sections(record)
-        if section.title == "How far from the machine's limit"
-        for block in section.blocks
-        if isinstance(block, Table)
-    )
-    row = next(row for row in cost.rows if row[0] == TIMED_MODELS["panda"].title)
-    # 1000 operations at 10 GFlop/s take 100 ns, which is what was measured; vectors in batches 20 ns, of 12.5.
-    assert row[cost.head.index("distance")] == "1.0" and row[cost.head.index("of batches")] == "1.6"
 
 
 def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
