@@ -169,26 +169,6 @@ def test_other_compilers_and_stated_flags_are_no_known_ones(
     assert compiling.read == 3
 
 
-def replace(library: Path, content: bytes) -> None:
-    """By another file: this process has the first one loaded."""
-    library.unlink()
-    library.write_bytes(content)
-
-
-def alter(library: Path) -> None:
-    replace(library, library.read_bytes()[:-1] + b"?")
-
-
-@pytest.mark.parametrize("spoil", [Path.unlink, alter])
-def test_a_damaged_library_is_made_anew(compiling: Compiling, arm: Path, spoil: Callable[[Path], None]) -> None:
-    compiling(arm)
-    (library,) = (path for path in compiling.cache.glob("*.so") if "kinetic" in path.with_suffix(".c").read_text())
-    content = library.read_bytes()
-    spoil(library)
-    compiling(arm)
-    assert compiling.read == 2 and library.read_bytes() == content
-
-
 @pytest.mark.parametrize(
     "content",
     [

@@ -85,6 +85,17 @@ def test_what_is_older_than_the_code_says_so_wherever_it_is_quoted(tmp_path: Pat
     assert says or not any(text in summary + page for text in ("older than", "before digests"))
 
 
+def test_pages_are_rendered_anew_from_what_was_measured(tmp_path: Path) -> None:
+    write(tmp_path, FUZZ)
+    write(tmp_path, "{", "mutation")
+    result = CliRunner().invoke(app, ["render", "fuzz", "--output", str(tmp_path)])
+    assert result.exit_code == 0 and "fuzz       good" in result.output
+    assert "10 hostile inputs" in (tmp_path / "fuzz.html").read_text() and (tmp_path / "fuzz.md").is_file()
+    assert json.loads((tmp_path / "fuzz.json").read_text()) == FUZZ
+    assert CliRunner().invoke(app, ["render", "mutation", "--output", str(tmp_path)]).exit_code == 1
+    assert CliRunner().invoke(app, ["render", "fuss", "--output", str(tmp_path)]).exit_code == 2
+
+
 @pytest.mark.parametrize("name", TOPICS)
 def test_stored_pages_are_rendered_from_the_numbers_beside_them(name: str) -> None:
     """A page rendered with earlier targets contradicts the index, which reads the numbers."""
