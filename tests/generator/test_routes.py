@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 import symofros as sf
 from reference_models import MODELS
@@ -31,34 +32,8 @@ FORWARD, SLOPES, BY_PAR = "forward_dynamics", "forward_dynamics_derivatives", "f
 REVERSE, HESSIAN = "forward_dynamics_vjp", "forward_dynamics_hessian"
 # Of each row: a function, a model where it takes that route, and the options that this needs.
 CASES: dict[tuple[str, str], tuple[str, str, dict[str, object]]] = {
-    ("inertia forces", "recursion"): ("inverse_dynamics", "double_pendulum", {}),
-    ("acceleration of trees", "articulated"): (FORWARD, "planar_robot", {}),
-    ("acceleration of trees", "factors"): (FORWARD, "puma560", {}),
-    ("constrained motion", "multipliers"): (FORWARD, "four_bar", {}),
-    ("constrained motion", "null_space"): (FORWARD, "four_bar", {"constraints": "null_space"}),
-    ("constrained system", "sparse"): (FORWARD, "many four-bars", {}),
-    ("constrained system", "dense"): (FORWARD, "four_bar", {}),
-    ("derivatives of the acceleration", "articulated"): (SLOPES, "heavy_top", {"forward_dynamics": "articulated"}),
-    ("derivatives of the acceleration", "factors"): (SLOPES, "heavy_top", {}),
-    ("derivatives of the acceleration", "routine"): (SLOPES, "heavy_top", {}),  # With a lower limit.
-    ("adjoint of the acceleration", "articulated"): (REVERSE, "heavy_top", {"forward_dynamics": "articulated"}),
-    ("adjoint of the acceleration", "factors"): (REVERSE, "heavy_top", {}),
-    ("derivatives of constrained motion", "multipliers"): (SLOPES, "four_bar", {"constraints": "null_space"}),
-    ("second derivatives of the motion", "multipliers"): (HESSIAN, "double_pendulum", {}),
-    ("derivatives of inertia forces", "recursion"): ("inverse_dynamics_derivatives", "double_pendulum", {}),
-    ("derivatives of inertia forces", "graph"): ("inverse_dynamics_derivatives", "gyroscope", {}),
-    ("inverse dynamics by two speeds", "mass matrix"): ("inverse_dynamics_second_derivatives", "double_pendulum", {}),
-    ("inverse dynamics by two speeds", "graph"): ("inverse_dynamics_second_derivatives", "flexible_pendulum", {}),
-    ("weighted second derivatives", "forward over reverse"): ("inverse_dynamics_hvp", "double_pendulum", {}),
-    ("vector-Jacobian product", "reverse sweep"): ("bias_vjp", "double_pendulum", {}),
-    ("values by vectors", "packs"): (FORWARD, "chain7", {}),
-    ("values by vectors", "scalars"): (FORWARD, "puma560", {}),
-    ("values by vectors", "by processor"): ("dynamics", "chain7", {}),
-    ("equal parts", "loops"): ("constraint_jacobian", "many four-bars", {}),
-    ("equal parts", "limbs"): ("dynamics", "quadruped", {}),
-    ("equal parts", "one by one"): ("dynamics", "double_pendulum", {}),
-    ("large batches", "lanes"): ("dynamics", "double_pendulum", {}),
-    ("large batches", "state by state"): (FORWARD, "four_bar", {}),
+    (quantity, method): (function, name, options)
+    for quantity, method, function, name, options in YAML(typ="safe").load(Path(__file__).with_name("routes.yaml"))
 }
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import ctypes
 import pickle
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,10 +12,8 @@ import pytest
 
 import symofros as sf
 from symofros.errors import ShapeError, SymofrosError, UnknownNameError
-from symofros.runtime.cuda import cuda_model
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.cuda.driver import Driver, driver
-from tests.cuda_on_host import on_host
 from tests.interop.turning import SYSTEMS
 from tests.models import model
 from tests.runtime.cuda.foreign_arrays import STATES, Exchanged, OnDevice, WithGradient, WithGradientExchanged, states
@@ -151,17 +148,9 @@ def test_rollouts_refuse_quaternions_that_are_no_rotations_as_simulate_does(leng
             start()
 
 
-def test_quaternions_of_the_host_are_taken_as_by_the_model(
-    on_device: CudaModel, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_quaternions_of_the_host_are_taken_as_by_the_model(on_device: CudaModel) -> None:
     swing = sf.compile(SYSTEMS["swing"]())
     gpu = swing.cuda()
-
-    def compiled(text: str, architecture: str, contract: bool) -> bytes:
-        code = next(code for code in gpu._codes.values() if code.text == text)
-        return str(on_host(code, tmp_path)).encode() + b"\0"
-
-    monkeypatch.setattr(cuda_model, "compile_cuda", compiled)
     q, v = (np.array(x) for x in zip(*(swing.random_state(np.random.default_rng(k)) for k in range(3)), strict=True))
     expected = swing.bias(q, v)
     for length in (1.0, 1.0 + 1e-6, 1.0 - 9e-4):

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 import json
 import math
-import subprocess
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -15,8 +13,7 @@ import pytest
 from symofros.runtime.cuda import cuda_model, figures
 from symofros.runtime.cuda.driver import Driver
 from symofros.runtime.cuda.nvrtc import KernelUsage
-from tests import runtime
-from tests.cuda_on_host import on_host
+from tests.cuda_on_host import compile_on_host, host_driver
 from validation.cuda import kernels, measure, report, states, warp
 from validation.cuda.record import PEER, KernelRow, Record, RolloutRow
 from validation.cuda.states import Subject
@@ -30,27 +27,9 @@ USAGE = KernelUsage(registers=40, stack=16, spill_stores=8, spill_loads=24)
 @pytest.fixture(scope="module")
 def device(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
     """A driver of the host, whose kernels are C++, and batches small enough for it."""
-    folder = tmp_path_factory.mktemp("driver")
-    library = folder / "libcuda.so.1"
-    source = Path(runtime.__file__).parent / "cuda/driver_on_host.c"
-    subprocess.run(["gcc", "-shared", "-fPIC", source, "-o", library, "-ldl"], check=True)
-    made = Driver(ctypes.CDLL(str(library)))
+    made = host_driver(tmp_path_factory.mktemp("driver"))
     patch = pytest.MonkeyPatch()
-    known: dict[str, Path] = {}
-    code = cuda_model.CudaModel.code
-
-    def seen(self: cuda_model.CudaModel, name: str, frame: str = "") -> object:
-        """Keeps each text, whose library is made when it is loaded."""
-        found = code(self, name, frame)
-        if found.text not in known:
-            place = folder / str(len(known))
-            place.mkdir()
-            known[found.text] = on_host(found, place)
-        return found
-
-    patch.setattr(cuda_model.CudaModel, "code", seen)
-    patch.setattr(cuda_model, "driver", lambda: made)
-    patch.setattr(cuda_model, "compile_cuda", lambda text, *_: str(known[text]).encode() + b"\0")
+    compile_on_host(patch, made, tmp_path_factory.mktemp("kernels"))
     patch.setattr(measure, "present", lambda: made)
     patch.setattr(measure, "copied", lambda _: 4e12)
     patch.setattr(measure, "_STATES", 8)
