@@ -22,7 +22,7 @@ from validation.stability.report import TOPIC
 from validation.stability.study import Cell, Subject, Verdict
 
 # Those whose models other tests compile, and that take less than half a second.
-FEW = ("stick_slip", "spin")
+FEW = ("stick_slip", "massless_cross")
 
 
 @pytest.fixture(scope="module", params=sampled(("few", "all"), ["few"]))
@@ -54,12 +54,17 @@ def test_every_claim_holds_on_a_coarse_grid(quick: tuple[Path, dict[str, Any]]) 
 
 
 def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    missed = replace(STUDIES["spin"], judge=lambda maps: Verdict("1.", "2.", (Finding("zero", 1.0, 0.0),)))
-    monkeypatch.setitem(STUDIES, "spin", missed)
-    done = CliRunner().invoke(app, ["stability", "--study", "spin", "--quick", "--report", str(tmp_path)])
+    missed = replace(STUDIES["massless_cross"], judge=lambda maps: Verdict("1.", "2.", (Finding("zero", 1.0, 0.0),)))
+    monkeypatch.setitem(STUDIES, "massless_cross", missed)
+    done = CliRunner().invoke(app, ["stability", "--study", "massless_cross", "--quick", "--report", str(tmp_path)])
     assert done.exit_code == 1 and "1 miss their bounds" in done.stdout
     # One study has a folder of its own, and leaves the whole atlas as it is.
     assert "**missed** 1" in (tmp_path / "stability" / "stability.md").read_text()
+
+
+def test_a_study_that_is_gone_names_its_successor() -> None:
+    done = CliRunner().invoke(app, ["stability", "--study", "spin"])
+    assert done.exit_code == 2 and "accuracy --study spinning" in " ".join(done.stderr.replace("│", " ").split())
 
 
 @pytest.mark.slow
@@ -67,9 +72,11 @@ def test_a_study_that_can_not_be_done_keeps_no_other_from_it(monkeypatch: pytest
     def broken(x: float, y: float) -> Cell:
         raise ArithmeticError("no")
 
-    study = STUDIES["spin"]
-    monkeypatch.setitem(STUDIES, "spin", replace(study, subjects=(Subject("s", broken),)))
-    atlas = measure(Run(TOPIC), ["spin", "redundant"], quick=True)
+    study = STUDIES["massless_cross"]
+    monkeypatch.setitem(STUDIES, "massless_cross", replace(study, subjects=(Subject("s", broken),)))
+    atlas = measure(Run(TOPIC), ["massless_cross", "redundant"], quick=True)
     assert (
-        not atlas["ok"] and atlas["failures"] == {"spin": "ArithmeticError: no"} and atlas["studies"]["redundant"]["ok"]
+        not atlas["ok"]
+        and atlas["failures"] == {"massless_cross": "ArithmeticError: no"}
+        and atlas["studies"]["redundant"]["ok"]
     )
