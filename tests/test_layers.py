@@ -89,11 +89,8 @@ ALLOWED = table("""
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
-    # Passes left out in turn, for studies: their context managers reach into every stage.
-    generator.ablation: base expr mechanics.spatial mechanics.dynamics generator.passes generator.codegen
-        runtime
     # What tools that look inside may use; nothing in the package imports it.
-    tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
+    tools: base description compiler expr generator.passes runtime simulation diagrams
         studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports interop studio.advice studio.viewer

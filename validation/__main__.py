@@ -65,7 +65,7 @@ class Commands(Group):
             near = difflib.get_close_matches(args[0], COMMANDS, n=1)
             remedy = f"did you mean '{near[0]}'?" if near else "check MODEL cross-checks a model"
             if args[0] in RETIRED:
-                remedy = f"its question is answered by '{RETIRED[args[0]]}'"
+                remedy = f"its question is answered by {RETIRED[args[0]]}"
             print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(COMMANDS), remedy), file=sys.stderr)
             raise SystemExit(BAD_INPUT)
         return super().resolve_command(ctx, args)
