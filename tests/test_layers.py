@@ -121,15 +121,14 @@ STUDIES = table("""
     diagrams:
     accuracy:
     timing:      oracle
-    passes:      timing
     environments: timing
     cuda:        timing
-    stability:   accuracy
+    stability:
     studies:     oracle timing
     pareto:      stability timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability
+    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing stability
                  studies pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.
