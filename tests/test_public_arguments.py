@@ -45,6 +45,10 @@ def four_bar() -> sf.Model:
     return sf.compile(sf.load(MODELS / "closed/four_bar.yaml"))
 
 
+def stepped_once(u: Any = None, steps: Any = 1) -> bool:
+    return sf.Stepper(model()).step(u, steps)
+
+
 def diagram() -> sf.Diagram:
     d = sf.Diagram("d")
     d.add(blocks.Constant(name="one", value=1.0))
@@ -71,6 +75,10 @@ CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
     "Options": lambda: (sf.Options, {}),
     "simulate": lambda: (sf.simulate, {"model": model(), "q0": Q, "t_end": 0.002}),
     "simulate_batch": lambda: (sf.simulate_batch, {"model": model(), "q0": [Q, Q], "t_end": 0.002}),
+    "Stepper": lambda: (sf.Stepper, {"model": model(), "dt": 0.01}),
+    "Stepper.reset": lambda: (sf.Stepper(model()).reset, {"q": Q}),
+    "Stepper.step": lambda: (stepped_once, {"u": U}),
+    "Stepper.restore": lambda: (sf.Stepper(model()).restore, {"state": None}),
     "SimulationOptions": lambda: (sf.SimulationOptions, {}),
     "Event": lambda: (sf.Event, {"formula": "q"}),
     "Signal": lambda: (sf.Signal, {"t": [0, 1], "values": [1, 2]}),

@@ -27,6 +27,8 @@ from symofros.simulation.stepping.fast_step import fast_step
 from symofros.simulation.stepping.status import Status
 
 _numbers = count()
+# Times of steps are known to the step up to here.
+_MOST_STEPS = 1 << 53
 
 
 class Stepper:
@@ -98,6 +100,7 @@ class Stepper:
         if fast is not None:  # Found before the class's own, it costs a fifth of it.
             vars(self)["step"] = fast
 
+    @checked
     def reset(self, q: ArrayLike | None = None, v: ArrayLike | None = None, t: float | None = None) -> None:
         """Begin a motion at a state. Its inputs are those of the description until a step gives others.
 
@@ -137,7 +140,7 @@ class Stepper:
 
     def _plain_step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
         values = None if u is None else self._held_inputs(u)
-        if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or steps < 1:
+        if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= _MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
             raise _refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
         hand = self._hand
@@ -171,7 +174,9 @@ class Stepper:
             found = str(array.shape) if array.shape != (len(names),) else "a number that is not finite"
         rule = f"u is a finite array of shape ({len(names)},): {', '.join(names[:8]) or 'there are no inputs'}"
         raise ShapeError(
-            Problem(f"model '{model.record.name}': u does not fit", found, rule, "one number for each of stepper.inputs")
+            Problem(
+                f"model '{model.record.name}': u does not fit", found, rule, "one number for each of stepper.inputs"
+            )
         )
 
     @property

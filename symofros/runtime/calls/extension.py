@@ -85,18 +85,18 @@ def _tell() -> None:
 
 def load() -> Any:
     """The type `Call`, built unless the cache folder has it; None where it can't be built."""
-    module = _module()
-    return None if module is None else module.Call
+    there = module()
+    return None if there is None else there.Call
 
 
 def step_type() -> Any:
     """The type `Step` of symofros_step.c, built unless the cache folder has it; None where it can't be built."""
-    module = _module()
-    return None if module is None else module.Step
+    there = module()
+    return None if there is None else there.Step
 
 
 @cache
-def _module() -> Any:
+def module() -> Any:
     """The extension, or None."""
     toolchain = find_toolchain(None)
     headers = [Path(sysconfig.get_paths()["include"]), Path(np.get_include())]
@@ -113,9 +113,9 @@ def _module() -> Any:
         loader = ExtensionFileLoader(_NAME, str(library))
         spec = spec_from_loader(_NAME, loader)
         assert spec is not None
-        module = module_from_spec(spec)
-        loader.exec_module(module)
+        made = module_from_spec(spec)
+        loader.exec_module(made)
     except (CompileError, ImportError) as error:
         LOGGER.info("plain calls go through NumPy, since the extension for them is not there: %s", error)
         return None
-    return module
+    return made
