@@ -34,7 +34,7 @@ _MOST_STEPS = 1 << 53
 class Stepper:
     """A model that is stepped by hand: for controllers, learning, sampling, hardware in the loop.
 
-    Steps are those of `simulate`, by the same C: with the same inputs held over the same steps, fixed ones, q and v are the
+    Steps are those of `simulate`, by the same C: with the same inputs held over the same fixed steps, q and v are the
     same to the last bit. Adaptive methods choose their own steps from one multiple of `dt` to the next.
 
         stepper = sf.Stepper(model, dt=1e-3)
@@ -111,14 +111,11 @@ class Stepper:
 
         Raises:
             ShapeError: An array does not fit, or a quaternion is no rotation.
-            SymofrosError: The time is no number.
         """
         model = self.model
         configuration = first_configuration(model, q)
         speeds = np.zeros(model.nv) if v is None else vector(model, "v", v, model.nv)
         time = self._first if t is None else float(t)
-        if not math.isfinite(time):
-            raise _refusal("reset: no time", f"t = {time}", "t is a finite number", "leave it out for the options' t0")
         self._hand.reset(time, configuration, speeds)
 
     def step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:

@@ -1,4 +1,4 @@
-"""A model that is stepped by hand moves as `simulate` moves it, to the last bit, whatever else is asked of it between."""
+"""A model that is stepped by hand moves as `simulate` moves it, to the last bit, whatever is asked of it between."""
 
 from __future__ import annotations
 
@@ -276,7 +276,7 @@ def test_other_misuse_is_refused() -> None:
         stepper.restore(other.save())
     with pytest.raises(sf.SymofrosError, match="no state of this stepper"):
         stepper.restore(None)  # type: ignore[arg-type]
-    with pytest.raises(sf.SymofrosError, match="no time"):
+    with pytest.raises(sf.SymofrosError, match="t is not a number"):
         stepper.reset(t=np.nan)
     with pytest.raises(sf.ShapeError, match="q0 does not fit"):
         stepper.reset([0.0])

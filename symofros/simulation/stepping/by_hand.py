@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -211,9 +212,7 @@ class HandRun:
         while True:
             portion = min(steps, _AT_ONCE if self.settings.adaptive else time_slice.steps)
             self._look_ahead(portion)
-            status = time_slice.measure(
-                lambda count: int(self.run.native.sym_hand_step(self.hand, pointer, count)), portion
-            )
+            status = time_slice.measure(partial(self.run.native.sym_hand_step, self.hand, pointer), portion)
             if status == Status.CALLBACK_FAILED:
                 return status
             steps, pointer, status = steps - portion, self.run.ffi.NULL, self.settled(status)
