@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import count
 from typing import Any
@@ -28,7 +28,7 @@ from symofros.simulation.stepping.status import Status
 
 _numbers = count()
 # Times of steps are known to the step up to here.
-_MOST_STEPS = 1 << 53
+MOST_STEPS = 1 << 53
 
 
 class Stepper:
@@ -82,16 +82,15 @@ class Stepper:
         chosen = (options or SimulationOptions()).changed(changes)
         self._given = {"u": u, "events": events, "options": chosen}
         self.model = model = model.with_precision("double")
-        settings = _settings(model, chosen)
+        settings = settings_by_hand(model, chosen)
         self.par = model.parameter_values
         if par is not None:
             self.par = vector(model, "par", model.checked_parameters(par), model.npar)
         inputs = plan_inputs(model, u)
-        constants = {name for name, value in (u or {}).items() if isinstance(value, (int, float, np.floating))}
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
         self._kind = f"stepper {next(_numbers)} of '{model.record.name}'"
-        self._hand = HandRun(model, settings, inputs, constants, named_events(events), np.asarray(self.par))
+        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), np.asarray(self.par))
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
@@ -136,10 +135,10 @@ class Stepper:
         return self._plain_step(u, steps)
 
     def _plain_step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
-        values = None if u is None else self._held_inputs(u)
-        if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= _MOST_STEPS:
+        values = None if u is None else checked_inputs(self.model, self.inputs, u)
+        if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
-            raise _refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+            raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
         hand = self._hand
         if not hand.started:
             inputs = hand.begin(values)
@@ -151,30 +150,12 @@ class Stepper:
                 raise
         elif hand.status != Status.RUNNING:
             rule = "steps are made while step() returns True"
-            raise _refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
+            raise refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
         return hand.step(values, int(steps)) == Status.RUNNING
 
     def _made(self, status: int) -> bool:
         """After a fast call that did not just make its steps."""
         return self._hand.settled(status) == Status.RUNNING
-
-    def _held_inputs(self, u: ArrayLike) -> Array:
-        """Inputs as given, checked."""
-        names, model = self.inputs, self.model
-        if isinstance(u, Mapping) and len(names) < model.nu:
-            u = [u.get(name, 0.0) for name in names]
-        array = real_array(model.by_name("u", u))
-        if array is not None and array.shape == (len(names),) and np.isfinite(array).all():
-            return np.ascontiguousarray(array)
-        found = f"{type(u).__name__} {u!r:.60}"
-        if array is not None:
-            found = str(array.shape) if array.shape != (len(names),) else "a number that is not finite"
-        rule = f"u is a finite array of shape ({len(names)},): {', '.join(names[:8]) or 'there are no inputs'}"
-        raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': u does not fit", found, rule, "one number for each of stepper.inputs"
-            )
-        )
 
     @property
     def running(self) -> bool:
@@ -265,7 +246,7 @@ class Stepper:
         if not isinstance(state, HandState) or state.owner != self._kind:
             found = f"a state of {state.owner}" if isinstance(state, HandState) else repr(state)[:60]
             rule = "a state goes back to the stepper that it was saved of, or to a copy"
-            raise _refusal("restore: no state of this stepper", found, rule, "make other steppers by copy()")
+            raise refusal("restore: no state of this stepper", found, rule, "make other steppers by copy()")
         self._hand.restore(state)
 
     def copy(self) -> Stepper:
@@ -276,17 +257,50 @@ class Stepper:
         return other
 
 
-def _settings(model: Model, options: SimulationOptions) -> Settings:
+def fixed_inputs(u: Mapping[str, Any] | None) -> set[str]:
+    """Names of the inputs that are numbers for good."""
+    return {name for name, value in (u or {}).items() if isinstance(value, (int, float, np.floating))}
+
+
+def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0) -> Array:
+    """Inputs that are given by hand, checked.
+
+    Args:
+        model: Model that is stepped.
+        names: Their names.
+        u: Inputs (number of names), or values by name.
+        n: Number of motions that may have a row each; 0: one motion.
+
+    Raises:
+        ShapeError: They do not fit, or are not finite.
+    """
+    if isinstance(u, Mapping) and len(names) < model.nu:
+        u = [u.get(name, 0.0) for name in names]
+    array, shape = real_array(model.by_name("u", u)), (len(names),)
+    fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
+    if array is not None and fits and np.isfinite(array).all():
+        return np.ascontiguousarray(array)
+    found = f"{type(u).__name__} {u!r:.60}"
+    if array is not None:
+        found = "a number that is not finite" if fits else str(array.shape)
+    listed = ", ".join(names[:8]) or "there are no inputs"
+    rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
+    raise ShapeError(
+        Problem(f"model '{model.record.name}': u does not fit", found, rule, "one number for each of `inputs`")
+    )
+
+
+def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
     """Settings of a run without an end; options that speak of one, or of records, are refused."""
     usual = SimulationOptions()
     for name in ("output", "every", "max_steps", "realtime"):
         value = getattr(options, name)
         if value is not None and value != getattr(usual, name):
             rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
-            raise _refusal(f"stepper: an option of whole runs, '{name}'", repr(value)[:60], rule, "leave it out")
+            raise refusal(f"stepper: an option of whole runs, '{name}'", repr(value)[:60], rule, "leave it out")
     settings = Settings.of(model, options, options.t0)
     if settings.method.family.multistep:
-        raise _refusal(
+        raise refusal(
             f"stepper: '{options.method}' has no steps to be made by hand",
             "a method of SUNDIALS, with a history of steps",
             "inputs that change at each step would cut its history",
@@ -295,5 +309,5 @@ def _settings(model: Model, options: SimulationOptions) -> Settings:
     return replace(settings, dt=options.dt or 1e-3, every=0, t_end=math.inf)
 
 
-def _refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
+def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
     return SymofrosError(Problem(what, found, rule, remedy))

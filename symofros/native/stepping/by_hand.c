@@ -56,3 +56,47 @@ SYM_EXPORT int32_t sym_hand_step(sym_hand *hand, const double *u, int64_t steps)
     hand->target = hand->mark + steps;
     return sym_hand_go_on(hand);
 }
+
+/* Active trajectories of a group hold other inputs. */
+static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const double *u) {
+    const int32_t nu = b->prototype->system->nu;
+    int32_t i;
+    for (i = 0; i < b->n_active; ++i) {
+        const int64_t k = b->trajectory_of_slot[i];
+        sym_system *s = b->systems + i;
+        sym_hold(b->runs + i, hand->held, hand->n_held, u + k * hand->n_held, hand->u + k * nu);
+        if (s->held_anew) memcpy(s->u, hand->u + k * nu, (size_t)nu * sizeof *s->u); /* evaluated once where they are constant */
+    }
+}
+
+/* A trajectory begins, or begins anew. */
+static void sym_hand_batch_begin(const sym_hand_batch *hand, sym_batch *b, int64_t k, const double *u) {
+    double *constant = hand->u + k * b->prototype->system->nu;
+    int32_t i;
+    for (i = 0; i < b->n_active && b->trajectory_of_slot[i] != k; ++i) {}
+    if (i < b->n_active) sym_batch_retire(b, i, 0);
+    for (i = 0; u != NULL && i < hand->n_held; ++i) constant[hand->held[i]] = u[k * hand->n_held + i];
+    b->next = k;
+    sym_batch_activate_next(b);
+}
+
+SYM_EXPORT void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
+    int64_t k = hand->first;
+    int32_t g, i;
+    for (g = 0; g < hand->n_groups; ++g) {
+        sym_batch *b = hand->groups + g;
+        if (u != NULL) sym_hand_batch_hold(hand, b, u);
+        for (; k < b->n; ++k) {
+            if (!hand->begins[k]) continue;
+            hand->begins[k] = 0;
+            sym_hand_batch_begin(hand, b, k, u);
+        }
+        b->next = b->n;
+        sym_batch_advance(b, steps);
+        for (i = 0; i < b->n_active; ++i) {
+            const sym_run *r = b->runs + i;
+            sym_batch_store_result(b, b->trajectory_of_slot[i], SYM_RUNNING, r->t, r->q, r->v);
+            b->steps[b->trajectory_of_slot[i]] = r->steps;
+        }
+    }
+}

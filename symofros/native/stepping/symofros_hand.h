@@ -28,6 +28,20 @@ typedef struct sym_hand {
 int32_t sym_hand_step(sym_hand *hand, const double *u, int64_t steps);
 /* The steps that are left. */
 int32_t sym_hand_go_on(sym_hand *hand);
+
+typedef struct sym_hand_batch { /* trajectories that go on together, one thread's part of them */
+    sym_batch *groups;     /* (n_groups) as many slots as trajectories each */
+    int32_t n_groups;
+    int32_t n_held;
+    const int32_t *held;   /* (n_held) as in sym_hand */
+    int64_t first, n;      /* trajectories: first, first + 1, ... below n */
+    double *u;             /* (all trajectories, nu) u_constant of the groups */
+    int32_t *begins;       /* (all trajectories) whether it begins at the next step, at q0, v0, t0 of the groups */
+} sym_hand_batch;
+
+/* Hold inputs u (all trajectories, n_held) from now on, those before if NULL, and make so many steps of each trajectory that
+ * can go on; then its t, q, v, status are where the groups have their results. */
+void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps);
 /* cdef end */
 
 #endif

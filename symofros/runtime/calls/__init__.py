@@ -15,3 +15,4 @@ from symofros.runtime.calls.layout import flat as flat
 from symofros.runtime.calls.library import MANY as MANY
 from symofros.runtime.calls.library import CompiledKernel as CompiledKernel
 from symofros.runtime.calls.library import CompiledUnit as CompiledUnit
+from symofros.runtime.calls.sharing import together as together
