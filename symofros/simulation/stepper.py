@@ -55,7 +55,6 @@ class Stepper:
 
     Attributes:
         model: Model that is stepped.
-        par: Run-time parameters (npar).
         dt: Time of one step [s].
         inputs: Names of the inputs that `step` takes, in order.
         q: Present configuration (nq), a view that steps change and that can't be written: copy it to keep it.
@@ -83,14 +82,14 @@ class Stepper:
         self._given = {"u": u, "events": events, "options": chosen}
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
-        self.par = model.parameter_values
+        values = np.array(model.parameter_values)
         if par is not None:
-            self.par = vector(model, "par", model.checked_parameters(par), model.npar)
+            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
         self._kind = f"stepper {next(_numbers)} of '{model.record.name}'"
-        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), np.asarray(self.par))
+        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
@@ -100,13 +99,21 @@ class Stepper:
             vars(self)["step"] = fast
 
     @checked
-    def reset(self, q: ArrayLike | None = None, v: ArrayLike | None = None, t: float | None = None) -> None:
+    def reset(
+        self,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        t: float | None = None,
+        *,
+        par: ArrayLike | None = None,
+    ) -> None:
         """Begin a motion at a state. Its inputs are those of the description until a step gives others.
 
         Args:
             q: Configuration (nq), or values by name, on the constraints (see `assemble`); the neutral one by default.
             v: Speeds (nv), or values by name; rest by default.
             t: Time [s]; that of the options, `t0`, by default.
+            par: Other run-time parameters (npar), or values by name; those before by default.
 
         Raises:
             ShapeError: An array does not fit, or a quaternion is no rotation.
@@ -115,7 +122,10 @@ class Stepper:
         configuration = first_configuration(model, q)
         speeds = np.zeros(model.nv) if v is None else vector(model, "v", v, model.nv)
         time = self._first if t is None else float(t)
-        self._hand.reset(time, configuration, speeds)
+        values = None
+        if par is not None:
+            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
+        self._hand.reset(time, configuration, speeds, values)
 
     def step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
         """Make steps with inputs held over them.
@@ -144,7 +154,7 @@ class Stepper:
             inputs = hand.begin(values)
             start, settings = hand.start, replace(hand.settings, t0=hand.start.t)
             try:
-                check_start(self.model, settings, start.q, start.v, inputs, np.asarray(self.par))
+                check_start(self.model, settings, start.q, start.v, inputs, self.par)
             except SymofrosError:
                 hand.reset(start.t, start.q, start.v)
                 raise
@@ -156,6 +166,11 @@ class Stepper:
     def _made(self, status: int) -> bool:
         """After a fast call that did not just make its steps."""
         return self._hand.settled(status) == Status.RUNNING
+
+    @property
+    def par(self) -> Array:
+        """Run-time parameters (npar)."""
+        return self._hand.run.par
 
     @property
     def running(self) -> bool:
@@ -310,4 +325,5 @@ def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
 
 
 def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
+    """What is not done, in four parts."""
     return SymofrosError(Problem(what, found, rule, remedy))

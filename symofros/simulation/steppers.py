@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import Problem, ShapeError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.inputs import plan_inputs

@@ -38,7 +38,7 @@ def test_many_move_as_one_does_to_the_last_bit(task: Any) -> None:
     for i in range(5):
         env = sf.interop.gymnasium.MechanismEnv(task)
         env.reset(seed=0)
-        env._q, env._v = first[i : i + 1, :2], first[i : i + 1, 2:]
+        env.stepper.reset(first[i, :2], first[i, 2:])
         np.testing.assert_array_equal(env.step(actions[i])[0], many[i])
     np.testing.assert_array_equal(rewards, np.ones(5))
 

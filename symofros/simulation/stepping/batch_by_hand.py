@@ -110,7 +110,7 @@ class HandBatch:
         self._written += [array for part in self._parts for array in part.memory]
 
     def reset(self, chosen: npt.NDArray[np.intp], t: Array, q: Array, v: Array, par: Array | None) -> None:
-        """Motions of these numbers begin anew at the next step, with inputs of the description until it gives others."""
+        """Motions of these numbers begin anew at the next step, their inputs those of the description."""
         self.t0[chosen], self.q0[chosen], self.v0[chosen] = t, q, v
         results = self.results
         results.t[chosen], results.q[chosen], results.v[chosen] = t, q, v

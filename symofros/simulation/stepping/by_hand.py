@@ -79,6 +79,7 @@ class HandState:
         start: First state.
         noted: Inputs since then.
         events: Events met since then.
+        par: Run-time parameters (npar).
     """
 
     owner: object
@@ -90,6 +91,7 @@ class HandState:
     start: Start
     noted: Noted | None
     events: Events
+    par: Array
 
 
 class HandRun:
@@ -172,8 +174,10 @@ class HandRun:
         """Whether a step was asked for since the last reset."""
         return bool(self.hand.started)
 
-    def reset(self, t: float, q: Array, v: Array) -> None:
+    def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
         """Begin anew at a state, the inputs those of the description until a step gives others."""
+        if par is not None:
+            self.run.set_parameters(par)
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
         run.run.t = run.run.t0 = t
@@ -283,10 +287,14 @@ class HandRun:
         numbers = tuple(of.read() for of in self._numbers)
         arrays = tuple(array.copy() for array in self._arrays)
         q, v = arrays[0], arrays[1]
-        return HandState(owner, self.t, q, v, numbers, arrays, self.start, self._noted, tuple(self.events))
+        return HandState(
+            owner, self.t, q, v, numbers, arrays, self.start, self._noted, tuple(self.events), self.run.par
+        )
 
     def restore(self, state: HandState) -> None:
         """Go on from a state that `save` gave, bit by bit as from there."""
+        if state.par is not self.run.par:
+            self.run.set_parameters(state.par)
         for of, numbers in zip(self._numbers, state.numbers, strict=True):
             of.write(numbers)
         for to, array in zip(self._arrays, state.arrays, strict=True):

@@ -149,6 +149,21 @@ class Stepper:
         self.memory.view(run.beam_weight, model.nv)[:] = 0.0
         self.memory.raw(run.beam_guard, "sym_beam_guard", len(self.beams))[:] = 0
 
+    def set_parameters(self, par: Array) -> None:
+        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
+        run, view = self.run, self.memory.view
+        self.par, self.beams = par, self.model.beams(par)
+        for slot, kernel in self.kernels.items():
+            prepared = kernel.prepare(par.reshape(1, -1))
+            view(getattr(self.system, slot).pre, prepared.size)[:] = prepared[0]
+        for i, beam in enumerate(self.beams):
+            of = self.system.beams[i]
+            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
+            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
+            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
+        self.forget_bendings()
+        run.slope_valid = run.jacobian_valid = 0
+
     def judge_beams(self) -> int:
         """Judge the present state's beams, for integrators of others; returns a Status."""
         return int(self.native.sym_run_judge_beams(self.run))
