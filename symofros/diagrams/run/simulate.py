@@ -20,9 +20,9 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Again, End, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
-from symofros.diagrams.run.examination.energy_balance import Energies
+from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
-from symofros.diagrams.run.examination.remarks import Examined, remarks
+from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.parts import place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun

@@ -13,7 +13,8 @@ from symofros.simulation.analysis.kinematics.postures import (
     nearest_to_singular,
     worst_violation,
 )
-from symofros.simulation.results.examination.run import ExaminedRun, States
+from symofros.simulation.results.examination.finer_steps import States
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 

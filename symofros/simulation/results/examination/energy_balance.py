@@ -9,8 +9,9 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
+from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.paths import path_within
-from symofros.simulation.results.examination.run import ExaminedRun, States
+from symofros.simulation.results.examination.run import ExaminedRun
 
 # A power is a difference over this share of a step, or of the time in which the largest speed arises where that is
 # shorter; but not shorter than this share of that.

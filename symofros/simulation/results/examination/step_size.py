@@ -13,9 +13,10 @@ from symofros.simulation.analysis.kinematics.postures import worst_violation
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
+from symofros.simulation.results.examination.finer_steps import percent
 from symofros.simulation.results.examination.formula_impulses import formula_impulse_note
 from symofros.simulation.results.examination.input_impulses import input_impulse_note
-from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
+from symofros.simulation.results.examination.repetition import halved_step_note, tolerance_note
 from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.results.examination.stepped_over import stepped_over_note
 from symofros.simulation.settings import Settings
@@ -57,10 +58,8 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
     if not ended_well:
         return mode, tuple(notes)
     evident = resolution.evident and not _samples_within_steps(run.stepper.inputs, run.settings)
-    if not evident and mode is None:
-        notes.append(halved_step_note(run))
     if mode is None:
-        notes.append(windows_note(run))
+        notes.append(halved_step_note(run, evident=evident))
     notes.append(input_impulse_note(run))
     if not any(notes):
         notes.append(formula_impulse_note(run))

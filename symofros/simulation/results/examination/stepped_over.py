@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.simulation.results.examination.finer_steps import States, percent
 from symofros.simulation.results.examination.paths import path_within
-from symofros.simulation.results.examination.repetition import change_in_part, percent
-from symofros.simulation.results.examination.run import ExaminedRun, States, norms_in
+from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 
@@ -49,7 +49,7 @@ def stepped_over_note(run: ExaminedRun) -> str:
             status, finer = run.in_short_steps(first, float(ends[0][i + 1]), part)
             if status != Status.FINISHED:
                 continue
-            change = change_in_part(run, coarse, [x[[0, -1]] for x in finer])
+            change = run.change_in_part(coarse, [x[[0, -1]] for x in finer])
             if change > noted:
                 cure = f"max_step={part:.2g}" if settings.adaptive else "a smaller dt"
                 return (

@@ -7,17 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-import symofros.simulation.results.examination.repetition as repetition
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.examination.repetition import Changed, added_up, window_change
+from symofros.simulation.results.examination.finer_steps import Changed, Part
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.stepping.windows import Window
 from tests.simulation.oscillator import oscillator
 
 STEPS, H = 6000, 0.01
+
+
+def window(count: int) -> Window:
+    """So many steps from the start."""
+    return Window(0, None, count * H)
 
 
 def a_run(method: str, every: int = 1) -> ExaminedRun:
@@ -38,12 +43,13 @@ def test_parts_grow_until_the_power_of_their_growth_says_what_the_run_comes_to(
     """Changes of 1e-5 in eight steps: 7.5e-3 over the run where they grow with time, 5.6 where with its square."""
     looked_at = []
 
-    def changed(run: ExaminedRun, first: int, count: int, every: int = 1) -> Changed:
+    def changed(run: ExaminedRun, part: Window, _: Part, every: int = 1) -> Changed:
+        count = round(part.t_end / H)
         looked_at.append(count)
         return Changed(1e-5 * (count / 8) ** power, 0.0, count)
 
-    monkeypatch.setattr(repetition, "window_change", changed)
-    worst = added_up(a_run("rk4"), Changed(1e-5, 0.0, 8))
+    monkeypatch.setattr(ExaminedRun, "changed", changed)
+    worst = a_run("rk4").added_up(Changed(1e-5, 0.0, 8))
     assert max(looked_at) == longest
     assert (worst.share > TOLERANCE) == (power == 2.0)
 
@@ -51,11 +57,11 @@ def test_parts_grow_until_the_power_of_their_growth_says_what_the_run_comes_to(
 def test_a_symplectic_method_is_let_off_after_a_part_and_one_that_gains_energy_is_not() -> None:
     """Semi-implicit Euler errs by h/2 forever; Euler's method by h/2 of the phase and of the size a radian."""
     symplectic, gaining = a_run("semi_implicit_euler"), a_run("euler")
-    window = window_change(symplectic, 0, 8)
-    assert window is not None and window.share < TOLERANCE
-    assert added_up(symplectic, window).share < TOLERANCE
-    window = window_change(gaining, 0, 8)
-    assert window is not None and window.share < TOLERANCE < added_up(gaining, window).share
+    first = symplectic.changed(window(8), "window")
+    assert first.arrived and first.share < TOLERANCE
+    assert symplectic.added_up(first).share < TOLERANCE
+    first = gaining.changed(window(8), "window")
+    assert first.arrived and first.share < TOLERANCE < gaining.added_up(first).share
 
 
 @pytest.mark.parametrize("every", [7, 60])
@@ -63,8 +69,8 @@ def test_sparse_records_show_what_dense_ones_do(every: int) -> None:
     """What half the step changes in a part is the same, made once more or from the records."""
     dense, sparse = a_run("rk4"), a_run("rk4", every)
     for count, between in ((8, 1), (500, 3), (STEPS, 23)):
-        seen = [window_change(run, 0, count, between) for run in (dense, sparse)]
-        assert seen[0] is not None and seen[1] is not None
+        seen = [run.changed(window(count), "part", between) for run in (dense, sparse)]
+        assert seen[0].arrived and seen[1].arrived
         assert seen[1].share == pytest.approx(seen[0].share, rel=1e-6, abs=1e-12), count
 
 
@@ -72,5 +78,5 @@ def test_a_light_body_on_a_stiff_spring_counts_by_the_energy_that_it_holds() -> 
     """The second difference of V is k x^2, wherever the spring is: (17a)."""
     run = a_run("rk4")
     t, q, u = np.zeros(3), np.array([[0.0], [0.3], [-2.0]]), np.zeros((3, 1))
-    norms = repetition.potential_norms(run, (t, q, u), np.array([[1.0], [0.5], [-0.1]]))
+    norms = run._potential_norms((t, q, u), np.array([[1.0], [0.5], [-0.1]]))
     assert norms == pytest.approx([1.0, 0.5, 0.1])
