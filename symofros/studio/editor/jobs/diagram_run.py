@@ -59,8 +59,7 @@ def run_diagram(request: Json, tell: Tell) -> Json:
         outcome = run.outcome
         cost = {"steps": run.cost.steps, "loop_s": run.cost.worked}
         t, signals = run.t, run  # type: ignore[assignment]
-    end: Json = {key: getattr(outcome, key) for key in ("ok", "t", "reason", "advice")}
-    end |= {"notes": list(outcome.notes)}
+    end: Json = {"ok": outcome.ok, **outcome.as_data()}
     end |= {"ok": True, "reason": "stopped where you said"} if observer.ended else {}
     kept = _thinned(len(t), MAX_POINTS)
     return {

@@ -207,14 +207,7 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
             "total": _numbers(run.energy),
         },
         "beams": bent_beams(run.bendings),
-        "outcome": {
-            "ok": end.ok,
-            "kind": end.kind,
-            "t": end.t,
-            "reason": end.reason,
-            "advice": end.advice,
-            "notes": list(end.notes),
-        },
+        "outcome": {"ok": end.ok, **end.as_data()},
     }
 
 
