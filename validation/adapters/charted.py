@@ -6,7 +6,7 @@ which charts it keeps the joints. Here a description becomes such a tree, and wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -19,7 +19,7 @@ from ..contract.quantities import QUANTITIES
 from ..engines.interface import ORIGIN, Joint, Link, State, Tree, rows, vector
 from ..engines.plugins import OWN
 from ..engines.plugins.writing.source import SourceModel
-from ..mechanics.assembly import BASE, Mover
+from ..mechanics.assembly import BASE, Assembly, Mover
 from ..mechanics.geometry import Array
 from ..mechanics.joint_kinds import PartKind
 from .reach import armature, stores_energy, unrepresented
@@ -48,7 +48,6 @@ FUNCTIONS = {
     "frame_jacobian": "link_jacobians",
     "frame_jacobian_rate": "link_jacobian_rates",
 }
-_STILL = ((0.0, 0.0, 0.0),) * 3
 
 
 @dataclass(frozen=True)
@@ -79,33 +78,41 @@ def stated(subject: Subject, whole: bool, merged: bool) -> Stated:
     assembly = subject.assembly
     links: list[Link] = []
     groups: list[tuple[Mover, ...]] = []
-    carriers: list[int] = []  # For each mover, the link that it carries.
+    carriers: list[int] = [-1]  # The world, then for each mover the link that it carries.
     for k, mover in enumerate(assembly.movers):
-        ends = not whole or k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues
-        group = (*groups.pop(), mover) if whole and mover.continues else (mover,)
-        groups.append(group)
+        ends = k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues
+        groups.append((*groups.pop(), mover) if whole and mover.continues else (mover,))
         carriers.append(len(links))
-        if ends:
-            parent = group[0].parent
-            joints = tuple(joint for one in group for joint in _joints(subject, one, whole))
-            name = mover.body if k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues else mover.name
-            links.append(Link(name, carriers[parent] if parent != BASE else -1, joints, 0.0, ORIGIN, _STILL))
-    for k, mover in enumerate(assembly.movers):
-        masses = [mover.merged()] if merged and mover.masses else mover.masses
-        for one in masses:
-            mass = {"mass": one.mass, "com": vector(one.p_BC), "inertia": rows(one.J_BC)}
-            if len(masses) == 1:
-                links[carriers[k]] = replace(links[carriers[k]], **mass)
-            else:
-                links.append(Link(f"mass of {one.body}", carriers[k], (Joint("fixed"),), **mass))
+        if ends or not whole:
+            joints = tuple(joint for one in groups[-1] for joint in _joints(subject, one, whole))
+            links.append(_massless(mover.body if ends else mover.name, carriers[groups[-1][0].parent - BASE], joints))
+    links += _masses(assembly, links, carriers, merged)
     first = len(links)
     for name in subject.frames:
         site = assembly.frames[name]
         place = Joint("fixed", rows(site.X_BF.R), vector(site.X_BF.p))
-        carrier = carriers[site.mover] if site.mover != BASE else -1
-        links.append(Link(f"frame {name}", carrier, (place,), 0.0, ORIGIN, _STILL))
+        links.append(_massless(f"frame {name}", carriers[site.mover - BASE], (place,)))
     tree = Tree(assembly.name, tuple(links), vector(assembly.gravity))
     return Stated(tree, tuple(groups), tuple(range(first, len(links))))
+
+
+def _massless(name: str, parent: int, joints: tuple[Joint, ...]) -> Link:
+    return Link(name, parent, joints, 0.0, ORIGIN, ((0.0, 0.0, 0.0),) * 3)
+
+
+def _masses(assembly: Assembly, links: list[Link], carriers: Sequence[int], merged: bool) -> list[Link]:
+    """Give links the masses that stand for them; what has several, as links that are fixed to it."""
+    fixed = []
+    for mover, carrier in zip(assembly.movers, carriers[1:], strict=True):
+        masses = [mover.merged()] if merged and mover.masses else mover.masses
+        for one in masses:
+            mass = one.mass, vector(one.p_BC), rows(one.J_BC)
+            if len(masses) == 1:
+                bare = links[carrier]
+                links[carrier] = Link(bare.name, bare.parent, bare.joints, *mass)
+            else:
+                fixed.append(Link(f"mass of {one.body}", carrier, (Joint("fixed"),), *mass))
+    return fixed
 
 
 def _joints(subject: Subject, mover: Mover, whole: bool) -> tuple[Joint, ...]:
@@ -145,6 +152,7 @@ class ChartedEngine:
         chart: Map between its coordinates and ours.
         frames: Links that are the subject's frames.
         capabilities: Quantities that it offers on this route.
+        most_states: Largest number of states in one call.
         without_frames: Makes the same model without links for frames: that of joint wrenches.
     """
 
@@ -154,6 +162,7 @@ class ChartedEngine:
     chart: Chart
     frames: tuple[int, ...] = ()
     capabilities: frozenset[str] = frozenset(FUNCTIONS)
+    most_states: int = 10**9
     without_frames: Callable[[], SourceModel] | None = None
 
     @property
@@ -250,26 +259,30 @@ def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:
     return names - ({"potential_energy"} if stores_energy(subject.system) else set())
 
 
-def build(engine: str, subject: Subject, joints: Collection[PartKind], whole: bool) -> ChartedEngine | Unsupported:
+def build(
+    engine: str, subject: Subject, joints: Collection[PartKind], whole: bool, merged: bool
+) -> ChartedEngine | Unsupported:
     """An engine's model of a rigid description, by its plug-in.
 
     Args:
         engine: Name of the plug-in.
         subject: The subject.
         joints: Kinds of simple joints that the engine has.
-        whole: See `stated`; masses are merged where links are whole.
+        whole: See `stated`.
+        merged: See `stated`.
     """
     obstacle = unrepresented(subject.system, subject.assembly, joints)
     if obstacle is not None:
         return obstacle
-    plugin, described = OWN[engine], stated(subject, whole, merged=whole)
+    plugin, described = OWN[engine], stated(subject, whole, merged)
     model = plugin.build(described.tree)
     if isinstance(model, Unsupported):
         return model
+    assert isinstance(model, SourceModel)
 
     def without_frames() -> SourceModel:
         bare = plugin.build(stated(replace(subject, frames=()), whole, merged=True).tree)
-        assert not isinstance(bare, Unsupported)  # The whole is none, either.
+        assert isinstance(bare, SourceModel)  # As the whole is.
         return bare
 
     return ChartedEngine(
@@ -279,5 +292,5 @@ def build(engine: str, subject: Subject, joints: Collection[PartKind], whole: bo
         chart_of(model, described),
         described.frames,
         offered(plugin.functions, subject),
-        without_frames,
+        without_frames=without_frames,
     )

@@ -31,7 +31,7 @@ def write(engine: ChartedEngine, path: Path) -> None:
 
 def build(subject: Subject) -> ChartedEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
-    engine = build_charted(NAME, subject, _JOINTS, whole=True)
+    engine = build_charted(NAME, subject, _JOINTS, whole=True, merged=True)
     if isinstance(engine, Unsupported):
         return Unsupported(explain(engine.reason))
     for mover in subject.assembly.movers:

@@ -22,7 +22,7 @@ def build(subject: Subject) -> ChartedEngine | Unsupported:
 
     Each part of a joint is one of Pinocchio's: several of its functions are wrong for composites, as the matrix shows.
     """
-    engine = build_charted(NAME, subject, _JOINTS, whole=False)
+    engine = build_charted(NAME, subject, _JOINTS, whole=False, merged=False)
     if isinstance(engine, Unsupported):
         return engine
     # Pinocchio 4.1 counts an armature in the energy of some joints (prismatic, free) and not of others (revolute about

@@ -46,8 +46,8 @@ def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported
         if not model.existJointName(name):
             return Unsupported(f"no joint '{name}'")
     slots = tuple(_slot(model, mover, name) for mover, name in zip(assembly.movers, names, strict=True))
-    source = Source(("import numpy as np", "import pinocchio as pin"), (), model.nq, model.nv, closing=CLOSING)
-    chart, made = Chart(slots, model.nq, model.nv), SourceModel(source, WAYS, {"m": model})
+    text = Source(("import numpy as np", "import pinocchio as pin"), (), model.nq, model.nv, closing=CLOSING)
+    chart, made = Chart(slots, model.nq, model.nv), SourceModel(text, WAYS, {"m": model})
     return ChartedEngine(NAME, pin.__version__, made, chart, capabilities=SECOND_ROUTE)
 
 
