@@ -103,7 +103,9 @@ HARNESS = table("""
     program:
     contract:    mechanics
     inputs:      references contract mechanics
-    adapters:    contract mechanics
+    # Engines in their own conventions, and the truth that they are held to: what a check asks them is turned into ours.
+    engines:     contract reporting
+    adapters:    engines contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics
     checking:    references procedures comparison adapters inputs contract mechanics
@@ -113,10 +115,9 @@ HARNESS = table("""
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
     oracle:
-    engines:
-    truth_data:  engines
+    truth_data:
     cross_check:
-    ci:          cross_check engines
+    ci:          cross_check
     campaigns:
     diagrams:
     accuracy:
@@ -128,7 +129,7 @@ STUDIES = table("""
     pareto:      stability timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing stability
+    dashboard:   adversary cross_check cuda environments campaigns diagrams accuracy timing stability
                  studies pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.
