@@ -125,6 +125,11 @@ class Ball(Block):
         return {"w": -self.restitution * context.states["w"], "h": context.numbers(0.0), "n": context.memory["n"] + 1.0}
 
 
+def ramp() -> blocks.Ramp:
+    """Time, and twice of it."""
+    return blocks.Ramp(name="ramp", slope=[1.0, 2.0], unit="s")
+
+
 def moving(
     model: sf.System, start: Mapping[str, float] | None = None, title: str = "moving", **wires: str
 ) -> sf.Diagram:
