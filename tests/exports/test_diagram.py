@@ -67,16 +67,6 @@ def ball() -> sf.Diagram:
     return diagram
 
 
-def two() -> sf.Diagram:
-    """Parts that meet at samples."""
-    diagram = sf.Diagram("two")
-    diagram.add(blocks.Sine(name="wave", frequency=7.0 / (2.0 * np.pi)))
-    diagram.add(Lag(name="first"), x="wave.y")
-    diagram.add(blocks.Hold(name="hold", period=0.02), u="first")
-    diagram.add(Lag(name="second"), x="hold")
-    return diagram
-
-
 def still() -> sf.Diagram:
     """Nothing moves between samples."""
     diagram = sf.Diagram("still")
@@ -90,7 +80,6 @@ CASES: dict[str, tuple[Any, list[str]]] = {
     "loop": (loop, ["plant.q", "plant.lam"]),
     "table": (table, ["given", "lag", "held"]),
     "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
-    "two": (two, ["first", "second"]),
     "still": (still, ["ticks"]),
 }
 
@@ -202,11 +191,3 @@ def test_what_is_no_program() -> None:
         sf.export(pendulum(), "fmu2", "unused")
     with pytest.raises(sf.DescriptionError, match="no output 'z'"):
         sf.export(pendulum(), "c", "unused", outputs=["pd.z"])
-
-
-def test_names_that_c_does_not_take(tmp_path: Path) -> None:
-    diagram = sf.Diagram("for")
-    diagram.add(blocks.Constant(name="while", value=1.0))
-    diagram.add(Lag(name="double"), x="while")
-    exported = sf.export(diagram, "c", tmp_path / "c", outputs=["double"])
-    assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 0

@@ -30,6 +30,19 @@ def test_gymnasiums_checker_has_nothing_to_say(task: Any) -> None:
         check_env(sf.interop.gymnasium.MechanismEnv(task), skip_render_check=True)
 
 
+def test_many_move_as_one_does_to_the_last_bit(task: Any) -> None:
+    envs = sf.interop.gymnasium.MechanismVectorEnv(task, 5)
+    first, _ = envs.reset(seed=4)
+    actions = np.linspace(-3.0, 3.0, 5).reshape(5, 1).astype(np.float32)
+    many, rewards, *_ = envs.step(actions)
+    for i in range(5):
+        env = sf.interop.gymnasium.MechanismEnv(task)
+        env.reset(seed=0)
+        env.stepper.reset(first[i, :2], first[i, 2:])
+        np.testing.assert_array_equal(env.step(actions[i])[0], many[i])
+    np.testing.assert_array_equal(rewards, np.ones(5))
+
+
 def test_a_linear_regulator_keeps_the_pole_up_and_no_force_lets_it_fall(task: Any) -> None:
     A, B = task.model.linearize(np.zeros(2), np.zeros(2), np.zeros(1))
     from scipy.linalg import solve_continuous_are

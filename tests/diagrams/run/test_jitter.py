@@ -12,7 +12,7 @@ from symofros.diagrams.run.recording import Cost
 
 
 def cost(late: list[float], spacing: float = 1e-3) -> Cost:
-    return Cost(0, 0, 0, 0.0, 0.0, np.array(late), spacing)
+    return Cost("rk4", 0, 0, 0, 0, 0.0, late=np.array(late), spacing=spacing)
 
 
 def test_it_is_told_from_the_times() -> None:

@@ -153,7 +153,7 @@ def test_long_runs_that_err_late_bear_a_note() -> None:
     ("t_end", "said"),
     [
         (1.0, "do not show the motion: with half of that it does not come to this end"),
-        (15.0, "do not show the motion from t = 0 s: with half of that it does not go on"),
+        (15.0, "do not show the motion: with half of that it does not come to this end from t = 0 s"),
     ],
 )
 @pytest.mark.parametrize("met", [True, False])
