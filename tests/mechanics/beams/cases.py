@@ -170,12 +170,9 @@ def planar(family: str) -> Case:
                 L,
             ),
         )
-    elif family == "samples":
+    else:
         more = {"family": "user", "shapes": {"bend_y": (sf.Samples(XI, SAMPLES),)}}
         known, breaks = (shapes.through(XI, SAMPLES, L),), tuple(L * x for x in XI)
-    else:
-        made = functions(family, 4, 0, 0)
-        known, breaks = made["v"], made.get("breaks", ())
     beam = sf.Beam("beam", HUB, L, bend_y=len(known), retain="all", **given, **more)
     return Case(system(beam), (Node(-1, Flexible(L, v=known, breaks=breaks, **given), *hub()),))
 
@@ -245,8 +242,5 @@ CASES: dict[str, Case] = {
     "clamped to the world": one(
         sf.Joint("clamp", "fixed", position=(0, 0, 1)), -1, (0, lambda q: (vector(0, 0, 1), ca.SX.eye(3))), (2, 2, 1)
     ),
-    **{
-        f"planar {family}": planar(family)
-        for family in ("spline", "polynomial", "legendre", "clamped_free", "hermite", "formulas", "samples")
-    },
+    **{f"planar {family}": planar(family) for family in ("clamped_free", "hermite", "formulas", "samples")},
 }
