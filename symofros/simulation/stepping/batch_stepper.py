@@ -13,14 +13,14 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.errors import CompileError
-from symofros.runtime.calls import LaneOptions
+from symofros.runtime.calls import CompiledKernel, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
 
 # Trajectories that are active at once: eight vectors of eight lanes; few enough for the first two levels of cache.
-_SLOTS = 64
+SLOTS = 64
 # Steps of each trajectory in one call of C, between looks at Ctrl-C.
 _STEPS_PER_CALL = 64
 
@@ -119,14 +119,24 @@ class BatchStepper:
         settings.apply(self.single)
         self._native, self._memory = self.single.native, self.single.memory
         self._batch = batch = self.single.ffi.new("sym_batch *")
-        batch.slots = min(_SLOTS, max(2, -(-initial.n // stride)))
+        batch.slots = min(SLOTS, max(2, -(-initial.n // stride)))
         batch.next, batch.stride, batch.n, batch.max_steps = first, stride, initial.n, settings.max_steps or 0
+        self._prepared: list[tuple[CompiledKernel, npt.NDArray[np.float64]]] = []
         self._fill_prototype()
         self._fill_functions(initial.par)
         self._fill_rows(initial, results)
         self._fill_beams(initial.par, results)
-        if not self._native.sym_batch_start(batch, self._memory.zeros(self._native.sym_batch_size(batch))):
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Memory of the slots."""
+        self._start(self._batch)
+
+    def _start(self, batch: Any) -> npt.NDArray[np.float64]:
+        memory = np.zeros(max(1, self._native.sym_batch_size(batch)))
+        if not self._native.sym_batch_start(batch, self._memory.shared(memory)):
             raise CompileError("the integrator does not know every input of a batch function")
+        return memory
 
     def _fill_prototype(self) -> None:
         """The single run whose settings every slot copies, and in which first steps are evaluated."""
@@ -142,8 +152,9 @@ class BatchStepper:
             kernel = self.single.kernels.get(name)
             if kernel is None:
                 continue
-            function = getattr(self._batch, name)
-            self._fill_shared_rows(function.pre, kernel.prepare(par))
+            function, prepared = getattr(self._batch, name), kernel.prepare(par)
+            self._prepared.append((kernel, prepared))
+            self._fill_shared_rows(function.pre, prepared)
             if name == "project":
                 continue
             # Laws are few operations on what users gave: in double precision.
@@ -177,10 +188,9 @@ class BatchStepper:
 
     def _fill_beams(self, par: Array, results: BatchResults) -> None:
         batch, memory, model = self._batch, self._memory, self.single.model
-        beams = [model.beams(values) for values in par]
-        for name in ("scale", "reach"):
-            rows = [np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams]
-            self._fill_shared_rows(getattr(batch, f"beam_{name}"), np.array(rows))
+        self._beam_rows = self._beam_numbers(par)
+        for name, rows in self._beam_rows.items():
+            self._fill_shared_rows(getattr(batch, f"beam_{name}"), rows)
         batch.n_beam_coordinates = results.beam_coordinates.shape[1]
         batch.beam_error, batch.beam_t, batch.beam_q = (
             memory.shared(array if array.size else np.zeros(1))
@@ -189,6 +199,21 @@ class BatchStepper:
         batch.beam_reference = memory.zeros(2 * results.beam_coordinates.size)
         batch.beam_weight = memory.zeros(len(results.beam_errors) * model.nv)
         batch.beam_guard = memory.own("sym_beam_guard[]", results.beam_errors.size)
+
+    def _beam_numbers(self, par: Array) -> dict[str, Array]:
+        """What beams are judged by, for each set of parameters, by its name in C."""
+        beams = [self.single.model.beams(values) for values in par]
+        return {
+            name: np.array([np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams])
+            for name in ("scale", "reach")
+        }
+
+    def set_parameters(self, rows: npt.NDArray[np.intp], par: Array) -> None:
+        """Trajectories of these numbers (m) have other parameters (m, npar) when they begin next."""
+        for kernel, prepared in self._prepared:
+            prepared[rows] = kernel.prepare(par)
+        for name, numbers in self._beam_numbers(par).items():
+            self._beam_rows[name][rows] = numbers
 
     def run(self, stop: Event) -> None:
         """Step every trajectory to its end, or until `stop` is set. The interpreter lock is released meanwhile."""
