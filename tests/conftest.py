@@ -51,7 +51,7 @@ sys.dont_write_bytecode = False
 # compilation do without, but for files that are drawn by the day, for runs with --slow or a part of it and for
 # benchmarks, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
-_OPTIMISED = {"docs", "generator", "native"}
+_OPTIMISED = {"generator", "native"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
@@ -61,7 +61,7 @@ collect_ignore = [] if _PLAYWRIGHT else ["studio/editor/browser"]
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what a run leaves out for its time")
     parser.addoption("--slow-part", metavar="I/N", help="only every N-th of the slow tests, from the I-th on")
-    parser.addoption("--draw", metavar="WORD", help="what tests of many cases and flags are drawn by; else the date")
+    parser.addoption("--draw", metavar="WORD", help="what long tests and flags are drawn by; else the date")
     parser.addoption("--update-seconds", action="store_true", help="write what a case takes to tests/seconds.txt")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
     parser.addoption("--browser", action="store_true", help="also run tests that look at pages with Chromium")
@@ -112,20 +112,25 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(50_000)
 
 
+def _folders(config: pytest.Config) -> bool:
+    """Whether a run is of folders, and not of files and tests that someone works on."""
+    return any(Path(argument).is_dir() for argument in config.args)
+
+
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
     """Workers of `-n auto`: one a core for folders; none for files and single tests, or where output is to be seen."""
-    folders = any(Path(argument).is_dir() for argument in config.args)
-    if not folders or config.getoption("capture") == "no" or config.getoption("benchmark_enable"):
+    if not _folders(config) or config.getoption("capture") == "no" or config.getoption("benchmark_enable"):
         return 0
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _draw(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the cases that are not drawn as slow; cases that are asked for by their ids stay."""
+    """Mark the cases that are not drawn as slow; cases asked for by their ids stay, and one of each test of a file."""
     if any("[" in argument for argument in config.args):
         return
     cases = [item.nodeid for item in items if "slow" not in item.keywords]
-    gone = draw.left_out(cases, draw.read(draw.FILE.read_text()), config.getoption("--draw"))
+    seconds = draw.read(draw.FILE.read_text())
+    gone = draw.left_out(cases, seconds, config.getoption("--draw"), least=0 if _folders(config) else 1)
     for item in items:
         if item.nodeid in gone:
             item.add_marker("slow")

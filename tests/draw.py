@@ -1,8 +1,9 @@
-"""What a plain run takes of tests with many cases: as many as fit into a second, another draw each day.
+"""What a plain run takes of tests that take long: on average a second of each, another draw each day.
 
-`tests/seconds.txt` has what a case of such a test takes; `python -m pytest --update-seconds` measures it anew. What is
-not drawn is slow: it runs with --slow, or as a part of that. `--draw WORD` repeats the draw of another run, and the
-flags of its compiler.
+`tests/seconds.txt` has what a case of such a test takes; `python -m pytest --update-seconds` measures it anew. A test
+of twenty cases of a quarter of a second has four of them in each run; one of three seconds runs every third day, or
+whenever its file is named. What is not drawn is slow: it runs with --slow, or as a part of that. `--draw WORD` repeats
+the draw of another run, and the flags of its compiler.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).with_name("seconds.txt")
-HEAD = "# Seconds that a case of a test takes, of tests whose cases take more than {} s: written by --update-seconds.\n"
-SHARE = 1.0  # Of a test's cases in a plain run [s].
+HEAD = "# Seconds that a case of a test takes, of tests that take more than {} s: written by --update-seconds.\n"
+SHARE = 1.0  # Of a test in a plain run, on average [s].
 # Of all files, those whose models compile with the flags that users get.
 OPTIMISED = 1 / 8
 
@@ -31,22 +32,24 @@ def read(text: str) -> dict[str, float]:
     return {test: float(seconds) for seconds, test in rows}
 
 
-def left_out(cases: Iterable[str], seconds: Mapping[str, float], draw: str) -> set[str]:
+def left_out(cases: Iterable[str], seconds: Mapping[str, float], draw: str, least: int = 0) -> set[str]:
     """The cases that a plain run does not take: ids.
 
     Args:
         cases: Ids of all cases that are not slow by themselves.
         seconds: Test -> seconds of a case; tests that are not named run whole.
         draw: Word that the others are drawn by.
+        least: Cases of each test that are taken, whatever they take.
     """
     tests: dict[str, list[str]] = defaultdict(list)
     for case in cases:
         tests[test_of(case)].append(case)
     gone: set[str] = set()
     for test, own in tests.items():
-        count = max(1, int(SHARE / seconds[test] + 0.5)) if test in seconds else len(own)
-        if count < len(own):
-            gone |= set(own) - set(random.Random(f"{draw} {test}").sample(sorted(own), count))
+        if test in seconds:
+            chance = random.Random(f"{draw} {test}")
+            count = max(least, int(SHARE / seconds[test] + chance.random()))  # On average the share, exactly.
+            gone |= set(own) - set(chance.sample(sorted(own), min(count, len(own))))
     return gone
 
 
@@ -74,6 +77,6 @@ class Measurement:
         stated = read(self._file.read_text())
         rows = {test: seconds for test, seconds in stated.items() if test not in means}
         counts = {test: len(cases) for test, cases in self._seen.items()}
-        rows |= {test: mean for test, mean in means.items() if counts[test] > 1 and counts[test] * mean > SHARE}
+        rows |= {test: mean for test, mean in means.items() if counts[test] * mean > SHARE}
         lines = [f"{seconds:.2g} {test}\n" for test, seconds in sorted(rows.items())]
         self._file.write_text(HEAD.format(SHARE) + "".join(lines))

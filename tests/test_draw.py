@@ -1,4 +1,4 @@
-"""A plain run takes other cases of large tests each day, and the same again by the word that it names."""
+"""A plain run takes other cases of long tests each day, and the same again by the word that it names."""
 
 from __future__ import annotations
 
@@ -13,10 +13,14 @@ SECONDS = {"a.py::many": 0.25, "a.py::few": 3.0}
 
 def test_as_many_cases_are_drawn_as_fit_into_a_second_and_others_on_other_days() -> None:
     gone = draw.left_out(CASES, SECONDS, "2026-11-27")
-    assert len(gone) == 16 and gone < set(CASES[:20]) and gone == draw.left_out(CASES[::-1], SECONDS, "2026-11-27")
-    assert gone != draw.left_out(CASES, SECONDS, "2026-11-28")
+    assert len(gone & set(CASES[:20])) == 16 and gone == draw.left_out(CASES[::-1], SECONDS, "2026-11-27")
     days = [draw.left_out(CASES, SECONDS, str(day)) for day in range(60)]
     assert set.intersection(*days) == set(), "a case has no day"
+    assert not any(CASES[-1] in gone for gone in days), "a short test runs every day"
+    assert 12 <= sum(CASES[20] not in gone for gone in days) <= 28, "three seconds: every third day"
+    assert CASES[20] not in draw.left_out(
+        CASES, SECONDS, str(min(k for k in range(60) if CASES[20] in days[k])), least=1
+    )
     files = sum(draw.is_optimised(f"{k}.py", "2026-11-27") for k in range(800))
     assert 60 < files < 140 and draw.is_optimised("a.py", "x") == draw.is_optimised("a.py", "x")
 

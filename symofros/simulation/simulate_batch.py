@@ -114,26 +114,16 @@ def simulate_batch(
         run_batch_steppers(steppers)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
-    q, v, u_samples = (_shaped(array, shape) for array in (results.q_samples, results.v_samples, results.u_samples))
+    kept = replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())
     return Trajectories(
-        model,
-        settings.grid,
-        q,
-        v,
-        u_samples,
-        shared,
-        _shaped(results.t, shape),
-        _shaped(results.q, shape),
-        _shaped(results.v, shape),
-        results.status.reshape(shape),
-        results.steps.reshape(shape),
-        results.rejected.reshape(shape),
-        _shaped(results.beam_errors, shape),
-        _shaped(results.beam_times, shape),
-        _shaped(results.beam_coordinates, shape),
-        settings.method.name,
-        *seconds,
-        BatchExamination(model, settings, replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())),
+        **results.shaped(shape),
+        model=model,
+        t=settings.grid,
+        par=shared,
+        method=settings.method.name,
+        seconds=seconds[0],
+        processor_seconds=seconds[1],
+        examination=BatchExamination(model, settings, kept),
     )
 
 
@@ -177,10 +167,6 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
                 "give each array the same leading dimensions, or none",
             )
         ) from None
-
-
-def _shaped(rows: Array, shape: Shape) -> Array:
-    return rows.reshape(shape + rows.shape[1:])
 
 
 def _contradiction(

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from symofros.base.names import c_string
+from symofros.generator.codegen.model import comment as comment
+from symofros.generator.codegen.model import strings as strings
 
 _WIDTH = 8
 
@@ -26,14 +27,3 @@ def _double(value: float) -> str:
 def integers(values: Iterable[int]) -> str:
     """Initialisers of an array of integers."""
     return ", ".join(map(str, values)) or "0"
-
-
-def strings(values: Iterable[str]) -> str:
-    """Initialisers of an array of strings."""
-    return ", ".join(map(c_string, values)) or "NULL"
-
-
-def comment(text: str) -> str:
-    """Text that can't end a C comment, in ASCII, without trigraphs."""
-    plain = text.encode("ascii", "replace").decode()
-    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_").replace("\n", " ")

@@ -108,10 +108,10 @@ def model_text(
         npar=len(record.par_names),
         nc=record.nc,
         npre=len(program.init),
-        q_names=_strings(record.q_names),
-        v_names=_strings(record.v_names),
-        u_names=_strings(record.u_names),
-        par_names=_strings(record.par_names),
+        q_names=strings(record.q_names),
+        v_names=strings(record.v_names),
+        u_names=strings(record.u_names),
+        par_names=strings(record.par_names),
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
@@ -134,9 +134,8 @@ def operations_text(program: Program) -> str:
     counts = count_program(program)
     titles = [" of ".join(filter(None, key)) for key in counts]
     width = max(map(len, titles), default=0) + 2
-    return comment(
-        "\n".join(f" *   {title:<{width}}{count}" for title, count in zip(titles, counts.values(), strict=True))
-    )
+    rows = zip(titles, counts.values(), strict=True)
+    return "\n".join(comment(f" *   {title:<{width}}{count}") for title, count in rows)
 
 
 def _init_function(program: Program, name: str) -> str:
@@ -336,8 +335,8 @@ def _columns(shape: tuple[int, ...]) -> int:
     return shape[1] if len(shape) > 1 else 1
 
 
-def _strings(names: Iterable[str]) -> str:
-    # C has no empty arrays; sizes say how many entries count.
+def strings(names: Iterable[str]) -> str:
+    """Initialisers of an array of strings: C has no empty arrays, sizes say how many entries count."""
     return ", ".join(map(c_string, names)) or "NULL"
 
 
@@ -348,4 +347,4 @@ def _numbers(values: Iterable[float]) -> str:
 def comment(text: str) -> str:
     """Text that can't end a C comment, in ASCII, without trigraphs."""
     plain = text.encode("ascii", "replace").decode()
-    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_")
+    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_").replace("\n", " ")

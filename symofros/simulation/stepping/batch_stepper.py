@@ -46,48 +46,52 @@ class InitialStates:
     t: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BatchResults:
-    """Final states and samples of trajectories, written by C.
+    """Samples and last states of trajectories, written by C.
 
     Attributes:
-        status: Final Status (n); below zero beforehand keeps a trajectory from starting.
-        t: Final times (n) [s].
-        q: Final configurations (n, nq).
-        v: Final speeds (n, nv).
-        steps: Accepted steps (n).
-        rejected: Rejected steps (n).
-        beam_errors: Largest estimated error of each beam (n, number of beams).
-        beam_times: When that was (n, number of beams) [s].
-        beam_coordinates: Elastic coordinates of all beams, each then (n, number of elastic coordinates).
-        q_samples: Configurations at the times of the grid (n, m, nq); NaN where a trajectory ended before.
-        v_samples: Speeds (n, m, nv), as q_samples.
-        u_samples: Inputs (n, m, nu), as q_samples.
+        q: Configurations at the times of the samples (..., m, nq); NaN where a trajectory ended before.
+        v: Speeds (..., m, nv), as q.
+        u: Inputs (..., m, nu), as q.
+        t_last: End time of each trajectory (...) [s].
+        q_last: Last good configuration of each (..., nq).
+        v_last: Last good speeds of each (..., nv).
+        status: Last status code of each (...); one below zero beforehand keeps it from starting.
+        steps: Steps taken (...).
+        rejected: Steps tried in vain (...).
+        beam_errors: Largest estimated error of each beam's theory in each trajectory (..., number of beams).
+        beam_times: When that was (..., number of beams) [s].
+        beam_coordinates: Elastic coordinates of all beams, each then (..., number of elastic coordinates).
     """
 
-    status: npt.NDArray[np.int32]
-    t: Array
     q: Array
     v: Array
+    u: Array
+    t_last: Array
+    q_last: Array
+    v_last: Array
+    status: npt.NDArray[np.int32]
     steps: npt.NDArray[np.int64]
     rejected: npt.NDArray[np.int64]
     beam_errors: Array
     beam_times: Array
     beam_coordinates: Array
-    q_samples: Array
-    v_samples: Array
-    u_samples: Array
 
     @classmethod
     def empty(cls, model: Model, n: int, samples: int) -> BatchResults:
         """Arrays for n trajectories of that many samples, none of which is reached yet."""
         q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
-        steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        final_q, final_v = np.zeros((n, model.nq)), np.zeros((n, model.nv))
         beams = model.beams()
-        errors, times, elastic = (np.zeros((n, k)) for k in (len(beams), len(beams), sum(beam.size for beam in beams)))
+        sizes = (model.nq, model.nv, len(beams), len(beams), sum(beam.size for beam in beams))
+        q_last, v_last, errors, times, elastic = (np.zeros((n, size)) for size in sizes)
+        steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         status = np.zeros(n, dtype=np.int32)
-        return cls(status, np.zeros(n), final_q, final_v, steps, rejected, errors, times, elastic, q, v, u)
+        return cls(q, v, u, np.zeros(n), q_last, v_last, status, steps, rejected, errors, times, elastic)
+
+    def shaped(self, shape: tuple[int, ...]) -> dict[str, npt.NDArray[Any]]:
+        """The arrays by name, whose rows (n) are those of a batch of that shape."""
+        return {name: array.reshape(shape + array.shape[1:]) for name, array in vars(self).items()}
 
 
 class BatchStepper:
@@ -170,14 +174,14 @@ class BatchStepper:
         batch.signal_stride = memory.own("int64_t[]", list(initial.inputs.strides))
         arrays: dict[str, npt.NDArray[Any]] = {
             "final_status": results.status,
-            "final_t": results.t,
-            "final_q": results.q,
-            "final_v": results.v,
+            "final_t": results.t_last,
+            "final_q": results.q_last,
+            "final_v": results.v_last,
             "steps": results.steps,
             "rejected": results.rejected,
-            "record_q": results.q_samples,
-            "record_v": results.v_samples,
-            "record_u": results.u_samples,
+            "record_q": results.q,
+            "record_v": results.v,
+            "record_u": results.u,
         }
         for name, array in arrays.items():
             setattr(batch, name, memory.shared(array))

@@ -414,6 +414,11 @@ class Stepper:
         return self.memory.view(self.system.u, self.model.nu).copy()
 
     @property
+    def t(self) -> float:
+        """The present time [s]."""
+        return float(self.run.t)
+
+    @property
     def state(self) -> tuple[float, Array, Array]:
         """The present t, q, v."""
         q, v = self.memory.view(self.run.q, self.model.nq), self.memory.view(self.run.v, self.model.nv)
