@@ -79,7 +79,7 @@ class Stepper:
         **changes: Any,
     ) -> None:
         chosen = (options or SimulationOptions()).changed(changes)
-        self._given = {"u": u, "events": events, "options": chosen}
+        self._given: dict[str, Any] = {"u": u, "events": events, "options": chosen}
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
         values = np.array(model.parameter_values)
@@ -290,7 +290,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
         ShapeError: They do not fit, or are not finite.
     """
     if isinstance(u, Mapping) and len(names) < model.nu:
-        u = [u.get(name, 0.0) for name in names]
+        u = np.array([u.get(name, 0.0) for name in names])
     array, shape = real_array(model.by_name("u", u)), (len(names),)
     fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
     if array is not None and fits and np.isfinite(array).all():
