@@ -53,7 +53,7 @@ class _Part(BatchStepper):
         bounds = [*range(self._first, self._end, SLOTS), self._end]
         batch.t0, batch.max_steps = self._memory.shared(shared.t0), 0
         self.groups = groups = ffi.new("sym_batch[]", len(bounds) - 1)
-        self.memory = [self._memory.raw(groups, "sym_batch", len(groups))]
+        self.memory: list[npt.NDArray[Any]] = [self._memory.raw(groups, "sym_batch", len(groups))]
         for i, (first, end) in enumerate(zip(bounds, bounds[1:], strict=False)):
             groups[i] = batch[0]
             group = groups[i]
@@ -113,11 +113,12 @@ class HandBatch:
         """Motions of these numbers begin anew at the next step, their inputs those of the description."""
         self.t0[chosen], self.q0[chosen], self.v0[chosen] = t, q, v
         results = self.results
-        results.t[chosen], results.q[chosen], results.v[chosen] = t, q, v
+        results.t_last[chosen], results.q_last[chosen], results.v_last[chosen] = t, q, v
         results.status[chosen], results.steps[chosen], self.begins[chosen] = Status.RUNNING, 0, 1
         self.constant[chosen] = self.default
-        for part in self._parts if par is not None else ():
-            part.set_parameters(chosen, par)
+        if par is not None:
+            for part in self._parts:
+                part.set_parameters(chosen, par)
 
     def inputs_at_start(self, chosen: npt.NDArray[np.intp], u: Array | None) -> Array:
         """All inputs (m, nu) of motions of these numbers at their first states, given those that are held (n, ...)."""
@@ -142,7 +143,7 @@ class HandBatch:
         """All that C has written."""
         results = self.results
         arrays = tuple(array.copy() for array in self._written)
-        return BatchState(owner, results.t.copy(), results.q.copy(), results.v.copy(), arrays)
+        return BatchState(owner, results.t_last.copy(), results.q_last.copy(), results.v_last.copy(), arrays)
 
     def restore(self, state: BatchState) -> None:
         """Go on from a state that `save` gave, bit by bit as from there."""
