@@ -57,12 +57,13 @@ SYM_EXPORT int32_t sym_hand_step(sym_hand *hand, const double *u, int64_t steps)
     return sym_hand_go_on(hand);
 }
 
-/* Active trajectories of a group hold inputs, others if they are given. Evaluation points are shared with other groups. */
+/* Active trajectories of a group take the slots, which other groups had before, and hold inputs, others if they are given. */
 static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const double *u) {
     const int32_t nu = b->prototype->system->nu;
     int32_t i;
     for (i = 0; i < b->n_active; ++i) {
         const int64_t k = b->trajectory_of_slot[i];
+        sym_batch_assign(b, i, k);
         if (u != NULL) sym_hold(b->runs + i, hand->held, hand->n_held, u + k * hand->n_held, hand->u + k * nu);
         memcpy(b->systems[i].u, hand->u + k * nu, (size_t)nu * sizeof *u);
     }

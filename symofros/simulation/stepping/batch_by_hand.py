@@ -54,13 +54,14 @@ class _Part(BatchStepper):
         batch.t0, batch.max_steps = self._memory.shared(all_parts.t0), 0
         self.groups = groups = ffi.new("sym_batch[]", len(bounds) - 1)
         self.memory: list[npt.NDArray[Any]] = [self._memory.raw(groups, "sym_batch", len(groups))]
-        shared: Any = None
-        for i, (first, end) in enumerate(zip(bounds, bounds[1:], strict=False)):
+        # As many in each: they lie alike in the memory that groups share.
+        slots, shared = max(2, min(SLOTS, self._end - self._first)), None
+        for i, end in enumerate(bounds[1:]):
             groups[i] = batch[0]
             group = groups[i]
-            group.next, group.stride, group.n, group.slots = end, 1, end, max(2, end - first)
+            group.next, group.stride, group.n, group.slots = end, 1, end, slots
             own, size = self._sizes(ffi.addressof(group))
-            shared = self._memory.zeros(size) if shared is None else shared  # Of the first, which has most slots.
+            shared = self._memory.zeros(size) if shared is None else shared
             self.memory.append(np.zeros(own))
             self._start(ffi.addressof(group), self.memory[-1], shared)
         self.hand = hand = ffi.new("sym_hand_batch *")
