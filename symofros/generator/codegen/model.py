@@ -9,7 +9,8 @@ from string import Template
 from textwrap import wrap
 from typing import NamedTuple
 
-from symofros.base.names import c_string, identifier
+from symofros.base.c_text import c_string, comment, strings
+from symofros.base.names import identifier
 from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
@@ -335,16 +336,5 @@ def _columns(shape: tuple[int, ...]) -> int:
     return shape[1] if len(shape) > 1 else 1
 
 
-def strings(names: Iterable[str]) -> str:
-    """Initialisers of an array of strings: C has no empty arrays, sizes say how many entries count."""
-    return ", ".join(map(c_string, names)) or "NULL"
-
-
 def _numbers(values: Iterable[float]) -> str:
     return ", ".join(map(repr, values)) or "0.0"
-
-
-def comment(text: str) -> str:
-    """Text that can't end a C comment, in ASCII, without trigraphs."""
-    plain = text.encode("ascii", "replace").decode()
-    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_").replace("\n", " ")

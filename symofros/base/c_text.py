@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from symofros.generator.codegen.model import comment as comment
-from symofros.generator.codegen.model import strings as strings
-
 _WIDTH = 8
 
 
@@ -27,3 +24,22 @@ def _double(value: float) -> str:
 def integers(values: Iterable[int]) -> str:
     """Initialisers of an array of integers."""
     return ", ".join(map(str, values)) or "0"
+
+
+def c_string(text: str) -> str:
+    """A C string literal; bytes outside printable ASCII become octal escapes."""
+    escaped = "".join(
+        chr(byte) if 32 <= byte < 127 and chr(byte) not in '\\"?' else f"\\{byte:03o}" for byte in text.encode()
+    )
+    return f'"{escaped}"'
+
+
+def strings(names: Iterable[str]) -> str:
+    """Initialisers of an array of strings: C has no empty arrays, sizes say how many entries count."""
+    return ", ".join(map(c_string, names)) or "NULL"
+
+
+def comment(text: str) -> str:
+    """Text that can't end a C comment, in ASCII, without trigraphs."""
+    plain = text.encode("ascii", "replace").decode()
+    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_").replace("\n", " ")
