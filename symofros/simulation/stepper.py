@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import plan_inputs
@@ -288,8 +288,12 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
 
     Raises:
         ShapeError: They do not fit, or are not finite.
+        UnknownNameError: A name is not among them.
     """
     if isinstance(u, Mapping) and len(names) < model.nu:
+        for name in u.keys() - set(names):
+            what, rule = f"step: no input '{name}' by hand", f"inputs by hand are {', '.join(names) or 'none'}"
+            raise UnknownNameError(Problem(what, str(name), rule, "laws and numbers of the stepper stay as they are"))
         u = np.array([u.get(name, 0.0) for name in names])
     array, shape = real_array(model.by_name("u", u)), (len(names),)
     fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))

@@ -214,7 +214,7 @@ class Steppers:
         """Why motion i ended, or what is worth knowing of its present state; its steps are not examined."""
         results = self._hand.results
         status = np.where(results.status == Status.RUNNING, Status.FINISHED, results.status)
-        arrays = {**results.shaped((self.n,)), "status": status}
+        arrays: dict[str, Any] = {**results.shaped((self.n,)), "status": status}
         method = self._settings.method.name
         ends = Trajectories(
             **arrays,
