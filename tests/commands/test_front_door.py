@@ -208,7 +208,7 @@ def test_the_harness_starts_from_any_folder(
     assert not (tmp_path / "reports").exists()
 
 
-@pytest.mark.parametrize("arguments", [["validation", "accuracy", "--help"], ["validation", "timing"]])
+@pytest.mark.parametrize("arguments", [["validation", "accuracy", "--help"], ["validation", "accuracy"]])
 def test_without_its_packages_the_harness_says_what_to_install(
     arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
