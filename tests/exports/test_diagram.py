@@ -13,8 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.settings import RunSettings
-from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Spoken, arm
-from tests.diagrams.run.test_runs import First, Given
+from tests.diagrams.parts import After, Ball, Counter, First, Given, Lag, Spoken, arm
 from tests.exports.cases import build, run
 from tests.models import sampled
 from tests.pulses import SHAPES, cart
@@ -36,7 +35,7 @@ def crank() -> sf.Diagram:
     diagram.add_model("plant", system, start=stated)
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
     diagram.add(After(name="after", time=0.03, period=0.01))
-    diagram.add(Hold(name="felt", period=0.01), x="plant.lam")
+    diagram.add(blocks.Hold(name="felt", period=0.01), u="plant.lam")
     return diagram
 
 
@@ -57,7 +56,7 @@ def table() -> sf.Diagram:
     diagram.add(Given(name="given"))
     diagram.add(First(name="first"), x="given")
     diagram.add(Lag(name="lag"), x="first")
-    diagram.add(Hold(name="held", period=0.25), x="given")
+    diagram.add(blocks.Hold(name="held", period=0.25), u="given")
     return diagram
 
 

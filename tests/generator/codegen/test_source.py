@@ -15,8 +15,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.c_text import c_string
 from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS, FRAME_FUNCTIONS, MODEL_FUNCTIONS
-from symofros.base.names import c_string, identifier, local_name
+from symofros.base.names import identifier, local_name
 from symofros.compiler import Compilation
 from symofros.description.joints.joint_kinds import JOINT_KINDS
 from symofros.native import native_text

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import gc
 import sys
+import sysconfig
 import time
 import tracemalloc
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -165,3 +167,19 @@ def test_its_arguments_are_checked(call_type: Any, m: sf.Model) -> None:
 def test_no_function_has_more_inputs_than_it_holds() -> None:
     most = max(len(function.inputs) for function in FUNCTIONS.values())
     assert most <= native_number("interop/symofros_call.c", "SYM_MOST_INPUTS")
+
+
+def test_without_the_headers_of_python_calls_are_as_they_were(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
+    assert extension.module.__wrapped__() is None
+
+
+def test_an_extension_that_does_not_compile_is_told_and_done_without(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "Python.h").write_text("#error other headers\n")
+    monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
+    with caplog.at_level("INFO", "symofros"):
+        assert extension.module.__wrapped__() is None
+    assert "plain calls go through NumPy" in caplog.text and "other headers" in caplog.text

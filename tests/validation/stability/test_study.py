@@ -41,4 +41,4 @@ def test_ctrl_c_within_a_run_ends_the_atlas(monkeypatch: pytest.MonkeyPatch) -> 
 
     whole = sf.simulate
     monkeypatch.setattr(sf, "simulate", stopped)
-    assert measure(Run(TOPIC), ["deflection", "redundant"], quick=True)["unfinished"] == ("deflection", "redundant")
+    assert measure(Run(TOPIC), ["energy", "redundant"], quick=True)["unfinished"] == ("energy", "redundant")
