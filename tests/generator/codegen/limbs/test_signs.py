@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 import pytest
 
+from symofros.base import routes
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.ops import ADD
-from symofros.generator.codegen.limbs import plan as plans
 from symofros.generator.codegen.limbs.plan import LimbPlan
 from symofros.generator.codegen.limbs.signs import products
 from tests.generator.codegen.limbs.graphs import cubed, of_limbs, plan
@@ -19,7 +19,7 @@ Joint = Callable[[int], Edge]
 
 @pytest.fixture(autouse=True)
 def always(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plans, "LEAST_SHARE", 0.0)
+    monkeypatch.setattr(routes, "LIMB_SHARE", 0.0)
 
 
 def turned(made: LimbPlan) -> int:
