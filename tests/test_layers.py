@@ -89,11 +89,8 @@ ALLOWED = table("""
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
-    # Passes left out in turn, for studies: their context managers reach into every stage.
-    generator.ablation: base expr mechanics.spatial mechanics.dynamics generator.passes generator.codegen
-        runtime
     # What tools that look inside may use; nothing in the package imports it.
-    tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
+    tools: base description compiler expr generator.passes runtime simulation diagrams
         studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports interop studio.advice studio.viewer
@@ -106,7 +103,9 @@ HARNESS = table("""
     program:
     contract:    mechanics
     inputs:      references contract mechanics
-    adapters:    contract mechanics
+    # Engines in their own conventions, and the truth that they are held to: what a check asks them is turned into ours.
+    engines:     contract reporting
+    adapters:    engines contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics
     checking:    references procedures comparison adapters inputs contract mechanics
@@ -116,23 +115,21 @@ HARNESS = table("""
 # ... and what builds on it: any of the above, and these others.
 STUDIES = table("""
     oracle:
-    engines:
-    truth_data:  engines
+    truth_data:
     cross_check:
-    ci:          cross_check engines
+    ci:          cross_check
     campaigns:
     diagrams:
     accuracy:
     timing:      oracle
-    passes:      timing
     environments: timing
     cuda:        timing
-    stability:   accuracy
+    stability:
     studies:     oracle timing
     pareto:      stability timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check cuda engines environments campaigns diagrams accuracy timing passes stability
+    dashboard:   adversary cross_check cuda environments campaigns diagrams accuracy timing stability
                  studies pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.

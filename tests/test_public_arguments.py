@@ -39,6 +39,10 @@ def model() -> sf.Model:
     return sf.compile(system())
 
 
+def stepped_once(u: Any = None, steps: Any = 1) -> bool:
+    return sf.Stepper(model()).step(u, steps)
+
+
 def diagram() -> sf.Diagram:
     d = sf.Diagram("d")
     d.add(blocks.Constant(name="one", value=1.0))
@@ -48,6 +52,9 @@ def diagram() -> sf.Diagram:
 
 # Methods (functions are asked in tests/test_public_nonsense.py): name -> a function, and arguments that it takes.
 CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
+    "Stepper.reset": lambda: (sf.Stepper(model()).reset, {"q": Q}),
+    "Stepper.step": lambda: (stepped_once, {"u": U}),
+    "Stepper.restore": lambda: (sf.Stepper(model()).restore, {"state": None}),
     "Simulation.run": lambda: (sf.Simulation(diagram()).run, {"t_end": 0.01}),
     "Simulation.interpret": lambda: (sf.Simulation(diagram()).interpret, {"t_end": 1.0, "dt": 0.5, "compiled": False}),
     "Diagram.add_model": lambda: (diagram().add_model, {"name": "m", "system": system()}),

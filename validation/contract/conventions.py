@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..mechanics.assembly import Assembly, Mover
+from ..mechanics.assembly import Mover
 from ..mechanics.geometry import (
     Array,
     Placement,
@@ -35,7 +35,9 @@ class Difference(NamedTuple):
     engine_convention: str
 
 
-Encoding = Literal["same", "cos_sin", "wxyz", "free_in_world", "free_in_parent"]
+# A free joint that stands in the world, whatever ours stands in; one that is three slides in P, then a ball.
+IN_WORLD = "free wxyz, linear before and angular after"
+IN_PARENT = "three lengths + quaternion wxyz, body speeds"
 
 
 @dataclass(frozen=True)
@@ -46,14 +48,19 @@ class Slot:
         mover: Our joint.
         q: Start in the engine's coordinates.
         v: Start in the engine's speeds.
-        encoding: "same"; "cos_sin" (of an angle); "wxyz" (quaternion); "free_in_world" (position, wxyz in the world)
-            or "free_in_parent" (the same in P). The last two have linear speeds along the axes they are stated in.
+        chart: The engine's chart of it, by its name in `engines.truth.charts`, or the charts of the joints that it is a
+            series of; "" for ours.
     """
 
     mover: Mover
     q: int
     v: int
-    encoding: Encoding = "same"
+    chart: str = ""
+
+    @property
+    def turns(self) -> bool:
+        """Whether its linear speeds are along the axes that its place is stated in; they turn against ours."""
+        return self.chart in (IN_WORLD, IN_PARENT)
 
 
 def _in_world(mover: Mover, q: Array) -> Array:
@@ -74,13 +81,15 @@ def xyzw_to_wxyz(quaternion: Array) -> Array:
     return np.roll(quaternion, 1, axis=-1)
 
 
-_ENCODE: Mapping[Encoding, Callable[[Mover, Array], Array]] = {
-    "same": lambda _, q: q,
-    "cos_sin": lambda _, q: np.concatenate([np.cos(q), np.sin(q)], axis=1),
-    "wxyz": lambda _, q: xyzw_to_wxyz(q),
-    "free_in_world": _in_world,
-    "free_in_parent": _in_parent,
+# Charts whose coordinates are not ours.
+_ENCODE: Mapping[str, Callable[[Mover, Array], Array]] = {
+    "cos sin": lambda _, q: np.concatenate([np.cos(q), np.sin(q)], axis=1),
+    "quaternion wxyz, body speeds": lambda _, q: xyzw_to_wxyz(q),
+    IN_WORLD: _in_world,
+    IN_PARENT: _in_parent,
 }
+# Charts whose coordinates and speeds are.
+_OURS = frozenset({"", "angle", "length", "screw angle", "quaternion xyzw, body speeds", "free xyzw, body speeds"})
 
 
 @dataclass(frozen=True)
@@ -97,20 +106,23 @@ class Chart:
     nq: int
     nv: int
 
-    @staticmethod
-    def in_series(assembly: Assembly) -> Chart:
-        """For an engine that shares our conventions, and keeps one joint after the other."""
-        slots, q, v = [], 0, 0
-        for mover in assembly.movers:
-            slots.append(Slot(mover, q, v))
-            q, v = q + mover.part.coordinates, v + mover.part.speeds
-        return Chart(tuple(slots), q, v)
+    def __post_init__(self) -> None:
+        """No chart may be taken for ours that is another."""
+        for slot in self.slots:
+            assert slot.chart in _OURS or slot.chart in _ENCODE, slot.chart
+
+    @property
+    def turns(self) -> bool:
+        """Whether T depends on q."""
+        return any(slot.turns for slot in self.slots)
 
     def coordinates(self, q: Array) -> Array:
         """Coordinates of the engine from ours."""
         q_e = np.zeros((len(q), self.nq))
         for slot in self.slots:
-            part = _ENCODE[slot.encoding](slot.mover, q[:, slot.mover.q])
+            part = q[:, slot.mover.q]
+            if slot.chart in _ENCODE:
+                part = _ENCODE[slot.chart](slot.mover, part)
             q_e[:, slot.q : slot.q + part.shape[1]] = part
         return q_e
 
@@ -121,7 +133,7 @@ class Chart:
             columns = slot.mover.v
             size = columns.stop - columns.start
             T[:, slot.v : slot.v + size, columns] = np.eye(size)
-            if slot.encoding.startswith("free"):
+            if slot.turns:
                 T[:, slot.v : slot.v + 3, columns.start : columns.start + 3] = self._free_rotation(slot, q)
         return T
 
@@ -129,7 +141,7 @@ class Chart:
         """T'(q, v) (N, nv, nv): only free joints turn, R' = R [w]x."""
         rate = np.zeros((len(q), self.nv, self.nv))
         for slot in self.slots:
-            if slot.encoding.startswith("free"):
+            if slot.turns:
                 start = slot.mover.v.start
                 turning = self._free_rotation(slot, q) @ skew(v[:, start + 3 : start + 6])
                 rate[:, slot.v : slot.v + 3, start : start + 3] = turning
@@ -138,7 +150,7 @@ class Chart:
     @staticmethod
     def _free_rotation(slot: Slot, q: Array) -> Array:
         R_PB = quaternion_matrix(q[:, slot.mover.q][:, 3:])
-        return slot.mover.X_AP.R @ R_PB if slot.encoding == "free_in_world" else R_PB
+        return slot.mover.X_AP.R @ R_PB if slot.chart == IN_WORLD else R_PB
 
     def mass_matrix(self, q: Array, M_e: Array) -> Array:
         """Mass matrix M from the engine's."""

@@ -21,13 +21,16 @@ Format = Literal["", "urdf", "mjcf"]
 
 @dataclass(frozen=True)
 class Unsupported:
-    """An engine can't represent a system, or can't compute a quantity of it. Returned, so that others go on.
+    """An engine can't do what it is asked, and says so. Returned, never raised, so that others go on.
 
     Attributes:
-        reason: Names the thing that is in the way, for people.
+        reason: Names the thing that is in the way, for people: the engine's words, or ours where it offers nothing of
+            the kind.
+        offered: Whether the engine offers such a thing at all: False for a function or a kind that it doesn't have.
     """
 
     reason: str
+    offered: bool = True
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,9 @@ FUNCTIONS: dict[str, Function] = {
     "coriolis_forces": Function("C v = h - g (nv), C the Coriolis matrix", lambda t, s: t.h(s.q, s.v) - t.g(s.q)),
     "coriolis_symmetry": Function("C + C^T = dM/dt (nv, nv)", derived.mass_matrix_rate),
     "inverse_dynamics": Function("M a + h (nv)", lambda t, s: t.ID(s.q, s.v, s.a)),
+    "joint_wrenches": Function(
+        "what holds each link with all it carries, at its origin along its axes (L, 6)", derived.joint_wrenches
+    ),
     "forward_dynamics": Function("M^-1 (tau - h) (nv)", lambda t, s: t.FD(s.q, s.v, s.tau)),
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
     "potential_energy": Function("V = -sum m g^T p", lambda t, s: t.V(s.q)),

@@ -22,6 +22,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contract.interface import Unsupported as Unsupported
 from ..contract.raised import Raised, attempted
 
 Array = NDArray[np.float64]
@@ -44,19 +45,6 @@ def vector(values: Array) -> Vector:
 GROUP = "symofros.engines"
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
-
-@dataclass(frozen=True)
-class Unsupported:
-    """An engine can't do what it is asked, and says so. Returned, never raised.
-
-    Attributes:
-        reason: The engine's words, or ours where it offers nothing of the kind.
-        offered: Whether the engine offers such a thing at all: False for a function or a kind that it doesn't have.
-    """
-
-    reason: str
-    offered: bool = True
 
 
 class Steps(NamedTuple):

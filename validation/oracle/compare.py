@@ -13,12 +13,11 @@ import sympy
 import symofros as sf
 from symofros.tools import evaluate_precisely
 
-from . import kane, lagrange
+from . import kane
 from .models import MODELS
 from .scope import Derived
 
 Derivation = Callable[[sf.System], Derived]
-DERIVATIONS: Mapping[str, Derivation] = {"lagrange": lagrange.derive, "kane": kane.derive}
 
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy")
 # Both sides compute with so many digits; agreement is capped here.
@@ -27,11 +26,11 @@ WORKING = 50
 
 @dataclass(frozen=True)
 class Agreement:
-    """One model by one derivation.
+    """One model.
 
     Attributes:
         model: Name of the model.
-        derivation: "lagrange" or "kane".
+        derivation: How SymPy derives it: "kane".
         digits: Digits of agreement by function, the fewest over the points.
         required: Digits that each must have.
         ok: Whether they have.
@@ -44,11 +43,11 @@ class Agreement:
     ok: bool
 
 
-def check(name: str, derivation: str, points: int = 2, seed: int = 0) -> Agreement:
-    """Compare the generator with one derivation of one of the models."""
+def check(name: str, points: int = 2, seed: int = 0) -> Agreement:
+    """Compare the generator with the derivation of one of the models."""
     model = MODELS[name]
-    digits = agreement(model.system, DERIVATIONS[derivation], points, seed)
-    return Agreement(name, derivation, digits, model.digits, min(digits.values()) >= model.digits)
+    digits = agreement(model.system, kane.derive, points, seed)
+    return Agreement(name, "kane", digits, model.digits, min(digits.values()) >= model.digits)
 
 
 def agreement(system: sf.System, derive: Derivation, points: int, seed: int) -> dict[str, float]:

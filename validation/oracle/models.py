@@ -25,12 +25,10 @@ class Model:
 
     Attributes:
         system: The description.
-        derivations: Methods of the oracle by which it is derived.
         digits: Digits that generator and oracle must agree to.
     """
 
     system: sf.System
-    derivations: tuple[str, ...] = ("lagrange",)
     digits: float = EXACT
 
 
@@ -43,8 +41,6 @@ _SOLID = _s.Inertia("m", ("a", 0.125, "-a/2"), ("J", "2*J", "1.5*J", "J/8", 0, "
 _ROUND = _s.Inertia("m", (0, "a", 0), ("J", "J", "J"))
 _FLAT = _s.Inertia("m", ("a", 0, 0), ("J", 0, "J"))
 _AXIS = ("n1", "n2", "n3")
-_BOTH = ("lagrange", "kane")
-_KANE = ("kane",)
 
 
 def _joint(i: int, **stated: Any) -> sf.Joint:
@@ -137,17 +133,17 @@ _EULER = {
 _SPUN = _s.Rotation.matrix([["cos(2*s)", "-sin(2*s)", 0], ["sin(2*s)", "cos(2*s)", 0], [0, 0, 1]])
 
 MODELS: dict[str, Model] = {
-    "double pendulum": Model(REFERENCE["double_pendulum"], _BOTH),
-    "cart-pole": Model(REFERENCE["cart_pole"], _BOTH),
+    "double pendulum": Model(REFERENCE["double_pendulum"]),
+    "cart-pole": Model(REFERENCE["cart_pole"]),
     "axes by parameters": Model(
-        _chain(({"axis": _AXIS}, _SOLID), ({"kind": "prismatic", "axis": ("a", 0, "k")}, _ROUND)), _KANE
+        _chain(({"axis": _AXIS}, _SOLID), ({"kind": "prismatic", "axis": ("a", 0, "k")}, _ROUND))
     ),
-    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), _KANE, ROUNDED),
-    "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND)), _BOTH),
+    "constant axes": Model(_chain(({"axis": (1, 2, 2)}, _SOLID), ({"axis": (2, -1, 2)}, _ROUND)), ROUNDED),
+    "screw": Model(_chain(({"kind": "screw", "pitch": "a", "axis": (0, -1, 0)}, _SOLID), ({}, _ROUND))),
     "cylindrical": Model(_chain(({"kind": "cylindrical", "axis": (1, 0, 0)}, _ROUND), ({}, _FLAT))),
-    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _SOLID)), _KANE),
-    "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT)), _BOTH),
-    "general, by angles": Model(_chain((_EULER, _FLAT)), _BOTH),
+    "universal": Model(_chain(({"kind": "universal", "axis": (1, 0, 0), "axis2": ("n1", 0, "n3")}, _SOLID))),
+    "planar": Model(_chain(({"kind": "planar"}, _SOLID), ({"axis": (0, 1, 0)}, _FLAT))),
+    "general, by angles": Model(_chain((_EULER, _FLAT))),
     "general, by matrix": Model(
         _chain(
             (
@@ -162,8 +158,8 @@ MODELS: dict[str, Model] = {
             ({"axis": (0, 1, 0)}, _ROUND),
         )
     ),
-    "branches": Model(_branched(), _KANE),
-    "massless between": Model(_chain(({}, None), ({"axis": (0, 1, 0)}, None), ({"kind": "prismatic"}, _ROUND)), _BOTH),
+    "branches": Model(_branched()),
+    "massless between": Model(_chain(({}, None), ({"axis": (0, 1, 0)}, None), ({"kind": "prismatic"}, _ROUND))),
     "rotors": Model(
         _chain(
             ({}, _ROUND),
@@ -177,7 +173,6 @@ MODELS: dict[str, Model] = {
                 _ROUND,
             ),
         ),
-        _BOTH,
     ),
     "prescribed base": Model(
         _chain(
@@ -194,22 +189,18 @@ MODELS: dict[str, Model] = {
             ),
             ({"axis": (1, 0, 0), "rotors": (_s.Rotor("J/64", 8.0, (0, 0, 1)),)}, _SOLID),
         ),
-        _BOTH,
     ),
-    "joint forces": Model(_forces(), _BOTH),
-    "loads": Model(_loads(), _BOTH),
-    "connections": Model(
-        _connected(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT)), "down", "across", "short"), _BOTH
-    ),
+    "joint forces": Model(_forces()),
+    "loads": Model(_loads()),
+    "connections": Model(_connected(_chain(({}, _ROUND), ({"axis": (0, 1, 0)}, _FLAT)), "down", "across", "short")),
     "ball": Model(
         _chain(
             ({"kind": "ball", "elements": (_s.Damper("k", "a", 1),), "effort": ("u1", "m*q0.wy", "q0.qx")}, _SOLID),
             inputs=[sf.Input("u1")],
             potentials=[_s.Potential("v", "k*q0.qx*q0.qw + m*q0.qz^2")],
         ),
-        _KANE,
     ),
-    "ball on an arm": Model(_chain(({"axis": (0, 1, 0)}, _ROUND), ({"kind": "ball"}, _ROUND)), _KANE),
+    "ball on an arm": Model(_chain(({"axis": (0, 1, 0)}, _ROUND), ({"kind": "ball"}, _ROUND))),
     "free base with an arm": Model(
         _connected(
             _chain(
@@ -220,6 +211,5 @@ MODELS: dict[str, Model] = {
             "across",
             "short",
         ),
-        _KANE,
     ),
 }

@@ -1,4 +1,4 @@
-"""Every derivation by SymPy, as a command."""
+"""Derivations by SymPy, as a command."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def measure(
     points: Annotated[int, typer.Option(min=1, help="Rational points a model.")] = 2,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the points.")] = 0,
 ) -> Data:
-    """Compare with SymPy's derivations by Lagrange and by Kane, in extended precision.
+    """Compare with SymPy's derivations by Kane's method, in extended precision.
 
     With --model, the report is that of these models alone, in the subfolder oracle.
     """
@@ -27,11 +27,10 @@ def measure(
     models = known(chosen, MODELS, "--model", "model")
     if chosen:
         run.folder = run.folder / "oracle"
-    wanted = [(name, by) for name in models for by in MODELS[name].derivations]
-    run.expect(len(wanted), "deriving")
+    run.expect(len(models), "deriving")
     results = []
-    for name, by in wanted:
-        results.append(check(name, by, points, seed))
+    for name in models:
+        results.append(check(name, points, seed))
         run.advance()
     ok = all(result.ok for result in results)
     return {"ok": ok, "points": points, "seed": seed, "comparisons": [asdict(result) for result in results]}

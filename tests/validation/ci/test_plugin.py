@@ -20,14 +20,14 @@ ROOT = Path(__file__).parents[3]
 WRONG_ENGINE = """
 from validation.adapters.pinocchio import tree
 
-original = tree.PinocchioEngine.mass_matrix
+original = tree.ChartedEngine.mass_matrix
 
 def wrong(self, states):
     M = original(self, states).copy()
     M[3, 0, 0] *= 1.0 + 1e-9
     return M
 
-tree.PinocchioEngine.mass_matrix = wrong
+tree.ChartedEngine.mass_matrix = wrong
 """
 
 

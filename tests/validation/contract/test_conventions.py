@@ -1,4 +1,4 @@
-"""Each convention against a finite difference or an identity."""
+"""Each convention against a finite difference or an identity; what engines answer in it, the matrix holds to truth."""
 
 import mujoco
 import numpy as np
@@ -6,6 +6,7 @@ import pinocchio as pin
 import pytest
 
 from tests.validation.subjects import every_kind, moved, states_of
+from validation.adapters.charted import ChartedEngine
 from validation.adapters.mujoco import tree as mujoco_adapter
 from validation.adapters.pinocchio import tree as pinocchio_adapter
 from validation.contract.conventions import angular_first_to_linear_first, times, xyzw_to_wxyz
@@ -20,7 +21,7 @@ STEP = 1e-6
 CLOSE = 1e-6
 
 
-def engine(name: str) -> mujoco_adapter.MujocoEngine | pinocchio_adapter.PinocchioEngine:
+def engine(name: str) -> ChartedEngine:
     built = {"mujoco": mujoco_adapter, "pinocchio": pinocchio_adapter}[name].build(SUBJECT)
     assert hasattr(built, "chart"), built
     return built
@@ -80,65 +81,3 @@ def test_power_and_energy_do_not_depend_on_the_chart() -> None:
     M = built.mass_matrix(STATES)
     twice = np.sum(STATES.v * times(M, STATES.v), axis=1)
     assert np.allclose(twice / 2, built.kinetic_energy(STATES), rtol=1e-13)
-
-
-@pytest.mark.parametrize("name", ["mujoco", "pinocchio"])
-class TestFrames:
-    """Each engine's frame quantities are the derivatives of one another, in world axes."""
-
-    def test_linear_velocity_is_the_rate_of_position(self, name: str) -> None:
-        built = engine(name)
-        expected = rate(built.frame_pose)[..., :3]
-        assert np.abs(built.frame_velocity(STATES)[..., :3] - expected).max() < CLOSE * 100
-
-    def test_angular_velocity_turns_the_axes(self, name: str) -> None:
-        built = engine(name)
-        R = built.frame_pose(STATES)[..., 3:].reshape(-1, len(SUBJECT.frames), 3, 3)
-        R_rate = rate(built.frame_pose)[..., 3:].reshape(R.shape)
-        spin = R_rate @ R.swapaxes(-1, -2)  # [w]x
-        w = np.stack([spin[..., 2, 1], spin[..., 0, 2], spin[..., 1, 0]], axis=-1)
-        assert np.abs(built.frame_velocity(STATES)[..., 3:] - w).max() < CLOSE * 100
-
-    def test_acceleration_is_the_rate_of_velocity(self, name: str) -> None:
-        built = engine(name)
-        value = built.frame_acceleration(STATES)
-        assert np.abs(value - rate(built.frame_velocity)).max() < CLOSE * np.abs(value).max()
-
-    def test_jacobian_rate_is_the_rate_of_the_jacobian(self, name: str) -> None:
-        built = engine(name)
-        value = built.frame_jacobian_rate(STATES)
-        assert np.abs(value - rate(built.frame_jacobian)).max() < CLOSE * np.abs(value).max()
-
-    def test_jacobians_give_velocity_and_acceleration(self, name: str) -> None:
-        built = engine(name)
-        J, J_rate = built.frame_jacobian(STATES), built.frame_jacobian_rate(STATES)
-        velocity = times(J, STATES.v[:, None])
-        assert np.allclose(velocity, built.frame_velocity(STATES), atol=1e-11)
-        acceleration = times(J, STATES.a[:, None]) + times(J_rate, STATES.v[:, None])
-        assert np.abs(acceleration - built.frame_acceleration(STATES)).max() < 1e-12 * np.abs(acceleration).max() * 10
-
-
-@pytest.mark.parametrize("name", ["mujoco", "pinocchio"])
-def test_inverse_and_forward_dynamics_are_one_equation(name: str) -> None:
-    built = engine(name)
-    M, h = built.mass_matrix(STATES), built.bias(STATES)
-    inverse = times(M, STATES.a) + h - STATES.passive
-    assert np.allclose(built.inverse_dynamics(STATES), inverse, rtol=1e-10, atol=1e-10)
-    forward = times(np.linalg.inv(M), STATES.applied - h)
-    assert np.allclose(built.forward_dynamics(STATES), forward, rtol=1e-8, atol=1e-8)
-
-
-@pytest.mark.parametrize("name", ["mujoco", "pinocchio"])
-def test_power_balance(name: str) -> None:
-    """d(T + V)/dt is the power of the applied forces, when v' is what they produce."""
-    built = engine(name)
-    a = built.forward_dynamics(STATES)
-
-    def energy(time: float) -> np.ndarray:
-        q = moved(ASSEMBLY, STATES.q, STATES.v * time + a * time**2 / 2)
-        later = States(q, STATES.v + a * time, *[STATES.a] * 2, *[STATES.applied] * 2)
-        return built.kinetic_energy(later) + built.potential_energy(later)
-
-    power = np.sum(STATES.applied * STATES.v, axis=1)
-    scale = np.abs(energy(0.0)).max()
-    assert np.abs((energy(STEP) - energy(-STEP)) / (2 * STEP) - power).max() < 1e-5 * scale

@@ -25,6 +25,7 @@ EXTRAS = (
     "pybullet",
     "pykdl",
     "roboticstoolbox",
+    "symofros",
 )
 
 
@@ -49,7 +50,7 @@ def test_an_engine_is_right_about_hinges_between_oblique_links(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("engine", ("casadi", "dart", "drake"))
+@pytest.mark.parametrize("engine", ("casadi", "dart", "drake", "symofros"))
 @pytest.mark.parametrize("kind", ("ball", "planar", "helical oblique", "free", "universal"))
 def test_joints_of_several_coordinates_mean_what_their_charts_say(engine: str, kind: str) -> None:
     _installed(engine)

@@ -1,4 +1,4 @@
-"""The generator against SymPy's derivations by Lagrange and by Kane: thirty digits at rational points."""
+"""The generator against SymPy's derivations by Kane's method: thirty digits at rational points."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.description.forces import Damper, Friction, Spring, Stop
 from symofros.description.joints.joint_kinds import JOINT_KINDS
 from validation.__main__ import app
-from validation.oracle import compare, kane, lagrange
+from validation.oracle import compare, kane
 from validation.oracle.models import EXACT, MODELS
 from validation.oracle.scope import NotDerivable
 
@@ -22,19 +22,14 @@ SLOW = (
     *("axes by parameters", "constant axes", "universal", "branches", "general, by matrix", "massless between"),
     *("cylindrical", "planar", "general, by angles", "connections"),
 )
-# Each model by one of its derivations in every run, by the others with --slow.
-CASES = [
-    pytest.param(name, by, marks=[pytest.mark.slow] if i or name in SLOW else [])
-    for name, model in MODELS.items()
-    for i, by in enumerate(sorted(model.derivations, reverse=True))
-]
+CASES = [pytest.param(name, marks=[pytest.mark.slow] if name in SLOW else []) for name in MODELS]
 SYSTEMS = [model.system for model in MODELS.values()]
 JOINTS = [body.joint for system in SYSTEMS for body in system.bodies if body.joint is not None]
 
 
-@pytest.mark.parametrize("name, by", CASES, ids=lambda x: x.replace(" ", "_"))
-def test_digits(name: str, by: str) -> None:
-    result = compare.check(name, by)
+@pytest.mark.parametrize("name", CASES, ids=lambda x: x.replace(" ", "_"))
+def test_digits(name: str) -> None:
+    result = compare.check(name)
     assert result.ok, result.digits
 
 
@@ -75,7 +70,6 @@ def pushed(system: sf.System) -> sf.System:
 DYNAMIC = ("mass_matrix", "bias", "kinetic_energy", "potential_energy")
 
 
-@pytest.mark.parametrize("derive", [pytest.param(lagrange.derive, marks=pytest.mark.slow), kane.derive])
 @pytest.mark.parametrize(
     "name, change, functions",
     [
@@ -84,16 +78,11 @@ DYNAMIC = ("mass_matrix", "bias", "kinetic_energy", "potential_energy")
         ("connections", pushed, ("generalized_force",)),
     ],
 )
-def test_the_oracle_can_disagree(name, change, functions, derive) -> None:  # type: ignore[no-untyped-def]
+def test_the_oracle_can_disagree(name, change, functions) -> None:  # type: ignore[no-untyped-def]
     """A description that is off by 1e-12 in one place agrees to twelve digits or so, not to thirty."""
-    digits = compare.agreement(MODELS[name].system, lambda system: derive(change(system)), points=1, seed=0)
+    digits = compare.agreement(MODELS[name].system, lambda system: kane.derive(change(system)), points=1, seed=0)
     assert {function for function in digits if digits[function] < EXACT} == set(functions)
     assert all(10 < digits[function] < 15 for function in functions)
-
-
-def test_lagrange_refuses_quaternions_in_words() -> None:
-    with pytest.raises(NotDerivable, match="joint 'q0': quaternions are no generalized coordinates"):
-        lagrange.derive(MODELS["ball"].system)
 
 
 def test_a_prescribed_motion_with_quaternions_is_refused_in_words() -> None:
@@ -106,13 +95,14 @@ def test_command(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["oracle", "--model", "cart-pole", "--points", "1", "--json", "-o", str(tmp_path)])
     content = json.loads(result.stdout)
     assert result.exit_code == 0 and content["ok"]
-    assert [(row["derivation"], row["ok"]) for row in content["comparisons"]] == [("lagrange", True), ("kane", True)]
+    assert [(row["derivation"], row["ok"]) for row in content["comparisons"]] == [("kane", True)]
 
 
 @pytest.mark.slow
 def test_command_fails_on_disagreement(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(compare.DERIVATIONS, "lagrange", lambda system: lagrange.derive(pushed(system)))
+    derive = kane.derive
+    monkeypatch.setattr(kane, "derive", lambda system: derive(pushed(system)))
     result = CliRunner().invoke(app, ["oracle", "--model", "loads", "-o", str(tmp_path)])
-    assert result.exit_code == 1 and "not all agree: loads (lagrange)." in result.stdout
+    assert result.exit_code == 1 and "not all agree: loads (kane)." in result.stdout
     # A part has a folder of its own, and leaves the whole report as it is.
     assert (tmp_path / "oracle" / "oracle.html").is_file()

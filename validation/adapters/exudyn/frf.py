@@ -26,7 +26,7 @@ from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import symofros as sf
 
-from ...contract.conventions import Chart, Slot, times
+from ...contract.conventions import IN_WORLD, Chart, Slot, times
 from ...contract.interface import States, Subject, Unsupported
 from ...mechanics.geometry import Array
 from ...mechanics.quadrature import STATION, gauss_stations
@@ -119,7 +119,7 @@ def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | U
     assert isinstance(beam, sf.Beam)
     assembly = subject.assembly
     free, elastic = assembly.movers
-    chart = Chart((Slot(free, 0, 0, "free_in_world"), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
+    chart = Chart((Slot(free, 0, 0, IN_WORLD), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
     mesh = _Mesh(beam, subject.system.parameter_values())
     load, felt = (assembly.gravity, np.zeros(3)) if own_weight else (np.zeros(3), assembly.gravity)
     elastic_body, limp_body = (_body(mesh, load, factor) for factor in (1.0, 0.0))

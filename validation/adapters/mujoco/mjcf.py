@@ -7,6 +7,7 @@ it ignores is set to zero in the compiled model.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,39 +15,36 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from ...contract.conventions import Chart, Encoding, Slot
+from ...contract.conventions import IN_WORLD, Slot
 from ...contract.interface import States, Subject, Unsupported
 from ...contract.quantities import FRAME_QUANTITIES, MJCF_ROUTE
-from ...mechanics.assembly import Assembly, Mover, assemble
+from ...mechanics.assembly import Mover, assemble
 from ...mechanics.geometry import Array
-from .tree import MujocoEngine, explain, quiet
+from ..charted import ChartedEngine
+from .tree import charted, explain, quiet
 
 NAME = "mujoco-mjcf"
 
 _FREE, _BALL = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL
-_ENCODINGS: dict[int, Encoding] = {int(_FREE): "free_in_world", int(_BALL): "wxyz"}
+_CHARTS = {int(_FREE): IN_WORLD, int(_BALL): "quaternion wxyz, body speeds"}
 _KINDS = {"free": _FREE, "ball": _BALL, "prismatic": mujoco.mjtJoint.mjJNT_SLIDE}
 _NAMELESS = re.compile(r"(body|site)(\d+)\Z")
 
 
 @dataclass(frozen=True)
-class MjcfEngine(MujocoEngine):
+class MjcfEngine(ChartedEngine):
     """A model with MuJoCo's own springs, dampers and compensation of gravity.
 
     Attributes:
-        frames: Whether each of the subject's frames is a site or a body, and its index.
+        places: Whether each of the subject's frames is a site or a body, and its index.
     """
 
-    frames: tuple[tuple[str, int], ...] = ()
+    places: tuple[tuple[str, int], ...] = ()
 
     def generalized_force(self, states: States) -> Array:
         """Its passive forces; what the inputs add, which it knows nothing of, is taken as stated."""
-
-        def result(d: Any) -> Array:
-            mujoco.mj_passive(self.model, d)
-            return np.array(d.qfrc_passive)
-
-        return self.chart.our_forces(states.q, self._each(states, result)) + states.applied - states.passive
+        forces = self._of_data(states, lambda d: np.array(d.qfrc_passive))
+        return self.chart.our_forces(states.q, forces) + states.applied - states.passive
 
     def frame_pose(self, states: States) -> Array:
         """Poses of sites and bodies: p_WF and the rows of R_WF (N, F, 12)."""
@@ -54,7 +52,17 @@ class MjcfEngine(MujocoEngine):
         def one(d: Any, kind: str, i: int) -> Array:
             return np.append(d.site_xpos[i], d.site_xmat[i]) if kind == "site" else np.append(d.xpos[i], d.xmat[i])
 
-        return self._each(states, lambda d: [one(d, kind, i) for kind, i in self.frames])
+        return self._of_data(states, lambda d: np.array([one(d, kind, i) for kind, i in self.places]))
+
+    def _of_data(self, states: States, result: Callable[[Any], Array]) -> Array:
+        """One state at a time, results of the data that MuJoCo fills."""
+        d: Any = mujoco.MjData(self.model)
+        values = []
+        q, v = self.chart.coordinates(states.q), self.chart.speeds(states.q, states.v)
+        for d.qpos[:], d.qvel[:] in zip(q, v, strict=True):
+            mujoco.mj_forward(self.model, d)
+            values.append(result(d))
+        return np.array(values)
 
 
 def build(subject: Subject) -> MjcfEngine | Unsupported:
@@ -67,12 +75,13 @@ def build(subject: Subject) -> MjcfEngine | Unsupported:
         return model
     _forget_what_is_ignored(model)
     assembly = assemble(subject.mjcf.verbatim)
-    chart = _chart(model, assembly)
-    if isinstance(chart, Unsupported):
-        return chart
-    frames = tuple(frame for name in subject.frames if (frame := _frame(model, name)) is not None)
-    capabilities = MJCF_ROUTE if len(frames) == len(subject.frames) else MJCF_ROUTE - FRAME_QUANTITIES
-    return MjcfEngine(NAME, model, chart, capabilities=capabilities, frames=frames)
+    if model.njnt != len(assembly.movers):
+        return Unsupported(f"{model.njnt} joints, ours has {len(assembly.movers)}")
+    # Both sides have the joints in the order of the file.
+    slots = tuple(_slot(model, j, mover) for j, mover in enumerate(assembly.movers))
+    places = tuple(place for name in subject.frames if (place := _frame(model, name)) is not None)
+    capabilities = MJCF_ROUTE if len(places) == len(subject.frames) else MJCF_ROUTE - FRAME_QUANTITIES
+    return MjcfEngine(**vars(charted(NAME, model, slots, capabilities)), places=places)
 
 
 def _read(path: Path) -> Any | Unsupported:
@@ -106,17 +115,10 @@ def _forget_what_is_ignored(model: Any) -> None:
     model.jnt_actgravcomp[:] = 0
 
 
-def _chart(model: Any, assembly: Assembly) -> Chart | Unsupported:
-    """Both sides have the joints in the order of the file."""
-    if model.njnt != len(assembly.movers):
-        return Unsupported(f"{model.njnt} joints, ours has {len(assembly.movers)}")
-    return Chart(tuple(_slot(model, j, mover) for j, mover in enumerate(assembly.movers)), model.nq, model.nv)
-
-
 def _slot(model: Any, j: int, mover: Mover) -> Slot:
     kind = int(model.jnt_type[j])
     assert kind == int(_KINDS.get(mover.kind, mujoco.mjtJoint.mjJNT_HINGE)), (kind, mover.kind)
-    return Slot(mover, int(model.jnt_qposadr[j]), int(model.jnt_dofadr[j]), _ENCODINGS.get(kind, "same"))
+    return Slot(mover, int(model.jnt_qposadr[j]), int(model.jnt_dofadr[j]), _CHARTS.get(kind, ""))
 
 
 def _frame(model: Any, name: str) -> tuple[str, int] | None:

@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from typing import Any
 
 import mujoco
 import numpy as np
 
+from ...contract.conventions import IN_WORLD, Slot
 from ...contract.interface import Subject, Unsupported, UrdfSource
 from ...contract.quantities import SECOND_ROUTE
-from ...mechanics.assembly import Assembly, assemble
-from .tree import MujocoEngine, chart_of, compiled, explain, quiet
+from ...mechanics.assembly import Assembly, Mover, assemble
+from ..charted import ChartedEngine
+from .tree import charted, explain, quiet
 
 NAME = "mujoco-urdf"
 _ROOT_JOINT = "root_joint"
 
 
-def build(subject: Subject) -> MujocoEngine | Unsupported:
+def build(subject: Subject) -> ChartedEngine | Unsupported:
     """MuJoCo's model of the file that the description was read from."""
     if subject.urdf is None:
         return Unsupported("not read from a URDF file")
@@ -31,26 +34,28 @@ def build(subject: Subject) -> MujocoEngine | Unsupported:
     return engine
 
 
-def _read(source: UrdfSource, assembly: Assembly) -> MujocoEngine | Unsupported:
+def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported:
+    names = {mover.name: mover.name for mover in assembly.movers}
     try:
         spec = mujoco.MjSpec.from_string(_bare(source.text))
+        spec.option.gravity = assembly.gravity
+        if source.floating_base:
+            spec.worldbody.first_body().add_freejoint(name=_ROOT_JOINT)
+            names[assembly.movers[0].name] = _ROOT_JOINT
+        model = spec.compile()
     except ValueError as error:
         return Unsupported(explain(str(error)))
-    spec.option.gravity = assembly.gravity
-    names = {mover.joint.name: mover.joint.name for mover in assembly.movers}
-    if source.floating_base:
-        spec.worldbody.first_body().add_freejoint(name=_ROOT_JOINT)
-        names[assembly.movers[0].joint.name] = _ROOT_JOINT
-    model = compiled(spec)
-    if isinstance(model, Unsupported):
-        return model
     if model.nv != assembly.nv:
         return Unsupported(f"{model.nv} speeds, ours has {assembly.nv}")
     try:
-        chart = chart_of(model, assembly, names)
+        slots = tuple(_slot(model.joint(names[mover.name]), mover) for mover in assembly.movers)
     except KeyError as error:
         return Unsupported(str(error.args[0]))
-    return MujocoEngine(NAME, model, chart, capabilities=SECOND_ROUTE)
+    return charted(NAME, model, slots, SECOND_ROUTE)
+
+
+def _slot(joint: Any, mover: Mover) -> Slot:
+    return Slot(mover, int(joint.qposadr[0]), int(joint.dofadr[0]), IN_WORLD if mover.kind == "free" else "")
 
 
 def _bare(urdf: bytes) -> str:

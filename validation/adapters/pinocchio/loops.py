@@ -18,6 +18,7 @@ import symofros as sf
 from ...contract.interface import States, Subject, Unsupported
 from ...mechanics.assembly import BASE, Assembly, anchor_name
 from ...mechanics.geometry import Array
+from ..charted import ChartedEngine
 from ..closed import AXES
 from . import tree as trees
 
@@ -55,11 +56,11 @@ class LoopEngine:
         ties: Pinocchio's, in order.
     """
 
-    tree: trees.PinocchioEngine
+    tree: ChartedEngine
     closures: tuple[sf.Closure, ...]
     ties: tuple[Tie, ...]
     name: str = NAME
-    version: str = trees.VERSION
+    version: str = pin.__version__
     capabilities: frozenset[str] = CAPABILITIES
 
     def ties_as_numbers(self) -> list[str]:

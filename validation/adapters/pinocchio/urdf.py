@@ -9,14 +9,16 @@ import pinocchio as pin
 from ...contract.conventions import Chart, Slot
 from ...contract.interface import Subject, Unsupported, UrdfSource
 from ...contract.quantities import SECOND_ROUTE
+from ...engines.plugins.pinocchio import CLOSING, WAYS
+from ...engines.plugins.writing.source import Source, SourceModel
 from ...mechanics.assembly import Assembly, Mover, assemble
-from .tree import PinocchioEngine
+from ..charted import ChartedEngine
 
 NAME = "pinocchio-urdf"
 _ROOT_JOINT = "root_joint"
 
 
-def build(subject: Subject) -> PinocchioEngine | Unsupported:
+def build(subject: Subject) -> ChartedEngine | Unsupported:
     """Pinocchio's model of the file that the description was read from."""
     if subject.urdf is None:
         return Unsupported("not read from a URDF file")
@@ -26,7 +28,7 @@ def build(subject: Subject) -> PinocchioEngine | Unsupported:
     return engine
 
 
-def _read(source: UrdfSource, assembly: Assembly) -> PinocchioEngine | Unsupported:
+def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported:
     root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if source.floating_base else ()
     try:
         model = pin.buildModelFromXML(source.text.decode(), *root)
@@ -44,10 +46,12 @@ def _read(source: UrdfSource, assembly: Assembly) -> PinocchioEngine | Unsupport
         if not model.existJointName(name):
             return Unsupported(f"no joint '{name}'")
     slots = tuple(_slot(model, mover, name) for mover, name in zip(assembly.movers, names, strict=True))
-    return PinocchioEngine(NAME, model, Chart(slots, model.nq, model.nv), capabilities=SECOND_ROUTE)
+    text = Source(("import numpy as np", "import pinocchio as pin"), (), model.nq, model.nv, closing=CLOSING)
+    chart, made = Chart(slots, model.nq, model.nv), SourceModel(text, WAYS, {"m": model})
+    return ChartedEngine(NAME, pin.__version__, made, chart, capabilities=SECOND_ROUTE)
 
 
 def _slot(model: Any, mover: Mover, name: str) -> Slot:
     joint = model.joints[model.getJointId(name)]
     turns = mover.kind == "revolute" and joint.nq == 2
-    return Slot(mover, joint.idx_q, joint.idx_v, "cos_sin" if turns else "same")
+    return Slot(mover, joint.idx_q, joint.idx_v, "cos sin" if turns else "")

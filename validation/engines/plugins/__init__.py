@@ -19,6 +19,7 @@ from . import (
     pybullet,
     pykdl,
     roboticstoolbox,
+    symofros,
 )
 from .loops import exudyn as exudyn_joints
 
@@ -39,5 +40,6 @@ _MODULES = (
     pybullet,
     pykdl,
     roboticstoolbox,
+    symofros,
 )
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..interface import Array, Difference, Slot, Tree, Unsupported
+from ..interface import Array, Difference, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
@@ -20,21 +20,26 @@ tree = mbs.AddObject(items.ObjectKinematicTree(nodeNumber=node, gravity=gravity,
     jointTransformations=exu.Matrix3DList([np.array(R) for R in rotations]), jointOffsets=exu.Vector3DList(offsets),
     linkInertiasCOM=exu.Matrix3DList([np.array(J) for J in inertias]), linkCOMs=exu.Vector3DList(coms),
     linkMasses=masses))
-def sensor(link, name):
+if any(armatures):
+    mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], massMatrix=np.diag(armatures)))
+def sensor(link, place, name):
     kind = getattr(exu.OutputVariableType, name)
-    return mbs.AddSensor(items.SensorKinematicTree(objectNumber=tree, linkNumber=link, localPosition=[0, 0, 0],
+    return mbs.AddSensor(items.SensorKinematicTree(objectNumber=tree, linkNumber=link, localPosition=place,
         outputVariableType=kind, writeToFile=False))
-names = ("Position", "RotationMatrix", "Velocity", "AngularVelocity")
-sensors = [[sensor(link, name) for name in names] for link in links]
+names = ("Position", "RotationMatrix", "Velocity", "AngularVelocity", "Acceleration", "AngularAcceleration")
+# Of the world there are none.
+sensors = [[sensor(link, place, name) for name in names if link >= 0] for link, place in zip(links, places)]
+def read(k): return [[*mbs.GetSensorValues(s[k]), *mbs.GetSensorValues(s[k + 1])] if s else [0.0] * 6 for s in sensors]
 mbs.Assemble()
 solver = exu.MainSolverImplicitSecondOrder()
 settings = exu.SimulationSettings()
 settings.solution.file.write, settings.solution.file.name = False, ""
 solver.InitializeSolver(mbs, settings)
-def state(q, v=None):
+def state(q, v=None, a=None):
     now = exu.ConfigurationType.Current
     mbs.systemData.SetODE2Coordinates(q, configuration=now)
     mbs.systemData.SetODE2Coordinates_t(np.zeros(n) if v is None else v, configuration=now)
+    mbs.systemData.SetODE2Coordinates_tt(np.zeros(n) if a is None else a, configuration=now)
 def forces():
     solver.ComputeODE2RHS(mbs)
     return np.array(solver.GetSystemResidual()[:n])"""
@@ -47,17 +52,15 @@ WAYS = {
     "gravity": Way("-ComputeODE2RHS", "state(q)\nvalue = -forces()"),
     "link_poses": Way(
         "SensorKinematicTree",
-        "state(q)\nvalue = [[*mbs.GetSensorValues(s[0]),"
-        " *(mbs.GetSensorValues(s[1]).reshape(3, 3) @ np.array(T).T).flat] for s, T in zip(sensors, turns)]",
+        "state(q)\nvalue = [[*mbs.GetSensorValues(s[0]), *(mbs.GetSensorValues(s[1]).reshape(3, 3) @ np.array(T).T)"
+        ".flat] if s else [*p, *np.array(T).T.flat] for s, p, T in zip(sensors, places, turns)]",
     ),
-    "link_velocities": Way(
-        "SensorKinematicTree",
-        "state(q, v)\nvalue = [[*mbs.GetSensorValues(s[2]), *mbs.GetSensorValues(s[3])] for s in sensors]",
-    ),
+    "link_velocities": Way("SensorKinematicTree", "state(q, v)\nvalue = read(2)"),
+    "link_accelerations": Way("SensorKinematicTree", "state(q, v, a)\nvalue = read(4)"),
     "link_jacobians": Way(
         "SensorKinematicTree, by columns",
         "value = np.zeros((len(links), 6, n))\nfor k, unit in enumerate(np.eye(n)):\n    state(q, unit)\n"
-        "    value[:, :, k] = [[*mbs.GetSensorValues(s[2]), *mbs.GetSensorValues(s[3])] for s in sensors]",
+        "    value[:, :, k] = read(2)",
     ),
 }
 _LETTERS = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
@@ -77,51 +80,80 @@ def _plain(values: Array) -> str:
     return repr(np.asarray(values, dtype=float).tolist())
 
 
-def write(tree: Tree) -> Source | Unsupported:
-    """Text that builds a kinematic tree; joints in series hang on links without mass."""
-    types: list[str] = []
-    parents: list[int] = []
-    rotations, offsets, inertias, coms, turns = ([] for _ in range(5))  # type: ignore[var-annotated]
-    masses: list[float] = []
-    last: list[int] = []
-    slots: list[tuple[Slot, ...]] = []
-    for link in tree.links:
+class _Links:
+    """Exudyn's links, and what our links are on them: at the origin of one, or placed on it where they have no mass."""
+
+    def __init__(self) -> None:
+        self.types: list[str] = []
+        self.parents: list[int] = []
+        self.masses: list[float] = []
+        self.armatures: list[float] = []
+        self.rotations: list[Array] = []
+        self.offsets: list[Array] = []
+        self.inertias: list[Array] = []
+        self.coms: list[Array] = []
+        # Of each link of Exudyn's, its axes in the frame of ours.
+        self.turns: list[Array] = []
+        # Of each of our links, Exudyn's that carries it, and its placement there in our frame.
+        self.carriers: list[tuple[int, Array, Array]] = []
+        self.slots: list[tuple[Slot, ...]] = []
+
+    def add(self, link: Link) -> Unsupported | None:
+        """A link, with those without mass that joints in series hang on."""
         steps, (R_end, p_end) = series(link.joints)
+        carrier, R0, p0 = self.carriers[link.parent] if link.parent >= 0 else (-1, np.eye(3), np.zeros(3))
+        if not steps and link.mass == 0.0 and not np.any(link.inertia):
+            self.carriers.append((carrier, R0 @ R_end, p0 + R0 @ p_end))
+            self.slots.append(())
+            return None
         if not steps or np.any(p_end) or not np.array_equal(R_end, np.eye(3)):
             return Unsupported("a link stands at a joint of its own", offered=False)
-        parent, own = last[link.parent] if link.parent >= 0 else -1, []
+        own = []
         for R, p, joint in steps:
-            if joint.kind not in ("revolute", "prismatic") or joint.form or joint.mimics or any(joint.armature):
+            if joint.kind not in ("revolute", "prismatic") or joint.form or joint.mimics:
                 return Unsupported("links turn about, or slide along, one axis", offered=False)
-            T, T_parent = _turn(joint.axis), turns[parent] if parent >= 0 else np.eye(3)
-            types.append(joint.kind.capitalize() + _LETTERS.get(joint.axis, "Z"))
-            parents.append(parent)
-            rotations.append(T_parent.T @ R @ T)
-            offsets.append(T_parent.T @ p)
-            turns.append(T)
-            masses.append(0.0)
-            coms.append(np.zeros(3))
-            inertias.append(np.zeros((3, 3)))
-            parent = len(types) - 1
-            own.append(Slot("angle" if joint.kind == "revolute" else "length", (parent,), (parent,)))
-        T = turns[parent]
-        masses[parent], coms[parent] = link.mass, T.T @ np.array(link.com)
-        inertias[parent] = T.T @ np.array(link.inertia) @ T
-        last.append(parent)
-        slots.append(tuple(own))
+            R, p = R0 @ R, p0 + R0 @ p
+            R0, p0 = np.eye(3), np.zeros(3)
+            T, T_parent = _turn(joint.axis), self.turns[carrier] if carrier >= 0 else np.eye(3)
+            self.types.append(joint.kind.capitalize() + _LETTERS.get(joint.axis, "Z"))
+            self.parents.append(carrier)
+            self.rotations.append(T_parent.T @ R @ T)
+            self.offsets.append(T_parent.T @ p)
+            self.turns.append(T)
+            self.masses.append(0.0)
+            self.armatures.append(sum(joint.armature))
+            self.coms.append(np.zeros(3))
+            self.inertias.append(np.zeros((3, 3)))
+            carrier = len(self.types) - 1
+            own.append(Slot("angle" if joint.kind == "revolute" else "length", (carrier,), (carrier,)))
+        T = self.turns[carrier]
+        self.masses[carrier], self.coms[carrier] = link.mass, T.T @ np.array(link.com)
+        self.inertias[carrier] = T.T @ np.array(link.inertia) @ T
+        self.carriers.append((carrier, np.eye(3), np.zeros(3)))
+        self.slots.append(tuple(own))
+        return None
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a kinematic tree."""
+    made = _Links()
+    for link in tree.links:
+        obstacle = made.add(link)
+        if obstacle is not None:
+            return obstacle
+    listed = ("rotations", "offsets", "coms", "inertias")
+    axes = [*made.turns, np.eye(3)]  # The last are the world's.
+    places = [axes[k].T @ p for k, _, p in made.carriers]
+    turns = [R.T @ axes[k] for k, R, _ in made.carriers]
     lines = (
-        f"types, parents, masses = {types!r}, {parents!r}, {masses!r}",
-        *(
-            f"{name} = [{', '.join(map(_plain, values))}]"
-            for name, values in (
-                ("rotations", rotations), ("offsets", offsets), ("coms", coms), ("inertias", inertias),
-            )
-        ),
-        f"gravity, links = {list(tree.gravity)!r}, {last!r}",
-        f"turns = [{', '.join(_plain(turns[k]) for k in last)}]",
+        f"types, parents, masses = {made.types!r}, {made.parents!r}, {made.masses!r}",
+        *(f"{name} = [{', '.join(map(_plain, getattr(made, name)))}]" for name in listed),
+        f"gravity, armatures = {list(tree.gravity)!r}, {made.armatures!r}",
+        f"links, places = {[k for k, _, _ in made.carriers]!r}, [{', '.join(map(_plain, places))}]",
+        f"turns = [{', '.join(map(_plain, turns))}]",
         _SETUP,
-    )  # fmt: off
-    return Source(lines, tuple(slots), len(types), len(types))
+    )
+    return Source(lines, tuple(made.slots), len(made.types), len(made.types))
 
 
 PLUGIN = SourcePlugin(

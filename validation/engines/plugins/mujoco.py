@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -45,6 +46,11 @@ def _elements(joint: Joint) -> list[tuple[str, Array]]:
             return [(joint.kind, unit[2])]
 
 
+def _name(name: str) -> str:
+    """An attribute's value, in a text in Python in three quotes."""
+    return escape(name, {"'": "&apos;", '"': "&quot;", "\\": "&#92;"})
+
+
 def _frame(R: Array, p: Array) -> str:
     return f'pos="{_text(p)}" xyaxes="{_text([*R[:, 0], *R[:, 1]])}"'
 
@@ -52,8 +58,8 @@ def _frame(R: Array, p: Array) -> str:
 class _Bodies:
     """Elements of a tree's bodies, with the slots of their joints, which MuJoCo numbers depth first."""
 
-    def __init__(self, tree: Tree) -> None:
-        self.tree = tree
+    def __init__(self, tree: Tree, principal: bool) -> None:
+        self.tree, self.principal = tree, principal
         self.children: dict[int, list[int]] = {k: [] for k in range(-1, len(tree.links))}
         for k, link in enumerate(tree.links):
             self.children[link.parent].append(k)
@@ -72,14 +78,12 @@ class _Bodies:
         joints = self._joints(k, steps)
         if isinstance(joints, Unsupported):
             return joints
-        inertia = np.array(link.inertia)
-        entries = _text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
-        inertial = f'<inertial pos="{_text(link.com)}" mass="{link.mass!r}" fullinertia="{entries}"/>'
+        inertial = f'<inertial pos="{_text(link.com)}" mass="{link.mass!r}" {self._inertia(np.array(link.inertia))}/>'
         inner = self.elements(k)
         if isinstance(inner, Unsupported):
             return inner
         own = [inertial if link.mass else "", *joints, constrained.sites(self.tree, link.name), *inner]
-        return f'<body name="{link.name}" {_frame(R, p)}>' + "".join(own) + "</body>"
+        return f'<body name="{_name(link.name)}" {_frame(R, p)}>' + "".join(own) + "</body>"
 
     def elements(self, k: int) -> list[str] | Unsupported:
         """The elements of a link's children; -1 is the world."""
@@ -90,6 +94,14 @@ class _Bodies:
                 return text
             made.append(text)
         return made
+
+    def _inertia(self, inertia: Array) -> str:
+        """Attributes of an inertia: its entries, or its principal moments and their axes."""
+        if not self.principal:
+            return f'fullinertia="{_text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))}"'
+        moments, axes = np.linalg.eigh(inertia)
+        axes[:, 2] *= np.linalg.det(axes)
+        return f'diaginertia="{_text(moments)}" xyaxes="{_text([*axes[:, 0], *axes[:, 1]])}"'
 
     def _joints(self, k: int, steps: Sequence[tuple[Array, Array, Joint]]) -> list[str] | Unsupported:
         """The elements of a link's joints."""
@@ -118,13 +130,16 @@ def _is_identity(R: Array, p: Array) -> bool:
     return np.array_equal(R, np.eye(3)) and not np.any(p)
 
 
-def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] | Unsupported:
+def document(tree: Tree, principal: bool = False) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] | Unsupported:
     """MJCF of a tree, with the slots of its joints, nq and nv.
+
+    Inertias are stated by their entries, or by principal moments: MuJoCo's own diagonalisation stops at 1e-12, which
+    shows in the light bodies of a hand; LAPACK's does not.
 
     MuJoCo numbers joints depth first, so links must stand in that order to have their slots in series; others are found
     by walking.
     """
-    made = _Bodies(tree)
+    made = _Bodies(tree, principal)
     elements = made.elements(-1)
     if isinstance(elements, Unsupported):
         return elements
@@ -137,7 +152,7 @@ def document(tree: Tree) -> tuple[str, tuple[tuple[Slot, ...], ...], int, int] |
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
-    made = document(tree)
+    made = document(tree, principal=True)
     if isinstance(made, Unsupported):
         return made
     xml, slots, nq, nv = made
@@ -166,7 +181,7 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
     branch = tuple(replace(tree.links[k], parent=places.get(tree.links[k].parent, -1)) for k in sorted(own))
     texts = []
     for links in (rest, branch):
-        part = document(replace(tree, links=links, attached=""))
+        part = document(replace(tree, links=links, attached=""), principal=True)
         assert not isinstance(part, Unsupported)  # The whole is none, either.
         texts.append(part[0])
     holder = tree.links[tree.links[first].parent].name

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..functions import ALIGNED
-from ..interface import Array, Difference, End, Joint, Slot, Tree, Unsupported
+from ..interface import Array, Difference, End, Joint, Rows, Slot, Tree, Unsupported
 from .loops import pinocchio as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
@@ -33,8 +33,7 @@ _ALIGNED = {
     ("helical", ""): "H{letter}({pitch!r})",
 }
 
-
-_CLOSING = ("d = m.createData()",)
+CLOSING = ("d = m.createData()",)
 
 
 def _array(values: Any) -> str:
@@ -45,6 +44,12 @@ def _placement(R: Array, p: Array) -> str:
     if np.array_equal(R, np.eye(3)) and not np.any(p):
         return "pin.SE3.Identity()"
     return f"pin.SE3({_array(R)}, {_array(p)})"
+
+
+def _is_possible(inertia: Rows) -> bool:
+    """Whether some body has such moments: none is negative, or above the sum of the others."""
+    moments = np.linalg.eigvalsh(np.array(inertia))
+    return bool(moments[0] >= 0.0 and 2.0 * moments[2] <= moments.sum())
 
 
 def _model(joint: Joint) -> str | Unsupported:
@@ -96,6 +101,10 @@ class _ModelText:
         self.places.append(self._link(k, parent, models, end) if models else (parent, R0 @ end[0], p0 + R0 @ end[1]))
         name, R, p = self.places[-1]
         inertia = f"pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
+        if not _is_possible(link.inertia):  # The constructor refuses what files state and the attributes take.
+            values = f"{link.mass!r}, {_array(link.com)}, {_array(link.inertia)}"
+            self.lines += ["b = pin.Inertia.Zero()", f"b.mass, b.lever, b.inertia = {values}"]
+            inertia = "b"
         self.lines.append(f"{self._model_of(k)}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
         frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
         self.frames.append(f"{self._model_of(k)}.addFrame({frame})")
@@ -167,12 +176,12 @@ class _ModelText:
         if tree.transformations:
             lines += [*self.frames, *_transformed(self.locked, len(self.own_model) > 0)]
             named = {"fs": (_NAMED_FRAMES.format(len(tree.links)),)}
-            return Source(tuple(lines), slots, self.nq, self.nv, named, closing=_CLOSING)
+            return Source(tuple(lines), slots, self.nq, self.nv, named, closing=CLOSING)
         optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
         if all(self.joints) and len(set(self.joints)) == len(self.joints):
             optional["js"] = (f"js = [{', '.join(self.joints)}]",)
         optional |= constrained.optional(tree.constraints, self.place)
-        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=_CLOSING)
+        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
 
 
 def write(tree: Tree) -> Source | Unsupported:
@@ -221,6 +230,7 @@ WAYS = {
     "coriolis_forces": Way("computeCoriolisMatrix", "value = pin.computeCoriolisMatrix(m, d, q, v) @ v"),
     "coriolis_symmetry": Way("computeCoriolisMatrix", "C = pin.computeCoriolisMatrix(m, d, q, v)\nvalue = C + C.T"),
     "inverse_dynamics": Way("rnea", "value = pin.rnea(m, d, q, v, a)"),
+    "joint_wrenches": Way("rnea: f", "js\npin.rnea(m, d, q, v, a)\nvalue = np.array([d.f[j].vector for j in js])"),
     "forward_dynamics": Way("aba", "value = pin.aba(m, d, q, v, tau)"),
     "forward_dynamics:aba LOCAL": Way("aba in LOCAL", "value = pin.aba(m, d, q, v, tau, pin.Convention.LOCAL)"),
     "kinetic_energy": Way("computeKineticEnergy", "value = pin.computeKineticEnergy(m, d, q, v)"),
@@ -332,7 +342,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     slots, nq, nv = in_series(tree, {key: model[1] for key, model in _MODELS.items()})
     names = [link.name for link in tree.links]
     lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
-    return Source(lines, slots, nq, nv, {"fs": (f"fs = [m.getFrameId(name) for name in {names!r}]",)}, closing=_CLOSING)
+    return Source(lines, slots, nq, nv, {"fs": (f"fs = [m.getFrameId(name) for name in {names!r}]",)}, closing=CLOSING)
 
 
 PLUGIN = SourcePlugin(

@@ -61,6 +61,18 @@ def classical(truth: Truth, q: Exact, v: Exact, a: Exact) -> Exact:
     return truth.motions(q, v, a)[2]
 
 
+def joint_wrenches(truth: Truth, s: Point) -> Exact:
+    """Force and moment that hold each link with all that it carries, at its origin and along its axes (L, 6)."""
+    poses = truth.kinematics.poses(s.q)
+    held = truth.wrenches(truth.motions(s.q, s.v, s.a), poses, list(truth.inertias))
+    for k, link in reversed(list(enumerate(truth.kinematics.tree.links))):
+        if link.parent >= 0:
+            force, moment = held[k][:3], held[k][3:]
+            about = moment + skew(poses[k][1] - poses[link.parent][1]) @ force
+            held[link.parent] = held[link.parent] + np.concatenate([force, about])
+    return np.array([np.concatenate([R.T @ held[k][:3], R.T @ held[k][3:]]) for k, (R, _) in enumerate(poses)])
+
+
 def turned(truth: Truth, q: Exact, local: Exact) -> Exact:
     """Spatial vectors (L, 6, ...) along the links' axes, turned into the world's."""
     return np.array(

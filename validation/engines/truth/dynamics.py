@@ -92,8 +92,17 @@ class Truth:
 
     def forces(self, motions: tuple[Exact, Exact, Exact], poses: list[Pose], inertias: list[Inertia | None]) -> Exact:
         """M a + h (nv) without armature, of links that have the given inertias; None for none."""
-        J, velocity, acceleration = motions
-        total = zeros(self.nv)
+        J, total = motions[0], zeros(self.nv)
+        for k, wrench in self.wrenches(motions, poses, inertias).items():
+            total = total + J[k].T @ wrench
+        return total
+
+    def wrenches(
+        self, motions: tuple[Exact, Exact, Exact], poses: list[Pose], inertias: list[Inertia | None]
+    ) -> dict[int, Exact]:
+        """What moves each link against gravity (6): force, and moment about its origin, along world axes."""
+        _, velocity, acceleration = motions
+        wrenches: dict[int, Exact] = {}
         for k, stated in enumerate(inertias):
             if stated is None:
                 continue
@@ -103,9 +112,8 @@ class Truth:
             force = inertia.mass * falling + cross(alpha, inertia.first) + cross(w, cross(w, inertia.first))
             momentum = inertia.second @ w
             moment = cross(inertia.first, falling) + inertia.second @ alpha + cross(w, momentum)
-            rounded = self._rounded[k]
-            total = total + J[k, :3].T @ (force * rounded[:3]) + J[k, 3:].T @ (moment * rounded[3:])
-        return total
+            wrenches[k] = np.concatenate([force, moment]) * self._rounded[k]
+        return wrenches
 
     def ID(self, q: Exact, v: Exact, a: Exact) -> Exact:
         """M a + h (nv)."""

@@ -119,7 +119,6 @@ def symofros_all(quick: bool) -> list[Contestant]:
 def in_mujoco() -> MujocoModel:
     """MuJoCo's side."""
     made = possible(mujoco.build(subject()))
-    assert isinstance(made, mujoco.MujocoEngine)
     m = mujoco_steps.held(made, np.full(7, TARGET), STIFFNESS, DAMPING)
     q0 = made.chart.coordinates(start()[None])[0]
     # Coordinates of hinges are those of the speeds: the chart's transform reorders both.

@@ -7,7 +7,7 @@ from ...reporting.record import Data, Fact, Report, Section, Table, Topic, verdi
 from ..oracle import measure
 
 _TEXT = """Decimal digits that agree at the worst of the points, relative to the largest entry: our generated equations
-and those that SymPy derives by Lagrange's or Kane's method, at {points} rational points a model (seed {seed}), both in
+and those that SymPy derives by Kane's method, at {points} rational points a model (seed {seed}), both in
 extended precision."""
 
 

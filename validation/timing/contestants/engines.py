@@ -17,7 +17,7 @@ import numpy as np
 
 import symofros as sf
 
-from ...contract.conventions import Chart
+from ...contract.conventions import IN_WORLD, Chart
 from ...contract.interface import Subject, Unsupported
 from ...mechanics.assembly import Assembly
 from ...mechanics.geometry import Array, matrix_quaternion, quaternion_product
@@ -169,7 +169,6 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     engine = mujoco.build(Subject(task.label, task.system))
     if isinstance(engine, Unsupported):
         raise Skipped(engine.reason)
-    assert isinstance(engine, mujoco.MujocoEngine)
     chart, states = engine.chart, task.states
     rows = {
         "q": chart.coordinates(states.q),
@@ -177,10 +176,10 @@ def mujoco_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
         "a": chart.accelerations(states.q, states.v, states.a),
         "tau": chart.forces(states.q, states.applied),
     }
-    body = engine.body(task.frame)
+    body = int(engine.model.body(task.frame).id)
     with tempfile.TemporaryDirectory() as private:
         model = Path(private) / "model.mjb"
-        engine.write(model)
+        mujoco.write(engine, model)
         yield from _loops(_mujoco_built().path, model, body, rows, functions, "", _Converted(chart, task))
 
 
@@ -293,7 +292,7 @@ class _Converted:
         for slot in self.chart.slots:
             part = slot.mover.q
             own = computed[:, slot.q : slot.q + part.stop - part.start]
-            if slot.encoding == "free_in_world":
+            if slot.chart == IN_WORLD:
                 X = slot.mover.X_AP
                 back = quaternion_product(matrix_quaternion(X.R.T)[None], np.roll(own[:, 3:], -1, axis=1))
                 own = np.concatenate([(own[:, :3] - X.p) @ X.R, back], axis=1)

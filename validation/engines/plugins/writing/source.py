@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
@@ -90,30 +90,40 @@ class SourceModel:
     Args:
         source: The text.
         ways: Functions by name.
+        given: Objects that the text does not make.
     """
 
-    def __init__(self, source: Source, ways: Mapping[str, Way]) -> None:
+    def __init__(self, source: Source, ways: Mapping[str, Way], given: Mapping[str, Any] | None = None) -> None:
         self._source, self._ways = source, ways
         self.slots, self.nq, self.nv = source.slots, source.nq, source.nv
-        self._names: dict[str, Any] = {}
-        exec("\n".join(source.text()), self._names)  # Our own text, of numbers and the engine's names.
+        # What the text defines: the engine's own objects.
+        self.names: dict[str, Any] = dict(given or {})
+        exec("\n".join(source.text()), self.names)  # Our own text, of numbers and the engine's names.
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function in the engine's conventions (`EngineModel`)."""
+        values = self.each(function, (state,))
+        return values if isinstance(values, Unsupported) else np.asarray(values[0])
+
+    def each(self, function: str, states: Iterable[State]) -> Array | Unsupported:
+        """A function at N states (N, ...), one after the other."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
-        code = self._source.spelled(self._ways[function].code)
-        for name in (OPTIONAL.keys() & identifiers(code)) - set(self._source.optional):
+        text = self._source.spelled(self._ways[function].code)
+        for name in (OPTIONAL.keys() & identifiers(text)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
-        names = dict(self._names)
-        names.update({name: getattr(state, name).copy() for name in _INPUTS})
+        code, names, values = compile(text, function, "exec"), dict(self.names), []
         try:
-            exec("\n".join([*self._source.closing, code]), names)
+            exec("\n".join(self._source.closing), names)
+            for state in states:
+                names.update({name: getattr(state, name).copy() for name in _INPUTS})
+                exec(code, names)
+                values.append(np.array(names["value"], dtype=float))
         except (NameError, SyntaxError):  # A fault of our text is no word of the engine's.
             raise
         except Exception as error:  # The engine refuses, in its own words.
             return Unsupported(f"{type(error).__name__}: {error}".strip())
-        return np.array(names["value"], dtype=float)
+        return np.array(values)
 
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""

@@ -1,0 +1,296 @@
+"""Engines of the matrix in a check: stated a description neutrally, asked in their own charts, their answers in ours.
+
+A plug-in of `validation/engines` states no mechanics of ours, and none of the check's: it builds a `Tree` and says in
+which charts it keeps the joints. Here a description becomes such a tree, and what the engine answers is turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..contract.conventions import Chart, Slot
+from ..contract.interface import States, Subject, Unsupported
+from ..contract.quantities import QUANTITIES
+from ..engines.interface import ORIGIN, Joint, Link, State, Tree, rows, vector
+from ..engines.plugins import OWN
+from ..engines.plugins.writing.source import SourceModel
+from ..mechanics.assembly import BASE, Assembly, Mover
+from ..mechanics.geometry import Array
+from ..mechanics.joint_kinds import PartKind
+from .reach import armature, stores_energy, unrepresented
+
+# Simple joints of a description -> kinds of the matrix.
+KINDS: dict[PartKind, str] = {
+    "revolute": "revolute",
+    "prismatic": "prismatic",
+    "screw": "helical",
+    "ball": "ball",
+    "free": "free",
+}
+# Quantities -> the function of the matrix that states them.
+FUNCTIONS = {
+    "mass_matrix": "mass_matrix",
+    "bias": "bias",
+    "gravity": "bias",
+    "kinetic_energy": "kinetic_energy",
+    "potential_energy": "potential_energy",
+    "inverse_dynamics": "inverse_dynamics",
+    "forward_dynamics": "forward_dynamics",
+    "joint_wrenches": "joint_wrenches",
+    "frame_pose": "link_poses",
+    "frame_velocity": "link_velocities",
+    "frame_acceleration": "link_accelerations",
+    "frame_jacobian": "link_jacobians",
+    "frame_jacobian_rate": "link_jacobian_rates",
+}
+
+
+@dataclass(frozen=True)
+class Stated:
+    """A description as it is stated to an engine.
+
+    Attributes:
+        tree: The tree.
+        movers: For each link of a joint, in order, the simple joints of the description that it hangs on.
+        frames: Links of the subject's frames, without mass, fixed to those that carry them.
+    """
+
+    tree: Tree
+    movers: tuple[tuple[Mover, ...], ...]
+    frames: tuple[int, ...]
+
+
+def stated(subject: Subject, whole: bool, merged: bool) -> Stated:
+    """State a rigid description.
+
+    Args:
+        subject: The subject, all of whose joints are of KINDS.
+        whole: Whether a link hangs on all parts of its joint, and a free joint of the base stands in the world, a later
+            one being slides and a ball; else each part has a link of its own.
+        merged: Whether all that is fixed to a link is one mass with it, by the harness's parallel axes; else each mass
+            is a link that is fixed to it.
+    """
+    assembly = subject.assembly
+    links: list[Link] = []
+    groups: list[tuple[Mover, ...]] = []
+    carriers: list[int] = [-1]  # The world, then for each mover the link that it carries.
+    for k, mover in enumerate(assembly.movers):
+        ends = k + 1 == len(assembly.movers) or not assembly.movers[k + 1].continues
+        groups.append((*groups.pop(), mover) if whole and mover.continues else (mover,))
+        carriers.append(len(links))
+        if ends or not whole:
+            joints = tuple(joint for one in groups[-1] for joint in _joints(subject, one, whole))
+            links.append(_massless(mover.body if ends else mover.name, carriers[groups[-1][0].parent - BASE], joints))
+    links += _masses(assembly, links, carriers, merged)
+    first = len(links)
+    for name in subject.frames:
+        site = assembly.frames[name]
+        place = Joint("fixed", rows(site.X_BF.R), vector(site.X_BF.p))
+        links.append(_massless(f"frame {name}", carriers[site.mover - BASE], (place,)))
+    tree = Tree(assembly.name, tuple(links), vector(assembly.gravity))
+    return Stated(tree, tuple(groups), tuple(range(first, len(links))))
+
+
+def _massless(name: str, parent: int, joints: tuple[Joint, ...]) -> Link:
+    return Link(name, parent, joints, 0.0, ORIGIN, ((0.0, 0.0, 0.0),) * 3)
+
+
+def _masses(assembly: Assembly, links: list[Link], carriers: Sequence[int], merged: bool) -> list[Link]:
+    """Give links the masses that stand for them; what has several, as links that are fixed to it."""
+    fixed = []
+    for mover, carrier in zip(assembly.movers, carriers[1:], strict=True):
+        masses = [mover.merged()] if merged and mover.masses else mover.masses
+        for one in masses:
+            mass = one.mass, vector(one.p_BC), rows(one.J_BC)
+            if len(masses) == 1:
+                bare = links[carrier]
+                links[carrier] = Link(bare.name, bare.parent, bare.joints, *mass)
+            else:
+                fixed.append(Link(f"mass of {one.body}", carrier, (Joint("fixed"),), *mass))
+    return fixed
+
+
+def _joints(subject: Subject, mover: Mover, whole: bool) -> tuple[Joint, ...]:
+    """A simple joint in the vocabulary of the matrix."""
+    inertia, speeds = armature(subject.system, mover), mover.part.speeds
+    placed: dict[str, Any] = {"R": rows(mover.X_AP.R), "p": vector(mover.X_AP.p)}
+    more: dict[str, Any] = {"armature": (inertia,) * speeds} if inertia else {}
+    if mover.kind == "free" and whole:
+        return (Joint("free"),) if mover.parent == BASE else (Joint("translation", **placed), Joint("ball"))
+    if speeds == 1:
+        more["axis"] = vector(mover.axis)
+    if mover.kind == "screw":
+        more["pitch"] = mover.pitch
+    return (Joint(KINDS[mover.kind], **placed, **more),)
+
+
+def chart_of(model: SourceModel, described: Stated) -> Chart:
+    """Where, and in which charts, an engine keeps our joints."""
+    slots = []
+    for movers, link in zip(described.movers, model.slots, strict=False):
+        own = list(link)
+        for mover in movers:
+            several = len(own) - len(movers) + 1 if mover.kind == "free" else 1
+            parts, own = own[:several], own[several:]
+            slots.append(Slot(mover, parts[0].q[0], parts[0].v[0], " + ".join(part.chart for part in parts)))
+    return Chart(tuple(slots), model.nq, model.nv)
+
+
+@dataclass(frozen=True)
+class ChartedEngine:
+    """A model of a plug-in behind the check's `Engine` protocol.
+
+    Attributes:
+        name: Name of the route.
+        version: Version of the engine.
+        answers: The engine's model, as the matrix asks it.
+        chart: Map between its coordinates and ours.
+        frames: Links that are the subject's frames.
+        capabilities: Quantities that it offers on this route.
+        most_states: Largest number of states in one call.
+        without_frames: Makes the same model without links for frames: that of joint wrenches.
+    """
+
+    name: str
+    version: str
+    answers: SourceModel
+    chart: Chart
+    frames: tuple[int, ...] = ()
+    capabilities: frozenset[str] = frozenset(FUNCTIONS)
+    most_states: int = 10**9
+    without_frames: Callable[[], SourceModel] | None = None
+
+    @property
+    def model(self) -> Any:
+        """The engine's own object, for those who step or time it."""
+        return self.answers.names["m"]
+
+    def asked(self, function: str, states: States, model: SourceModel | None = None) -> Array:
+        """A function of the matrix at N states, in the engine's own coordinates and speeds (N, ...).
+
+        Raises:
+            ValueError: The engine refuses.
+        """
+        chart, none = self.chart, np.zeros(self.chart.nv)
+        q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
+        a, tau = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
+        asked = [State(*row, none, row[0]) for row in zip(q, v, a, tau, strict=True)]
+        values = (model or self.answers).each(function, asked)
+        if isinstance(values, Unsupported):
+            raise ValueError(values.reason)
+        return values
+
+    def _of_frames(self, function: str, states: States) -> Array:
+        return self.asked(function, states)[:, list(self.frames)]
+
+    def _jacobians(self, function: str, states: States) -> Array:
+        """Of frames (N, F, 6, nv): some bindings turn a matrix of one column into a vector."""
+        return self._of_frames(function, states).reshape(len(states), len(self.frames), 6, self.chart.nv)
+
+    def mass_matrix(self, states: States) -> Array:
+        """M (N, nv, nv)."""
+        return self.chart.mass_matrix(states.q, self.asked("mass_matrix", states))
+
+    def bias(self, states: States) -> Array:
+        """Coriolis, centrifugal and gravity forces h (N, nv)."""
+        h = self.asked("bias", states)
+        if not self.chart.turns:
+            return self.chart.our_forces(states.q, h)
+        return self.chart.bias(states.q, states.v, h, self.asked("mass_matrix", states))
+
+    def kinetic_energy(self, states: States) -> Array:
+        """Kinetic energy (N,) [J]."""
+        return self.asked("kinetic_energy", states)
+
+    def potential_energy(self, states: States) -> Array:
+        """Gravitational potential energy (N,) [J]."""
+        return self.asked("potential_energy", states)
+
+    def inverse_dynamics(self, states: States) -> Array:
+        """M a + h - passive (N, nv)."""
+        return self.chart.our_forces(states.q, self.asked("inverse_dynamics", states)) - states.passive
+
+    def forward_dynamics(self, states: States) -> Array:
+        """M^-1 (applied - h) (N, nv)."""
+        return self.chart.our_accelerations(states.q, states.v, self.asked("forward_dynamics", states))
+
+    def joint_wrenches(self, states: States) -> Array:
+        """Wrenches of the joints (N, joints, 6); of one that is a series of simple ones, that of the last."""
+        movers = [slot.mover for slot in self.chart.slots]
+        last = [k for k in range(len(movers)) if k + 1 == len(movers) or not movers[k + 1].continues]
+        return self.asked("joint_wrenches", states, self._bare)[:, last]
+
+    @cached_property
+    def _bare(self) -> SourceModel | None:
+        return None if self.without_frames is None else self.without_frames()
+
+    def frame_pose(self, states: States) -> Array:
+        """p_WF and the rows of R_WF (N, F, 12)."""
+        return self._of_frames("link_poses", states)
+
+    def frame_velocity(self, states: States) -> Array:
+        """Velocities of the frames' origins and angular velocities, in world axes (N, F, 6)."""
+        return self._of_frames("link_velocities", states)
+
+    def frame_acceleration(self, states: States) -> Array:
+        """The time derivative of frame_velocity (N, F, 6)."""
+        return self._of_frames("link_accelerations", states)
+
+    def frame_jacobian(self, states: States) -> Array:
+        """frame_velocity = J v (N, F, 6, nv)."""
+        return self.chart.jacobian(states.q, self._jacobians("link_jacobians", states))
+
+    def frame_jacobian_rate(self, states: States) -> Array:
+        """dJ/dt (N, F, 6, nv)."""
+        J_rate = self._jacobians("link_jacobian_rates", states)
+        if not self.chart.turns:
+            return J_rate @ self.chart.transform(states.q)[:, None]
+        return self.chart.jacobian_rate(states.q, states.v, self._jacobians("link_jacobians", states), J_rate)
+
+
+def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:
+    """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs."""
+    names = frozenset(name for name, function in FUNCTIONS.items() if function in functions) & QUANTITIES.keys()
+    return names - ({"potential_energy"} if stores_energy(subject.system) else set())
+
+
+def build(
+    engine: str, subject: Subject, joints: Collection[PartKind], whole: bool, merged: bool
+) -> ChartedEngine | Unsupported:
+    """An engine's model of a rigid description, by its plug-in.
+
+    Args:
+        engine: Name of the plug-in.
+        subject: The subject.
+        joints: Kinds of simple joints that the engine has.
+        whole: See `stated`.
+        merged: See `stated`.
+    """
+    obstacle = unrepresented(subject.system, subject.assembly, joints)
+    if obstacle is not None:
+        return obstacle
+    plugin, described = OWN[engine], stated(subject, whole, merged)
+    model = plugin.build(described.tree)
+    if isinstance(model, Unsupported):
+        return model
+    assert isinstance(model, SourceModel)
+
+    def without_frames() -> SourceModel:
+        bare = plugin.build(stated(replace(subject, frames=()), whole, merged=True).tree)
+        assert isinstance(bare, SourceModel)  # As the whole is.
+        return bare
+
+    return ChartedEngine(
+        engine,
+        plugin.version(),
+        model,
+        chart_of(model, described),
+        described.frames,
+        offered(plugin.functions, subject),
+        without_frames=without_frames,
+    )
