@@ -102,6 +102,8 @@ if TYPE_CHECKING:
     from symofros.simulation.results.trajectory import Trajectory as Trajectory
     from symofros.simulation.simulate import simulate as simulate
     from symofros.simulation.simulate_batch import simulate_batch as simulate_batch
+    from symofros.simulation.stepper import Stepper as Stepper
+    from symofros.simulation.steppers import Steppers as Steppers
     from symofros.studio.advice.advice import Advice as Advice
     from symofros.studio.advice.scene import Output as Output
     from symofros.studio.advice.scene import Scene as Scene

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
@@ -15,7 +13,7 @@ import typer
 from typer.core import TyperCommand
 
 import symofros as sf
-from symofros.commands.grammar import Group, program
+from symofros.commands.grammar import TableGroup, program
 from symofros.errors import did_you_mean
 
 # Name -> module and function. A module is imported when its command is asked for: others need a second of imports.
@@ -47,51 +45,25 @@ def _command(name: str) -> Any:
     return typer.main.get_group(single).commands[name]
 
 
-def _listed(name: str) -> Any:
-    """A command for lists alone: its docstring is read from the source, which takes a tenth of importing it."""
-    module, function = _COMMANDS[name]
-    spec = find_spec(module)
-    try:
-        body = ast.parse(Path(str(spec and spec.origin)).read_text(encoding="utf-8")).body
-    except OSError:  # Sources are not always files.
-        return _command(name)
-    (stated,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == function)
-    return TyperCommand(name, help=ast.get_docstring(stated), rich_markup_mode=None)
-
-
-class Commands(Group):
+class Commands(TableGroup):
     """Commands of the table. Typer's own copy of Click has no public types."""
 
-    _listing = False
+    table = _COMMANDS
 
-    def list_commands(self, ctx: Any) -> list[str]:
-        """Names of all commands."""
-        return [*_COMMANDS]
-
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+    def made(self, name: str) -> Any:
         """A command by its name."""
-        if cmd_name not in _COMMANDS:
-            return None
-        return _listed(cmd_name) if self._listing else _command(cmd_name)
+        return _command(name)
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """The list of all commands in the help."""
-        with self._names_alone():
-            super().format_commands(ctx, formatter)
-
-    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
-        """Names of commands that begin so."""
-        with self._names_alone():
-            return super().shell_complete(ctx, incomplete)
-
-    @contextmanager
-    def _names_alone(self) -> Iterator[None]:
-        """Commands are asked for to be listed, which imports none."""
-        self._listing = True
+    def listed(self, name: str) -> Any:
+        """A command for lists alone: its docstring is read from the source, which takes a tenth of importing it."""
+        module, function = _COMMANDS[name]
+        spec = find_spec(module)
         try:
-            yield
-        finally:
-            self._listing = False
+            body = ast.parse(Path(str(spec and spec.origin)).read_text(encoding="utf-8")).body
+        except OSError:  # Sources are not always files.
+            return _command(name)
+        (stated,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == function)
+        return TyperCommand(name, help=ast.get_docstring(stated), rich_markup_mode=None)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that arguments begin with; another name is refused with the nearest."""

@@ -1,4 +1,4 @@
-"""What tools that look inside the generator may use: a harness, a profiler, a study of passes.
+"""What tools that look inside the generator may use: a harness, a profiler.
 
 Everything here is public beside `symofros` itself and `symofros.blocks`; all else inside the package may change without
 notice. Each name has its reason:
@@ -9,14 +9,12 @@ notice. Each name has its reason:
 | evaluate_edges, evaluate_precisely | programs evaluated without C, in doubles or in as many digits as wanted |
 | count_program | operations of a program |
 | Evaluators | one program state by state, by vectors, by the interpreter, against each other |
-| ABLATIONS, Ablation | programs generated without one pass |
 | DEFAULT_FLAGS, find_toolchain, cpu_identity | provenance of a measurement, builds of peers by the same compiler |
 | cache_folder, create_cache_folder, is_intact, install | builds of peers in the folder that nobody else can write to |
 | CODE_IDENTITY, source_digest | results that only the same code may continue: campaigns |
 | METHODS | the table of integrators: which adapt their steps, which are implicit |
 | fixed_step_loop | the C loop of an integrator, called without the recording around it: timing |
 | Numbers, Precision, Strided, columns | batches as the C functions by vectors take them: timing |
-| Jitter, jitter_of | how late the instants of a run in real time began |
 | CudaModel, DeviceArray, Driver, KernelUsage, compile_cuda, present | kernels and copies on a graphics processor |
 | states_per_second | the rate of a kernel there |
 | write_atomically | files that a reader never sees half written |
@@ -41,8 +39,6 @@ from symofros.base.stored import stored_lines as stored_lines
 from symofros.compiler import Compilation
 from symofros.description.system import System
 from symofros.description.visual import Visual as Visual
-from symofros.diagrams.run.jitter import Jitter as Jitter
-from symofros.diagrams.run.jitter import jitter_of as jitter_of
 from symofros.expr.edges import Edge as Edge
 from symofros.expr.graph import Graph as Graph
 from symofros.expr.numerics.evaluate import evaluate_edges as evaluate_edges
@@ -53,8 +49,6 @@ from symofros.expr.ops import MUL as MUL
 from symofros.expr.ops import OPS as OPS
 from symofros.expr.program import Function as Function
 from symofros.expr.program import Program as Program
-from symofros.generator.ablation import ABLATIONS as ABLATIONS
-from symofros.generator.ablation import Ablation as Ablation
 from symofros.generator.passes.count import count_program as count_program
 from symofros.runtime.build.cache import cache_folder as cache_folder
 from symofros.runtime.build.cache import create_cache_folder as create_cache_folder

@@ -51,7 +51,7 @@ sys.dont_write_bytecode = False
 # compilation do without, but for files that are drawn by the day, for runs with --slow or a part of it and for
 # benchmarks, which compile as users do.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
-_OPTIMISED = {"docs", "generator", "native"}
+_OPTIMISED = {"generator", "native"}
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None

@@ -7,11 +7,15 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from symofros.runtime.cuda import cuda_model
 from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.cuda.driver import Driver
 from tests.late import needs_program, with_utilities
 
 SHIM = Path(__file__).parent / "cuda_shim.h"
+_DRIVER = Path(__file__).parent / "runtime/cuda/driver_on_host.c"
 # As the C code is compiled: products and sums are not fused, so that results agree bit for bit.
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-Wno-unknown-pragmas")
 FLAGS = ("-x", "c++", "-std=c++17", "-O0", "-ffp-contract=off", "-fPIC", "-shared", *WARNINGS)
@@ -53,6 +57,31 @@ def on_host(code: DeviceCode, folder: Path, sources: str = "") -> Path:
     return library
 
 
+def host_driver(folder: Path) -> Driver:
+    """A driver whose processor is the host."""
+    library = folder / "libcuda.so.1"
+    subprocess.run(["gcc", "-shared", "-fPIC", _DRIVER, "-o", library, "-ldl"], check=True)
+    return Driver(ctypes.CDLL(str(library)))
+
+
+def compile_on_host(patch: pytest.MonkeyPatch, driver: Driver, folder: Path) -> None:
+    """Models on a graphics processor take this driver, and their kernels are compiled as C++ of the host."""
+    known: dict[str, Path] = {}
+    code = cuda_model.CudaModel.code
+
+    def seen(self: cuda_model.CudaModel, name: str, frame: str = "") -> DeviceCode:
+        found = code(self, name, frame)
+        if found.text not in known:
+            place = folder / str(len(known))
+            place.mkdir()
+            known[found.text] = on_host(found, place)
+        return found
+
+    patch.setattr(cuda_model.CudaModel, "code", seen)
+    patch.setattr(cuda_model, "driver", lambda: driver)
+    patch.setattr(cuda_model, "compile_cuda", lambda text, *_: str(known[text]).encode() + b"\0")
+
+
 def launch(library: ctypes.CDLL, symbol: str, n: int, pre: np.ndarray, *arguments: object, block: int = 32) -> None:
     given = [ctypes.c_longlong(n), ctypes.c_void_p(pre.ctypes.data), *arguments]
     addresses = (ctypes.c_void_p * len(given))(*(ctypes.addressof(x) for x in given))
@@ -63,7 +92,3 @@ def strided(array: np.ndarray) -> Strided:
     """An array (n, ...) whose entries of a state lie at equal distances."""
     entry = array.strides[-1] if array.ndim > 1 else array.itemsize
     return Strided(array.ctypes.data, entry // array.itemsize, array.strides[0] // array.itemsize)
-
-
-def by_columns(array: np.ndarray, dtype: type) -> np.ndarray:
-    return np.asfortranarray(array, dtype=dtype)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -133,7 +134,7 @@ def interpreted(system: sf.System) -> sf.Model:
     return sf.compile(system, sf.Options(backend="interpreter"))
 
 
-def parametrised(system: sf.System, seed: int = 0) -> sf.System:
+def parametrised(system: sf.System) -> sf.System:
     """The same mechanism with masses, positions and moments as run-time parameters."""
     parameters: list[sf.Parameter] = []
 
@@ -145,24 +146,8 @@ def parametrised(system: sf.System, seed: int = 0) -> sf.System:
     for body in system.bodies:
         inertia = body.inertia
         if inertia is not None:
-            inertia = sf.Inertia(
-                named(inertia.mass),
-                tuple(map(named, inertia.center_of_mass)),
-                tuple(map(named, inertia.moments)),
-                inertia.about,
-                inertia.rotation,
-            )
-        joint = body.joint
-        if joint is not None:
-            joint = sf.Joint(
-                joint.name,
-                joint.kind,
-                joint.parent,
-                joint.frame,
-                tuple(map(named, joint.position)),
-                joint.rotation,
-                joint.axis,
-                joint.actuated,
-            )
-        bodies.append(sf.RigidBody(body.name, joint, inertia, body.frames))
-    return sf.System(system.name, bodies, parameters, gravity=system.gravity)
+            mass, center = named(inertia.mass), tuple(map(named, inertia.center_of_mass))
+            inertia = replace(inertia, mass=mass, center_of_mass=center, moments=tuple(map(named, inertia.moments)))
+        joint = body.joint and replace(body.joint, position=tuple(map(named, body.joint.position)))
+        bodies.append(replace(body, joint=joint, inertia=inertia))
+    return replace(system, bodies=tuple(bodies), parameters=tuple(parameters))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 
 import pytest
 
 from tests.absent import by_need, summary
 from tests.docs.pages import ROOT
-from tests.late import needs_extra, require
+from tests.late import late, needs_extra, require
 
 
 def test_what_was_left_out_is_counted_by_what_it_takes() -> None:
@@ -35,3 +36,11 @@ def test_extras_that_tests_name_are_those_of_the_distribution() -> None:
     asks = re.compile(r'(?<![\w.])(?:require|late)\("[\w.]+", "([\w-]+)"\)')
     named = {extra for path in (ROOT / "tests").rglob("*.py") for extra in asks.findall(path.read_text())}
     assert len(named) > 10 and named <= set(extras)
+
+
+def test_what_pytest_asks_of_every_name_imports_nothing() -> None:
+    sys.modules.pop("nturl2path", None)
+    module = late("nturl2path")
+    assert not any(hasattr(module, name) for name in ("__test__", "__bases__", "__wrapped__", "_mock_name"))
+    assert "nturl2path" not in sys.modules
+    assert callable(module.pathname2url) and "nturl2path" in sys.modules

@@ -21,7 +21,8 @@ SOURCES = sorted(path for path in Path(sf.__file__).parent.rglob("*.py") if path
 def statements() -> Iterator[tuple[str, list[ast.expr]]]:
     """Every place in the source that states a problem, with its arguments; an extra stands for its remedy."""
     for path in SOURCES:
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if "Problem" in text else ():
             if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Problem", "Problem.of_extra"):
                 yield f"{path.name}:{node.lineno}", node.args
 

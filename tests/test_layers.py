@@ -89,11 +89,8 @@ ALLOWED = table("""
     # The editor checks documents itself, and hands the rest to workers that use the front doors.
     studio.editor: base errors expr description mechanics.beams mechanics.topology
         runtime compiler simulation diagrams diagrams.files exports studio.viewer harness __init__
-    # Passes left out in turn, for studies: their context managers reach into every stage.
-    generator.ablation: base expr mechanics.spatial mechanics.dynamics generator.passes generator.codegen
-        runtime
     # What tools that look inside may use; nothing in the package imports it.
-    tools: base description compiler expr generator.passes generator.ablation runtime simulation diagrams
+    tools: base description compiler expr generator.passes runtime simulation diagrams
         studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
         exports interop studio.advice studio.viewer
@@ -125,15 +122,14 @@ STUDIES = table("""
     diagrams:
     accuracy:
     timing:      oracle
-    passes:      timing
     environments: timing
     cuda:        timing
-    stability:   accuracy
+    stability:
     studies:     oracle timing
     pareto:      stability timing
     adversary:   accuracy
     mutation:
-    dashboard:   adversary cross_check cuda environments campaigns diagrams accuracy timing passes stability
+    dashboard:   adversary cross_check cuda environments campaigns diagrams accuracy timing stability
                  studies pareto mutation
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.

@@ -1,4 +1,4 @@
-"""Every public function with every argument of a wrong type or value: done, or refused in four parts."""
+"""Every public method with every argument of a wrong type or value: done, or refused in four parts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,6 @@ WRONG: tuple[Any, ...] = (
     *(np.array(["a"]), np.array([1 + 2j]), np.zeros((2, 0)), datetime.date(2020, 1, 1)),
 )
 Q, V, U = (0.1, 0.2), (0.0, 0.0), (0.0,)
-TARGETS = {"tip": sf.Target(position=(0.1, 0.0, 0.5))}
 
 
 @cache
@@ -40,9 +39,8 @@ def model() -> sf.Model:
     return sf.compile(system())
 
 
-@cache
-def four_bar() -> sf.Model:
-    return sf.compile(sf.load(MODELS / "closed/four_bar.yaml"))
+def stepped_once(u: Any = None, steps: Any = 1) -> bool:
+    return sf.Stepper(model()).step(u, steps)
 
 
 def diagram() -> sf.Diagram:
@@ -52,43 +50,11 @@ def diagram() -> sf.Diagram:
     return d
 
 
-def motion() -> dict[str, Any]:
-    still = np.zeros((1, 3))
-    return {"positions": model().frame_pose("tip", [Q])[0], "velocities": still, "accelerations": still}
-
-
-# Name -> a function, and arguments that it takes.
+# Methods (functions are asked in tests/test_public_nonsense.py): name -> a function, and arguments that it takes.
 CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
-    "load": lambda: (sf.load, {"path": MODELS / "arm.urdf"}),
-    "save": lambda: (sf.save, {"system": system(), "path": "saved.yaml"}),
-    "compile": lambda: (sf.compile, {"system": system()}),
-    "compile_library": lambda: (
-        sf.compile_library,
-        {"system": system(), "options": sf.Options(functions=("mass_matrix",))},
-    ),
-    "program_of": lambda: (sf.program_of, {"system": system(), "functions": ["mass_matrix"]}),
-    "equations": lambda: (sf.equations, {"system": system()}),
-    "Options": lambda: (sf.Options, {}),
-    "simulate": lambda: (sf.simulate, {"model": model(), "q0": Q, "t_end": 0.002}),
-    "simulate_batch": lambda: (sf.simulate_batch, {"model": model(), "q0": [Q, Q], "t_end": 0.002}),
-    "SimulationOptions": lambda: (sf.SimulationOptions, {}),
-    "Event": lambda: (sf.Event, {"formula": "q"}),
-    "Signal": lambda: (sf.Signal, {"t": [0, 1], "values": [1, 2]}),
-    "equilibrium": lambda: (sf.equilibrium, {"model": model(), "q": Q, "held": ["x", "q"]}),
-    "modes": lambda: (sf.modes, {"model": model(), "q": Q}),
-    "state_space": lambda: (sf.state_space, {"model": model(), "q": Q}),
-    "assemble": lambda: (sf.assemble, {"model": four_bar(), "q": [1.2, -1.0, 1.3]}),
-    "actuator_efforts": lambda: (sf.actuator_efforts, {"model": model(), "q": Q, "v": V, "a": V}),
-    "inverse_kinematics": lambda: (sf.inverse_kinematics, {"model": model(), "targets": TARGETS, "iterations": 3}),
-    "joint_motion": lambda: (sf.joint_motion, {"model": model(), "frame": "tip", **motion()}),
-    "base_parameters": lambda: (sf.base_parameters, {"model": model(), "samples": 20}),
-    "rollout": lambda: (sf.rollout, {"model": model(), "q0": Q, "v0": V, "u": np.zeros((3, 1)), "dt": 0.01}),
-    "export": lambda: (sf.export, {"model": system(), "target": "urdf", "folder": "out"}),
-    "load_scene": lambda: (sf.load_scene, {"path": MODELS / "flexible/scenes/spinning_beam.yaml"}),
-    "advise": lambda: (sf.advise, {"system": system()}),
-    "load_diagram": lambda: (sf.load_diagram, {"path": "d.yaml"}),
-    "save_diagram": lambda: (sf.save_diagram, {"diagram": diagram(), "path": "d.yaml"}),
-    "Simulation": lambda: (sf.Simulation, {"diagram": diagram()}),
+    "Stepper.reset": lambda: (sf.Stepper(model()).reset, {"q": Q}),
+    "Stepper.step": lambda: (stepped_once, {"u": U}),
+    "Stepper.restore": lambda: (sf.Stepper(model()).restore, {"state": None}),
     "Simulation.run": lambda: (sf.Simulation(diagram()).run, {"t_end": 0.01}),
     "Simulation.interpret": lambda: (sf.Simulation(diagram()).interpret, {"t_end": 1.0, "dt": 0.5, "compiled": False}),
     "Diagram.add_model": lambda: (diagram().add_model, {"name": "m", "system": system()}),

@@ -38,8 +38,12 @@ def sound() -> dict[str, Any]:
     system = sf.System("s", (link,))
     model = sf.compile(system, sf.Options(backend="interpreter"))
     zero = np.zeros(1)
-    sound = {"model": model, "system": system, "source": system, "path": "none.yaml", "t_end": 0.01}
-    return sound | dict.fromkeys(("q", "v", "q0", "v0"), zero)
+    sound = {"model": model, "system": system, "source": system, "path": "none.yaml", "t_end": 0.01, "dt": 0.005}
+    sound |= {"options": sf.Options(), "functions": ["mass_matrix"], "target": "urdf", "folder": "out", "formula": "a"}
+    sound |= {"targets": {"a": sf.Target(position=(0.1, 0.0, 0.5))}, "frame": "a", "samples": 20}
+    sound |= {"t": [0.0, 1.0], "values": [1.0, 2.0], "diagram": sf.Diagram("d"), "u": np.zeros((3, 0))}
+    sound |= dict.fromkeys(("positions", "velocities", "accelerations"), np.zeros((1, 3)))
+    return sound | dict.fromkeys(("q", "v", "a", "q0", "v0"), zero)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -71,7 +75,7 @@ def _called(function: Any, stated: dict[str, Any], shown: str) -> None:
             warnings.simplefilter("ignore")
             function(**stated)
     except sf.SymofrosError as error:
-        assert str(error), shown
+        assert all(p.what and p.found and p.rule and p.remedy for p in error.problems), f"{shown}: {error}"
     except TypeError as error:  # Python's own, of a call that does not fit the signature.
         traceback = error.__traceback__
         assert traceback is not None and traceback.tb_next is not None, shown

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import difflib
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from importlib import import_module
 from types import ModuleType
@@ -15,7 +13,7 @@ import typer
 from typer.core import TyperCommand
 
 import symofros as sf
-from symofros.commands.grammar import BAD_INPUT, Group, program
+from symofros.commands.grammar import BAD_INPUT, TableGroup, program
 
 from .commands import COMMANDS, EXTRAS, RETIRED
 
@@ -45,19 +43,15 @@ def command(name: str) -> Any:
     return typer.main.get_group(single).commands[name]
 
 
-class Commands(Group):
+class Commands(TableGroup):
     """Commands of the table. Typer's own copy of Click has no public types."""
 
-    _listing = False
+    table = COMMANDS
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options without a command are those of `check`."""
         is_check = not args or (args[0].startswith("-") and "--help" not in args)
         return super().parse_args(ctx, ["check", *args] if is_check else args)
-
-    def list_commands(self, ctx: Any) -> list[str]:
-        """Names of all commands."""
-        return [*COMMANDS]
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """The command that arguments begin with; another name is refused with the nearest."""
@@ -65,37 +59,18 @@ class Commands(Group):
             near = difflib.get_close_matches(args[0], COMMANDS, n=1)
             remedy = f"did you mean '{near[0]}'?" if near else "check MODEL cross-checks a model"
             if args[0] in RETIRED:
-                remedy = f"its question is answered by '{RETIRED[args[0]]}'"
+                remedy = f"its question is answered by {RETIRED[args[0]]}"
             print(sf.Problem(f"no command '{args[0]}'", args[0], ", ".join(COMMANDS), remedy), file=sys.stderr)
             raise SystemExit(BAD_INPUT)
         return super().resolve_command(ctx, args)
 
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+    def made(self, name: str) -> Any:
         """A command by its name."""
-        if cmd_name not in COMMANDS:
-            return None
-        if self._listing:
-            return TyperCommand(cmd_name, help=COMMANDS[cmd_name].summary, rich_markup_mode=None)
-        return command(cmd_name)
+        return command(name)
 
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """The list of all commands in the help."""
-        with self._names_alone():
-            super().format_commands(ctx, formatter)
-
-    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
-        """Names of commands that begin so."""
-        with self._names_alone():
-            return super().shell_complete(ctx, incomplete)
-
-    @contextmanager
-    def _names_alone(self) -> Iterator[None]:
-        """Commands are asked for to be listed, which imports none."""
-        self._listing = True
-        try:
-            yield
-        finally:
-            self._listing = False
+    def listed(self, name: str) -> Any:
+        """A command for lists alone."""
+        return TyperCommand(name, help=COMMANDS[name].summary, rich_markup_mode=None)
 
 
 if __name__ == "__main__" and not {"--help", "--json"} & set(sys.argv):

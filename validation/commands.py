@@ -52,11 +52,6 @@ COMMANDS = {
         "Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.",
     ),
     "rollouts": Command("studies.reports.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
-    "realtime": Command("studies.reports.realtime", "Keep pace with the clock, and say how well."),
-    "passes": Command(
-        "passes.report",
-        "Measure what each pass of the generator gains: the same models with one of them left out.",
-    ),
     "exports": Command(
         "studies.reports.exports",
         "Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C.",
@@ -87,7 +82,11 @@ COMMANDS = {
 }
 
 # Command that is gone -> what answers its question.
-RETIRED = {"simulation": "pareto"}
+RETIRED = {
+    "simulation": "'pareto'",
+    "realtime": "`symofros simulate DIAGRAM --realtime --jitter FILE`, of your own diagram",
+    "passes": "docs/theory/code.md, which says what each gained, and 'timing', which races what they make",
+}
 
 # Package, by the name that it is imported under -> the extra that brings it, of those that `validation` does not.
 EXTRAS = {"dask": "campaign", "distributed": "campaign", "pyarrow": "parquet", "pytest": "test"}

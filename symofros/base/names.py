@@ -142,11 +142,3 @@ def local_name(label: str, node: int) -> str:
     head, *rest = [_ILLEGAL.sub("_", part).strip("_") for part in re.split(r"[\[\]]+", label)]
     tail = "_".join(part for part in rest if part)
     return f"{head}__{tail[:_MAX_LENGTH]}_{node}" if tail else f"{head}_{node}"
-
-
-def c_string(text: str) -> str:
-    """A C string literal; bytes outside printable ASCII become octal escapes."""
-    escaped = "".join(
-        chr(byte) if 32 <= byte < 127 and chr(byte) not in '\\"?' else f"\\{byte:03o}" for byte in text.encode()
-    )
-    return f'"{escaped}"'

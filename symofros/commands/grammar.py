@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import typer
 from typer.core import TyperGroup
@@ -56,6 +57,50 @@ class Group(TyperGroup):
             raise
         except (SymofrosError, OSError) as error:
             raise import_module("symofros.commands.shared").refuse(error) from None
+
+
+class TableGroup(Group, ABC):
+    """Commands of a table, whose modules are imported when they are asked for; to be listed, none is."""
+
+    table: ClassVar[Mapping[str, Any]]
+    _listing = False
+
+    @abstractmethod
+    def made(self, name: str) -> Any:
+        """A command of the table."""
+
+    @abstractmethod
+    def listed(self, name: str) -> Any:
+        """The same for lists alone."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Names of all commands."""
+        return [*self.table]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """A command by its name."""
+        if cmd_name not in self.table:
+            return None
+        return self.listed(cmd_name) if self._listing else self.made(cmd_name)
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """The list of all commands in the help."""
+        with self._names_alone():
+            super().format_commands(ctx, formatter)
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
+        """Names of commands that begin so."""
+        with self._names_alone():
+            return super().shell_complete(ctx, incomplete)
+
+    @contextmanager
+    def _names_alone(self) -> Iterator[None]:
+        """Commands are asked for to be listed, which imports none."""
+        self._listing = True
+        try:
+            yield
+        finally:
+            self._listing = False
 
 
 def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:

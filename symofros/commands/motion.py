@@ -188,18 +188,11 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
     cost, drift = run.statistics, float(run.energy[-1] - run.energy[0])
     last = {name: float(column[-1]) for name, column in run.columns().items()}
     if as_json:
-        outcome = {
-            "kind": run.outcome.kind,
-            "t": run.outcome.t,
-            "reason": run.outcome.reason,
-            "advice": run.outcome.advice,
-            "notes": list(run.outcome.notes),
-        }
         print(
             json.dumps(
                 {
                     "ok": run.outcome.ok,
-                    "outcome": outcome,
+                    "outcome": run.outcome.as_data(),
                     "statistics": asdict(cost),
                     "last": last,
                     "energy_change": drift,

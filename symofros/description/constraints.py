@@ -30,9 +30,34 @@ def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
     return tuple(axis for axis in AXES if axis in stated)
 
 
+class _OnCoordinates:
+    """A condition on coordinates, which bears the name of its constraint unless that has several."""
+
+    name: str
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """One condition."""
+        return (self.name,)
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """Those that bind speeds only: none."""
+        return ()
+
+
+class _OnSpeeds(_OnCoordinates):
+    """A condition that binds speeds only."""
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """It binds speeds only."""
+        return self.conditions
+
+
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class Closure:
+class Closure(_OnCoordinates):
     """Two frames that stay together in some directions: it closes a loop of the tree.
 
     Attributes:
@@ -70,15 +95,10 @@ class Closure:
         """Names of its conditions: closure.x for a translation, closure.rx for a rotation."""
         return (*(f"{self.name}.{x}" for x in self.translations), *(f"{self.name}.r{x}" for x in self.rotations))
 
-    @property
-    def on_speeds(self) -> tuple[str, ...]:
-        """None of them binds speeds only."""
-        return ()
-
 
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class Rod:
+class Rod(_OnCoordinates):
     """A massless rod: the distance between two frames' origins stays the same.
 
     Attributes:
@@ -97,20 +117,10 @@ class Rod:
         """Convert the length."""
         object.__setattr__(self, "length", as_value(self.length, f"rod '{self.name}': length"))
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """One condition."""
-        return (self.name,)
-
-    @property
-    def on_speeds(self) -> tuple[str, ...]:
-        """None of them binds speeds only."""
-        return ()
-
 
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class Coupling:
+class Coupling(_OnCoordinates):
     """A condition on coordinates by formula, such as a gear or a joint that mimics another.
 
     Attributes:
@@ -135,16 +145,6 @@ class Coupling:
                 )
             )
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """One condition."""
-        return (self.name,)
-
-    @property
-    def on_speeds(self) -> tuple[str, ...]:
-        """None of them binds speeds only."""
-        return ()
-
 
 def mimicry(follower: str, leader: str, multiplier: float, offset: float) -> Coupling:
     """The coupling of a joint that mimics another: q_follower = multiplier q_leader + offset.
@@ -161,7 +161,7 @@ def mimicry(follower: str, leader: str, multiplier: float, offset: float) -> Cou
 
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class KnifeEdge:
+class KnifeEdge(_OnSpeeds):
     """A frame that moves along its own axes, but for one: an edge, or a thin wheel that may slip along.
 
     Attributes:
@@ -178,20 +178,10 @@ class KnifeEdge:
         """Check the direction."""
         _axes((self.axis,), f"knife edge '{self.name}'")
 
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """One condition."""
-        return (self.name,)
-
-    @property
-    def on_speeds(self) -> tuple[str, ...]:
-        """It binds speeds only."""
-        return self.conditions
-
 
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class Rolling:
+class Rolling(_OnSpeeds):
     """A disc or a sphere that rolls without slipping on the horizontal plane z = height of the world.
 
     The first two conditions bind speeds; the third keeps the contact on the plane, and binds coordinates.
@@ -238,7 +228,7 @@ class Rolling:
 
 @refuses_unknown_entries
 @dataclass(frozen=True)
-class Nonholonomic:
+class Nonholonomic(_OnSpeeds):
     """A condition on speeds by formula: the sum of coefficient times speed equals a right-hand side.
 
     Attributes:
@@ -262,16 +252,6 @@ class Nonholonomic:
             raise DescriptionError(
                 Problem(f"{what}: binds no speed", "no coefficients", "a constraint has at least one", "name a speed")
             )
-
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """One condition."""
-        return (self.name,)
-
-    @property
-    def on_speeds(self) -> tuple[str, ...]:
-        """It binds speeds only."""
-        return self.conditions
 
 
 Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic

@@ -62,7 +62,7 @@ class Simulation:
 
         Args:
             t_end: End time [s]; the diagram's own where it states one.
-            settings: Fields of `DiagramOptions` in place of the diagram's own; `parameters`, `progress`
+            settings: Fields of `SimulationOptions` in place of the diagram's own; `parameters`, `threads`, `progress`
                 and `observer` as of `run_compiled`.
 
         Raises:

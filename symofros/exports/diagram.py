@@ -11,7 +11,8 @@ from string import Template
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.names import c_string, identifier
+from symofros.base.c_text import c_string, comment, doubles, integers, strings
+from symofros.base.names import identifier
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,
@@ -25,7 +26,6 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
-from symofros.exports.c.c_text import comment, doubles, integers, strings
 from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
 from symofros.exports.diagram_start import first_motion

@@ -10,10 +10,10 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved, compile_diagram
-from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import Placed, place_parts
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.starts import Start
+from symofros.diagrams.run.values import diagram_options, part_settings
 from symofros.exports.limits import joints_of, limits_note
 from symofros.exports.material import Stepping
 from symofros.simulation.analysis.kinematics.starts import singular_start
@@ -55,9 +55,11 @@ def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping)
     until = _CHECKED * max(base, stepping.dt)
     changes: dict[str, Any] = {name: getattr(stepping, name) for name in ("dt", "rtol", "atol", "beam_limit")}
     changes |= {"method": stepping.method.name, "record": until}
-    compiled, options = compile_diagram(resolved), DiagramOptions().changed(changes)
+    compiled, options = compile_diagram(resolved), diagram_options(None, changes)
     par = np.array(resolved.layout.par)
-    placed = place_parts(compiled, lambda model: options.settings(model, until), par, Start.of(resolved, options.t0))
+    placed = place_parts(
+        compiled, lambda model: part_settings(options, model, until), par, Start.of(resolved, options.t0)
+    )
     run = run_compiled(compiled, until, options)
     noted = [*_of_models(resolved, placed), *(note for part in placed for note in part.notes)]
     if run.outcome.kind != "finished":

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from symofros.base.c_text import comment
 from symofros.base.functions import FUNCTIONS, INPUTS
-from symofros.exports.c.c_text import comment
 from symofros.runtime.calls import Signature
 from symofros.runtime.record import ModelRecord
 

@@ -13,6 +13,7 @@ HEADERS = (
     "stepping/symofros_stepper.h",
     "stepping/symofros_instance.h",
     "stepping/symofros_batch.h",
+    "stepping/symofros_hand.h",
     "diagrams/symofros_diagram.h",
     "diagrams/symofros_program.h",
 )

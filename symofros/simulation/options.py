@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, ClassVar, Literal, Protocol, TypeVar
+from typing import Any, Literal
 
 from numpy.typing import ArrayLike
 
@@ -14,8 +14,11 @@ from symofros.errors import Problem, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
-# What the functions that take these options by name call their own arguments.
+# What the functions that take these options by name call their own arguments; those of runs of diagrams.
 _CALL = ("q0", "v0", "t_end", "u", "par")
+DIAGRAM_CALL = ("t_end", "parameters", "threads")
+# What runs of diagrams, their files and the command line call an option.
+_ALIASES = {"record": "output"}
 # Names that other tools have for options and arguments, in small letters, by ours: by spelling, `t` would be near `t0`.
 _OTHER_NAMES = {
     "t_end": "t tf t_f t1 tmax t_max tend t_final tfinal t_stop t_span time duration end end_time stop_time seconds",
@@ -35,7 +38,7 @@ _OURS = {name: ours for ours, names in _OTHER_NAMES.items() for name in names.sp
 
 @dataclass(frozen=True)
 class SimulationOptions(metaclass=CheckedCalls):
-    """How a run is stepped, kept on its constraints, and recorded.
+    """How a run is stepped, kept on its constraints, and recorded: of one model, of a batch, of a diagram.
 
     Attributes:
         method: Name of the stepping method. Fixed steps: "rk4", "semi_implicit_euler", "euler"; implicit, for stiff
@@ -51,7 +54,8 @@ class SimulationOptions(metaclass=CheckedCalls):
         max_step: Longest step of adaptive methods [s].
         max_steps: Number of steps after which the run ends; None for no bound.
         output: Times to record: None for every `every`-th step, an interval [s], or times (n) [s]. A batch records its
-            last state by default.
+            last state by default, a diagram about 2000 times in all; it takes an interval alone, and steps end at the
+            recorded times. `record` is the same.
         every: Number of steps between records where `output` is None; single runs only.
         stabilisation: How constraints are kept: "projection" onto them after each step, "baumgarte" by gains, or
             "none", by accelerations alone, which drifts.
@@ -80,40 +84,24 @@ class SimulationOptions(metaclass=CheckedCalls):
         """Refuse what is of another type."""
         check_fields(self)
 
-    def changed(self, changes: Mapping[str, Any]) -> SimulationOptions:
+    def changed(self, changes: Mapping[str, Any], arguments: Sequence[str] = _CALL) -> SimulationOptions:
         """These options with some fields replaced.
+
+        Args:
+            changes: Values by field.
+            arguments: Names of the other arguments of the call that they were given in, which may have been meant.
 
         Raises:
             UnknownNameError: A name is not that of a field.
         """
-        return with_changes(self, changes, _CALL)
-
-
-class _Dataclass(Protocol):
-    __dataclass_fields__: ClassVar[dict[str, Any]]
-
-
-_Options = TypeVar("_Options", bound=_Dataclass)
-
-
-def with_changes(options: _Options, changes: Mapping[str, Any], arguments: Sequence[str]) -> _Options:
-    """Options with some fields replaced.
-
-    Args:
-        options: Options, a dataclass.
-        changes: Values by field.
-        arguments: Names of the other arguments of the call that the changes were given in, which may have been meant.
-
-    Raises:
-        UnknownNameError: A name is not that of a field.
-    """
-    names = [item.name for item in fields(options)]
-    for name in changes:
-        if name not in names:
-            rule = f"options are the fields of {type(options).__name__}, beside the arguments {', '.join(arguments)}"
-            remedy = _meant(name, names, arguments)
-            raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
-    return replace(options, **changes)
+        names = [item.name for item in fields(self)]
+        chosen = {_ALIASES.get(name, name): value for name, value in changes.items()}
+        for name in chosen:
+            if name not in names:
+                rule = f"options are the fields of SimulationOptions, beside the arguments {', '.join(arguments)}"
+                remedy = _meant(name, names, arguments)
+                raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
+        return replace(self, **chosen)
 
 
 def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arguments import checked
+from symofros.base.arrays import Array
 from symofros.runtime.calls import native_library
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import event_notes, named_events
@@ -84,10 +85,26 @@ def simulate(
     span = settings.t0, settings.t_end
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
-    began, worked = time.perf_counter(), time.thread_time()
     with bar(progress, settings.t0, t_end) as show:
-        drive = run_sundials if settings.method.family.multistep else run_own
-        recorded = drive(stepper, q, v, settings, show)
+        return run_to_its_end(stepper, settings, q, v, show)
+
+
+def run_to_its_end(
+    stepper: Stepper, settings: Settings, q: Array, v: Array, show: Callable[[float], None] = lambda t: None
+) -> Trajectory:
+    """The trajectory of a run that is set up, with its outcome.
+
+    Args:
+        stepper: Stepper to which the settings were applied.
+        settings: Settings of the run.
+        q: First configuration (nq).
+        v: First speeds (nv).
+        show: Called with the time reached [s], now and then.
+    """
+    model, inputs, looked_for = stepper.model, stepper.inputs, stepper.events
+    began, worked = time.perf_counter(), time.thread_time()
+    drive = run_sundials if settings.method.family.multistep else run_own
+    recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
@@ -97,7 +114,7 @@ def simulate(
     met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
     statistics = _statistics(stepper, seconds, worked)
     t, q_all, v_all, u_all = states
-    return Trajectory(model, t, q_all, v_all, u_all, np.array(values), outcome, met, statistics, bendings)
+    return Trajectory(model, t, q_all, v_all, u_all, np.array(stepper.par), outcome, met, statistics, bendings)
 
 
 def prepare_run(model: Model, settings: Settings | None = None) -> None:

@@ -114,26 +114,16 @@ def simulate_batch(
         run_batch_steppers(steppers)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
-    q, v, u_samples = (_shaped(array, shape) for array in (results.q_samples, results.v_samples, results.u_samples))
+    kept = replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())
     return Trajectories(
-        model,
-        settings.grid,
-        q,
-        v,
-        u_samples,
-        shared,
-        _shaped(results.t, shape),
-        _shaped(results.q, shape),
-        _shaped(results.v, shape),
-        results.status.reshape(shape),
-        results.steps.reshape(shape),
-        results.rejected.reshape(shape),
-        _shaped(results.beam_errors, shape),
-        _shaped(results.beam_times, shape),
-        _shaped(results.beam_coordinates, shape),
-        settings.method.name,
-        *seconds,
-        BatchExamination(model, settings, replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())),
+        **results.shaped(shape),
+        model=model,
+        t=settings.grid,
+        par=shared,
+        method=settings.method.name,
+        seconds=seconds[0],
+        processor_seconds=seconds[1],
+        examination=BatchExamination(model, settings, kept),
     )
 
 
@@ -179,10 +169,6 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
         ) from None
 
 
-def _shaped(rows: Array, shape: Shape) -> Array:
-    return rows.reshape(shape + rows.shape[1:])
-
-
 def _contradiction(
     model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper
 ) -> Contradiction | None:
@@ -202,20 +188,28 @@ def _contradiction(
 def _off(model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper) -> npt.NDArray[np.bool_]:
     """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
     n = initial.n
-    off = np.zeros(n, dtype=np.bool_)
     if not model.nc:
-        return off
+        return np.zeros(n, dtype=np.bool_)
     u = initial.inputs.constant
     if model.record.driven:  # The motions of joints are inputs, by formulas too.
         q, v = np.broadcast_to(initial.q, (n, model.nq)), np.broadcast_to(initial.v, (n, model.nv))
         u = np.array([stepper.single.inputs_at(initial.t, q[i], v[i]) for i in range(n)])
+    off = starts_off(model, settings, initial.q, initial.v, u, initial.par, initial.t)
+    return np.broadcast_to(off, n) if len(off) == 1 else off
+
+
+def starts_off(
+    model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array, t: Array | float
+) -> npt.NDArray[np.bool_]:
+    """Which first states (n or 1, ...) are off the constraints (n)."""
     exact = model.with_precision("double")  # As states are.
-    for facing in facings(exact, initial.q, u, initial.par):
+    off = np.zeros(max(len(q), len(v), len(u)), dtype=np.bool_)
+    for facing in facings(exact, q, u, par):
         off |= facing.cosines < 0.0
     if settings.stabilisation == "baumgarte":
         return off
-    phi = exact.constraint(initial.q, u=u, par=initial.par, t=initial.t)
-    rate = exact.constraint_rate(initial.q, initial.v, u=u, par=initial.par, t=initial.t)
+    phi = exact.constraint(q, u=u, par=par, t=t)
+    rate = exact.constraint_rate(q, v, u=u, par=par, t=t)
     for values in (phi, rate):
         off |= ~np.all(np.abs(values) <= CLOSED, axis=-1)
     return off

@@ -11,13 +11,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.base.functions import (
-    DEFAULT_FRAME_FUNCTIONS,
-    DEFAULT_FUNCTIONS,
-    FRAME_FUNCTIONS,
     FUNCTIONS,
     INPUTS,
-    MODEL_FUNCTIONS,
-    exported,
     generated_with,
     size_of,
 )
@@ -124,17 +119,6 @@ def test_what_says_nothing_of_a_tree_is_generated_together() -> None:
     assert all(generated_with(name, False) == empty for name in empty)
 
 
-def test_exports_of_a_tree_lack_what_constraints_need() -> None:
-    assert set(exported(True)) - set(exported(False)) == {
-        "constraint",
-        "constraint_rate",
-        "constraint_jacobian",
-        "constraint_bias",
-        "project",
-    }
-    assert set(MODEL_FUNCTIONS) | set(FRAME_FUNCTIONS) == set(FUNCTIONS)
-
-
 @pytest.mark.parametrize("name", ["slider_crank", "double_pendulum"])
 def test_the_stiffness_at_rest_is_the_derivative_of_the_residual_there(name: str, rng: np.random.Generator) -> None:
     m, (q, _) = model(name), model(name).random_state(rng)
@@ -142,12 +126,3 @@ def test_the_stiffness_at_rest_is_the_derivative_of_the_residual_there(name: str
     (K,) = m.evaluate("rest_stiffness", q=q, u=u, lam=lam)
     by_q, _, _ = m.residual_derivatives(q, still, still, u, lam)
     np.testing.assert_allclose(K, by_q[: m.nv], atol=1e-13 * np.abs(by_q).max())
-
-
-def test_commands_generate_every_function_but_those_of_reverse_mode_and_second_order() -> None:
-    long = {"inverse_dynamics_second_derivatives", "inverse_dynamics_hvp"}
-    long |= {"inverse_dynamics_hessian", "forward_dynamics_hessian", "frame_position_hessian"}
-    asked_for_by_name = {name for name in FUNCTIONS if name.endswith("_vjp")} | long
-    generated = (*DEFAULT_FUNCTIONS, *DEFAULT_FRAME_FUNCTIONS)
-    assert set(generated) == set(FUNCTIONS) - asked_for_by_name and len(generated) == len(set(generated))
-    assert set(DEFAULT_FUNCTIONS) <= set(MODEL_FUNCTIONS) and set(DEFAULT_FRAME_FUNCTIONS) <= set(FRAME_FUNCTIONS)

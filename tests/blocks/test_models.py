@@ -105,64 +105,60 @@ also_flexible = pytest.mark.parametrize("name", sampled(tuple(CASES), (*SMALL, "
 
 
 @everywhere
-def test_direct_kinematics(name: str) -> None:
+def test_kinematics(name: str) -> None:
+    """Of one frame and of all, their Jacobians, and wrenches in their axes."""
     (q, v, a), m, at = states(name), model(name), frame(name)
-    found = through(name, ForwardKinematics(name="b", model="m", frame=at), q=q, v=v, a=a)
-    p, R = m.frame_pose(at, q)
-    np.testing.assert_allclose(found["p"], p, **CLOSE)
-    np.testing.assert_allclose(found["R"], R, **CLOSE)
-    np.testing.assert_allclose(found["velocity"], m.frame_velocity(at, q, v), **CLOSE)
-    np.testing.assert_allclose(found["acceleration"], m.frame_acceleration(at, q, v, a), **CLOSE)
-
-
-@everywhere
-def test_all_extremities_at_once(name: str) -> None:
-    (q, v, a), m = states(name), model(name)
     frames = [item for item in m.names.frames if item != "world"]
-    found = through(name, Extremities(name="b", model="m"), q=q, v=v, a=a)
-    for i, at in enumerate(frames):
-        np.testing.assert_allclose(found["p"][:, i], m.frame_pose(at, q)[0], **CLOSE)
-        np.testing.assert_allclose(found["velocity"][:, i], m.frame_velocity(at, q, v), **CLOSE)
-
-
-@everywhere
-def test_jacobians_and_their_rates(name: str) -> None:
-    (q, v, _), m, at = states(name), model(name), frame(name)
-    found = through(name, Jacobian(name="b", model="m", frame=at), q=q, v=v)
-    np.testing.assert_allclose(found["J"], m.frame_jacobian(at, q), **CLOSE)
-    np.testing.assert_allclose(found["rate"], m.frame_jacobian_rate(at, q, v), **CLOSE)
-    np.testing.assert_array_equal(np.concatenate([found["translation"], found["rotation"]], axis=1), found["J"])
-
-
-@everywhere
-def test_frame_transforms(name: str) -> None:
-    (q, _, _), m, at = states(name), model(name), frame(name)
     u = np.arange(6.0 * COUNT).reshape(COUNT, 6)
-    found = through(name, FrameTransform(name="b", model="m", source=at, quantity="wrench"), q=q, u=u)
+    one, every, slopes, wrench = through_each(
+        name,
+        (ForwardKinematics(name="one", model="m", frame=at), {"q": q, "v": v, "a": a}),
+        (Extremities(name="every", model="m"), {"q": q, "v": v, "a": a}),
+        (Jacobian(name="slopes", model="m", frame=at), {"q": q, "v": v}),
+        (FrameTransform(name="wrench", model="m", source=at, quantity="wrench"), {"q": q, "u": u}),
+    )
     p, R = m.frame_pose(at, q)
+    np.testing.assert_allclose(one["p"], p, **CLOSE)
+    np.testing.assert_allclose(one["R"], R, **CLOSE)
+    np.testing.assert_allclose(one["velocity"], m.frame_velocity(at, q, v), **CLOSE)
+    np.testing.assert_allclose(one["acceleration"], m.frame_acceleration(at, q, v, a), **CLOSE)
+    for i, other in enumerate(frames):
+        np.testing.assert_allclose(every["p"][:, i], m.frame_pose(other, q)[0], **CLOSE)
+        np.testing.assert_allclose(every["velocity"][:, i], m.frame_velocity(other, q, v), **CLOSE)
+    np.testing.assert_allclose(slopes["J"], m.frame_jacobian(at, q), **CLOSE)
+    np.testing.assert_allclose(slopes["rate"], m.frame_jacobian_rate(at, q, v), **CLOSE)
+    np.testing.assert_array_equal(np.concatenate([slopes["translation"], slopes["rotation"]], axis=1), slopes["J"])
     f = np.einsum("nij,nj->ni", R, u[:, :3])
     n = np.einsum("nij,nj->ni", R, u[:, 3:]) + np.cross(p, f)
-    np.testing.assert_allclose(found["y"], np.hstack([f, n]), **CLOSE)
+    np.testing.assert_allclose(wrench["y"], np.hstack([f, n]), **CLOSE)
 
 
 @also_flexible
-def test_inverse_dynamics_and_compensations(name: str) -> None:
+def test_inverse_dynamics_compensations_and_computed_torque(name: str) -> None:
     (q, v, a), m = states(name), model(name)
+    desired = m.integrate(q, 0.1 * a)
+    wanted = {"q_desired": desired, "v_desired": 0.3 * a, "a_desired": a, "q": q, "v": v}
     rubs = friction(name, q, v)
     tau = m.inverse_dynamics(q, v, a)
     scale = {"rtol": 1e-9, "atol": 1e-10 * max(1.0, np.abs(tau).max())}
     motion = {"q": q, "v": v, "a": a}
-    whole, without, friction_alone, held = through_each(
+    whole, without, friction_alone, held, control = through_each(
         name,
         (InverseDynamics(name="whole", model="m"), motion),
         (InverseDynamics(name="without", model="m", with_friction=False), motion),
         (FrictionCompensation(name="friction", model="m", factor=0.8), {"q": q, "v": v}),
         (GravityCompensation(name="gravity", model="m"), {"q": q}),
+        (ComputedTorque(name="control", model="m", kp=50.0, kd=12.0), wanted),
     )
     np.testing.assert_allclose(whole["tau"], tau, **scale)
     np.testing.assert_allclose(without["tau"], tau + rubs, **scale)
     np.testing.assert_allclose(friction_alone["effort"], -0.8 * rubs, **scale)
     np.testing.assert_allclose(held["effort"], m.inverse_dynamics(q, 0 * v, 0 * a), **scale)
+    # Whose error decays: its acceleration is that of an oscillator.
+    error = m.difference(q, desired)
+    np.testing.assert_allclose(control["error"], error, rtol=1e-9, atol=1e-12)
+    tau = m.inverse_dynamics(q, v, a + 50.0 * error + 12.0 * (0.3 * a - v))
+    np.testing.assert_allclose(control["tau"], tau, rtol=1e-9, atol=1e-10 * np.abs(tau).max())
 
 
 def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -176,18 +172,6 @@ def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         return 0 * v
     only = sf.compile(friction_only(system(name)))
     return only.generalized_force(q, v, np.zeros(only.nu)) * [item in has_friction for item in only.names.v]
-
-
-@everywhere
-def test_computed_torque_makes_the_error_decay(name: str) -> None:
-    (q, v, a), m = states(name), model(name)
-    desired = m.integrate(q, 0.1 * a)
-    block = ComputedTorque(name="b", model="m", kp=50.0, kd=12.0)
-    found = through(name, block, q_desired=desired, v_desired=0.3 * a, a_desired=a, q=q, v=v)
-    error = m.difference(q, desired)
-    np.testing.assert_allclose(found["error"], error, rtol=1e-9, atol=1e-12)
-    tau = m.inverse_dynamics(q, v, a + 50.0 * error + 12.0 * (0.3 * a - v))
-    np.testing.assert_allclose(found["tau"], tau, rtol=1e-9, atol=1e-10 * np.abs(tau).max())
 
 
 @everywhere

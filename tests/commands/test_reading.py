@@ -68,18 +68,8 @@ def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: 
 
 def test_an_export_which_steps_proposes_no_other_functions(tmp_path: Path) -> None:
     path = kinematic(tmp_path, 1)
-    told = invoke(
-        "export",
-        path,
-        "--target",
-        "c",
-        "--output",
-        tmp_path / "out",
-        "--functions",
-        "frame_pose",
-        "--waive",
-        "massless_tip",
-    )
+    asked = "--target", "c", "--functions", "frame_pose", "--waive", "massless_tip"
+    told = invoke("export", path, "--output", tmp_path / "out", *asked)
     said = " ".join(told.output.split())
     assert told.exit_code == 2 and "give it an inertia, or bind it by a constraint" in said
     assert "other functions" not in said
@@ -95,28 +85,16 @@ def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) ->
     assert told.exit_code == 2 and "opened as it stands" in told.output
 
 
-def test_pairs_are_names_and_texts() -> None:
+def test_pairs_are_names_and_texts_and_backquotes_hold_a_name_together_and_are_no_part_of_it() -> None:
+    """But in formulas, where they are; an empty text is one for arguments of xacro alone."""
     assert reading_of(packages=["a=b", "c = d "]).keywords == {"packages": {"a": "b", "c": "d"}}
     assert ReadingOptions().keywords == {}
-    with pytest.raises(SymofrosError, match="no name and value"):
-        pairs(["a"], "--package", "a=b")
-    assert invoke("info", "x.urdf", "--package", "a").exit_code == 2
-
-
-def test_backquotes_hold_a_name_together_and_are_no_part_of_it() -> None:
-    """But in formulas, where they are; an empty text is one for arguments of xacro alone."""
     stated = reading_of(packages=["`a=b`=c"], arguments=["`x=y`=z", "prefix=", "d`q`=1"])
     assert stated.keywords == {"packages": {"a=b": "c"}, "arguments": {"x=y": "z", "prefix": "", "dq": "1"}}
     assert pairs(["d`a=b`=1"], "--set", "q1=1") == {"d`a=b`": "1"}
-    for option in ({"packages": ["a="]}, {"arguments": ["=a"]}):
+    for option in ({"packages": ["a"]}, {"packages": ["a="]}, {"arguments": ["=a"]}):
         with pytest.raises(SymofrosError, match="no name and value"):
             reading_of(**option)  # type: ignore[arg-type]
-
-
-def test_options_of_remedies_are_read_back() -> None:
-    for key in ("a=b", "my dir", "a`b", "`a`", "it's"):
-        option, pair = shlex.split(Argument("packages", "/x y", key).option("--"))
-        assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
 
 
 def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path) -> None:
@@ -124,21 +102,6 @@ def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path)
     sf.save(sf.System("s", (body,)), tmp_path / "s.yaml")
     told = invoke("equilibrium", tmp_path / "s.yaml", "--set", "a=b=0.2")
     assert told.exit_code == 2 and "write '`a=b`=0.2'" in told.output
-
-
-def test_an_option_without_use_is_named_as_it_is_typed(tmp_path: Path) -> None:
-    path = kinematic(tmp_path, 1)
-    assert "--argument applies to xacro files only" in invoke("info", path, "--argument", "a=b").output
-
-
-def test_options_that_a_format_has_not_are_left_out_for_several_files() -> None:
-    forces = {"dissipation": "all", "limits": "stops"}
-    stated = reading_of(floating_base=True, mimic=True, waive=["massless_tip"], arguments=["a=b"], **forces)
-    assert stated.fit_for(Path("a.yaml")) == ReadingOptions(waive=("massless_tip",))
-    for suffix in ("xml", "sdf", "usda"):
-        assert stated.fit_for(Path(f"a.{suffix}")) == ReadingOptions(True, waive=("massless_tip",), **forces)
-    assert stated.fit_for(Path("a.urdf")) == ReadingOptions(True, True, ("massless_tip",), **forces)
-    assert stated.fit_for(Path("a.xacro")) == stated
 
 
 def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
@@ -167,11 +130,6 @@ PAIRS = (("a", "1"), ("b", "2"), ("c", "3"), ("d", "3"))
     [
         (Argument("waive", "massless_tip"), "load(…, waive=['massless_tip'])", "--waive massless_tip"),
         (Argument("packages", "/a", "b"), "load(…, packages={'b': '/a'})", "--package b=/a"),
-        (
-            Argument("packages", "my dir", "my dir"),
-            "load(…, packages={'my dir': 'my dir'})",
-            "--package 'my dir=my dir'",
-        ),
         (Argument("packages", "/a", "b=c"), "load(…, packages={'b=c': '/a'})", "--package '`b=c`=/a'"),
         (Argument("floating_base"), "load(…, floating_base=True)", "--floating-base"),
     ],
@@ -180,6 +138,9 @@ def test_an_argument_is_an_option_in_the_shell(argument: Argument, call: str, op
     problem = Problem("x", "y", "z", f"or {argument.call}", argument=argument)
     assert problem.remedy == f"or {call}" and problem.in_shell().remedy == f"or {option}"
     assert problem.in_shell("--symofros-").remedy == f"or --symofros-{option.removeprefix('--')}"
+    for key in ("a=b", "my dir", "a`b", "`a`", "it's"):  # Options of remedies are read back.
+        option, pair = shlex.split(Argument("packages", "/x y", key).option("--"))
+        assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
 
 
 def test_tables_in_a_pipe_keep_their_lines(tmp_path: Path) -> None:

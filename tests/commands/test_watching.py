@@ -1,4 +1,4 @@
-"""`symofros simulate --view` and `--record-view`, of models and of diagrams."""
+"""`symofros view`, and `symofros simulate` with `--view` and `--record-view`, of models and of diagrams."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ import symofros as sf
 from symofros.__main__ import app
 from tests.diagrams.files.cases import ARM, TEXT, folder_with
 
+FOUR_BAR = ARM.parents[1] / "closed" / "four_bar.yaml"
 SECOND = "  second:\n    kind: forward_dynamics\n    model: arm\n"
 
 
-def run(*arguments: object) -> Result:
-    return CliRunner().invoke(app, ["simulate", *map(str, arguments)])
+def run(*arguments: object, command: str = "simulate") -> Result:
+    return CliRunner().invoke(app, [command, *map(str, arguments)])
 
 
 @pytest.fixture
@@ -47,13 +48,6 @@ def test_a_model_is_played(seen: list[sf.Viewer]) -> None:
     assert found.exit_code == 0 and f"it plays at {viewer.url} (Ctrl-C ends)" in found.output, found.output
     assert viewer._player is not None and viewer._player.motion.end == pytest.approx(0.1)
     assert viewer.exaggeration == 2.0 and viewer.is_closed
-
-
-def test_a_diagram_is_played(seen: list[sf.Viewer], tmp_path: Path) -> None:
-    found = run(folder_with(tmp_path), "--view")
-    (viewer,) = seen
-    assert found.exit_code == 0 and viewer._player is not None and viewer.is_closed, found.output
-    assert viewer._player.motion.end == pytest.approx(0.2) and viewer.painted > 0
 
 
 def test_a_diagram_in_real_time_is_shown_as_it_goes(seen: list[sf.Viewer], tmp_path: Path) -> None:
@@ -92,3 +86,18 @@ def test_what_can_not_be_shown_is_not_run(
     file = ARM if of == "model" else folder_with(tmp_path)
     found = run(file, "0.1", "-o", tmp_path / "r.npz", *arguments)
     assert found.exit_code == 2 and expected in found.output and not (tmp_path / "r.npz").exists()
+
+
+def test_what_does_not_move_is_seen_in_a_picture_and_a_motion_until_it_is_interrupted(
+    seen: list[sf.Viewer], tmp_path: Path
+) -> None:
+    assert run(FOUR_BAR, "--record", tmp_path / "bar.png", command="view").exit_code == 0
+    assert (tmp_path / "bar.png").read_bytes().startswith(b"\x89PNG")
+    motion = sf.simulate(sf.compile(sf.load(ARM)), [1.0, 0.0], None, 0.1, dt=0.01).save(tmp_path / "run.npz")
+    shown = "--trajectory", motion, "--port", 0, "--no-browser", "--exaggeration", 3
+    found = run(ARM, *shown, command="view")
+    (viewer,) = seen
+    assert found.exit_code == 0 and viewer.exaggeration == 3.0, found.output
+    assert f"double_pendulum is at {viewer.url} (Ctrl-C ends)" in found.output and "127.0.0.1" in viewer.url
+    other = run(FOUR_BAR, "--trajectory", motion, "--record", tmp_path / "run.gif", command="view")
+    assert other.exit_code == 2 and "coordinates q1, q2" in other.output and "q1, q2, q3" in other.output

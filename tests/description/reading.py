@@ -25,3 +25,10 @@ def refused(path: Path, **options: Any) -> sf.DescriptionError:
 def faults(path: Path, **options: Any) -> str:
     """Everything that loading a file complains about."""
     return str(refused(path, **options))
+
+
+def faults_of(folder: Path, text: str | bytes, name: str, **options: Any) -> str:
+    """Everything that loading a text complains about."""
+    with pytest.raises(sf.DescriptionError) as caught:
+        load(folder, text, name, **options)
+    return str(caught.value)

@@ -47,3 +47,8 @@ class Drake(NamedTuple):
 
 
 MODELS = {name: Drake(**case) for name, case in YAML(typ="safe").load(Path(__file__).with_suffix(".yaml")).items()}
+
+# A link on a hinge.
+ONE = link("a", "", 1) + (
+    '<joint name="q" type="revolute"><parent>world</parent><child>a</child><axis><xyz>0 1 0</xyz></axis></joint>'
+)

@@ -4,29 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
-
 import symofros as sf
-from reference_models import MODELS
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "four_bar",
-        "parallelogram",
-        "rolling_disc",
-        "sleigh",
-        "bricard",
-        "stewart",
-        "delta",
-        "grasp",
-        "flexible_slider_crank",
-    ],
-)
-def test_written_and_read(tmp_path: Path, name: str) -> None:
-    sf.save(MODELS[name], tmp_path / "model.yaml")
-    assert sf.load(tmp_path / "model.yaml") == MODELS[name]
 
 
 def test_conditions_by_formula(tmp_path: Path) -> None:
@@ -37,24 +15,3 @@ def test_conditions_by_formula(tmp_path: Path) -> None:
     )
     sf.save(system, tmp_path / "model.yaml")
     assert sf.load(tmp_path / "model.yaml") == system
-
-
-HEAD = "symofros: 1\nbodies:\n  a: {joint: {name: p, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}\n"
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("closures:\n  k: {first: {body: a}, second: {body: world}, translations: [w]}\n", "bad.yaml:5"),
-        ("closures:\n  k: {first: {body: a}, second: {body: world}, length: 1, translations: [x]}\n", "both a rod"),
-        ("closures:\n  k: {first: {body: a}, second: {body: world}, translations: []}\n", "blocks nothing"),
-        ("closures:\n  k: {first: {body: b}, second: {body: world}}\n", "no body 'b'"),
-        ("nonholonomic:\n  k: {right: 1}\n", "not exactly one kind"),
-        ("nonholonomic:\n  k: {knife_edge: {body: a}, rolling: {body: a, radius: 1}}\n", "not exactly one kind"),
-    ],
-)
-def test_faults(tmp_path: Path, text: str, said: str) -> None:
-    (tmp_path / "bad.yaml").write_text(HEAD + text)
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(tmp_path / "bad.yaml")
-    assert said in str(caught.value), str(caught.value)

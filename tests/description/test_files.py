@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
 from symofros.description.yaml.files import MAX_BYTES, read_yaml
 from symofros.description.yaml.yaml_pieces import compose_text
+from tests.description import reading
 from tests.exports.interchange.stated_trees import stated_tree
 
 HEAD = "symofros: 1\nsystem: {name: arm}\n"
@@ -18,17 +20,7 @@ LINK = "  link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: 
 ARM = HEAD + "bodies:\n" + LINK
 
 
-def load(folder: Path, text: str | bytes, name: str = "arm.yaml") -> sf.System:
-    path = folder / name
-    path.write_bytes(text.encode() if isinstance(text, str) else text)
-    return sf.load(path)
-
-
-def faults(folder: Path, text: str | bytes) -> str:
-    """Everything that loading a text complains about."""
-    with pytest.raises(sf.DescriptionError) as caught:
-        load(folder, text)
-    return str(caught.value)
+load, faults = (partial(of, name="arm.yaml") for of in (reading.load, reading.faults_of))
 
 
 def test_yaml_1_2_numbers(tmp_path: Path) -> None:
@@ -103,9 +95,9 @@ class TestInclude:
 
 def test_reading_keeps_what_it_can(tmp_path: Path) -> None:
     (tmp_path / "arm.yaml").write_text(ARM + "  bad: {joint: 3}\n")
-    reading = read_yaml(tmp_path / "arm.yaml")
-    assert reading.system is not None and [body.name for body in reading.system.bodies] == ["link"]
-    assert reading.broken >= {"bad"} and len(reading.problems) == 1
+    found = read_yaml(tmp_path / "arm.yaml")
+    assert found.system is not None and [body.name for body in found.system.bodies] == ["link"]
+    assert found.broken >= {"bad"} and len(found.problems) == 1
 
 
 @pytest.mark.parametrize("seed", range(100, 112))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 
 import pytest
@@ -169,19 +168,17 @@ def test_arguments_that_a_format_has_no_use_for_are_refused(
 
 
 def test_manifests_are_read_when_a_name_needs_them_and_no_further_than_bounded(tmp_path: Path) -> None:
-    """60 neighbours of 1 MB took a minute of a file that names none."""
+    """Neighbours of 1 MB each: 60 of them took a minute of a file that names none."""
     main = package(tmp_path / "src/arm", "arm_description", arm=FINGER)
-    for i in range(60):
+    for i in range(70):
         package(tmp_path / f"src/n{i:02}", "x")
-        (tmp_path / f"src/n{i:02}/package.xml").write_text("<p>" + "<a/>" * 250_000 + "<name>late</name></p>")
+        (tmp_path / f"src/n{i:02}/package.xml").write_text("<p>" + "<a/>" * 20_000 + "<name>late</name></p>")
     package(tmp_path / "src/late", "late")
     packages = Packages(main)
     assert packages.of("arm_description") == packages.of("arm") == (packages.own,)
     assert packages.of("late") == ((tmp_path / "src/late").resolve(),)
     assert "neighbours" not in vars(packages) and packages._bytes < 1000
-    start = time.perf_counter()
-    assert packages.of("other") == () and packages._bytes <= 4 << 20
-    assert time.perf_counter() - start < 5.0
+    assert packages.of("other") == () and 3 << 20 < packages._bytes <= 4 << 20
 
 
 def test_two_neighbours_of_one_name_are_refused_unless_a_folder_has_it(tmp_path: Path) -> None:

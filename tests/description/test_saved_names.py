@@ -12,8 +12,6 @@ import symofros as sf
 from reference_models import MODELS
 from tests.description import sdf_models, usd_models
 from tests.description.hostile_names import HOSTILE, hostile_system
-from tests.description.test_urdf import robots_folder
-from validation.inputs.cases import robot_case
 
 ROOT = Path(__file__).parents[2]
 SEEDS = range(300)
@@ -69,17 +67,6 @@ def test_reference_models(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("file", corpus(), ids=lambda file: str(file.relative_to(ROOT)))
 def test_files_of_other_formats(file: Path, tmp_path: Path) -> None:
     same_meaning(sf.load(file), tmp_path)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("robot", ["panda", "ur5", "solo12", "kinova", "cassie_wo_gearbox_spring.sdf"])
-def test_real_robots(robot: str, tmp_path: Path) -> None:
-    """Robots of the package example-robot-data, as far as the native format holds them."""
-    if robot.endswith(".sdf"):
-        path = robots_folder() / "cassie_description/robots" / robot
-    else:
-        path = robot_case(robot).path or Path()
-    same_meaning(sf.load(path, waive=["massless_tip", "nonphysical_inertia"]), tmp_path)
 
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'

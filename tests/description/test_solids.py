@@ -166,24 +166,6 @@ def test_a_file_states_a_solid_in_place_of_an_inertia(tmp_path: Path) -> None:
     assert sf.load(again).bodies == sf.load(path).bodies
 
 
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (("length: 0.5, ", ""), "add length"),
-        (("hole: 0.02", "x: 0.02"), "remove x"),
-        (("length: 0.5", "length: -0.5"), "length is not positive"),
-        (("    frames", "    inertia: {mass: 1}\n    frames"), "remove one of them"),
-    ],
-)
-def test_files_that_state_no_such_solid_are_refused_in_words(
-    tmp_path: Path, change: tuple[str, str], message: str
-) -> None:
-    path = tmp_path / "link.yaml"
-    path.write_text(FILE.replace(*change))
-    with pytest.raises(sf.DescriptionError, match=message):
-        sf.compile(sf.load(path))
-
-
 def test_units_of_densities_and_sizes_are_judged(tmp_path: Path) -> None:
     path = tmp_path / "link.yaml"
     solid = FILE[FILE.index("solid: ") : FILE.index("    frames")]

@@ -1,4 +1,4 @@
-"""URDF: planar joints in any plane, loops that a tree has no place for, and notes that name the mechanics they drop."""
+"""URDF: planar joints in any plane, and loops that a tree has no place for."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.description.urdf.planar import planar_frames
+from tests.description import reading
 from tests.models import interpreted
 
 INERTIAL = (
@@ -32,9 +33,8 @@ def joint(name: str, kind: str, parent: str, child: str, inside: str = "") -> st
     return f'<joint name="{name}" type="{kind}">{ends}{inside}</joint>'
 
 
-def load(folder: Path, text: str, **given: object) -> sf.System:
-    (folder / "r.urdf").write_text(f"{text}</robot>")
-    return sf.load(folder / "r.urdf", **given)  # type: ignore[arg-type]
+def load(folder: Path, text: str) -> sf.System:
+    return reading.load(folder, f"{text}</robot>", "r.urdf")
 
 
 ORIGIN = '<origin xyz="0.3 -0.2 0.5" rpy="0.4 -0.3 0.7"/>'
@@ -128,64 +128,3 @@ def test_the_remedy_for_two_parents_closes_the_loop(tmp_path: Path) -> None:
     model = interpreted(closed)
     np.testing.assert_allclose(model.constraint(np.zeros(3)), 0.0, atol=1e-15)
     assert np.linalg.matrix_rank(model.constraint_jacobian(np.zeros(3)), tol=1e-9) == 2
-
-
-HINGE = joint("q", "revolute", "base", "a", '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="5" velocity="2"/>')
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (
-            '<gazebo><joint name="loop" type="revolute"/></gazebo>',
-            "joints in <gazebo> ignored, the loop that it closes",
-        ),
-        ("<gazebo><model><joint name='loop'/></model></gazebo>", "1 joint (loop)"),
-        (
-            '<gazebo reference="a"><turnGravityOff>true</turnGravityOff></gazebo>',
-            "<turnGravityOff> of <gazebo> ignored",
-        ),
-        ('<gazebo><plugin name="mimic" filename="x.so"><joint>q</joint></plugin></gazebo>', "1 element (mimic)"),
-        (
-            '<gazebo reference="q"><springStiffness>5</springStiffness></gazebo>',
-            "<springStiffness> of <gazebo> ignored",
-        ),
-        ('<gazebo reference="a"><material>Red</material></gazebo>', "<gazebo> ignored: 1 element (a)"),
-        (
-            '<transmission name="t"><joint name="q"/><actuator name="m"><mechanicalReduction>50</mechanicalReduction>'
-            "<rotorInertia>1e-5</rotorInertia></actuator></transmission>",
-            "inertia of rotors in <transmission> ignored (armature of a Joint): 1 joint (q)",
-        ),
-        (
-            '<transmission name="t"><joint name="q"/><mechanicalReduction>50</mechanicalReduction></transmission>',
-            "reduction of <transmission> ignored: 1 joint (q)",
-        ),
-        ('<loop_joint name="l"/>', "<loop_joint> ignored, the loop that it closes stays open"),
-        ('<sensor name="camera"/>', "<sensor> ignored: 1 element (camera)"),
-    ],
-)
-def test_notes_name_the_mechanics_that_they_drop(tmp_path: Path, text: str, said: str) -> None:
-    notes = "\n".join(load(tmp_path, robot(HINGE + text, "a")).notes)
-    assert said in notes, notes
-
-
-def test_a_transmission_without_a_reduction_has_none_to_drop(tmp_path: Path) -> None:
-    one = '<transmission name="t"><joint name="q"/><mechanicalReduction>1</mechanicalReduction></transmission>'
-    notes = "\n".join(load(tmp_path, robot(HINGE + one, "a")).notes)
-    assert "<transmission> ignored" in notes and "reduction" not in notes
-
-
-def test_entries_of_links_and_joints_that_nobody_reads_are_told(tmp_path: Path) -> None:
-    text = robot(HINGE.replace("<axis", '<safety_controller k_velocity="1"/><axis'), "a")
-    notes = load(tmp_path, text.replace("</link>", "<contact/></link>")).notes
-    assert any("<safety_controller> of <joint> ignored: 1 joint (q)" in note for note in notes)
-    assert any("<contact> of <link> ignored: 1 link (a)" in note for note in notes)
-
-
-def test_negative_sizes_are_no_limits(tmp_path: Path) -> None:
-    system = load(tmp_path, robot(HINGE.replace('effort="5" velocity="2"', 'effort="-1" velocity="-1"'), "a"))
-    moved = system.body("a").joint
-    assert moved is not None and moved.limits == sf.Limits(-1.0, 1.0)
-    assert sum("negative limits" in note for note in system.notes) == 2
-    sound = load(tmp_path, robot(HINGE, "a"))
-    assert not any("negative" in note for note in sound.notes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -11,14 +10,10 @@ import pytest
 
 import symofros as sf
 from symofros.base.rotations import axis_rotation, quaternion_matrix
-from tests.description.usd_models import body, freedoms, joint, stage
+from tests.description.usd_models import ARM, HALF, LOCKED, body, freedoms, joint, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")
-
-ARM: dict[str, Any] = {"mass": 2.0, "centerOfMass": (0.1, 0.2, -0.3), "diagonalInertia": (0.3, 0.4, 0.5)}
-HALF = math.sqrt(0.5)
-LOCKED = (1.0, -1.0)
 
 
 def rotation(quaternion: tuple[float, float, float, float]) -> Any:

@@ -10,7 +10,6 @@ import pytest
 
 import symofros as sf
 from symofros.description.visual import MOST_VISUALS, Visual
-from symofros.mechanics.topology.numbers import Numbers
 
 ROBOT = """<robot name="arm"><material name="sky"><color rgba="0 0.5 1 1"/></material>
 <link name="base"/>
@@ -35,28 +34,6 @@ def load(folder: Path, inside: str) -> sf.System:
 
 def shapes(folder: Path, inside: str) -> tuple[Visual, ...]:
     return load(folder, inside).visuals.get("upper", ())
-
-
-@pytest.mark.parametrize(
-    ("geometry", "kind", "size"),
-    [
-        (BOX, "box", (1.0, 2.0, 3.0)),
-        ('<sphere radius="0.5"/>', "sphere", (0.5,)),
-        ('<cylinder length="2" radius="0.1"/>', "cylinder", (0.1, 2.0)),
-        ('<capsule length="2" radius="0.1"/>', "capsule", (0.1, 2.0)),
-    ],
-)
-def test_primitives_of_a_urdf(geometry: str, kind: str, size: tuple[float, ...], tmp_path: Path) -> None:
-    (shape,) = shapes(tmp_path, visual(geometry, '<origin xyz="1 2 3" rpy="0 0 0.5"/>'))
-    assert (shape.kind, shape.size, shape.position) == (kind, size, (1.0, 2.0, 3.0))
-    assert shape.rotation == sf.Rotation.rpy(0.0, 0.0, 0.5) and shape.color is None
-
-
-def test_colors_are_those_of_materials(tmp_path: Path) -> None:
-    own = '<material name="x"><color rgba="1 0 2 0.3"/></material>'
-    texts = (own, '<material name="sky"/>', '<material name="none"/>', "")
-    found = shapes(tmp_path, "".join(visual(BOX, text) for text in texts))
-    assert [shape.color for shape in found] == [(255, 0, 255), (0, 128, 255), None, None]
 
 
 @pytest.mark.parametrize(
@@ -106,26 +83,6 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
     assert not system.visuals and any("visual shapes that can't be drawn ignored" in note for note in system.notes)
 
 
-@pytest.mark.parametrize(
-    "inside",
-    [
-        "<visual/>",
-        "<visual><geometry/></visual>",
-        visual("<torus/>"),
-        visual('<box size="1 2"/>'),
-        visual("<sphere/>"),
-        visual('<box size="1 2 0"/>'),
-        visual('<sphere radius="nan"/>'),
-        visual('<cylinder radius="1"/>'),
-        visual(BOX, '<origin xyz="1 2"/>'),
-        visual(BOX, '<origin rpy="a b c"/>'),
-    ],
-)
-def test_what_is_not_understood_is_no_fault(inside: str, tmp_path: Path) -> None:
-    system = load(tmp_path, inside)
-    assert not system.visuals and any("can't be drawn ignored: 1 link (upper)" in note for note in system.notes)
-
-
 def test_no_more_are_kept_than_can_be_shown(tmp_path: Path) -> None:
     assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
 
@@ -143,22 +100,3 @@ def test_they_stay_with_a_system(tmp_path: Path) -> None:
     assert system.with_bodies(replace(system.body("upper"), waive=())).visuals == system.visuals
     with pytest.raises(TypeError):
         system.visuals["upper"] = ()  # type: ignore[index]
-
-
-MJCF = """<mujoco><worldbody><geom type="plane" size="1 1 1"/>
-<body name="arm" pos="0 0 1"><joint name="q" axis="0 1 0"/><inertial mass="1" pos="0 0 0" diaginertia="1 1 1"/>
-<geom type="box" size="0.1 0.2 0.3" pos="1 2 3" rgba="1 0 0.5 1"/><geom type="capsule" size="0.1 0.4" euler="0 90 0"/>
-<geom type="ellipsoid" size="0.1 0.2 0.3"/><geom type="cylinder" size="0.1 0.4"/><geom type="sphere" size="0.1"/>
-<geom type="sphere" size="0.1" group="3"/><geom type="sphere" size="0.1" rgba="1 1 1 0"/></body></worldbody></mujoco>
-"""
-
-
-def test_primitives_of_mjcf(tmp_path: Path) -> None:
-    (tmp_path / "arm.xml").write_text(MJCF)
-    system = sf.load(tmp_path / "arm.xml")
-    assert set(system.visuals) == {"arm"}
-    box, capsule, *others = system.visuals["arm"]
-    assert (box.kind, box.position, box.color) == ("box", (1.0, 2.0, 3.0), (255, 0, 128))
-    assert box.size == pytest.approx((0.2, 0.4, 0.6)) and capsule.size == pytest.approx((0.1, 0.8))  # Not half lengths.
-    assert Numbers(system, {}).rotation(capsule.rotation)[:, 2] == pytest.approx([1.0, 0.0, 0.0])
-    assert [shape.kind for shape in others] == ["ellipsoid", "cylinder", "sphere"]  # Those that are seen at first.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,19 @@ _HEAD = """#usda 1.0
     upAxis = "{up}"
 )
 """
+
+
+ARM: dict[str, Any] = {"mass": 2.0, "centerOfMass": (0.1, 0.2, -0.3), "diagonalInertia": (0.3, 0.4, 0.5)}
+HALF = math.sqrt(0.5)  # Of a quaternion that turns by a right angle.
+LOCKED = (1.0, -1.0)  # Limits of a degree of freedom that there is none of.
+# What stands below </robot>, in calls of this module.
+SOUND = 'body("arm", **ARM), joint("Revolute", "j", "", "arm"), '
+
+
+def stated(parts: str) -> str:
+    """A stage that is stated by calls of this module: its prims, or the whole."""
+    (*made,) = eval(f"[{parts}]", {**globals(), "inf": math.inf})
+    return str(made[0]) if parts.startswith("stage(") else stage(*made)
 
 
 def stage(*parts: str, meters: float = 1.0, kilograms: float = 1.0, up: str = "Z") -> str:
@@ -55,16 +69,22 @@ def joint(
     return prim(f"Physics{kind}Joint" if kind else "PhysicsJoint", name, *ends, *lines, *extra, schemas=schemas)
 
 
-def freedoms(limits: Mapping[str, tuple[float, float]]) -> dict[str, tuple[str, ...]]:
-    """Arguments of a joint by degrees of freedom."""
+def freedoms(limits: Mapping[str, tuple[float, float]], *schemas: str) -> dict[str, tuple[str, ...]]:
+    """Arguments of a joint by degrees of freedom, with further schemas."""
     return {
-        "schemas": tuple(f"PhysicsLimitAPI:{name}" for name in limits),
+        "schemas": (*schemas, *(f"PhysicsLimitAPI:{name}" for name in limits)),
         "extra": tuple(
             f"float limit:{name}:physics:{end} = {value}"
             for name, pair in limits.items()
             for end, value in zip(("low", "high"), pair, strict=True)
         ),
     }
+
+
+def planar(*entries: str) -> str:
+    """A joint of body "arm" in the plane of x and y, with what else it states."""
+    given = freedoms(dict.fromkeys(("transZ", "rotX", "rotY"), LOCKED))
+    return joint("", "j", "", "arm", given["schemas"], (*given["extra"], *entries))
 
 
 def shape(kind: str, name: str, *lines: str, **sizes: Any) -> str:

@@ -4,41 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, ClassVar
-
-import numpy as np
+from typing import Any
 
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.simulation.inputs import Signal
-
-
-@dataclass(frozen=True, kw_only=True)
-class Number(Block):
-    """A constant."""
-
-    value: Any
-    unit: str = ""
-    tunable: ClassVar[tuple[str, ...]] = ("value",)
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((), (Port("y", np.shape(self.value), self.unit),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": context.parameters["value"]}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wave(Block):
-    """The sine of time."""
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((), (Port("y"),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": (context.t * 7.0).apply("sin")}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,18 +43,6 @@ class Lag(Block):
 
     def rates(self, context: EvaluationContext) -> Values:
         return {"s": (context.inputs["x"] - context.states["s"]) / self.tau}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Hold(Block):
-    """Its input at the last sample."""
-
-    def ports(self, environment: Environment) -> Ports:
-        shape = environment.inputs.get("x")
-        return Ports((Port("x", shape),), (Port("y", shape),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": context.inputs["x"]}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,12 +125,20 @@ class Ball(Block):
         return {"w": -self.restitution * context.states["w"], "h": context.numbers(0.0), "n": context.memory["n"] + 1.0}
 
 
+def moving(
+    model: sf.System, start: Mapping[str, float] | None = None, title: str = "moving", **wires: str
+) -> sf.Diagram:
+    """A diagram whose block "plant" moves a model; it engages the model's constraints where a wire says so."""
+    diagram = sf.Diagram(title)
+    diagram.add_model("plant", model, start=start or {})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged="engaged" in wires), **wires)
+    return diagram
+
+
 def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Diagram:
     """A mechanism under joint PD."""
-    diagram = sf.Diagram("arm")
-    diagram.add_model("plant", model, start=start)
-    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="pd.effort")
-    diagram.add(Number(name="goal", value=[0.5, -0.2]))
+    diagram = moving(model, start, "arm", u="pd.effort")
+    diagram.add(blocks.Constant(name="goal", value=[0.5, -0.2]))
     diagram.add(
         blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=period),
         q="plant.q",
@@ -183,3 +151,25 @@ def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Dia
 def table() -> Signal:
     """Samples of two signals."""
     return Signal([0.0, 0.5, 1.0], [[0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given(Block):
+    """Two signals by samples."""
+
+    def ports(self, environment: Environment) -> Ports:
+        return Ports((), (Port("y", (2,)),))
+
+    def samples(self) -> Mapping[str, Any]:
+        return {"y": table()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class First(Block):
+    """The first entry."""
+
+    def ports(self, environment: Environment) -> Ports:
+        return Ports((Port("x", (2,)),), (Port("y"),))
+
+    def compute(self, context: EvaluationContext) -> Values:
+        return {"y": context.inputs["x"][0]}

@@ -54,27 +54,14 @@ def both(watch: Stops, compiled: bool) -> Mapping[str, Array]:
 
 @pytest.mark.parametrize("compiled", [True, False])
 def test_what_is_told_is_what_is_recorded_and_looking_changes_no_bit(compiled: bool) -> None:
-    watch = Stops([0.3, 0.32, 0.9])
-    run = both(watch, compiled)
-    assert_array_equal(np.concatenate([t for t, _ in watch.told]), run.t)  # type: ignore[attr-defined]
-    assert_array_equal(np.concatenate([x for _, x in watch.told]), run["x.y"])
-    assert_array_equal(run["x.y"], both(Stops([]), compiled)["x.y"])
-
-
-@pytest.mark.parametrize("compiled", [True, False])
-def test_a_stop_falls_on_the_first_instant_that_is_not_before_it(compiled: bool) -> None:
-    watch = Stops([0.3, 0.32, 0.9])
-    both(watch, compiled)
-    # Instants: multiples of 0.05 and of 0.07 s.
+    watch, ending = Stops([0.3, 0.32, 0.9]), Stops([0.5], ends=True)
+    run, ended, alone = both(watch, compiled), both(ending, compiled), both(Stops([]), compiled)
+    assert_array_equal(run["x.y"], alone["x.y"])
+    # Stops fall on the first instant that is not before them: multiples of 0.05 and of 0.07 s.
     assert_allclose(watch.stopped, [0.3, 0.35, 0.9], rtol=1e-12)
-
-
-@pytest.mark.parametrize("compiled", [True, False])
-def test_a_run_that_is_ended_at_a_stop_keeps_what_it_has(compiled: bool) -> None:
-    watch = Stops([0.5], ends=True)
-    run = both(watch, compiled)
-    assert_array_equal(np.concatenate([t for t, _ in watch.told]), run.t)  # type: ignore[attr-defined]
-    whole = both(Stops([]), compiled)
-    n = len(run.t)  # type: ignore[attr-defined]
-    assert_allclose(run.t[-1], 0.5, rtol=1e-12)  # type: ignore[attr-defined]
-    assert_array_equal(run["x.y"], whole["x.y"][:n])
+    # A run that is ended at a stop keeps what it has.
+    assert_allclose(ended.t[-1], 0.5, rtol=1e-12)  # type: ignore[attr-defined]
+    assert_array_equal(ended["x.y"], alone["x.y"][: len(ended["x.y"])])
+    for told, record in ((watch.told, run), (ending.told, ended)):
+        assert_array_equal(np.concatenate([t for t, _ in told]), record.t)  # type: ignore[attr-defined]
+        assert_array_equal(np.concatenate([x for _, x in told]), record["x.y"])

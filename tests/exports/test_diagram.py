@@ -13,8 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.settings import RunSettings
-from tests.diagrams.parts import After, Ball, Counter, Hold, Lag, Number, Spoken, Wave, arm
-from tests.diagrams.run.test_runs import First, Given
+from tests.diagrams.parts import After, Ball, Counter, First, Given, Lag, Spoken, arm
 from tests.exports.cases import build, run
 from tests.models import sampled
 from tests.pulses import SHAPES, cart
@@ -36,7 +35,7 @@ def crank() -> sf.Diagram:
     diagram.add_model("plant", system, start=stated)
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
     diagram.add(After(name="after", time=0.03, period=0.01))
-    diagram.add(Hold(name="felt", period=0.01), x="plant.lam")
+    diagram.add(blocks.Hold(name="felt", period=0.01), u="plant.lam")
     return diagram
 
 
@@ -57,7 +56,7 @@ def table() -> sf.Diagram:
     diagram.add(Given(name="given"))
     diagram.add(First(name="first"), x="given")
     diagram.add(Lag(name="lag"), x="first")
-    diagram.add(Hold(name="held", period=0.25), x="given")
+    diagram.add(blocks.Hold(name="held", period=0.25), u="given")
     return diagram
 
 
@@ -65,16 +64,6 @@ def ball() -> sf.Diagram:
     diagram = sf.Diagram("ball")
     diagram.add(Ball(name="ball"))
     diagram.add(Counter(name="ticks", period=0.1))
-    return diagram
-
-
-def two() -> sf.Diagram:
-    """Parts that meet at samples."""
-    diagram = sf.Diagram("two")
-    diagram.add(Wave(name="wave"))
-    diagram.add(Lag(name="first"), x="wave")
-    diagram.add(Hold(name="hold", period=0.02), x="first")
-    diagram.add(Lag(name="second"), x="hold")
     return diagram
 
 
@@ -91,7 +80,6 @@ CASES: dict[str, tuple[Any, list[str]]] = {
     "loop": (loop, ["plant.q", "plant.lam"]),
     "table": (table, ["given", "lag", "held"]),
     "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
-    "two": (two, ["first", "second"]),
     "still": (still, ["ticks"]),
 }
 
@@ -203,11 +191,3 @@ def test_what_is_no_program() -> None:
         sf.export(pendulum(), "fmu2", "unused")
     with pytest.raises(sf.DescriptionError, match="no output 'z'"):
         sf.export(pendulum(), "c", "unused", outputs=["pd.z"])
-
-
-def test_names_that_c_does_not_take(tmp_path: Path) -> None:
-    diagram = sf.Diagram("for")
-    diagram.add(Number(name="while", value=1.0))
-    diagram.add(Lag(name="double"), x="while")
-    exported = sf.export(diagram, "c", tmp_path / "c", outputs=["double"])
-    assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 0

@@ -22,7 +22,7 @@ def moved(system: sf.System | str | Path, start: dict[str, float]) -> sf.Diagram
     return diagram
 
 
-@pytest.mark.parametrize("angle", [0.4, 1.0, 2.2])
+@pytest.mark.parametrize("angle", [1.0, 2.2])
 def test_what_is_stated_of_a_start_is_kept(angle: float, tmp_path: Path) -> None:
     """A projection alone, which a package makes of itself, moves the crank as well as what follows it."""
     diagram = moved(MODELS["slider_crank"], {"turn": angle, "dturn": 1.0})

@@ -22,13 +22,6 @@ def test_a_folder_of_others_is_left_alone(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
-def test_a_file_in_place_of_a_folder(tmp_path: Path) -> None:
-    place = tmp_path / "out"
-    place.write_text("")
-    with pytest.raises(sf.ExportError, match="a file"):
-        sf.export(PENDULUM, "urdf", place)
-
-
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"files": 3}', "\0"])
 def test_a_manifest_of_others(tmp_path: Path, text: str) -> None:
     (tmp_path / MANIFEST).write_text(text)
@@ -77,12 +70,6 @@ def test_names_that_are_taken(name: str) -> None:
     called = identifier(name)
     assert called != name
     assert called.isidentifier()
-
-
-def test_a_model_called_sym_compiles() -> None:
-    """sym_model is a type of the header."""
-    body = sf.RigidBody("b", sf.Joint("j", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
-    assert sf.compile(sf.System("sym", (body,))).mass_matrix([0.0]).item() == 2.0
 
 
 def test_what_does_not_exist(tmp_path: Path) -> None:

@@ -45,13 +45,3 @@ def test_the_lock_is_free_while_c_runs() -> None:
         counted += 1
     # With the lock held throughout, the loop would turn a few times at the ends only.
     assert counted > 1000
-
-
-def test_parameters_belong_to_the_call() -> None:
-    model = sf.compile(sf.load("reference_models/closed/four_bar.yaml"))
-    heavy = model.with_parameters(m=3.0)
-    q = np.array([1.2, -1.2, 1.2])
-    with ThreadPoolExecutor(4) as pool:
-        found = list(pool.map(lambda i: (heavy if i % 2 else model).mass_matrix(q), range(64)))
-    assert all(np.array_equal(M, found[i % 2]) for i, M in enumerate(found))
-    assert np.allclose(found[1], 3.0 * found[0], rtol=1e-14)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 import symofros as sf
 from reference_models import MODELS
@@ -19,7 +19,7 @@ from reference_models.closed.four_bars import n_four_bar
 from reference_models.rigid.random_tree import random_tree
 from symofros.base import routes
 from symofros.base.route import Choice, Route
-from symofros.base.routes import ROUTES, choose
+from symofros.base.routes import ROUTES
 from symofros.compiler import Compilation
 from symofros.generator import units
 from symofros.generator.codegen.model import model_text
@@ -32,34 +32,8 @@ FORWARD, SLOPES, BY_PAR = "forward_dynamics", "forward_dynamics_derivatives", "f
 REVERSE, HESSIAN = "forward_dynamics_vjp", "forward_dynamics_hessian"
 # Of each row: a function, a model where it takes that route, and the options that this needs.
 CASES: dict[tuple[str, str], tuple[str, str, dict[str, object]]] = {
-    ("inertia forces", "recursion"): ("inverse_dynamics", "double_pendulum", {}),
-    ("acceleration of trees", "articulated"): (FORWARD, "planar_robot", {}),
-    ("acceleration of trees", "factors"): (FORWARD, "puma560", {}),
-    ("constrained motion", "multipliers"): (FORWARD, "four_bar", {}),
-    ("constrained motion", "null_space"): (FORWARD, "four_bar", {"constraints": "null_space"}),
-    ("constrained system", "sparse"): (FORWARD, "many four-bars", {}),
-    ("constrained system", "dense"): (FORWARD, "four_bar", {}),
-    ("derivatives of the acceleration", "articulated"): (SLOPES, "heavy_top", {"forward_dynamics": "articulated"}),
-    ("derivatives of the acceleration", "factors"): (SLOPES, "heavy_top", {}),
-    ("derivatives of the acceleration", "routine"): (SLOPES, "heavy_top", {}),  # With a lower limit.
-    ("adjoint of the acceleration", "articulated"): (REVERSE, "heavy_top", {"forward_dynamics": "articulated"}),
-    ("adjoint of the acceleration", "factors"): (REVERSE, "heavy_top", {}),
-    ("derivatives of constrained motion", "multipliers"): (SLOPES, "four_bar", {"constraints": "null_space"}),
-    ("second derivatives of the motion", "multipliers"): (HESSIAN, "double_pendulum", {}),
-    ("derivatives of inertia forces", "recursion"): ("inverse_dynamics_derivatives", "double_pendulum", {}),
-    ("derivatives of inertia forces", "graph"): ("inverse_dynamics_derivatives", "gyroscope", {}),
-    ("inverse dynamics by two speeds", "mass matrix"): ("inverse_dynamics_second_derivatives", "double_pendulum", {}),
-    ("inverse dynamics by two speeds", "graph"): ("inverse_dynamics_second_derivatives", "flexible_pendulum", {}),
-    ("weighted second derivatives", "forward over reverse"): ("inverse_dynamics_hvp", "double_pendulum", {}),
-    ("vector-Jacobian product", "reverse sweep"): ("bias_vjp", "double_pendulum", {}),
-    ("values by vectors", "packs"): (FORWARD, "chain7", {}),
-    ("values by vectors", "scalars"): (FORWARD, "puma560", {}),
-    ("values by vectors", "by processor"): ("dynamics", "chain7", {}),
-    ("equal parts", "loops"): ("constraint_jacobian", "many four-bars", {}),
-    ("equal parts", "limbs"): ("dynamics", "quadruped", {}),
-    ("equal parts", "one by one"): ("dynamics", "double_pendulum", {}),
-    ("large batches", "lanes"): ("dynamics", "double_pendulum", {}),
-    ("large batches", "state by state"): (FORWARD, "four_bar", {}),
+    (quantity, method): (function, name, options)
+    for quantity, method, function, name, options in YAML(typ="safe").load(Path(__file__).with_name("routes.yaml"))
 }
 
 
@@ -105,12 +79,6 @@ def test_the_theory_is_where_the_row_says(row: Route) -> None:
         assert re.search(rf" {re.escape(number)}$", text, re.MULTILINE), f"{row.theory}: {number}"
 
 
-def test_an_unknown_quantity_method_or_figure_is_an_error() -> None:
-    for quantity, asked in (("nothing", ""), ("acceleration of trees", "nothing"), ("acceleration of trees", "")):
-        with pytest.raises(KeyError):
-            choose(quantity, {}, asked)
-
-
 @pytest.mark.parametrize("way", ["articulated", "factors"])
 def test_all_relatives_of_forward_dynamics_follow_the_option(way: str) -> None:
     """First derivatives, in forward and reverse mode, of parameters too; second ones say that they can't."""
@@ -124,23 +92,15 @@ def test_all_relatives_of_forward_dynamics_follow_the_option(way: str) -> None:
     assert [of_chosen[function][0].method for function in together] == [way] * 3
 
 
-def test_the_adjoint_does_not_depend_on_what_is_generated_beside_it() -> None:
-    """By count the planar robot's acceleration goes by articulated bodies; its derivatives keep the factors."""
-    chosen = sf.Options((FORWARD, REVERSE), (), backend="interpreter")
-    beside, alone = sf.compile(MODELS["planar_robot"], chosen), sf.compile(MODELS["planar_robot"])
-    assert beside.routes[FORWARD][0].method == alone.routes[FORWARD][0].method == "articulated"
-    assert beside.routes[REVERSE][0].method == alone.routes[REVERSE][0].method == "factors"
-
-
 @pytest.mark.parametrize("function", [FORWARD, SLOPES, REVERSE])
 def test_graphics_processors_take_the_method_of_the_function(function: str) -> None:
     """The kernel's text is another one by each method, and that of "auto" is the one that is told."""
     texts = {}
     for way in ("articulated", "factors", "auto"):
-        made = Compilation(MODELS["planar_robot"], sf.Options(forward_dynamics=way))
+        made = Compilation(MODELS["heavy_top"], sf.Options(forward_dynamics=way))
         code = made._units(None).device_code((function, ""), "double").text
         texts[way] = code.replace(made.record.hash, "")
-    method = sf.compile(MODELS["planar_robot"]).routes[function][0].method
+    method = sf.compile(MODELS["heavy_top"]).routes[function][0].method
     assert texts["articulated"] != texts["factors"] and texts["auto"] == texts[method]
 
 
@@ -177,7 +137,7 @@ def asked_for(options: sf.Options) -> sf.Options:
     return replace(options, functions=None, frames=None)
 
 
-@settings(max_examples=6)
+@settings(max_examples=2)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 6))
 def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
     """The method of the acceleration by text: that of "auto" is the one of the method told, to the character."""
@@ -193,16 +153,18 @@ def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "function"),
-    [("four_bar", FORWARD), ("four_bar", SLOPES), ("four_bar", REVERSE), ("many four-bars", FORWARD)]
-    + [("many four-bars", "constraint"), ("quadruped", "dynamics"), ("double_pendulum", HESSIAN)],
+    ("name", "function", "asked"),
+    [
+        *(("four_bar", function, {}) for function in (FORWARD, SLOPES, REVERSE)),
+        ("four_bar", FORWARD, {"constraints": "null_space"}),
+        ("many four-bars", FORWARD, {}),
+        ("many four-bars", "constraint", {}),
+        ("quadruped", "dynamics", {}),
+        ("double_pendulum", HESSIAN, {}),
+    ],
 )
-def test_what_is_told_is_in_the_text(name: str, function: str) -> None:
-    check_markers(system(name), function, {})
-
-
-def test_the_null_space_is_in_the_text() -> None:
-    check_markers(MODELS["four_bar"], FORWARD, {"constraints": "null_space"})
+def test_what_is_told_is_in_the_text(name: str, function: str, asked: dict[str, object]) -> None:
+    check_markers(system(name), function, asked)
 
 
 def test_a_model_from_the_cache_tells_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -218,28 +180,6 @@ def test_a_model_from_the_cache_tells_the_same(tmp_path: Path, monkeypatch: pyte
     warm.forward_dynamics([0.1, 0.2], [0.0, 0.0], np.zeros(warm.nu))
     assert dict(warm.routes) == dict(cold.routes) == {FORWARD: told_ahead}
     assert str(warm.routes).startswith(f"{FORWARD}\n  acceleration of trees: ")
-
-
-def test_frames_are_named_with_their_function_and_others_refused() -> None:
-    model = sf.compile(MODELS["double_pendulum"])
-    frame = model.names.frames[-1]
-    model.frame_pose(frame, model.neutral())
-    assert [*model.routes] == [f"frame_pose of {frame}"]
-    with pytest.raises(sf.UnknownNameError, match="no function 'foward_dynamics'(?s:.)*forward_dynamics"):
-        model.routes["foward_dynamics"]
-    chosen = sf.compile(MODELS["double_pendulum"], sf.Options(("bias",), (), backend="interpreter"))
-    assert [*chosen.routes] == ["bias"]
-    with pytest.raises(sf.SymofrosError, match="was not generated"):
-        chosen.routes[FORWARD]
-
-
-def test_choices_are_plain_data_too() -> None:
-    (choice, *_) = sf.compile(MODELS["puma560"]).routes[FORWARD]
-    stated = json.loads(json.dumps(choice.as_dict()))
-    assert (
-        stated["method"] == "factors" and stated["figures"]["articulated_effort"] > stated["figures"]["factors_effort"]
-    )
-    assert stated["others"] == [{"method": "articulated", "option": "Options(forward_dynamics='articulated')"}]
 
 
 def page_table() -> str:

@@ -54,8 +54,8 @@ def different(first: dict[str, str], second: dict[str, str]) -> list[str]:
 
 def test_the_order_of_sets_does_not_reach_the_text() -> None:
     with ThreadPoolExecutor(os.cpu_count()) as threads:
-        texts = list(threads.map(lambda seed: digests_elsewhere("diagrams", {"PYTHONHASHSEED": seed}), "012"))
-    assert [different(texts[0], text) for text in texts] == [[], [], []]
+        texts = list(threads.map(lambda seed: digests_elsewhere("diagrams", {"PYTHONHASHSEED": seed}), "01"))
+    assert not different(*texts)
 
 
 @pytest.mark.slow

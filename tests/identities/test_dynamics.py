@@ -55,18 +55,6 @@ def test_energy_changes_by_the_power_of_the_inputs(case: str, rng: np.random.Gen
 
 
 @pytest.mark.parametrize("case", sampled(CASES))
-def test_weight_and_springs_are_the_gradient_of_the_potential(case: str, rng: np.random.Generator) -> None:
-    m, q, _ = states(case, rng)
-    still = np.zeros((STATES, m.nv))
-    force = m.bias(q, still) - elastic_force(m, q)
-    for k in range(m.nv):
-        dq = np.zeros(m.nv)
-        dq[k] = STEP
-        slope = (m.potential_energy(m.integrate(q, dq)) - m.potential_energy(m.integrate(q, -dq))) / (2 * STEP)
-        np.testing.assert_allclose(slope, force[:, k], atol=DIFFERENCE * np.abs(force).max())
-
-
-@pytest.mark.parametrize("case", sampled(CASES))
 def test_forward_undoes_inverse(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     u = rng.standard_normal((STATES, m.nu))

@@ -1,36 +1,36 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-/* WHOLE, MEMORY: int and void * of acados, long long and int of CasADi. */
+/* Whole numbers and the memory's argument are of the types of acados, int and void *; of CasADi, long long and int. */
 typedef struct {
-    int (*fun)(const double **, double **, WHOLE *, double *, MEMORY);
-    int (*work)(WHOLE *, WHOLE *, WHOLE *, WHOLE *);
-    const WHOLE *(*sparsity_in)(WHOLE), *(*sparsity_out)(WHOLE);
-    WHOLE (*n_in)(void), (*n_out)(void);
+    int (*fun)(const double **, double **, int *, double *, void *);
+    int (*work)(int *, int *, int *, int *);
+    const int *(*sparsity_in)(int), *(*sparsity_out)(int);
+    int (*n_in)(void), (*n_out)(void);
 } external;
-#define DECLARE(f) int f(const double **, double **, WHOLE *, double *, MEMORY); \
-    int f##_work(WHOLE *, WHOLE *, WHOLE *, WHOLE *); \
-    const WHOLE *f##_sparsity_in(WHOLE), *f##_sparsity_out(WHOLE); WHOLE f##_n_in(void), f##_n_out(void);
+#define DECLARE(f) int f(const double **, double **, int *, double *, void *); \
+    int f##_work(int *, int *, int *, int *); \
+    const int *f##_sparsity_in(int), *f##_sparsity_out(int); int f##_n_in(void), f##_n_out(void);
 #define LIST(f) {f, f##_work, f##_sparsity_in, f##_sparsity_out, f##_n_in, f##_n_out},
 FUNCTIONS(DECLARE)
 static const external functions[] = {FUNCTIONS(LIST)};
 /* Entries of a pattern: dense by columns where its third number is 1, else rows of each column. */
-static WHOLE entries(const WHOLE *s) { return s[2] == 1 ? s[0] * s[1] : s[2 + s[1]]; }
+static int entries(const int *s) { return s[2] == 1 ? s[0] * s[1] : s[2 + s[1]]; }
 enum { BEHIND = 1000 }; /* numbers behind the scratch, which no function may write */
 int main(void) {
     size_t f;
     for (f = 0; f < sizeof functions / sizeof *functions; ++f) {
         const external *each = &functions[f];
-        WHOLE guard[6] = {-7, 0, 0, 0, 0, -7}, i, k; /* numbers of another size would be written over the guards */
+        int guard[6] = {-7, 0, 0, 0, 0, -7}, i, k; /* numbers of another size would be written over the guards */
         const double **in;
         double **out, *work;
-        WHOLE *iw;
+        int *iw;
         if (each->work(guard + 1, guard + 2, guard + 3, guard + 4) || guard[0] != -7 || guard[5] != -7) return 1;
         in = calloc((size_t)guard[1] + 1, sizeof *in), out = calloc((size_t)guard[2] + 1, sizeof *out);
         iw = calloc((size_t)guard[3] + 1, sizeof *iw), work = calloc((size_t)guard[4] + BEHIND, sizeof *work);
         for (k = 0; k < BEHIND; ++k) work[guard[4] + k] = -7.0;
         for (i = 0; i < each->n_in(); ++i) {
-            const WHOLE n = entries(each->sparsity_in(i));
+            const int n = entries(each->sparsity_in(i));
             double *x = calloc((size_t)n + 1, sizeof *x);
             for (k = 0; k < n; ++k)
                 if (scanf("%lf", x + k) != 1) return 2;
@@ -41,8 +41,8 @@ int main(void) {
         for (k = 0; k < BEHIND; ++k)
             if (work[guard[4] + k] != -7.0) return 4;
         for (i = 0; i < each->n_out(); ++i) {
-            const WHOLE *s = each->sparsity_out(i), *colind = s + 2, *row = colind + s[1] + 1;
-            WHOLE c, at = 0;
+            const int *s = each->sparsity_out(i), *colind = s + 2, *row = colind + s[1] + 1;
+            int c, at = 0;
             printf("%ld %ld", (long)s[0], (long)s[1]);
             for (c = 0; c < s[1]; ++c)
                 for (k = s[2] == 1 ? 0 : colind[c]; k < (s[2] == 1 ? s[0] : colind[c + 1]); ++k)

@@ -24,13 +24,6 @@ from tests.late import late
 casadi = late("casadi", extra="casadi")
 
 PROGRAM = Path(__file__).with_name("acados_call.c").read_text()
-# Types of whole numbers and of the memory's argument.
-ACADOS, CASADI = ("int", "void *"), ("long long", "int")
-
-
-@pytest.fixture(scope="module")
-def model() -> sf.Model:
-    return sf.compile(MODELS["cart_pole"])
 
 
 @pytest.fixture(scope="module")
@@ -38,14 +31,11 @@ def dynamics() -> Any:
     return sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tip"])
 
 
-def called(
-    folder: Path, link: Sequence[str], types: tuple[str, str], functions: dict[str, list[np.ndarray]]
-) -> list[np.ndarray]:
+def called(folder: Path, link: Sequence[str], functions: dict[str, list[np.ndarray]]) -> list[np.ndarray]:
     """All outputs of some functions, one after the other, by the program."""
     compiler = shutil.which("cc") or pytest.skip("needs a program called cc")
     listed = f"#define FUNCTIONS(each) {' '.join(f'each({name})' for name in functions)}"
-    text = PROGRAM.replace("WHOLE", types[0]).replace("MEMORY", types[1])
-    (folder / "main.c").write_text(f"{listed}\n{text}")
+    (folder / "main.c").write_text(f"{listed}\n{PROGRAM}")
     run = [compiler, "-std=c99", "-Wall", "-Werror", "main.c", *link, "-lm", "-o", "main"]
     subprocess.run(run, cwd=folder, check=True)
     given = " ".join(f"{x:.17g}" for inputs in functions.values() for each in inputs for x in each.ravel(order="F"))
@@ -59,14 +49,10 @@ def called(
     return outputs
 
 
-@pytest.mark.parametrize("types", [ACADOS, CASADI], ids=["acados", "casadi"])
-def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, types: tuple[str, str], tmp_path: Path) -> None:
+def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, tmp_path: Path) -> None:
     """The values and patterns that CasADi reads itself, of every function of the library."""
-    if types == ACADOS:
-        name = dynamics.write_acados_library(tmp_path / "library")
-        link = [f"-L{tmp_path / 'library'}", f"-l{name}", f"-Wl,-rpath,{tmp_path / 'library'}"]
-    else:
-        link = [str(dynamics.library), f"-Wl,-rpath,{dynamics.library.parent}"]
+    name = dynamics.write_acados_library(tmp_path / "library")
+    link = [f"-L{tmp_path / 'library'}", f"-l{name}", f"-Wl,-rpath,{tmp_path / 'library'}"]
     rng, functions, right = np.random.default_rng(8), {}, []
     for own in dynamics.names.values():
         for prefix in ("", "jac_", "adj1_", "jac_jac_", "jac_adj1_"):
@@ -74,7 +60,7 @@ def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, types: tupl
             given = [rng.uniform(0.5, 1.0, function.nnz_in(i)) for i in range(function.n_in())]
             functions[f"{prefix}{own}"] = given
             right += function.call([casadi.DM(function.sparsity_in(i), each) for i, each in enumerate(given)])
-    found = called(tmp_path, link, types, functions)
+    found = called(tmp_path, link, functions)
     assert len(found) == len(right)
     for ours, theirs in zip(found, right, strict=True):
         np.testing.assert_array_equal(ours, np.array(theirs))
@@ -84,10 +70,7 @@ def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, types: tupl
 def test_what_acados_generates_of_the_dynamics(name: str, tmp_path: Path) -> None:
     """x' = f(x, u, p), its sensitivities and its Hessian, as acados states them for explicit integrators."""
     system = MODELS[name] if name in MODELS else SYSTEMS[name]()
-    model, dynamics = (
-        sf.compile(system),
-        sf.interop.casadi.Dynamics(system, frames=["tip" if name in MODELS else "toe"]),
-    )
+    model, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
     nx, nu, npar = model.nq + model.nv, model.nu, len(model.parameter_values)
     sym = casadi.MX.sym
     x, u, p, Sx, Su, lam = (
@@ -124,7 +107,7 @@ def test_what_acados_generates_of_the_dynamics(name: str, tmp_path: Path) -> Non
     library = dynamics.write_acados_library(tmp_path)
     sources = [f"{name}.c" for name in generated]
     link = [*sources, "-Wno-unused", f"-L{tmp_path}", f"-l{library}", f"-Wl,-rpath,{tmp_path}"]
-    found = called(tmp_path, link, ACADOS, functions)
+    found = called(tmp_path, link, functions)
     right = [each for own, given in functions.items() for each in casadi.Function(own, *generated[own]).call(given)]
     for ours, theirs in zip(found, right, strict=True):
         np.testing.assert_allclose(ours, np.array(theirs), rtol=1e-12, atol=1e-11)

@@ -44,25 +44,6 @@ def test_values_and_jacobians_are_the_models(dynamics: Any, model: sf.Model, nam
         np.testing.assert_allclose(np.array(slope), wanted, rtol=1e-12, atol=1e-12)
 
 
-def test_jacobians_agree_with_casadis_finite_differences(dynamics: Any, model: sf.Model) -> None:
-    off = {"enable_fd": True, "enable_jacobian": False, "enable_forward": False, "enable_reverse": False}
-    rough = casadi.external(dynamics.names["forward_dynamics"], str(dynamics.library), off)
-    given = state(model, model.nu)
-    x = [casadi.MX.sym(f"x{i}", len(each)) for i, each in enumerate(given)]
-    exact, differenced = (
-        casadi.Function("J", x, [casadi.jacobian(f(*x), casadi.vertcat(*x[:3]))])
-        for f in (dynamics.functions["forward_dynamics"], rough)
-    )
-    np.testing.assert_allclose(np.array(exact(*given)), np.array(differenced(*given)), rtol=1e-5, atol=1e-6)
-
-
-def test_structural_zeros_are_left_out(dynamics: Any) -> None:
-    """Nothing of a cart and pole depends on where the cart is, nor on how fast it is."""
-    jacobian = dynamics.functions["inverse_dynamics"].jacobian()
-    assert jacobian.sparsity_out(0).nnz() < 4 and jacobian.sparsity_out(1).nnz() < 4
-    assert jacobian.sparsity_out(2).nnz() == 4
-
-
 def lagrangian_hessians(f: Any, options: dict[str, Any], given: list[np.ndarray], weights: np.ndarray) -> np.ndarray:
     """Second derivatives of weights . f by all inputs, by CasADi from what the function offers."""
     f = casadi.external(f[0], f[1], options)
@@ -133,37 +114,6 @@ def test_loops_have_hessians_too() -> None:
 def test_frames_that_were_not_asked_for_are_refused(dynamics: Any) -> None:
     with pytest.raises(sf.UnknownNameError, match="frames are those that"):
         dynamics.frame_position("tip", [0.0, 0.0])
-
-
-def test_wrong_frames_are_refused() -> None:
-    with pytest.raises(sf.ArgumentError, match="one alone"):
-        sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames="tip")
-    with pytest.raises(sf.UnknownNameError, match="tipp"):
-        sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tipp"])
-
-
-def test_ipopt_swings_the_pole_by_the_external_function(dynamics: Any, model: sf.Model) -> None:
-    steps, h = 20, 0.05
-    opti = casadi.Opti()
-    q, v, u = opti.variable(2, steps + 1), opti.variable(2, steps + 1), opti.variable(1, steps)
-    opti.minimize(casadi.sumsqr(u) * h)
-    for k in range(steps):
-        a = dynamics.forward_dynamics(q[:, k], v[:, k], u[:, k])
-        opti.subject_to(v[:, k + 1] == v[:, k] + h * a)
-        opti.subject_to(q[:, k + 1] == q[:, k] + h * v[:, k + 1])
-    opti.subject_to(q[:, 0] == [0.0, 0.2])
-    opti.subject_to(v[:, 0] == [0.0, 0.0])
-    opti.subject_to(q[:, steps] == [0.0, 0.0])
-    opti.subject_to(v[:, steps] == [0.0, 0.0])
-    quiet = {"print_level": 0, "max_iter": 300, "tol": 1e-7}
-    opti.solver("ipopt", {"print_time": False}, quiet)
-    solution = opti.solve()
-    assert solution.stats()["iter_count"] <= 5  # 4 with exact Hessians, 6 with "limited-memory".
-    at, speed = np.array([0.0, 0.2]), np.zeros(2)
-    for force in np.atleast_1d(solution.value(u)):
-        speed = speed + h * model.forward_dynamics(at, speed, np.array([force]))
-        at = at + h * speed
-    np.testing.assert_allclose([*at, *speed], 0.0, atol=1e-4)
 
 
 @pytest.fixture(scope="module", params=SYSTEMS)
@@ -250,34 +200,3 @@ def test_sensitivities_of_casadis_integrators(method: str, name: str) -> None:
         np.testing.assert_allclose(found, right, rtol=0, atol=1e-6 * np.abs(right).max())
     for turn in turns(m):
         assert np.linalg.norm(ends[0][0][turn]) == pytest.approx(1.0, abs=1e-9)
-
-
-def test_ipopt_turns_a_free_body_over() -> None:
-    """A torque turns a body at rest by a half: condition of the end on the rotation, not on all four coordinates."""
-    inertia = sf.Inertia(1.0, moments=(0.1, 0.2, 0.3))
-    joint = sf.Joint("float", "free", effort=("0", "0", "0", "tx", "ty", "tz"))
-    inputs = [sf.Input(name) for name in ("tx", "ty", "tz")]
-    system = sf.System("body", [sf.RigidBody("body", joint, inertia)], inputs=inputs, gravity=(0, 0, 0))
-    m, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
-    steps, h = 20, 0.1
-    opti = casadi.Opti()
-    q, v, u = opti.variable(7, steps + 1), opti.variable(6, steps + 1), opti.variable(3, steps)
-    opti.minimize(casadi.sumsqr(u) * h)
-    for k in range(steps):
-        opti.subject_to(v[:, k + 1] == v[:, k] + h * dynamics.forward_dynamics(q[:, k], v[:, k], u[:, k]))
-        opti.subject_to(q[:, k + 1] == dynamics.integrate(q[:, k], h * v[:, k + 1]))
-    goal = m.integrate(m.neutral(), np.array([0, 0, 0, 1.2, -0.5, 2.0]))
-    opti.subject_to(q[:, 0] == m.neutral())
-    opti.subject_to(v[:, 0] == np.zeros(6))
-    opti.subject_to(dynamics.difference(goal, q[:, steps]) == np.zeros(6))
-    opti.subject_to(v[:, steps] == np.zeros(6))
-    for k in range(steps + 1):
-        opti.set_initial(q[:, k], m.integrate(m.neutral(), k / steps * m.difference(m.neutral(), goal)))
-    opti.solver("ipopt", {"print_time": False}, {"print_level": 0, "max_iter": 100, "tol": 1e-8})
-    solution = opti.solve()
-    at, speed = m.neutral(), np.zeros(6)
-    for force in solution.value(u).T:
-        speed = speed + h * m.forward_dynamics(at, speed, force)
-        at = m.integrate(at, h * speed)
-    np.testing.assert_allclose(m.difference(goal, at), 0.0, atol=1e-6)
-    np.testing.assert_allclose(speed, 0.0, atol=1e-6)

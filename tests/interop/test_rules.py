@@ -26,11 +26,6 @@ def test_an_absent_framework_is_said_in_words() -> None:
         rules.framework("a_package_that_nobody_has", "torch")
 
 
-def test_unknown_modules_are_refused_with_the_known_ones() -> None:
-    with pytest.raises(AttributeError, match="casadi, gymnasium, jax, torch"):
-        _ = sf.interop.tensorflow
-
-
 @pytest.mark.parametrize("force", ["sin(t)", "max(t - 100, 0)", "t*(t - 0.7310585)*(t - 19.47)"])
 def test_forces_that_depend_on_time_are_refused(force: str) -> None:
     """Also those that are the same at any few instants."""

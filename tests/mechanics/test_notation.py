@@ -12,8 +12,6 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-import pytest
-
 import symofros
 from symofros.base.names import local_name
 
@@ -96,18 +94,6 @@ def test_only_classes_that_state_their_frames_have_bare_quantities() -> None:
         if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name) and field.target.id in QUANTITIES
     }
     assert bare == set(BARE)
-
-
-@pytest.mark.parametrize(
-    "name", ["p_AL", "R_WF", "w_WL_L", "v_ALo_W", "a_WLo_L", "f_Lo_L", "mp_LLcm", "I_KLo_L", "p_WFo", "w_AL_L_rate"]
-)
-def test_monograms_are_recognised(name: str) -> None:
-    assert MONOGRAM.fullmatch(name)
-
-
-@pytest.mark.parametrize("name", ["w_AL", "v_AL_L", "p_A", "I_LLo", "f_L", "R_LB_parent", "mp_LC", "a_X", "p_XY"])
-def test_abbreviated_monograms_are_refused(name: str) -> None:
-    assert LIKE_A_MONOGRAM.match(name) and not MONOGRAM.fullmatch(name)
 
 
 def test_every_frame_letter_is_in_the_notation() -> None:

@@ -58,26 +58,3 @@ def test_at_rest_in_the_shape_of_a_cube() -> None:
     assert abs(free @ lam) < 1e-10 and np.abs(G.T @ free).max() < 1e-12
     least = np.linalg.lstsq(whole, np.concatenate([-m.bias(rest, rest), np.zeros(5)]), rcond=1e-10)[0]
     assert -lam == pytest.approx(least[5:], abs=1e-10)
-
-
-@pytest.mark.parametrize("row", MOTION, ids=lambda row: f"t={row[0]}")
-def test_accelerations_along_the_motion(row: np.ndarray) -> None:
-    """Four conditions and one way to move: G v' = gamma, and no work of the loop's forces, leave one v' only.
-
-    The speed at each posture follows from energy.
-    """
-    odd, even = row[4:]
-    m, q = model(), posture(odd, even)
-    G = m.constraint_jacobian(q)
-    way = np.linalg.svd(G)[2][4]
-    energy = m.potential_energy(np.zeros(5)) - m.potential_energy(q)
-    v = way * np.sqrt(max(2 * energy / (way @ m.mass_matrix(q) @ way), 0.0))
-    a, lam, rank = m.constrained_dynamics(q, v, [])
-    assert rank == 4
-    assert np.abs(G @ a - m.constraint_bias(q, v)).max() < 1e-10
-    # Along the one way it can move, the loop's forces do no work, whatever the multipliers.
-    balance = m.mass_matrix(q) @ a + m.bias(q, v)
-    assert abs(way @ balance) < 1e-10 * max(1.0, np.abs(balance).max())
-    assert np.abs(balance - G.T @ lam).max() < 1e-10 * max(1.0, np.abs(balance).max())
-    # By symmetry the accelerations are those of the posture.
-    assert a[[0, 0, 1]] == pytest.approx(a[[2, 4, 3]], abs=1e-9)

@@ -1,10 +1,10 @@
-"""The car in flight: its damped bounce, the moment of a spinning wheel that is steered, its momentum."""
+"""The car in flight: its damped bounce, and the moment of a spinning wheel that is steered."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from tests.reference.motion import Array, free, move, reference, rotation
+from tests.reference.motion import Array, free, move, reference
 
 ROUNDING = 1e-12
 # The integrator's 1e-12 a step, over some hundred steps.
@@ -55,18 +55,3 @@ def test_a_spinning_wheel_resists_steering() -> None:
     # dH/dt = p z x (I s y) = -I s p x is what the chassis must supply, about its x axis alone.
     expected[3] = -p["m_wheel"] * p["r"] ** 2 / 2 * v[spin] * v[steer]
     np.testing.assert_allclose(h, expected, atol=ROUNDING * abs(expected[3]))
-
-
-def test_what_drives_and_steers_it_leaves_its_momentum_alone(rng: np.random.Generator) -> None:
-    """Without weight, springs, dampers and motors are internal: the first six rows of M v are constant in space."""
-    car = reference("car").with_parameters(g=0.0)
-    q, v = car.random_state(rng)
-    q[7:] *= 0.1
-    y = move(car, q, v, np.linspace(0.0, 0.1, 5), rate, u=np.array([5.0, -3.0, 40.0, 60.0])).y.T
-    momenta = []
-    for at, speed in zip(y[:, : car.nq], y[:, car.nq :], strict=True):
-        linear, angular = (car.mass_matrix(at) @ speed)[:6].reshape(2, 3)
-        R = rotation(at[3:7])
-        momenta.append([*(R @ linear), *(R @ angular + np.cross(at[:3], R @ linear))])
-    scale = np.abs(momenta[0]).max()
-    np.testing.assert_allclose(momenta, [momenta[0]] * len(momenta), atol=MOTION * scale)

@@ -1,4 +1,4 @@
-"""Lagrange's top: steady precession, the turning points of its nutation, on a ball joint and by Euler angles."""
+"""Lagrange's top: steady precession, on a ball joint and by Euler angles."""
 
 from __future__ import annotations
 
@@ -7,13 +7,10 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import sampled
-from tests.reference.motion import Array, ball, move, reference, rotation
+from tests.reference.motion import Array, reference
 
 # Sums of a few terms of at most a thousand rad/s^2.
 ROUNDING = 1e-10
-# The integrator's 1e-12 a step, over the some thousand steps of a fast top.
-MOTION = 1e-8
 
 
 def by_euler_angles() -> sf.Model:
@@ -80,48 +77,3 @@ def test_steady_precession(theta: float, which: int) -> None:
     expected = rates[2] * np.array([w[1], -w[0], 0.0])
     a = top.forward_dynamics(quaternion(angles), w, [])
     np.testing.assert_allclose(a, expected, atol=ROUNDING * scale)
-
-
-@pytest.mark.parametrize("start", sampled((0.0, 2.0, -2.0), (0.0, -2.0)), ids=["cusps", "waves", "loops"])
-def test_turning_points_of_nutation(start: float) -> None:
-    """u = cos(theta): u'^2 is a cubic in u, and u moves between its two roots in [-1, 1]. Goldstein, section 5.7."""
-    top = reference("heavy_top")
-    A, C, m, g, length = (top.parameters[name] for name in ("A", "C", "m", "g", "l"))
-    angles, spin = np.array([0.0, 0.6, 0.0]), 120.0
-    rates = np.array([start, 0.0, spin - start * np.cos(angles[1])])
-    u0 = np.cos(angles[1])
-    about_vertical = A * start * (1 - u0**2) + C * spin * u0
-    energy = A * start**2 * (1 - u0**2) / 2 + m * g * length * u0
-    # A^2 u'^2 = (1 - u^2) (2 A energy - 2 A m g l u) - (p_phi - C w_z u)^2
-    weight = 2 * A * m * g * length
-    cubic = [
-        weight,
-        -2 * A * energy - (C * spin) ** 2,
-        2 * about_vertical * C * spin - weight,
-        2 * A * energy - about_vertical**2,
-    ]
-    roots = np.sort(np.roots(cubic).real)[:2]
-
-    def climbing(t: float, y: Array) -> float:
-        R = rotation(y[:4])
-        return float(R[2] @ np.cross(y[4:], [0.0, 0.0, 1.0]))
-
-    motion = move(top, quaternion(angles), body_rates(angles, rates), np.array([0.0, 0.6]), ball, events=climbing)
-    heights = np.array([rotation(y[:4])[2, 2] for y in motion.y_events[0]])
-    assert len(heights) >= 6
-    # The highest and lowest points alternate.
-    first, second = heights[-2::-2], heights[-1::-2]
-    low, high = sorted((first, second), key=np.mean)
-    np.testing.assert_allclose(low, roots[0], atol=MOTION)
-    np.testing.assert_allclose(high, roots[1], atol=MOTION)
-
-
-def test_both_joints_move_alike() -> None:
-    top, by_angles = reference("heavy_top"), by_euler_angles()
-    angles, rates = np.array([0.2, 0.9, -0.4]), np.array([1.5, -2.0, 90.0])
-    times = np.linspace(0.0, 0.2, 11)
-    one = move(top, quaternion(angles), body_rates(angles, rates), times, ball).y
-    other = move(by_angles, angles, rates, times).y
-    for k in range(len(times)):
-        R = rotation(quaternion(other[:3, k]))
-        np.testing.assert_allclose(rotation(one[:4, k]), R, atol=MOTION)

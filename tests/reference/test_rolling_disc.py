@@ -15,7 +15,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import symofros as sf
 from tests.models import compiled
@@ -79,13 +78,6 @@ def rates(q: Array, v: Array) -> tuple[Array, Array, Array, float]:
     return w, alpha - np.cross(turning, w), a, float(lean)
 
 
-def test_it_rolls(rng: np.random.Generator) -> None:
-    for q, v in states(rng):
-        e = axes(model().frame_pose("disc", q)[1])
-        motion = model().frame_velocity("disc", q, v)
-        assert np.abs(motion[:3] - np.cross(motion[3:], r * e[2])).max() < 1e-11
-
-
 def test_first_integrals_linear_in_the_speeds(rng: np.random.Generator) -> None:
     """d/dt Phi(l)^-1 (w2, w3) = 0, which is (1)."""
     for q, v in states(rng):
@@ -93,39 +85,6 @@ def test_first_integrals_linear_in_the_speeds(rng: np.random.Generator) -> None:
         scale = 1 + np.abs(rate).max()
         assert abs((A + m * r**2) * rate[1] + m * r**2 * w[0] * w[2]) < 1e-11 * scale
         assert abs(D * rate[2] - w[0] * (D * w[2] * np.tan(lean) - A * w[1])) < 1e-11 * scale
-
-
-def test_energy(rng: np.random.Generator) -> None:
-    """d/dt of m v^2/2 + w . I w/2 + m g z, by the accelerations."""
-    inertia = np.diag([D, A, D])
-    for q, v in states(rng):
-        w, _, a, _ = rates(q, v)
-        e = axes(model().frame_pose("disc", q)[1])
-        velocity, push = model().frame_velocity("disc", q, v), model().frame_acceleration("disc", q, v, a)
-        power = m * velocity[:3] @ push[:3] + w @ inertia @ (e @ push[3:]) + m * g * velocity[2]
-        assert abs(power) < 1e-11 * (1 + np.abs(push).max() * np.abs(v).max())
-        # The contact's force does no work, and nothing else is in the equations.
-        assert abs(v @ (model().mass_matrix(q) @ a + model().bias(q, v))) < 1e-11 * (1 + np.abs(a).max())
-
-
-def test_first_integrals_along_a_motion() -> None:
-    """(w2, w3) of the motion against Phi of the lean alone."""
-    q, v = rolling(0.3, np.array([0.0, 4.0, 1.0]))
-    times = np.linspace(0.0, 0.5, 6)
-    motion = move(model(), q, v, times, rate=free)
-    found = [rates(y[:7], y[7:]) for y in motion.y.T]
-    lean = np.array([row[3] for row in found])
-    assert np.all(np.diff(lean) > 0)
-    linear = solve_ivp(
-        lambda angle, y: [-m * r**2 / (A + m * r**2) * y[1], np.tan(angle) * y[1] - A / D * y[0]],
-        (lean[0], lean[-1]),
-        [4.0, 1.0],
-        "DOP853",
-        lean,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    assert np.array([row[0][1:] for row in found]).T == pytest.approx(linear.y, abs=1e-9)
 
 
 @pytest.mark.parametrize(("lean", "turn"), [(0.3, -2.0), (0.8, 1.5), (-0.5, 3.0)])

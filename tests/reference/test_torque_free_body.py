@@ -1,4 +1,4 @@
-"""A body free of forces: regular precession, Jacobi's elliptic functions, what is conserved."""
+"""A body free of forces: regular precession, and Jacobi's elliptic functions."""
 
 from __future__ import annotations
 
@@ -64,17 +64,3 @@ def test_a_triaxial_body_moves_by_elliptic_functions(spin: float) -> None:
 
     q, v = started(model, w)
     np.testing.assert_allclose(move(model, q, v, TIMES, free).y[10:], expected, atol=MOTION)
-
-
-def test_momentum_and_energy_stay(rng: np.random.Generator) -> None:
-    model = reference("torque_free_body")
-    moments = np.array([model.parameters[name] for name in "ABC"])
-    q, v = started(model, rng.uniform(-2, 2, 3))
-    y = move(model, q, v, TIMES, free).y.T
-    q, v = y[:, :7], y[:, 7:]
-    R = np.array([rotation(quaternion) for quaternion in q[:, 3:]])
-    about_center = np.einsum("nij,nj->ni", R, moments * v[:, 3:])
-    np.testing.assert_allclose(about_center, about_center[:1].repeat(len(TIMES), 0), atol=MOTION)
-    momentum = model.frame_velocity("center", q, v)[:, :3]
-    np.testing.assert_allclose(momentum, momentum[:1].repeat(len(TIMES), 0), atol=MOTION)
-    np.testing.assert_allclose(model.kinetic_energy(q, v), model.kinetic_energy(q[0], v[0]), atol=MOTION)

@@ -10,7 +10,6 @@ import pytest
 
 import symofros as sf
 from tests.models import model as compiled
-from tests.models import system
 
 
 def mass_matrix(model: sf.Model) -> np.ndarray:
@@ -44,38 +43,9 @@ def test_copies_share_the_code(arm: sf.Model) -> None:
         assert np.array_equal(mass_matrix(other), mass_matrix(arm)) and other.parameters == arm.parameters
 
 
-def test_an_interpreted_model_is_interpreted_there() -> None:
-    model = compiled("cart_pole")
-    assert np.array_equal(mass_matrix(pickle.loads(pickle.dumps(model))), mass_matrix(model))
-
-
 def test_runs_and_batches_come_back_whole(arm: sf.Model) -> None:
     run = sf.simulate(arm, [0.0, 0.2], t_end=0.05, dt=1e-2, events={"top": sf.Event("x")})
     for back in (pickle.loads(pickle.dumps(run)), copy.deepcopy(run)):
         assert np.array_equal(back.q, run.q) and back.outcome == run.outcome and np.array_equal(back.energy, run.energy)
     batch = sf.simulate_batch(arm, [[0.0, 0.2], [0.0, 0.3]], t_end=0.05, dt=1e-2)
     assert np.array_equal(pickle.loads(pickle.dumps(batch))[1].q, batch[1].q)
-
-
-def test_a_run_is_shown_in_a_line_and_in_notebooks(arm: sf.Model) -> None:
-    run = sf.simulate(arm, [0.0, 0.2], t_end=0.5, dt=1e-3)
-    assert len(repr(run)) < 200 and "501 records" in repr(run) and "finished" in repr(run)
-    assert run._repr_html_().count("<tr>") == 1 + len(run.columns())
-    batch = sf.simulate_batch(arm, [[0.0, 0.2], [0.0, 0.3]], t_end=0.05, dt=1e-2)
-    assert "2 finished" in repr(batch) and len(repr(batch)) < 200
-    assert "m_cart = " in arm._repr_html_()
-
-
-def test_a_column_that_is_not_there_is_refused_with_the_nearest(arm: sf.Model) -> None:
-    run = sf.simulate(arm, [0.0, 0.2], t_end=0.01, dt=1e-2)
-    with pytest.raises(sf.UnknownNameError, match="did you mean"):
-        run["xx"]
-    with pytest.raises(KeyError):
-        run["nothing"]
-
-
-def test_a_file_name_is_not_compiled(arm: sf.Model) -> None:
-    with pytest.raises(sf.DescriptionError, match=r"sf\.compile\(sf\.load\('cart_pole\.yaml'\)\)"):
-        sf.compile("cart_pole.yaml")
-    with pytest.raises(sf.DescriptionError, match="a system is a sf.System"):
-        sf.compile(system)

@@ -124,16 +124,6 @@ def test_batches_and_parameters() -> None:
             assert np.array_equal(all_of[i], alone)
 
 
-def test_no_parameters_no_columns() -> None:
-    m = model("four_bar", "interpreter")
-    constant = sf.compile(
-        replace(MODELS["pendulum"], parameters=tuple(replace(p, constant=True) for p in MODELS["pendulum"].parameters)),
-        sf.Options(backend="interpreter"),
-    )
-    assert constant.forward_dynamics_by_par([0.1], [0.2], np.zeros(constant.nu)).shape == (1, 0)
-    assert m.inverse_dynamics_by_par(*([np.zeros(3)] * 3)).shape == (3, m.npar)
-
-
 def test_a_massless_speed_is_refused() -> None:
     bodies = (
         sf.RigidBody("a", sf.Joint("q1", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))),
@@ -142,13 +132,6 @@ def test_a_massless_speed_is_refused() -> None:
     m = sf.compile(sf.System("s", bodies), sf.Options(backend="interpreter"))
     with pytest.raises(sf.DescriptionError, match="speed 'q2' moves no mass"):
         m.forward_dynamics_derivatives([0.1, 0.2], [0, 0], [])
-
-
-def test_a_mass_as_a_parameter() -> None:
-    """A point mass on a slide under a force: dv'/dm = -F/m^2."""
-    body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True), sf.Inertia("m"))
-    m = sf.compile(sf.System("s", [body], [sf.Parameter("m", 2.0)]), sf.Options(backend="interpreter"))
-    assert m.forward_dynamics_by_par([0.0], [0.0], [3.0])[0, 0] == pytest.approx(-3.0 / 4.0, rel=1e-15)
 
 
 @pytest.mark.parametrize("name", sampled(("puma560", "random_tree4", "random_tree1", "mss"), ("random_tree4",)))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from reference_models import MODELS
 from tests.models import model, system
 
 BACKENDS = ["c", "interpreter"]
@@ -13,19 +12,6 @@ BACKENDS = ["c", "interpreter"]
 @pytest.fixture(params=BACKENDS)
 def m(request: pytest.FixtureRequest) -> sf.Model:
     return model("parametrised0", request.param)
-
-
-def test_sizes_and_names(m: sf.Model) -> None:
-    assert (m.nq, m.nv, m.nu, m.npar) == tuple(map(len, (m.names.q, m.names.v, m.names.u, m.names.par)))
-    assert m.neutral().shape == (m.nq,)
-    assert "base" in m.names.frames and "base.mount" not in m.names.frames and "mount" in m.names.frames
-    assert repr(m).startswith("Model('random_tree0'")
-
-
-def test_a_beam_on_a_fixed_joint_has_only_its_own_coordinates_in_the_neutral_state() -> None:
-    beam = sf.Beam("b", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
-    m = sf.compile(sf.System("s", [beam]), sf.Options(backend="interpreter"))
-    assert np.array_equal(m.neutral(), np.zeros(m.nq))
 
 
 def test_leading_dimensions_broadcast(m: sf.Model, rng: np.random.Generator) -> None:
@@ -85,13 +71,6 @@ def test_unknown_frame_is_refused_with_a_suggestion(m: sf.Model) -> None:
         m.frame_pose("moun", m.neutral())
 
 
-def test_frames_answer_to_both_names(m: sf.Model) -> None:
-    body = system("parametrised0").bodies[-1].name
-    assert f"{body}.tip" in m.names.frames  # Several bodies have a tip.
-    q = m.neutral()
-    assert np.array_equal(m.frame_pose("base.mount", q)[0], m.frame_pose("mount", q)[0])
-
-
 def test_only_what_was_asked_for_is_there() -> None:
     m = sf.compile(system("tree0"), sf.Options(functions=("mass_matrix", "frame_pose"), frames=("mount",)))
     assert m.mass_matrix(m.neutral()).shape == (m.nv, m.nv)
@@ -107,13 +86,6 @@ def test_only_what_was_asked_for_is_there() -> None:
         sf.compile(system("tree0"), sf.Options(functions=("frame_pose",), frames=("mont",)))
 
 
-def test_time_enters_where_a_formula_names_it() -> None:
-    body = sf.RigidBody("b", sf.Joint("q1", "prismatic", effort=("2*t + dq1*q1",)), sf.Inertia(2.0))
-    m = sf.compile(sf.System("timed", [body]))
-    assert m.generalized_force([3.0], [0.5], [], t=10.0) == pytest.approx([21.5])
-    np.testing.assert_allclose(m.generalized_force([3.0], [0.5], [], t=[0.0, 1.0]), [[1.5], [3.5]])
-
-
 def test_inverse_dynamics_leaves_out_the_inputs() -> None:
     body = sf.RigidBody(
         "b", sf.Joint("q1", "prismatic", axis=(1, 0, 0), actuated=True, effort=("k*u1 - 3*dq1",)), sf.Inertia(2.0)
@@ -122,11 +94,3 @@ def test_inverse_dynamics_leaves_out_the_inputs() -> None:
     assert m.names.u == ("u1", "q1")
     assert m.inverse_dynamics([0.0], [1.0], [4.0]) == pytest.approx([2.0 * 4.0 + 3.0])
     assert m.forward_dynamics([0.0], [1.0], [1.0, 0.5]) == pytest.approx([(5.0 - 3.0 + 0.5) / 2.0])
-
-
-@pytest.mark.parametrize("batch", ["vector", "loop"])
-@pytest.mark.parametrize(("name", "said"), [("mass_matrx", "did you mean 'mass_matrix'"), ("frame_pose", "are bound")])
-def test_kernels_that_are_not_there_are_named(name: str, said: str, batch: str) -> None:
-    m = sf.compile(MODELS["double_pendulum"], sf.Options(batch=batch))  # type: ignore[arg-type]
-    with pytest.raises(sf.UnknownNameError, match=rf"no function '{name}'(.|\n)*{said}"):
-        m.kernel(name)

@@ -58,9 +58,3 @@ def test_a_model_of_chosen_functions_stays_as_it_is(made: list[tuple[Sequence[An
     made.clear()
     m.prepare("forward_dynamics", "kinetic_energy")
     assert not made
-
-
-def test_an_unknown_function_is_named() -> None:
-    m = sf.compile(MODELS["double_pendulum"])
-    with pytest.raises(sf.UnknownNameError, match="forward_dynamic'"):
-        m.prepare("forward_dynamic")

@@ -192,19 +192,6 @@ def test_differences_across_the_manifold_are_those_of_the_rotations(m: sf.Model)
     assert np.abs(slope - expected).max() < 1e-7 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("length", [0.3, 1.1, 1e-200, 1e200, -2.0])
-def test_normalized_takes_any_length_but_zero(m: sf.Model, length: float) -> None:
-    q, _ = states(m)
-    found = m.normalized(with_length(m, q, length))
-    assert np.abs(found - with_length(m, q, np.sign(length))).max() < 1e-15
-    assert np.array_equal(m.normalized(q[0].tolist()), m.normalized(q)[0])
-    q[1, turns(m)[0]] = 0.0
-    with pytest.raises(sf.ShapeError, match="length 0 of .* in row 1"):
-        m.normalized(q)
-    q[1, turns(m)[0]] = np.nan
-    assert np.isnan(m.normalized(q)[1]).any() and np.isfinite(m.normalized(q)[0]).all()
-
-
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
 def test_prescribed_rotations_are_judged_alike(backend: str) -> None:
     m = model("carried", backend)

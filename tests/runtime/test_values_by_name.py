@@ -36,24 +36,6 @@ def test_functions_take_names(arm: sf.Model) -> None:
     )
 
 
-def test_what_is_not_named_keeps_its_default(arm: sf.Model) -> None:
-    first, last = arm.names.q
-    assert np.array_equal(arm.mass_matrix({last: 0.3}), arm.mass_matrix([0.0, 0.3]))
-    heavier = arm.parameters["m_pole"] * 2
-    assert np.array_equal(
-        arm.mass_matrix([0.0, 0.3], par={"m_pole": heavier}),
-        arm.with_parameters(m_pole=heavier).mass_matrix([0.0, 0.3]),
-    )
-
-
-def test_values_of_a_batch_broadcast(arm: sf.Model) -> None:
-    first, last = arm.names.q
-    angles = np.linspace(0.0, 1.0, 5)
-    M = arm.mass_matrix({first: 0.1, last: angles})
-    assert M.shape == (5, 2, 2)
-    assert np.array_equal(M, arm.mass_matrix(np.stack([np.full(5, 0.1), angles], axis=-1)))
-
-
 def test_simulations_take_names(arm: sf.Model) -> None:
     first, last = arm.names.q
     ours = sf.simulate(arm, {last: 0.2}, {f"d{last}": 1.0}, t_end=0.05, dt=1e-2, par={"m_cart": 3.0})
@@ -91,8 +73,3 @@ def test_a_name_that_is_not_there_is_refused_with_the_nearest(arm: sf.Model) -> 
         arm.bias([0.0, 0.0], {arm.names.v[0]: 1.0, f"d{arm.names.v[0]}": 2.0})
     with pytest.raises(ShapeError, match="do not broadcast"):
         arm.mass_matrix({arm.names.q[0]: [1.0, 2.0], arm.names.q[1]: [1.0, 2.0, 3.0]})
-
-
-def test_parameters_by_name_are_judged_as_vectors_are(arm: sf.Model) -> None:
-    with pytest.raises(sf.ParameterError, match="m_cart"):
-        sf.simulate(arm, t_end=0.01, par={"m_cart": -1.0})

@@ -77,18 +77,8 @@ def test_each_trajectory_of_a_batch_is_judged_by_its_own_length() -> None:
     assert "beams bend much in 2, first: [1]: beam 'blade'" in str(runs)
 
 
-def test_a_column_past_its_critical_load_ends_when_it_swings_out() -> None:
-    column = cantilever().with_parameters(P=1.05 * critical_load(), F=1e-3)
-    assert sf.simulate(column, t_end=100.0, dt=1e-3).outcome.kind == "beyond theory"
-
-
-def test_a_limit_is_positive() -> None:
-    with pytest.raises(sf.SymofrosError, match="beam_limit is not positive"):
-        swung(0.1, beam_limit=0.0)
-
-
-@pytest.mark.parametrize("share", [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95])
-@pytest.mark.parametrize("L", [1e-3, 1.0, 30.0])
+@pytest.mark.parametrize("share", [-5.0, 0.0, 0.8, 0.95])
+@pytest.mark.parametrize("L", [1e-3, 30.0])
 def test_axial_loads_amplify_the_error_of_runs_and_modes_as_that_of_rest(share: float, L: float) -> None:
     """A column that rests is an equilibrium, a motion and the state of modes: one beam, one error."""
     P, F = share * critical_load() / L**2, 0.2 * (1.0 - share) / L**2
@@ -110,15 +100,6 @@ def test_a_column_near_its_critical_load_is_noted_though_its_slope_is_small() ->
     assert run.bendings[0].slope < 0.14 and len(beam_notes(run.outcome)) == 1
     ended = sf.simulate(m, t_end=20.0, dt=2e-3, output=0.1, beam_limit=0.01)
     assert ended.outcome.kind == "beyond theory" and not ended.outcome.ok
-
-
-def test_the_tension_of_a_rotor_lessens_the_error_of_its_blade() -> None:
-    blade = sf.Beam("blade", sf.Joint("hub", "revolute"), 1.0, 1.0, EI_z=1.0, bend_y=3, family="legendre")
-    m = sf.compile(sf.System("rotor", (blade,), gravity=(0, 0, 0)))
-    q = np.array([0.0, 0.2, 0.0, 0.0])
-    errors = [sf.modes(m, q, [speed, 0, 0, 0]).bendings[0].error for speed in (0.0, 1.0, 4.0, 16.0, 64.0)]
-    assert errors[0] == pytest.approx(m.beams()[0].bending(q[1:]).error, rel=1e-9)
-    assert np.all(np.diff(errors) < 0.0) and errors[-1] == pytest.approx(0.75 * errors[0], rel=0.02)
 
 
 @pytest.mark.parametrize(("error", "percent"), [(0.012, "1.2"), (0.5, "50"), (12.345, "1234"), (3.2e75, "3.2e+77")])

@@ -21,21 +21,8 @@ def run(*arguments: str):
 
 
 def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
-    found = run(
-        PENDULUM,
-        "0.5",
-        "--set",
-        "q1=1",
-        "--method",
-        "dop853",
-        "--every",
-        "0.1",
-        "-o",
-        str(tmp_path / "r.csv"),
-        "--picture",
-        str(tmp_path / "r.png"),
-        "--json",
-    )
+    options = "--set q1=1 --method dop853 --every 0.1 --json".split()
+    found = run(PENDULUM, "0.5", *options, "-o", str(tmp_path / "r.csv"), "--picture", str(tmp_path / "r.png"))
     assert found.exit_code == 0
     said = json.loads(found.stdout)
     assert said["ok"] and said["outcome"]["kind"] == "finished" and abs(said["energy_change"]) < 1e-5

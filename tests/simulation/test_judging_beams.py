@@ -25,15 +25,6 @@ def strip(stiffness: float) -> sf.Model:
     return sf.compile(sf.System("strip", (beam,), gravity=(0, 0, 0), parameters=(sf.Parameter("L", 0.5),)))
 
 
-@cache
-def closed() -> sf.Model:
-    """A slider that a flexible rod drives: the end of each step is projected onto the loop."""
-    rod = sf.Beam("rod", sf.Joint("swing", "revolute", position=(0, 0.1, 0)), 0.3, 0.5, EI_z=2.0, bend_y=2)
-    slider = sf.RigidBody("slider", sf.Joint("slide", "prismatic", axis=(1, 0, 0)), sf.Inertia(2.0, moments=(1, 1, 1)))
-    pin = sf.Closure("pin", ("slider", None), ("rod", "tip"), translations=("x", "y"))
-    return sf.compile(sf.System("slider", (rod, slider), gravity=(60, -9.81, 0), constraints=(pin,)))
-
-
 def errors_of(model: sf.Model, run: sf.Trajectory) -> np.ndarray:
     """Errors of the first beam by its slopes and twist alone, at each step."""
     (beam,) = model.beams()
@@ -54,26 +45,19 @@ def assert_bounded(model: sf.Model, run: sf.Trajectory) -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("stiffness", [1.0, 4.0, 15.0])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("stiffness", [1.0, 15.0])
+@pytest.mark.parametrize("seed", range(2))
 def test_strips_state_the_largest_error_of_all_steps(method: str, stiffness: float, seed: int) -> None:
     """Over amplitudes, the share of twist, speeds and steps, coarse ones too; while the joint turns fast."""
     rng = np.random.default_rng(seed)
     model = strip(stiffness)
-    for _ in range(4):
+    for _ in range(2):
         size = 10.0 ** rng.uniform(-3, -0.5, 3)
         q = np.concatenate([[0.0], np.repeat(size * [0.3, 0.3, 1.0], 2) * rng.normal(size=6)])
         v = np.concatenate([[rng.choice([0.0, 5.0])], rng.normal(size=6) * np.repeat(size, 2)])
         dt = 10.0 ** rng.uniform(-4.5, -3.2)
         run = sf.simulate(model, q, v, t_end=200 * dt, dt=dt, method=method, beam_limit=math.inf)
         assert_bounded(model, run)
-
-
-@pytest.mark.parametrize("method", ["rk4", "dopri5"])
-def test_projected_runs_state_the_largest_error_of_all_steps(method: str) -> None:
-    model = closed()
-    start = sf.assemble(model, {"swing": -0.34, "slide": 0.28, "rod.bend_y[1]": 0.01}).q
-    assert_bounded(model, sf.simulate(model, start, t_end=0.02, dt=2e-5, method=method, beam_limit=math.inf))
 
 
 @pytest.mark.parametrize("stiffness", [1.0, 15.0])
@@ -89,12 +73,3 @@ def test_the_first_step_beyond_the_limit_ends_a_run(stiffness: float, limit: flo
         assert np.all(errors[:-1] <= limit * (1.0 + ROUNDING))
         if len(run.t) < 4001:
             assert run.outcome.kind == "beyond theory" and errors[-1] > limit
-
-
-def test_parameters_and_limits_that_change_between_runs_count_anew() -> None:
-    model = strip(4.0)
-    q = np.array([0.0, 0.02, 0.0, 0.03, 0.0, 0.1, 0.0])
-    for length in (0.5, 5.0, 0.05):
-        changed = model.with_parameters(L=length)
-        run = sf.simulate(changed, q * length, t_end=0.01, dt=1e-4, beam_limit=math.inf)
-        assert_bounded(changed, run)

@@ -11,12 +11,13 @@ import symofros as sf
 from reference_models import MODELS
 from tests.models import compiled
 from tests.overconstrained import Bennett, sarrus
+from tests.simulation.mechanisms import loop
 
 START, RATE, END = 0.5, 1.5, 2.9  # The way of the first hinge leads past pi, where two rows of G vanish.
 # Methods, their steps, and the angle [rad] by which they may be off: of fixed steps a bound of the order of the
 # method's error on a smooth motion, of adaptive ones a small multiple of their tolerance of 1e-6.
 METHODS = (
-    *(("rk4", dt, 1e-7 if dt < 0.01 else 1e-5) for dt in (2e-2, 5e-3, 2e-3, 1e-3)),
+    *(("rk4", dt, 1e-7 if dt < 0.01 else 1e-5) for dt in (2e-2, 5e-3, 1e-3)),
     *((method, None, 2e-5) for method in ("dopri5", "dop853", "rodas4")),
     *(("generalized_alpha", dt, dt) for dt in (5e-3, 1e-3)),
 )
@@ -64,7 +65,7 @@ def test_far_from_the_constraints_the_conditions_there_are_met(backend: str) -> 
     model = sf.compile(MODELS["bricard"], sf.Options(backend=backend))
     rng, met = np.random.default_rng(0), 0
     closed = sf.assemble(model).q
-    for _ in range(300):
+    for _ in range(120):
         q, v = closed + rng.uniform(-0.15, 0.15, model.nq), rng.uniform(-1, 1, model.nv)
         strengths = np.linalg.svd(model.constraint_jacobian(q), compute_uv=False)
         if strengths[-1] > 1e-4 * strengths[0] and np.abs(model.constraint(q)).max() > 0.05:
@@ -72,7 +73,7 @@ def test_far_from_the_constraints_the_conditions_there_are_met(backend: str) -> 
             missed = np.abs(model.constraint_jacobian(q) @ a - model.constraint_bias(q, v)).max()
             assert missed < 1e-6 * (1.0 + np.abs(a).max()), q
             met += 1
-    assert met > 50
+    assert met > 20
 
 
 @pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
@@ -148,17 +149,10 @@ def test_sarrus_linkage_moves_as_one_on_a_slide(method: str, dt: float | None, b
 @pytest.mark.parametrize(("method", "dt"), [("rk4", 1e-2), ("rodas4", None), ("generalized_alpha", 2e-3)])
 def test_planar_loops_closed_in_space_move_as_those_closed_in_their_plane(method: str, dt: float | None) -> None:
     """Three conditions too many repeat others everywhere, and void ones are no conditions."""
-    bar, tip = sf.Inertia(1.0, (0.5, 0, 0), (0.01, 0.1, 0.1)), (sf.Frame("end", (1.0, 0, 0)),)
     ends = []
     for rows in ((("x", "z"), ()), (("x", "y", "z"), ("x", "z"))):
-        bodies = (
-            sf.RigidBody("crank", sf.Joint("a", "revolute", axis=(0, 1, 0)), bar, tip),
-            sf.RigidBody("coupler", sf.Joint("b", "revolute", "crank", "end", axis=(0, 1, 0)), bar, tip),
-            sf.RigidBody("rocker", sf.Joint("c", "revolute", position=(1.3, 0, 0.2), axis=(0, 1, 0)), bar, tip),
-        )
-        closure = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), *rows)  # type: ignore[arg-type]
-        model = sf.compile(sf.System("loop", bodies, constraints=(closure,)))
-        start = sf.assemble(model, {"a": -1.2, "b": 1.2, "c": -1.0}, held=("a",))
+        model = sf.compile(loop((1.0, 1.0, 1.0), 1.3, (0, 1, 0), rows=rows))
+        start = sf.assemble(model, {"q1": -1.2, "q2": 1.2, "q3": -1.0}, held=("q1",))
         run = sf.simulate(model, start.q, start.v, 1.0, method=method, **({} if dt is None else {"dt": dt}))  # type: ignore[arg-type]
         assert run.outcome.kind == "finished" and not run.outcome.notes
         ends.append(run.q[-1])

@@ -10,6 +10,8 @@ import pytest
 
 import symofros as sf
 import symofros.blocks as blocks
+from tests.diagrams.parts import moving
+from tests.simulation.mechanisms import turned
 
 
 @cache
@@ -24,13 +26,8 @@ def crane() -> sf.Model:
 
 
 @cache
-def turned() -> sf.Model:
-    """A body whose orientation is prescribed, with a pendulum on it."""
-    base = sf.RigidBody("base", sf.Joint("j", "ball", prescribed=True), sf.Inertia(1.0, (0, 0, 0.1), (1, 1, 1)))
-    hinge = sf.Joint("q", "revolute", "base", position=(0.2, 0, 0), axis=(0, 1, 0))
-    return sf.compile(
-        sf.System("turned", (base, sf.RigidBody("p", hinge, sf.Inertia(1.0, (0, 0, -0.3), (0.1, 0.1, 0.1)))))
-    )
+def carried() -> sf.Model:
+    return sf.compile(turned())
 
 
 T = np.linspace(0, 2, 81)
@@ -56,7 +53,6 @@ BAD: dict[str, Any] = {
     "number alone": {"dth": 0.3},
     "acceleration alone": {"ddth": 0.5},
     "contradicting": {"th": "0.3*t", "dth": "0.1"},
-    "other sign": {"th": "sin(t)", "dth": "-cos(t)"},
     "another acceleration": {"th": "sin(t)", "dth": "cos(t)", "ddth": 0.0},
     "samples that end early": {
         "th": sf.Signal([0, 1], [0, 0.3]),
@@ -85,35 +81,29 @@ def test_what_is_not_is_refused(how: str) -> None:
             simulate(crane(), q0, t_end=2.0, u=BAD[how])
 
 
-def test_one_trajectory_of_a_batch_is_enough() -> None:
-    """Constants differ from one to the next."""
-    with pytest.raises(sf.SymofrosError, match="'dth' is 0.3"):
-        sf.simulate_batch(crane(), np.zeros((3, 1)), t_end=1.0, u={"dth": np.array([0.0, 0.3, 0.0])})
-
-
 @pytest.mark.parametrize("axis", "xyz")
 def test_the_rate_that_is_named_is_the_one_that_is_stated(axis: str) -> None:
     """Of an angular velocity: by single runs and by batches, where one trajectory states it."""
     for simulate, stated in ((sf.simulate, 0.3), (sf.simulate_batch, np.array([0.0, 0.3]))):
         q0 = np.zeros(1) if simulate is sf.simulate else np.zeros((2, 1))
-        with pytest.raises(sf.SymofrosError, match=rf"'j\.w{axis}' is 0\.3, and 'j\.qx' changes at 0"):
-            simulate(turned(), q0, t_end=1.0, u={f"j.w{axis}": stated})
+        with pytest.raises(sf.SymofrosError, match=rf"'p\.w{axis}' is 0\.3, and 'p\.qx' changes at 0"):
+            simulate(carried(), q0, t_end=1.0, u={f"p.w{axis}": stated})
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_angular_velocities_belong_to_their_quaternions(seed: int) -> None:
     """About a random axis at a random speed, and with another speed."""
     rng = np.random.default_rng(seed)
     axis, w = rng.normal(size=3), float(rng.uniform(0.5, 20.0))
     axis /= np.linalg.norm(axis)
-    law = {f"j.q{x}": f"{a!r}*sin({w!r}*t/2)" for x, a in zip("xyz", axis.tolist(), strict=True)} | {
-        "j.qw": f"cos({w!r}*t/2)"
+    law = {f"p.q{x}": f"{a!r}*sin({w!r}*t/2)" for x, a in zip("xyz", axis.tolist(), strict=True)} | {
+        "p.qw": f"cos({w!r}*t/2)"
     }
-    spin = {f"j.w{x}": float(w * a) for x, a in zip("xyz", axis, strict=True)}
-    assert sf.simulate(turned(), t_end=1.0, u=law | spin).outcome.kind == "finished"
+    spin = {f"p.w{x}": float(w * a) for x, a in zip("xyz", axis, strict=True)}
+    assert sf.simulate(carried(), t_end=1.0, u=law | spin).outcome.kind == "finished"
     for wrong in ({}, {name: -value for name, value in spin.items()}, {name: 1.01 * w for name, w in spin.items()}):
         with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
-            sf.simulate(turned(), t_end=1.0, u=law | wrong)
+            sf.simulate(carried(), t_end=1.0, u=law | wrong)
 
 
 def test_a_function_in_python_is_judged_by_what_it_gave() -> None:
@@ -131,10 +121,8 @@ def test_wires_of_a_diagram_are_judged_by_what_they_gave(rate: float, noted: boo
     bob = sf.RigidBody(
         "bob", sf.Joint("q", "revolute", "hoist", position=(0, 0, -1), axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -0.5))
     )
-    diagram = sf.Diagram("crane")
-    diagram.add_model("plant", sf.System("plant", (hoist, bob)))
+    diagram = moving(sf.System("plant", (hoist, bob)), u="th.y")
     diagram.add(blocks.Ramp(name="th", slope=[0.3, 0.0, 0.0], start=[0.0, rate, 0.0]))
-    diagram.add(blocks.ForwardDynamics(name="plant", model="plant"), u="th.y")
     simulation = sf.Simulation(diagram)
     for run in (simulation.run(0.5, dt=1e-3, record=0.01), simulation.interpret(0.5, dt=1e-3, record=0.01)):
         assert run.outcome.kind == "finished"

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros import blocks
+from tests.diagrams.parts import moving
 from tests.interop.turning import SYSTEMS
 from tests.runtime.test_unit_quaternions import with_length
+from tests.simulation.mechanisms import turned
 
 Array = np.ndarray
 CLOSE = 1e-12
@@ -53,7 +54,7 @@ def test_motions_and_analyses_are_those_of_the_rotation(name: str, entry: str) -
     m, call = model(name), MOTIONS[entry]
     q, v = m.random_state(np.random.default_rng(3))
     expected = call(m, q, v)
-    for length in (1.0 + 1e-12, 1.0 + 1e-6, 1.0 - 9e-4):
+    for length in (1.0 + 1e-12, 1.0 - 9e-4):
         found = call(m, with_length(m, q, length), v)
         assert np.abs(found - expected).max() <= CLOSE * np.abs(expected).max(), length
     for length in (1.1, 0.0, 1e200):
@@ -97,13 +98,10 @@ def test_starts_of_diagrams_are_rotations(name: str, compiled: bool) -> None:
     q, _ = m.random_state(np.random.default_rng(3))
 
     def run(length: float) -> Array:
-        diagram = sf.Diagram("d")
         start = dict(zip(m.names.q, with_length(m, q, length).tolist(), strict=True))
-        diagram.add_model("plant", SYSTEMS[name](), start=start)
-        diagram.add(blocks.ForwardDynamics(name="move", model="plant"))
-        simulation = sf.Simulation(diagram)
+        simulation = sf.Simulation(moving(SYSTEMS[name](), start))
         result = (simulation.run if compiled else simulation.interpret)(0.01, dt=5e-3, record=5e-3)
-        return np.asarray(result["move.q"])
+        return np.asarray(result["plant.q"])
 
     expected = run(1.0)
     for length in (1.0 + 1e-12, 1.0 + 1e-6, 1.0 - 9e-4):
@@ -113,22 +111,10 @@ def test_starts_of_diagrams_are_rotations(name: str, compiled: bool) -> None:
             run(length)
 
 
-def turned() -> sf.System:
-    """A hinge on a body whose rotation is prescribed."""
-    wrist = sf.RigidBody("c", sf.Joint("w", "ball", prescribed=True), sf.Inertia(1.0, (0.1, 0, 0), (0.2, 0.3, 0.4)))
-    hinge = sf.Joint("j", "revolute", "c", position=(0.1, 0.2, 0.3), axis=(0, 1, 0))
-    return sf.System("turned", [wrist, sf.RigidBody("b", hinge, sf.Inertia(1.0, (0.5, 0, 0), (0.2, 0.3, 0.4)))])
-
-
 PARTS = [0.5, -0.1, 0.7, 0.5]  # Of unit length.
 RUNS: dict[str, Callable[[sf.Model, list[str], float], Array]] = {
     "numbers": lambda m, names, length: recorded(
         sf.simulate(m, [0.1], [0.2], 0.1, u={n: length * x for n, x in zip(names, PARTS, strict=True)}, dt=0.02)
-    ),
-    "formulas": lambda m, names, length: recorded(
-        sf.simulate(
-            m, [0.1], [0.2], 0.1, u={n: f"{length!r}*({x})" for n, x in zip(names, PARTS, strict=True)}, dt=0.02
-        )
     ),
     "a function": lambda m, names, length: recorded(
         sf.simulate(m, [0.1], [0.2], 0.1, u=lambda t, q, v: stated_inputs(m, names, length), dt=0.02)

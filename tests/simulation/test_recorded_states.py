@@ -19,7 +19,6 @@ T_END, DT = 0.2, 1e-2
 # Within steps, at their ends, and at the end of the run.
 TIMES = (0.0, 0.0137, 0.05, 0.1099, 0.11, T_END)
 OWN = ("rk4", "semi_implicit_euler", "euler", "dopri5", "dop853", "implicit_euler", "rodas4", "generalized_alpha")
-BATCHED = ("rk4", "semi_implicit_euler", "dopri5", "dop853")
 # Closed loops of one and several freedoms, rolling, a condition on speeds alone; then balls and free bases.
 CLOSED_MODELS = ("four_bar", "slider_crank", "rolling_disc", "sleigh")
 TREES = ("gyroscope", "space_arm")
@@ -60,28 +59,6 @@ def test_states_at_given_times_are_those_of_the_run_recorded_at_every_step(name:
     assert given.t[-1] == every.t[-1] == T_END
     assert largest_violation(model, given.q[1:], given.v[1:]) < PROJECTED
     np.testing.assert_allclose(quaternion_lengths(model, given.q), 1.0, atol=1e-14)
-
-
-@pytest.mark.parametrize("method", [*OWN, "ida"])
-@pytest.mark.parametrize("name", CLOSED_MODELS)
-def test_a_run_starts_from_each_recorded_state(name: str, method: str) -> None:
-    model, q, v = scene(name)
-    run = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)
-    assert largest_violation(model, run.q, run.v) < CLOSED
-    for start_q, start_v in zip(run.q, run.v, strict=True):
-        assert sf.simulate(model, start_q, start_v, DT, dt=DT).outcome.ok
-
-
-@pytest.mark.parametrize("method", BATCHED)
-@pytest.mark.parametrize("name", ["slider_crank", "rolling_disc", "space_arm"])
-def test_a_batch_records_the_states_of_single_runs(name: str, method: str) -> None:
-    model, q, v = scene(name)
-    many = sf.simulate_batch(model, np.tile(q, (3, 1)), v, T_END, method=method, dt=DT, output=TIMES)
-    alone = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)
-    np.testing.assert_array_equal(many.q[:, -1], many.q_last)
-    np.testing.assert_array_equal(many.v[:, -1], many.v_last)
-    np.testing.assert_allclose(many.q[1], alone.q, atol=1e-11)
-    assert largest_violation(model, many.q[1, 1:], many.v[1, 1:]) < PROJECTED
 
 
 @pytest.mark.parametrize("method", ["semi_implicit_euler", "dopri5", "generalized_alpha"])

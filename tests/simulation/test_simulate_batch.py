@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.models import compiled as model
+from tests.simulation.mechanisms import slide
 
 # Steps are the same and so are the formulas; only fused multiply-adds may fall on other pairs (docs/theory/code.md).
 ALIKE = 1e-11
@@ -44,18 +46,9 @@ def test_as_simulate(name: str, method: str) -> None:
     q, v = starts(m, 37)  # More than are in hand at once, and no multiple of a vector's lanes.
     many = sf.simulate_batch(m, q, v, 0.3, method=method, dt=7e-3, output=GRID)
     assert many.q.shape == (37, 5, m.nq) and many.ok.all()
-    for i in (0, 1, 8, 31, 32, 36):
+    for i in (0, 8, 31, 36):
         assert_same(many[i], sf.simulate(m, q[i], v[i], 0.3, method=method, dt=7e-3, output=GRID))
         assert np.array_equal(many.q_last[i], many.q[i, -1]) and np.array_equal(many.v_last[i], many.v[i, -1])
-
-
-def test_baumgarte_as_simulate() -> None:
-    m = model("four_bar")
-    q, v = starts(m, 3)
-    ways: dict[str, Any] = {"stabilisation": "baumgarte", "gains": (10, 10), "dt": 1e-3, "output": 0.05}
-    many = sf.simulate_batch(m, q, v, 0.1, **ways)
-    for i in range(3):
-        assert_same(many[i], sf.simulate(m, q[i], v[i], 0.1, **ways))
 
 
 def bits(run: sf.Trajectories) -> list[np.ndarray]:
@@ -92,11 +85,10 @@ def inputs(m: sf.Model, kind: str, n: int) -> tuple[Any, Any]:
         "signals": (sf.Signal(t, own), lambda i: sf.Signal(t, own[i])),
         "named signals": ({u: sf.Signal(t, own)}, lambda i: {u: sf.Signal(t, own[i, :, 0])}),
         "formula": ({u: law}, lambda i: {u: law}),
-        "nothing": (None, lambda i: None),
     }[kind]
 
 
-KINDS = ("rows", "one for all", "mapping", "signal", "signals", "named signals", "formula", "nothing")
+KINDS = ("rows", "one for all", "mapping", "signal", "signals", "named signals", "formula")
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -110,18 +102,13 @@ def test_inputs(kind: str, method: str) -> None:
         assert_same(many[i], sf.simulate(m, q[i], v[i], 0.2, u=alone(i), method=method, dt=1e-2, output=0.05))
 
 
-@pytest.mark.parametrize("name", ["cart_pole", "four_bar"])
-def test_parameters_of_each(name: str) -> None:
-    system = MODELS[name]
+def test_parameters_of_each() -> None:
+    system, n = MODELS["cart_pole"], 34
     free = tuple(sf.Parameter(one.name, one.value) for one in system.parameters)
-    m = sf.compile(sf.System(system.name, system.bodies, free, constraints=system.constraints, inputs=system.inputs))
-    n = 34
+    m = sf.compile(replace(system, parameters=free))
     q, v = starts(m, n)
-    rng = np.random.default_rng(2)
-    # Lengths decide whether the loop closes, so that only what is not geometry varies there.
-    vary = np.array([name == "cart_pole" or par.startswith(("m", "I", "k", "d")) for par in m.names.par])
-    par = m.parameter_values * (1.0 + 0.1 * vary * rng.random((n, m.npar)))
-    law = {m.names.u[0]: f"2 - {m.names.par[0]}*{m.names.q[0]}"} if m.nu else None
+    par = m.parameter_values * (1.0 + 0.1 * np.random.default_rng(2).random((n, m.npar)))
+    law = {m.names.u[0]: f"2 - {m.names.par[0]}*{m.names.q[0]}"}
     many = sf.simulate_batch(m, q, v, 0.1, par=par, u=law, dt=5e-3)
     assert many.par.shape == (n, m.npar)
     for i in (0, 16, 33):
@@ -171,22 +158,7 @@ def test_off_the_constraints() -> None:
     assert np.array_equal(found.q_last[[0, 1, 3]], good.q_last[[0, 1, 3]]) and np.array_equal(found.q_last[2], q_off[2])
 
 
-def test_step_too_small() -> None:
-    m = model("cart_pole")
-    run = sf.simulate_batch(m, m.neutral(), t_end=1.0, u={m.names.u[0]: "1/sqrt(0.5 - t)"}, method="dopri5")
-    assert run.kinds == "step too small" and run.t_last == pytest.approx(0.5, abs=1e-6)
-    assert run.outcome(()).t == run.t_last and "rtol" in run.outcome(()).advice
-
-
-def test_max_steps() -> None:
-    m = model("cart_pole")
-    run = sf.simulate_batch(m, np.zeros((3, m.nq)), t_end=1.0, dt=0.1, max_steps=4, output=0.2)
-    assert set(run.kinds) == {"interrupted"} and (run.steps == 4).all() and run.t_last == pytest.approx([0.4] * 3)
-    assert run[0].t == pytest.approx([0.0, 0.2, 0.4])
-
-
-@pytest.mark.parametrize("threads", [1, 2])
-def test_interrupted(threads: int) -> None:
+def test_interrupted() -> None:
     m = model("space_arm")
     q, v = starts(m, 200)
 
@@ -197,7 +169,7 @@ def test_interrupted(threads: int) -> None:
     try:
         m.kernel("forward_dynamics").in_lanes()  # type: ignore[attr-defined]  # Compiled before the clock runs.
         signal.setitimer(signal.ITIMER_REAL, 0.3)
-        run = sf.simulate_batch(m, q, v, 50.0, dt=1e-4, output=[0.0], threads=threads)
+        run = sf.simulate_batch(m, q, v, 50.0, dt=1e-4, output=[0.0], threads=2)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -223,7 +195,6 @@ def test_shapes() -> None:
         ({"u": lambda t, q, v: [0.0]}, "inputs by a Python function"),
         ({"method": "rodas4"}, "'rodas4' is no explicit method"),
         ({"threads": 0}, "no thread to work"),
-        ({"u": {"nothing": np.zeros(3)}}, "no input 'nothing'"),
     ],
 )
 def test_refused(given: dict[str, Any], message: str) -> None:
@@ -238,10 +209,8 @@ def test_a_run_of_a_batch_that_records_its_end_alone_bears_the_notes_of_a_single
     method: str, dt: float | None
 ) -> None:
     """A hill turns a cart back, if steps see it: what they pass over does not depend on the samples."""
-    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0))
     hill = sf.Potential("hill", "max(0, 1 - ((x - 5)/0.03)^2)^2")
-    cart = sf.System("cart", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), potentials=(hill,), gravity=(0, 0, 0))
-    model, options = sf.compile(cart), {} if dt is None else {"dt": dt}
+    model, options = sf.compile(slide(potentials=(hill,))), {} if dt is None else {"dt": dt}
     single = sf.simulate(model, [0.0], [1.0], 10.0, method=method, **options)
     many = sf.simulate_batch(model, np.zeros((2, 1)), np.ones((2, 1)), 10.0, method=method, **options)
     assert many.q.shape == (2, 1, 1) and many.outcome(0).notes == single.outcome.notes

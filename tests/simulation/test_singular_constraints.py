@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -48,7 +46,7 @@ def test_a_disc_that_falls_flat_ends_with_its_contact_named(method: str, options
 def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
     q, v = disc(0.5, 0.0, 0.0)
     runs = sf.simulate_batch(model("rolling_disc"), np.array([q, q]), v, t_end=1.0, dt=1e-3)
-    assert not runs.ok.any() and "singular" in runs.outcome(0).reason
+    assert not runs.ok.any() and runs.outcome(0).kind == "singular"
 
 
 @settings(max_examples=12)
@@ -76,33 +74,6 @@ def test_motions_through_postures_near_singular_ones_go_on(name: str, method: st
     at = sf.assemble(m, GUESSES[name], np.random.default_rng(0).normal(size=m.nv))
     run = sf.simulate(m, at.q, at.v, t_end=2.0, method=method, **options)  # type: ignore[arg-type]
     assert run.outcome.kind == "finished" and change_of_energy(run) < 1e-4
-
-
-@cache
-def equal_cranks() -> sf.Model:
-    """A slider-crank whose rod is as long as its crank: at a right angle the slider may stay behind."""
-    bar = sf.Inertia(1.0, (0.25, 0, 0), (0.01, 0.02, 0.02))
-    end = (sf.Frame("end", (0.5, 0, 0)),)
-    bodies = (
-        sf.RigidBody("crank", sf.Joint("q1", "revolute"), bar, end),
-        sf.RigidBody("rod", sf.Joint("q2", "revolute", "crank", "end"), bar, end),
-        sf.RigidBody("slider", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(0.5)),
-    )
-    loop = sf.Closure("loop", ("slider", None), ("rod", "end"), ("x", "y"))
-    return sf.compile(sf.System("equal", bodies, constraints=(loop,), gravity=(0, 0, 0)))
-
-
-@pytest.mark.slow
-@settings(max_examples=12)
-@given(speed=st.floats(0.5, 8.0), start=st.floats(0.1, 1.5), way=st.sampled_from([0, 3, 4]))
-def test_a_slider_crank_through_its_change_point_keeps_its_energy_or_says_why_not(
-    speed: float, start: float, way: int
-) -> None:
-    m = equal_cranks()
-    at = sf.assemble(m, [start, -2 * start, np.cos(start)], [speed, -2 * speed, 0.0], held=("q1",))
-    method, options = WAYS[way]
-    run = sf.simulate(m, at.q, at.v, t_end=2.0, method=method, max_steps=5000, **options)  # type: ignore[arg-type]
-    assert not run.outcome.ok or change_of_energy(run) < 0.02, str(run.outcome)
 
 
 def test_a_condition_on_speeds_that_vanishes_in_one_posture_takes_no_energy_in_silence() -> None:

@@ -59,7 +59,6 @@ _LEFT_OUT = {
     "progress.py",
     "plots.py",
     "saving.py",
-    "ablation.py",
     "interpreted.py",
     "effort.py",
     "routes.py",

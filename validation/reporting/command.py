@@ -5,10 +5,11 @@ from __future__ import annotations
 import inspect
 import json
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any
 
 import typer
@@ -18,6 +19,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 import symofros as sf
 from symofros.tools import write_atomically
 
+from ..program import PROGRAM
 from . import html, markdown, terminal
 from .evidence import MIXED, digest
 from .provenance import Provenance, stamp
@@ -242,13 +244,22 @@ def add_command(app: typer.Typer, topic: Topic) -> None:
     app.command(topic.name, help=f"{said}\n\n{_CODES}")(command)
 
 
-def known(chosen: Sequence[str] | None, names: Collection[str], option: str, noun: str) -> list[str]:
+def known(
+    chosen: Sequence[str] | None,
+    names: Collection[str],
+    option: str,
+    noun: str,
+    retired: Mapping[str, str] = MappingProxyType({}),
+) -> list[str]:
     """What is chosen, or else all.
 
     Raises:
-        BadParameter: One of them does not exist.
+        BadParameter: One of them does not exist; of one that is `retired`, with the command that answers its question.
     """
     for name in chosen or ():
+        if name in retired:
+            said = f"no {noun} '{name}': its question is answered by `{PROGRAM} {retired[name]}`"
+            raise typer.BadParameter(said, param_hint=option)
         if name not in names:
             raise typer.BadParameter(f"no {noun} '{name}'; there are {', '.join(names)}", param_hint=option)
     return list(chosen or names)

@@ -11,7 +11,7 @@ from ..reporting.command import Quick, Run, known
 from ..reporting.numbers import rounded
 from ..reporting.plain import plain
 from ..reporting.record import Data
-from .catalogue import STUDIES
+from .catalogue import RETIRED, STUDIES
 from .study import Map, ParameterStudy, survey
 
 # Different reasons of ends that are kept of a map.
@@ -27,7 +27,7 @@ def measure(
 
     With --study, the report is that of these studies alone, in the subfolder stability.
     """
-    wanted = known(chosen, STUDIES, "--study", "study")
+    wanted = known(chosen, STUDIES, "--study", "study", RETIRED)
     if chosen:  # One study must not overwrite the atlas of all of them.
         run.folder = run.folder / "stability"
     run.expect(sum(STUDIES[name].runs(quick) for name in wanted))

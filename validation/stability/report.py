@@ -42,7 +42,7 @@ def maps_of(study: ParameterStudy, data: Data) -> dict[str, Map]:
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
-    studies = data["studies"]
+    studies = {name: study for name, study in data["studies"].items() if name in STUDIES}  # Of older reports as well.
     findings = {name: restored(tuple[Finding, ...], study["findings"]) for name, study in studies.items()}
     runs = sum(len(row) for study in studies.values() for one in study["maps"].values() for row in one["values"])
     draft = Report(

@@ -109,6 +109,14 @@ def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
     return run
 
 
+def longest(holds: Callable[[float], bool], low: float, high: float, within: float = 1e-4) -> float:
+    """The largest value that holds between one that does and one that does not, by bisection of the logarithm."""
+    while high / low > 1.0 + within:
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low
+
+
 def refused(error: Exception) -> Cell:
     """What was not begun, in words."""
     return Cell(math.nan, REFUSED, str(error).splitlines()[0])

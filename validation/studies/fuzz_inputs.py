@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import random
 import re
 from collections.abc import Iterator
@@ -20,143 +21,8 @@ _FORMULAS = (
     b"m*(L^2/12 + r^2/4)",
     b"1 - -x**2**y/(3*z)",
 )
-# Formulas and numbers that are hostile wherever they stand.
-_EVERYWHERE = (
-    "__import__('os').system('x')",
-    "().__class__",
-    "9**9**9",
-    "\x00",
-    "{",
-    "}",
-    "[",
-    "]",
-    "'",
-    '"',
-    "#",
-    "%",
-    "@",
-    "`",
-    "nan",
-    "inf",
-    "1e400",
-    "-1e400",
-    "1e-400",
-    "1e308",
-    "1e300*1e300",
-    "0",
-    "-0",
-    "-1",
-    "0x7fffffff",
-    "9" * 400,
-    "int",
-    "while",
-    "größe",
-    "\u202e",
-    "a" * 500,
-    "(" * 200,
-    "q1",
-    "dq1",
-    "t",
-    "pi",
-    "sin(",
-    "sqrt(-1)",
-    "1/0",
-    "log(0)",
-    "^",
-    "\ufeff",
-    "\r",
-    "\n",
-)
-_SNIPPETS: dict[str, tuple[str, ...]] = {
-    "formula": _EVERYWHERE,
-    "yaml": (
-        *_EVERYWHERE,
-        "!!python/object:os.system",
-        "&a",
-        "*a",
-        "<<: *a",
-        "---",
-        "\t",
-        ":",
-        "- ",
-        "? ",
-        "| ",
-        "> ",
-        ".nan",
-        ".inf",
-        "-.inf",
-        "null",
-        "true",
-        "[]",
-        "{}",
-        "include: [../../etc/passwd]",
-        "include: [hostile.yaml]",
-        "include: ['\\0']",
-        "kind: free",
-        "kind: general",
-        "kind: fixed",
-        "parent: world",
-        "prescribed: true",
-        "actuated: true",
-        "symofros: 2",
-        "about: body",
-    ),
-    "diagram": (
-        *_EVERYWHERE,
-        "!!python/object:os.system",
-        "&a",
-        "*a",
-        "<<: *a",
-        "---",
-        "\t",
-        ": ",
-        "- ",
-        "null",
-        "true",
-        "[]",
-        "{}",
-        "[[1], [2, 3]]",
-        "kind: scope",
-        "kind: store",
-        "period: 0.001",
-        "model: arm",
-        "plant.q",
-        "part/pd.q",
-        "file: ../../etc/passwd",
-        "file: hostile.yaml",
-        "diagram: {}",
-        "models",
-        "inputs: {name: plant.q}",
-        "0.0.0.0",
-        "example.com",
-        "99999999999",
-        "plots: [[]]",
-        ".inf",
-    ),
-    "urdf": (
-        *_EVERYWHERE,
-        '<!DOCTYPE r [<!ENTITY a "b">]>',
-        "&a;",
-        "&#0;",
-        "&lt;",
-        "<![CDATA[x]]>",
-        "<!--",
-        "-->",
-        "<?x?>",
-        '<?xml version="1.0" encoding="utf-7"?>',
-        "<link/>",
-        "<joint/>",
-        '<link name="base"/>',
-        '<parent link="hand"/>',
-        'type="floating"',
-        'type="planar"',
-        'xyz="0 0 0"',
-        "<inertial/>",
-        "<a>" * 150,
-        "</robot>",
-        "xmlns:x='u'",
-    ),
-}
+# Kind -> texts that are hostile in its files, after those that are hostile wherever they stand; [TEXT, TIMES] repeats.
+_STATED = json.loads(Path(__file__).with_name("snippets.json").read_text(encoding="utf-8"))
 _WORD = re.compile(rb"[A-Za-z_]\w*|-?\d+(?:\.\d+)?")
 
 
@@ -171,7 +37,8 @@ def corpus(kind: str) -> list[bytes]:
 def mutated(kind: str, seed: int) -> Iterator[bytes]:
     """Endless mutations of the corpus of a kind, the same ones for the same seed."""
     rng, files = random.Random(f"{kind} {seed}"), corpus(kind)
-    snippets = [snippet.encode() for snippet in _SNIPPETS[kind]]
+    stated = (*_STATED["everywhere"], *_STATED.get(kind, ()))
+    snippets = [(text if isinstance(text, str) else text[0] * text[1]).encode() for text in stated]
     while True:
         data = rng.choice(files)
         # Half of the inputs have a single fault: those come furthest.

@@ -97,6 +97,13 @@ class Gain(Block):
         return {"y": product * self.conversion}
 
 
+def _one_an_input(name: str, field: str, given: str, pair: str) -> None:
+    """Refuse what is no word of the two characters of a pair, one an input."""
+    if not given or set(given) - {*pair} or len(given) > MOST_INPUTS:
+        rule = f"1 to {MOST_INPUTS} {field} {pair[0]} or {pair[1]}, one an input"
+        raise refuse(name, field, repr(given), rule, f'write for example "{pair}"')
+
+
 @dataclass(frozen=True, kw_only=True)
 class Sum(Block):
     """y = +-u1 +-u2 ..., entry by entry.
@@ -111,14 +118,7 @@ class Sum(Block):
 
     def __post_init__(self) -> None:
         """Signs are plus and minus."""
-        if not self.signs or set(self.signs) - {"+", "-"} or len(self.signs) > MOST_INPUTS:
-            raise refuse(
-                self.name,
-                "signs",
-                repr(self.signs),
-                f"1 to {MOST_INPUTS} signs + or -, one an input",
-                'write for example "+-"',
-            )
+        _one_an_input(self.name, "signs", self.signs, "+-")
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
@@ -148,14 +148,7 @@ class Product(Block):
 
     def __post_init__(self) -> None:
         """Operations multiply or divide."""
-        if not self.operations or set(self.operations) - {"*", "/"} or len(self.operations) > MOST_INPUTS:
-            raise refuse(
-                self.name,
-                "operations",
-                repr(self.operations),
-                f"1 to {MOST_INPUTS} operations * or /, one an input",
-                'write for example "*/"',
-            )
+        _one_an_input(self.name, "operations", self.operations, "*/")
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,6 +16,7 @@ from symofros.blocks.checks import choice, increasing, known_name, numbers, refu
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
 from symofros.simulation.inputs import Signal
+from symofros.simulation.results.csv_columns import LineError, read_csv
 from symofros.simulation.results.npz import TooLargeError, read_npz
 
 # A file is read whole.
@@ -138,59 +139,32 @@ def _read(block: str, path: Path) -> dict[str, Any]:
         raise refuse(block, f"file '{path}'", "a folder, a pipe or the like", "samples are in a file", "mend the path")
     if size > MOST_BYTES:
         raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MOST_BYTES}", "thin it out")
-    readers = {".csv": _read_csv, ".npz": _read_npz}
-    if path.suffix.lower() not in readers:
+    if path.suffix.lower() not in _READERS:
         raise refuse(
             block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz", "convert it"
         )
+    form, read = _READERS[path.suffix.lower()]
     try:
-        return readers[path.suffix.lower()](block, path)
-    except csv.Error as error:
-        what, rule = f"file '{path}' is no CSV file", "lines of numbers between commas"
-        raise refuse(block, what, error, rule, "write it anew") from None
-
-
-def _read_npz(block: str, path: Path) -> dict[str, Any]:
-    try:
-        return dict(read_npz(path, MOST_NUMBERS))
+        arrays = dict(read(path, MOST_NUMBERS))
     except TooLargeError as error:
         what, rule = f"file '{path}' is too large", f"at most {MOST_NUMBERS} numbers in all its arrays"
         raise refuse(block, what, error, rule, "thin it out") from None
-    except (OSError, ValueError) as error:
-        what, rule = f"file '{path}' is no NPZ file", "arrays of numbers, as numpy.savez writes them"
-        raise refuse(block, what, error, rule, "write it anew") from None
+    except LineError as error:
+        what, found, rule = "a line of samples", ",".join(error.content)[:120], f"{error.columns} numbers a line"
+        where = f"{path}:{error.line}"
+        raise DescriptionError(Problem(f"block '{block}': {what}", found, rule, "mend the line", where)) from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise refuse(
+            block, f"file '{path}' is no {form}", error, "arrays of numbers by names", "write it anew"
+        ) from None
+    if "" in arrays:
+        rule = "the first line names each column, once"
+        raise refuse(block, f"file '{path}': names", ", ".join(arrays), rule, "mend the first line")
+    return arrays
 
 
-def _read_csv(block: str, path: Path) -> dict[str, Any]:
-    rows: list[list[float]] = []
-    with path.open(newline="", encoding="utf-8-sig", errors="replace") as text:
-        lines = csv.reader(text)
-        names = [name.strip() for name in next(lines, [])]
-        if len(set(names)) < len(names) or not all(names):
-            raise refuse(
-                block,
-                f"file '{path}': names",
-                ", ".join(names),
-                "the first line names each column, once",
-                "mend the first line",
-            )
-        for line in lines:
-            if not line:
-                continue
-            try:
-                row = [float(cell) for cell in line]
-            except ValueError:
-                row = []
-            if len(row) != len(names) or (len(rows) + 1) * len(names) > MOST_NUMBERS:
-                raise DescriptionError(
-                    Problem(
-                        f"block '{block}': a line of samples",
-                        ",".join(line)[:120],
-                        f"{len(names)} numbers a line, {MOST_NUMBERS} in all",
-                        "mend the line",
-                        f"{path}:{lines.line_num}",
-                    )
-                )
-            rows.append(row)
-    table = np.array(rows).reshape(len(rows), len(names))
-    return {name: table[:, i] for i, name in enumerate(names)}
+# Ending of a file -> what it is called, and what reads it.
+_READERS: dict[str, tuple[str, Callable[[Path, int], Mapping[str, Any]]]] = {
+    ".csv": ("CSV file", read_csv),
+    ".npz": ("NPZ file", read_npz),
+}

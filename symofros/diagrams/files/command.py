@@ -102,13 +102,7 @@ def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> 
             json.dumps(
                 {
                     "ok": outcome.ok,
-                    "outcome": {
-                        "kind": outcome.kind,
-                        "t": outcome.t,
-                        "reason": outcome.reason,
-                        "advice": outcome.advice,
-                        "notes": list(outcome.notes),
-                    },
+                    "outcome": outcome.as_data(),
                     "statistics": costs,
                     "jitter": asdict(jitter) if jitter else None,
                     "counts": counts,

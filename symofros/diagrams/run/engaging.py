@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from symofros.native import native_number
+from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import CLOSED
+from symofros.simulation.stepping.status import Status
 
 # Largest |phi| [m, rad], by weight, that engaging closes by moving bodies; the run ends where it is larger.
 ENGAGE_TOLERANCE = native_number("diagrams/diagram.c", "SYM_ENGAGE_TOLERANCE")
@@ -25,14 +27,11 @@ class EngagedApartError(Exception):
 
 def engaged_apart(t: float, gap: float, name: str, notes: tuple[str, ...] = ()) -> Outcome:
     """The outcome of a run that ends because closing a gap would require moving bodies instantaneously."""
-    return Outcome(
-        "constraints lost",
-        t,
+    reason = (
         f"what '{name}' engages is apart: |phi| = {gap:.3g}, above {ENGAGE_TOLERANCE:g}; closing it would move bodies "
-        "within an instant, which no force does",
-        "engage where the frames meet, bring them there first, or state the closure between the frames that will meet",
-        notes,
+        "within an instant, which no force does"
     )
+    return ENDS[Status.ENGAGED_APART].outcome(t, notes, reason)
 
 
 def engaging_notes(t: float, gap: float) -> tuple[str, ...]:

@@ -21,7 +21,9 @@ from symofros.diagrams.wiring import Source
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
+from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory
 from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.tableaus import Tableau
 
 # How often an observer gets records [s], and how much earlier than its stop an instant may be, by rounding [s].
@@ -321,7 +323,7 @@ def run_interpreted(
         outcome = engaged_apart(t_last, apart.gap, apart.name, outcome.notes)
     outcome = replace(outcome, notes=(*outcome.notes, *engaging_notes(closed[1], closed[0])))
     if not goes_on:
-        outcome = Outcome("interrupted", outcome.t, "stopped; the part up to here is kept", notes=outcome.notes)
+        outcome = INTERRUPTED.outcome(outcome.t, outcome.notes, "stopped; the part up to here is kept")
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
     values, memories = ({key: np.array(one) for key, one in by.items()} for by in (kept, memory))
     return InterpretedRun(blocks.resolved, t, values, memories, q, v, outcome, steps, watch.bendings, called.kept())
@@ -362,12 +364,8 @@ def _outcome(watch: BeamWatch, t: float, steps: int, fault: str, *, failed: bool
     """The outcome of a run: why it ended at time t, with advice and notes."""
     notes = bending_notes(watch.bendings)
     if failed:
-        if fault:
-            return Outcome("input failed", t, fault, "outputs that are finite at all samples", notes)
-        return Outcome(
-            "diverged", t, "a state has grown without bound", "a smaller dt; look for gains that are too high", notes
-        )
+        return ENDS[Status.CALLBACK_FAILED if fault else Status.DIVERGED].outcome(t, notes, fault)
     worst = largest_bending(watch.bendings)
     if worst is not None and not (within and worst.error <= watch.limit):
-        return Outcome("beyond theory", t, str(worst), f"{worst.remedy}; or move the limit, beam_limit=...")
-    return Outcome("finished", t, f"{steps} steps", notes=notes)
+        return beyond_theory(worst, watch.limit)
+    return ENDS[Status.FINISHED].outcome(t, notes, f"{steps} steps")

@@ -216,14 +216,23 @@ class Loop:
         for place in places:
             u[place.slice] = values[place.slice]
 
-    def take(self) -> tuple[list[Array], list[tuple[float, int]]]:
-        """The records since the last call, t (n), q, v, u, and the crossings, (t, index); their rows are free again."""
-        d = self.diagram
-        n, n_events = int(d.n_records), int(d.n_event_records)
-        d.n_records = d.n_event_records = 0
+    @property
+    def t(self) -> float:
+        """Time reached [s]."""
+        return float(self.diagram.t[0])
+
+    def take_records(self) -> list[Array]:
+        """The records since the last call, t (n), q (n, nq), v (n, nv), u (n, nu); their rows are free again."""
+        n = int(self.diagram.n_records)
+        self.diagram.n_records = 0
         t, q, v, u = (array[:n].copy() for array in self._records)
-        crossings = [(float(self._event_t[i]), int(self._event_index[i])) for i in range(n_events)]
-        return [t[:, 0], q, v, u], crossings
+        return [t[:, 0], q, v, u]
+
+    def take_events(self) -> list[tuple[int, float]]:
+        """The crossings since the last call, index and t; their rows are free again."""
+        n = int(self.diagram.n_event_records)
+        self.diagram.n_event_records = 0
+        return [(int(self._event_index[i]), float(self._event_t[i])) for i in range(n)]
 
     @property
     def lateness(self) -> Array:

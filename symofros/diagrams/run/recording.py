@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -15,9 +15,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.fused_functions import AFTER
 from symofros.diagrams.wiring import Source
-from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.runtime.beams import BeamBending
-from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.trajectory import Statistics
 
 
 class Crossed(NamedTuple):
@@ -29,24 +27,14 @@ class Crossed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Cost:
-    """What a run took.
+class Cost(Statistics):
+    """What a run took, of all parts together.
 
     Attributes:
-        steps: Accepted, of all parts together.
-        rejected: Tried in vain.
-        evaluations: Number of evaluations of the accelerations.
-        seconds: Wall time in the loop [s].
-        worked: Processor time of the processor, by the calling thread [s].
         late: Lateness of each instant (n) [s]; empty unless pace was kept.
         spacing: The shortest time between two instants, on the clock where pace was kept [s].
     """
 
-    steps: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    worked: float
     late: Array = field(default_factory=lambda: np.zeros(0))
     spacing: float = math.inf
 
@@ -121,48 +109,3 @@ class Records:
                     self.q[:, part.q], self.v[:, part.v], self.u, par=self.par, t=self.t
                 )
         return a, lam
-
-
-@dataclass(frozen=True)
-class Recording(Records, Mapping[str, Array]):
-    """The records of a whole run: signals over time, `run["block.port"]`, computed when they are asked for.
-
-    Attributes:
-        outcome: Outcome of the run.
-        crossings: Crossings met, in the order of time.
-        cost: Cost of the run.
-        bendings: Bending of each beam at the step where its theory errs most.
-        kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
-    """
-
-    outcome: Outcome
-    crossings: tuple[Crossed, ...]
-    cost: Cost
-    bendings: tuple[BeamBending, ...] = ()
-    kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
-
-    def __repr__(self) -> str:
-        """Diagram, sizes and outcome; the numbers are in its attributes."""
-        span = f"t = {self.t[0]:.6g} … {self.t[-1]:.6g} s" if len(self.t) else "no records"
-        name = self.compiled.resolved.wired.name
-        return (
-            f"<{type(self).__name__} of '{name}': {len(self.t)} records of {len(self)} outputs, {span}; {self.outcome}>"
-        )
-
-    def __iter__(self) -> Iterator[str]:
-        """Names of all outputs."""
-        wired = self.compiled.resolved.wired
-        return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
-
-    def __len__(self) -> int:
-        """Number of outputs of all blocks of the diagram."""
-        return sum(len(ports.outputs) for ports in self.compiled.resolved.wired.ports.values())
-
-    def motion(self, block: str) -> tuple[Array, Array]:
-        """Configurations (n, nq) and speeds (n, nv) of the mechanism that a block moves."""
-        layout = self.compiled.resolved.layout
-        if block not in layout.q:
-            known = ", ".join(layout.q) or "none"
-            what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, layout.q) or "name a plant's"
-            raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
-        return self.q[:, layout.q[block].slice], self.v[:, layout.v[block].slice]

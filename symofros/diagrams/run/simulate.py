@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
@@ -19,34 +20,39 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Again, End, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
-from symofros.diagrams.run.examination.energy_balance import Energies
+from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
-from symofros.diagrams.run.examination.remarks import Examined, remarks
+from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
-from symofros.diagrams.run.options import DiagramOptions
 from symofros.diagrams.run.parts import place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.starts import Start
-from symofros.diagrams.run.values import parameter_values, record_interval
+from symofros.diagrams.run.values import diagram_options, parameter_values, part_settings, record_interval
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import CompiledKernel
 from symofros.runtime.model import Model
+from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import Recorded, drive
 from symofros.simulation.stepping.status import Status
-from symofros.simulation.stepping.time_slice import TimeSlice
+
+# What external blocks gave, by block and time.
+Given = dict[tuple[str, float], dict[str, Array]]
 
 
+@checked
 def run_compiled(
     compiled: CompiledDiagram,
     t_end: float,
-    options: DiagramOptions | None = None,
+    options: SimulationOptions | None = None,
     *,
     parameters: Mapping[str, Any] | None = None,
-    progress: bool = False,
+    threads: int = 1,
+    progress: bool | Callable[[float], None] = False,
     observer: Observer | None = None,
     **changes: Any,
 ) -> DiagramRun:
@@ -55,23 +61,25 @@ def run_compiled(
     Args:
         compiled: Diagram as `compile_diagram` returns it.
         t_end: End time [s].
-        options: Options of stepping, constraints, recording and pace; those of `DiagramOptions()` by default.
+        options: Options of stepping, constraints, recording and pace; those of `SimulationOptions()` by default;
+            methods are explicit.
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
-        progress: Show a progress bar.
+        threads: Number of threads that share the parts that meet at samples only; results do not depend on it.
+        progress: Show a progress bar; or a function that is called with the time reached [s], now and then.
         observer: Receiver of the records while the run goes on, which may stop it by time.
-        changes: Fields of DiagramOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
+        changes: Fields of SimulationOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
 
     Raises:
         SymofrosError: The options contradict each other, or name what the diagram lacks.
-        UnknownNameError: A field is not one of DiagramOptions.
+        UnknownNameError: A field is not one of SimulationOptions.
         AssemblyError: The first state does not meet the constraints.
     """
     resolved, name = compiled.resolved, compiled.resolved.wired.name
-    options = (options or DiagramOptions()).changed(changes)
+    options = diagram_options(options, changes)
     par = parameter_values(resolved, parameters or {})
-    interval = record_interval(options.record, options.t0, t_end, options.dt)
+    interval = record_interval(options.output, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
-    task = _Run(compiled, plan, options, t_end, par)
+    task = _Run(compiled, plan, options, t_end, par, threads)
     with begun(resolved.wired) as called:
         ended = _drive(task, Start.of(resolved, options.t0), called, progress, observer)
         kept = called.kept()
@@ -98,22 +106,24 @@ class _Run:
         options: Options.
         t_end: End time [s].
         par: Run-time parameters (npar).
+        threads: Number of threads that share the parts.
         hold: Entries of u that keep the values they begin with, whatever their blocks give.
     """
 
     compiled: CompiledDiagram
     plan: Schedule
-    options: DiagramOptions
+    options: SimulationOptions
     t_end: float
     par: Array
+    threads: int = 1
     hold: tuple[Place, ...] = ()
 
     def settings(self, model: Model) -> Settings:
         """Settings of a part."""
-        return self.options.settings(model, self.t_end)
+        return part_settings(self.options, model, self.t_end)
 
 
-def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str, Array]]) -> Examined:
+def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
     """A run as its steps are judged."""
     layout, parts, par, states = ended.layout, task.compiled.parts, task.par, ended.states
     settings = ended.settings[0] if ended.settings else None
@@ -121,11 +131,11 @@ def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str,
 
     def repeat(i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
         o, tighter = task.options, 0.01**refinements
-        once = replace(o, realtime=False, threads=1)
+        once = replace(o, realtime=False)
         if refinements:
             dt = 0.5**refinements * h
             once = replace(once, dt=dt) if h else replace(once, rtol=tighter * o.rtol, atol=tighter * o.atol)
-        return _resumed(replace(task, options=once, t_end=t_end), states, given, i)
+        return _resumed(replace(task, options=once, t_end=t_end, threads=1), states, given, i)
 
     def accelerations(rows: Array) -> Array:
         t, q, v, u = (array[rows] for array in states)
@@ -139,7 +149,7 @@ def _examined(task: _Run, ended: Ended, given: dict[tuple[str, float], dict[str,
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
 
 
-def _end_again(task: _Run, states: Sequence[Array], given: dict[tuple[str, float], dict[str, Array]]) -> Again:
+def _end_again(task: _Run, states: Sequence[Array], given: Given) -> Again:
     """Repeats the end of a run, with other records and steps."""
     wired = task.compiled.resolved.wired
 
@@ -151,35 +161,37 @@ def _end_again(task: _Run, states: Sequence[Array], given: dict[tuple[str, float
         if not t[i] < end.stop:
             return None
         plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, end.interval, 0.0)], wired.name)
-        options = replace(task.options, realtime=False, threads=1, dt=end.dt)
-        begin = Start(float(t[i]), *(array[i].copy() for array in states[1:]))
-        finer = replace(task, options=options, plan=plan, t_end=end.stop, hold=end.hold)
-        try:
-            ended = _drive(finer, begin, CalledBefore(wired, given), resumed=True)
-        except SymofrosError:
-            return None
-        return [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
+        options = replace(task.options, realtime=False, dt=end.dt)
+        finer = replace(task, options=options, plan=plan, t_end=end.stop, threads=1, hold=end.hold)
+        found = _gone_on(finer, states, given, i)
+        return found and found[1]
 
     return again
 
 
-def _resumed(
-    task: _Run, states: Sequence[Array], given: dict[tuple[str, float], dict[str, Array]], i: int
-) -> Sequence[Array] | None:
+def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Sequence[Array] | None:
     """The records of a run that goes on from a record; None where it does not come to its end.
 
     Raises:
         NotKeptError: What external blocks gave is not known.
     """
+    found = _gone_on(task, states, given, i)
+    if found is None:
+        return None
+    ended, joined = found
+    if isinstance(ended.loop.failure, NotKeptError):
+        raise ended.loop.failure
+    return joined if ended.recorded.status == Status.FINISHED else None
+
+
+def _gone_on(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
+    """A run that goes on from a record, and that record with those after it; None where that does not move."""
     begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
     try:
         ended = _drive(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
-    except SymofrosError:  # The record does not move.
+    except SymofrosError:
         return None
-    if isinstance(ended.loop.failure, NotKeptError):
-        raise ended.loop.failure
-    joined = [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
-    return joined if ended.status == Status.FINISHED else None
+    return ended, [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
 
 
 def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: list[Array], par: Array) -> None:
@@ -188,7 +200,7 @@ def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: lis
     t, q, v, u = states
     portion = Records(compiled, t, q, v, u, par)
     portion.compute(list(map(compiled.resolved.wired.output, observer.signals)))
-    observer.see(float(loop.diagram.t[0]), portion.t, {name: portion[name] for name in observer.signals})
+    observer.see(loop.t, portion.t, {name: portion[name] for name in observer.signals})
     if observer.signals:
         loop.diagram.clock_start += time.perf_counter() - began
 
@@ -221,7 +233,7 @@ def _drive(
     task: _Run,
     begin: Start,
     called: Called,
-    progress: bool = False,
+    progress: bool | Callable[[float], None] = False,
     observer: Observer | None = None,
     *,
     resumed: bool = False,
@@ -244,34 +256,27 @@ def _drive(
     )
     t0, realtime = options.t0, float(options.realtime)
     instants = int((t_end - t0) / (float(plan.base) * plan.cycle) + 2) * len(plan.instants)
-    portions: list[list[Array]] = []
-    met: list[tuple[float, int]] = []
-    status, interrupted = int(Status.RUNNING), False
-    time_slice = TimeSlice()
+
+    def most(steps: int) -> int:
+        return 1 if task.hold else min(steps, loop.instants_until(watcher.stop()))
+
     with closing(loop):
         start_parts(parts, resolved, par, begin)
-        loop.start(t0, t_end, realtime, options.threads, instants, begin.t if resumed else None)
+        loop.start(t0, t_end, realtime, task.threads, instants, begin.t if resumed else None)
         began, worked = time.perf_counter(), time.thread_time()
         with bar(progress, t0, t_end) as show:
-            try:
-                while status in (Status.RUNNING, Status.RECORDS_FULL):
-                    instants = min(time_slice.steps, loop.instants_until(watcher.stop()))
-                    status = time_slice.measure(loop.advance, 1 if task.hold else instants)
-                    loop.put(task.hold, begin.u)
-                    states, crossed = loop.take()
-                    portions.append(states)
-                    met += crossed
-                    show(float(loop.diagram.t[0]))
-                    _tell(watcher, compiled, loop, states, par)
-            except KeyboardInterrupt:
-                interrupted = True
-                portions.append(loop.take()[0])
+
+            def look(recorded: Recorded) -> None:
+                loop.put(task.hold, begin.u)
+                show(loop.t)
+                _tell(watcher, compiled, loop, recorded.states[-1], par)
+
+            recorded = drive(loop, Recorded(), most, look)
         spent = time.perf_counter() - began, time.thread_time() - worked
-    interrupted = interrupted or isinstance(loop.failure, KeyboardInterrupt)
-    states = [np.concatenate(columns) for columns in zip(*portions, strict=True)]
+    recorded.interrupted |= isinstance(loop.failure, KeyboardInterrupt)
     settings = [task.settings(part.model) for part in loop.parts]
     notes = tuple(note for part in parts for note in part.notes)
-    return Ended(loop, resolved, par, settings, plan.spacing, states, tuple(met), spent, status, interrupted, notes)
+    return Ended(loop, resolved, par, settings, plan.spacing, recorded.arrays(), recorded, spent, notes)
 
 
 def _recorded(
@@ -283,8 +288,9 @@ def _recorded(
 ) -> DiagramRun:
     """The records of a run, and what it took."""
     d, (seconds, worked), looked_for = ended.loop.diagram, ended.spent, watched(ended.resolved.pieces)
-    crossings = tuple(Crossed(*looked_for[which], when) for when, which in ended.crossings)
+    crossings = tuple(Crossed(*looked_for[int(which)], when) for which, when in ended.recorded.events)
     clock = ended.spacing / (float(task.options.realtime) or 1.0)
-    cost = Cost(int(d.steps), int(d.rejected), int(d.evaluations), seconds, worked, ended.loop.lateness, clock)
+    counts, late = (int(d.steps), int(d.rejected), int(d.evaluations), 0), ended.loop.lateness
+    cost = Cost(task.options.method, *counts, seconds, worked=worked, late=late, spacing=clock)
     t, q, v, u = ended.states
     return DiagramRun(task.compiled, t, q, v, u, ended.par, outcome, crossings, cost, bendings, kept)

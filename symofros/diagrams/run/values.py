@@ -1,9 +1,10 @@
-"""What a run is given by name and by number: run-time parameters, and how often to record."""
+"""What a run is given by name and by number: options, run-time parameters, how often to record."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,9 +13,37 @@ from symofros.base.arrays import Array, real_array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.model import Model
+from symofros.simulation.options import DIAGRAM_CALL, SimulationOptions
+from symofros.simulation.settings import Settings, check_pace
 
 # Recorded by default at about so many times.
 _RECORDS = 2000
+
+
+def diagram_options(options: SimulationOptions | None, changes: Mapping[str, Any]) -> SimulationOptions:
+    """Options of a run of a diagram, some of them given by name.
+
+    Raises:
+        UnknownNameError: A name is not that of an option.
+        SymofrosError: An option is one of runs of single models, or no pace against the clock.
+    """
+    chosen = (options or SimulationOptions()).changed(changes, DIAGRAM_CALL)
+    check_pace(chosen.realtime)
+    if chosen.every != 1 or chosen.max_steps is not None:
+        stated = f"every = {chosen.every}, max_steps = {chosen.max_steps}"
+        rule = "a run of a diagram records at an interval, and ends at t_end"
+        raise SymofrosError(Problem("diagram: an option of runs of a single model", stated, rule, "leave them out"))
+    return chosen
+
+
+def part_settings(options: SimulationOptions, model: Model, t_end: float) -> Settings:
+    """Settings of the stepping of one part, whose records and pace are the diagram's.
+
+    Raises:
+        SymofrosError: The options contradict each other.
+    """
+    return Settings.of(model, replace(options, output=None, realtime=False), t_end)
 
 
 def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
@@ -59,17 +88,17 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     return par
 
 
-def record_interval(record: float | None, t0: float, t_end: float, dt: float | None) -> float:
+def record_interval(record: Any, t0: float, t_end: float, dt: float | None) -> float:
     """Between records: what was asked for, or a multiple of dt that gives about _RECORDS of them.
 
     Raises:
-        SymofrosError: It is not positive, or there is no span of time.
+        SymofrosError: It is no positive number, or there is no span of time.
     """
     if not (math.isfinite(t0) and math.isfinite(t_end) and t_end > t0):
         raise SymofrosError(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0", "set t_end"))
     if record is None:
         step = dt or 1e-3
         return step * max(1, math.ceil((t_end - t0) / step / _RECORDS))
-    if not (math.isfinite(record) and record > 0.0):
+    if np.ndim(record) or not (math.isfinite(record) and record > 0.0):
         raise SymofrosError(Problem("diagram: no interval of recording", f"{record}", "above zero [s]", "leave it out"))
     return float(record)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from string import Template
 
-from symofros.exports.c.c_text import comment
+from symofros.base.c_text import comment
 from symofros.exports.c.plant import header_text, plant_text, selftest_text
 from symofros.exports.c.reactions import efforts_text
 from symofros.exports.c.typed import eigen_text, named_functions, typed_text

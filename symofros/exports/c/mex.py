@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from symofros.base.names import c_string
+from symofros.base.c_text import c_string, comment
 from symofros.exports.c.c_package import model_files
-from symofros.exports.c.c_text import comment
 from symofros.exports.c.unity import unity
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from symofros.base.names import c_string
+from symofros.base.c_text import c_string
 from symofros.description import System
 from symofros.expr import OPS
 from symofros.mechanics.topology import Condition, Numbers, RunTimeCheck

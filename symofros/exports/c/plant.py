@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Protocol
 
-from symofros.base.names import c_string
-from symofros.exports.c.c_text import comment, doubles, integers, strings
+from symofros.base.c_text import c_string, comment, doubles, integers, strings
 from symofros.exports.c.parameter_check import Judged, parameter_check_text
 from symofros.exports.material import Material, Stepping
 from symofros.runtime.beams import ElasticBeam

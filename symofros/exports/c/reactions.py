@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from string import Template
 
-from symofros.exports.c.c_text import comment, doubles, integers, strings
+from symofros.base.c_text import comment, doubles, integers, strings
 from symofros.exports.material import Material
 from symofros.generator import ROUTINES
 from symofros.native import native_text

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from string import Template
 
+from symofros.base.c_text import comment, doubles
 from symofros.base.functions import FRAME_FUNCTIONS
 from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description import System
-from symofros.exports.c.c_text import comment, doubles
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table
 from symofros.exports.limits import joints_of, limits_note

@@ -13,10 +13,9 @@ from pathlib import Path
 from string import Template
 from uuid import UUID
 
-from symofros.base.names import c_string
+from symofros.base.c_text import c_string, comment, strings
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
-from symofros.exports.c.c_text import comment, strings
 from symofros.exports.c.compiling import shared_library
 from symofros.exports.c.unity import unity
 from symofros.exports.fmi.fmu_description import build_xml, description_xml

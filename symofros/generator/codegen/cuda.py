@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 from string import Template
 
+from symofros.base.c_text import comment
 from symofros.base.names import function_symbols, identifier
 from symofros.base.rotations import TINY
 from symofros.expr.program import Function, Program
@@ -17,7 +18,7 @@ from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.function import FunctionWriter
 from symofros.generator.codegen.interpreted import InterpretedKernel
 from symofros.generator.codegen.lanes import called_functions
-from symofros.generator.codegen.model import comment, legend, operations_text
+from symofros.generator.codegen.model import legend, operations_text
 from symofros.native import native_text
 from symofros.runtime.calls.kernel import Precision, Signature
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode, DeviceKernel

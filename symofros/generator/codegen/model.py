@@ -9,7 +9,8 @@ from string import Template
 from textwrap import wrap
 from typing import NamedTuple
 
-from symofros.base.names import c_string, identifier
+from symofros.base.c_text import c_string, comment, strings
+from symofros.base.names import identifier
 from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
 from symofros.expr.numerics.evaluate import needed_nodes
@@ -108,10 +109,10 @@ def model_text(
         npar=len(record.par_names),
         nc=record.nc,
         npre=len(program.init),
-        q_names=_strings(record.q_names),
-        v_names=_strings(record.v_names),
-        u_names=_strings(record.u_names),
-        par_names=_strings(record.par_names),
+        q_names=strings(record.q_names),
+        v_names=strings(record.v_names),
+        u_names=strings(record.u_names),
+        par_names=strings(record.par_names),
         par_default=_numbers(record.par_default),
         q_neutral=_numbers(record.q_neutral),
     )
@@ -134,9 +135,8 @@ def operations_text(program: Program) -> str:
     counts = count_program(program)
     titles = [" of ".join(filter(None, key)) for key in counts]
     width = max(map(len, titles), default=0) + 2
-    return comment(
-        "\n".join(f" *   {title:<{width}}{count}" for title, count in zip(titles, counts.values(), strict=True))
-    )
+    rows = zip(titles, counts.values(), strict=True)
+    return "\n".join(comment(f" *   {title:<{width}}{count}") for title, count in rows)
 
 
 def _init_function(program: Program, name: str) -> str:
@@ -336,16 +336,5 @@ def _columns(shape: tuple[int, ...]) -> int:
     return shape[1] if len(shape) > 1 else 1
 
 
-def _strings(names: Iterable[str]) -> str:
-    # C has no empty arrays; sizes say how many entries count.
-    return ", ".join(map(c_string, names)) or "NULL"
-
-
 def _numbers(values: Iterable[float]) -> str:
     return ", ".join(map(repr, values)) or "0.0"
-
-
-def comment(text: str) -> str:
-    """Text that can't end a C comment, in ASCII, without trigraphs."""
-    plain = text.encode("ascii", "replace").decode()
-    return plain.replace("*/", "* /").replace("/*", "/ *").replace("?", "_")

@@ -4,6 +4,7 @@
  * takes a dict of the inputs by name and gives a list of the outputs, or None where an input is no array of float64 of
  * the expected length, a time no float, or a quaternion not of unit length: such calls are made elsewhere, and refused
  * or converted there. Call.are_unit looks at the quaternions of a batch. SYM_UNIT_ROUNDING is defined before this text.
+ * Step is the type of symofros_step.c.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
@@ -303,6 +304,8 @@ static PyObject *are_unit(PyObject *self, PyObject *const *args, Py_ssize_t n_ar
     Py_RETURN_TRUE;
 }
 
+#include "symofros_step.c"
+
 static PyMethodDef methods[] = {
     {"are_unit", (PyCFunction)(void (*)(void))are_unit, METH_FASTCALL | METH_STATIC, "Whether quaternions are unit ones."},
     {NULL, NULL, 0, NULL},
@@ -326,8 +329,10 @@ static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, .m_name = "symofros_c
 PyMODINIT_FUNC PyInit_symofros_call(void) {
     PyObject *made;
     import_array();
-    if (PyType_Ready(&call_type) < 0) return NULL;
+    if (PyType_Ready(&call_type) < 0 || PyType_Ready(&step_type) < 0) return NULL;
     made = PyModule_Create(&module);
-    if (made != NULL && PyModule_AddObjectRef(made, "Call", (PyObject *)&call_type) < 0) Py_CLEAR(made);
+    if (made != NULL && (PyModule_AddObjectRef(made, "Call", (PyObject *)&call_type) < 0 ||
+                         PyModule_AddObjectRef(made, "Step", (PyObject *)&step_type) < 0))
+        Py_CLEAR(made);
     return made;
 }

@@ -159,6 +159,19 @@ static void sym_batch_retire(sym_batch *b, int32_t slot, int32_t status) {
     --b->n_active;
 }
 
+/* A run takes the memory of a trajectory in which its beams are judged; nothing is known of them yet. */
+static void sym_batch_forget_beams(const sym_batch *b, sym_run *r, int64_t trajectory) {
+    const size_t n = (size_t)r->system->n_beams, coordinates = (size_t)b->n_beam_coordinates, nv = (size_t)r->system->nv;
+    const size_t k = (size_t)trajectory;
+    r->beam_error = b->beam_error + k * n, r->beam_t = b->beam_t + k * n, r->beam_q = b->beam_q + k * coordinates;
+    r->beam_reference = b->beam_reference + 2 * k * coordinates;
+    r->beam_guard = b->beam_guard + k * n, r->beam_weight = b->beam_weight + k * nv;
+    memset(r->beam_error, 0, n * sizeof *r->beam_error), memset(r->beam_t, 0, n * sizeof *r->beam_t);
+    memset(r->beam_q, 0, coordinates * sizeof *r->beam_q);
+    memset(r->beam_reference, 0, 2 * coordinates * sizeof *r->beam_reference);
+    memset(r->beam_guard, 0, n * sizeof *r->beam_guard), memset(r->beam_weight, 0, nv * sizeof *r->beam_weight);
+}
+
 /* Activate the next trajectory; its first slope and step size are evaluated alone, in the prototype's memory. */
 static void sym_batch_activate_next(sym_batch *b) {
     const int32_t slot = b->n_active++;
@@ -170,17 +183,14 @@ static void sym_batch_activate_next(sym_batch *b) {
     sym_batch_assign(b, slot, trajectory);
     memcpy(r->q, b->q0.at + trajectory * b->q0.stride, (size_t)s->nq * sizeof *r->q);
     memcpy(r->v, b->v0.at + trajectory * b->v0.stride, (size_t)s->nv * sizeof *r->v);
-    r->t = r->t0;
+    r->t = r->t0 = b->t0 != NULL ? b->t0[trajectory] : b->prototype->t0;
     r->steps = r->rejected = 0;
     r->record_q = b->record_q + trajectory * r->capacity * s->nq;
     r->record_v = b->record_v + trajectory * r->capacity * s->nv;
     r->record_u = b->record_u + trajectory * r->capacity * s->nu;
     r->beam_scale = b->beam_scale.at + trajectory * b->beam_scale.stride;
     r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
-    r->beam_error = b->beam_error + trajectory * s->n_beams, r->beam_t = b->beam_t + trajectory * s->n_beams;
-    r->beam_q = b->beam_q + trajectory * b->n_beam_coordinates;
-    r->beam_reference = b->beam_reference + 2 * trajectory * b->n_beam_coordinates;
-    r->beam_guard = b->beam_guard + trajectory * s->n_beams, r->beam_weight = b->beam_weight + trajectory * s->nv;
+    sym_batch_forget_beams(b, r, trajectory);
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_run_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;

@@ -107,7 +107,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
     memcpy(r->q, w->end_state, (size_t)s->nq * sizeof *r->q);
     memcpy(r->v, w->end_state + s->nq, (size_t)s->nv * sizeof *r->v);
     r->t = t1;
-    r->system->in_step = 0;
+    r->system->in_step = r->system->held_anew = 0;
 }
 
 /* An accepted step from r->t to t1: its end, projected; events and records on the way to it; the new state. Records and

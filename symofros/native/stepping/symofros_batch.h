@@ -32,6 +32,7 @@ typedef struct sym_batch {
     sym_batch_function forward_dynamics, law, project;
     int32_t slots;            /* most trajectories active at once; 2 at least */
     sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
+    const double *t0;         /* (n) first times; NULL: that of the prototype for all */
     const int64_t *signal_stride; /* (n_signals) doubles from the samples of one trajectory to those of the next */
     int64_t next, stride, n;  /* trajectories of this batch: next, next + stride, ... below n */
     int64_t max_steps;        /* of each trajectory; 0: any number */
@@ -40,7 +41,7 @@ typedef struct sym_batch {
     double *final_t, *final_q, *final_v;
     int64_t *steps, *rejected;
     double *record_q, *record_v, *record_u;
-    double *beam_error, *beam_t, *beam_q, *beam_reference, *beam_weight; /* of each trajectory, as in sym_run; cleared by the caller */
+    double *beam_error, *beam_t, *beam_q, *beam_reference, *beam_weight; /* of each trajectory, as in sym_run */
     sym_beam_guard *beam_guard;
     sym_batch_rows beam_scale, beam_reach;
     int64_t n_beam_coordinates; /* of all beams */

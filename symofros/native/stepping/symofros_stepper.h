@@ -129,6 +129,7 @@ typedef struct sym_system {
      * stage evaluates: held samples and jumps of formulas count from their instant on, in the step that begins there
      * (docs/theory/simulation.md, section 1). */
     int32_t in_step;
+    int32_t held_anew; /* 1: the caller has changed u_constant at the present state; a step's end clears it */
     double step_end, first_stage, last_stage;
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
 } sym_system;

@@ -125,10 +125,10 @@ static int32_t sym_stops_at(const sym_system *s, double t) {
     return k >= 0 && s->stops[k] > sym_before(t);
 }
 
-/* Whether a held signal changes at time t, or a formula may. */
+/* Whether an input that is held changes at time t, or a formula may. */
 static int32_t sym_changes_at(const sym_system *s, double t) {
     int32_t i;
-    if (sym_stops_at(s, t)) return 1;
+    if (s->held_anew || sym_stops_at(s, t)) return 1;
     for (i = 0; i < s->n_signals; ++i) {
         const sym_signal *signal = &s->signals[i];
         const int32_t k = signal->linear ? 0 : sym_samples_begun(signal, sym_instant(t)) - 1;

@@ -5,6 +5,7 @@ from __future__ import annotations
 from symofros.runtime.calls.binding import NativeMemory as NativeMemory
 from symofros.runtime.calls.binding import constants as constants
 from symofros.runtime.calls.binding import native_library as native_library
+from symofros.runtime.calls.extension import step_type as step_type
 from symofros.runtime.calls.kernel import Kernel as Kernel
 from symofros.runtime.calls.kernel import LaneOptions as LaneOptions
 from symofros.runtime.calls.kernel import Precision as Precision
@@ -14,3 +15,4 @@ from symofros.runtime.calls.layout import flat as flat
 from symofros.runtime.calls.library import MANY as MANY
 from symofros.runtime.calls.library import CompiledKernel as CompiledKernel
 from symofros.runtime.calls.library import CompiledUnit as CompiledUnit
+from symofros.runtime.calls.sharing import together as together

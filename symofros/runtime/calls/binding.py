@@ -110,6 +110,11 @@ class NativeMemory:
         """The doubles behind a pointer (size), not copied."""
         return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64) if size else np.zeros(0)
 
+    def raw(self, pointer: Any, kind: str, count: int) -> npt.NDArray[np.uint8]:
+        """The bytes of so many structs behind a pointer, not copied."""
+        size = count * self.ffi.sizeof(kind)
+        return np.frombuffer(self.ffi.buffer(pointer, size), dtype=np.uint8) if size else np.zeros(0, dtype=np.uint8)
+
     def bind(self, call: Any, kernel: Kernel, par: Array, outputs: Mapping[str, Any] | None = None) -> CompiledKernel:
         """Fill a sym_call with a model function, its parameters' part, scratch and outputs; C binds the inputs by name.
 

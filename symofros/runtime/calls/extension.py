@@ -23,7 +23,7 @@ import numpy as np
 
 from symofros.base.threads import try_to_start
 from symofros.errors import CompileError
-from symofros.native import native_number, native_text
+from symofros.native import amalgamated, native_number
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.runtime.calls.declarations import interface
@@ -83,9 +83,21 @@ def _tell() -> None:
             method()
 
 
-@cache
 def load() -> Any:
     """The type `Call`, built unless the cache folder has it; None where it can't be built."""
+    there = module()
+    return None if there is None else there.Call
+
+
+def step_type() -> Any:
+    """The type `Step` of symofros_step.c, built unless the cache folder has it; None where it can't be built."""
+    there = module()
+    return None if there is None else there.Step
+
+
+@cache
+def module() -> Any:
+    """The extension, or None."""
     toolchain = find_toolchain(None)
     headers = [Path(sysconfig.get_paths()["include"]), Path(np.get_include())]
     if toolchain is None or sys.platform == "win32" or not (headers[0] / "Python.h").is_file():
@@ -97,13 +109,13 @@ def load() -> Any:
     if sys.platform == "darwin":  # Symbols of Python are found as it is loaded.
         flags = (*flags, "-Wl,-undefined,dynamic_lookup")
     try:
-        library = build_library(of + native_text(f"interop/{_NAME}.c"), "", toolchain, flags)
+        library = build_library(of + amalgamated(f"interop/{_NAME}.c"), "", toolchain, flags)
         loader = ExtensionFileLoader(_NAME, str(library))
         spec = spec_from_loader(_NAME, loader)
         assert spec is not None
-        module = module_from_spec(spec)
-        loader.exec_module(module)
+        made = module_from_spec(spec)
+        loader.exec_module(made)
     except (CompileError, ImportError) as error:
         LOGGER.info("plain calls go through NumPy, since the extension for them is not there: %s", error)
         return None
-    return module.Call
+    return made

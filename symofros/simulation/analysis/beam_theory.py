@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -156,6 +156,29 @@ def amplifications(
         return tuple(_amplification(model, beam, (t, q, v, u), M, G, par) for beam in beams)
     except SymofrosError:  # Options.functions left out what this takes.
         return (1.0,) * len(beams)
+
+
+def amplified_in_motion(
+    bendings: tuple[BeamBending, ...],
+    amplify: Callable[[Sequence[float]], tuple[BeamBending, ...]],
+    model: Model,
+    states: Sequence[Array],
+    par: ArrayLike | None,
+    inertia: str = "dynamics",
+) -> tuple[BeamBending, ...]:
+    """Bending of each beam with its error amplified by the axial loads of a motion, where that can make a note.
+
+    Args:
+        bendings: Bending of each beam, axial loads apart.
+        amplify: Gives the same amplified by as many factors.
+        model: Model.
+        states: States of the motion, as of `amplifications`; so are `par` and `inertia`.
+        par: Run-time parameters.
+        inertia: Function whose first output is the mass matrix.
+    """
+    if max((bending.error for bending in bendings), default=0.0) < UNAMPLIFIED or not len(states[0]):
+        return bendings
+    return amplify(amplifications(model, states, par, inertia))
 
 
 def amplifying(q: Array, v: Array) -> npt.NDArray[np.intp]:

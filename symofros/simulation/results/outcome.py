@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 Kind = Literal[
     "finished",
@@ -43,6 +43,11 @@ class Outcome:
     def ok(self) -> bool:
         """Whether the run came to its end, or to an event that was meant to end it."""
         return self.kind in ("finished", "event")
+
+    def as_data(self) -> dict[str, Any]:
+        """Plain data of it, for JSON."""
+        named = {name: getattr(self, name) for name in ("kind", "t", "reason", "advice")}
+        return {**named, "notes": list(self.notes)}
 
     def __str__(self) -> str:
         """Human-readable summary: how and when the run ended, advice, and notes."""

@@ -1,8 +1,9 @@
-"""Pictures of a trajectory, by Matplotlib (the extra `plots`)."""
+"""Pictures of a run, of a model or a diagram, by Matplotlib (the extra `plots`)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
@@ -10,6 +11,40 @@ from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 
 MOST_CURVES = 12  # In one panel; more can't be distinguished.
+# Matplotlib's ways to draw that have no windows.
+_PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One diagram of a figure.
+
+    Attributes:
+        label: Label of the vertical axis; over a plane, what both axes measure.
+        curves: Name of a curve -> its values (n); over a plane, two columns at least (n, 2).
+        title: Above it.
+        xy: Whether the second column of each curve is drawn over its first, at one scale, and not over time.
+    """
+
+    label: str
+    curves: Mapping[str, Array]
+    title: str = ""
+    xy: bool = False
+
+    def draw(self, t: Array, axis: Any) -> None:
+        """Draw the first curves over times (n) [s], or over a plane, and say how many there are."""
+        for name, values in list(self.curves.items())[:MOST_CURVES]:
+            x, y = (values[:, 0], values[:, 1]) if self.xy else (t, values)
+            axis.plot(x, y, label=name)
+        left_out = len(self.curves) > MOST_CURVES
+        said = f"the first {MOST_CURVES} of {len(self.curves)}; others by their names" if left_out else ""
+        axis.set_title(f"{self.title} ({said})" if self.title and said else self.title or said, loc="left")
+        axis.set_ylabel(f"y {self.label}" if self.xy else self.label)
+        if self.xy:
+            axis.set_xlabel(f"x {self.label}")
+            axis.set_aspect("equal", adjustable="datalim")
+        axis.grid(alpha=0.3)
+        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
 
 
 def figure_class() -> Any:
@@ -27,27 +62,56 @@ def figure_class() -> Any:
         raise SymofrosError(missing) from None
 
 
-def draw(t: Array, panels: Mapping[str, Mapping[str, Array]], title: str) -> Any:
-    """A Matplotlib figure of panels, one below the other, over one axis of time.
+def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> Any:
+    """A Matplotlib figure of panels, one below the other; those over time have one axis of it.
 
     Args:
         t: Times (n) [s].
-        panels: Label of the vertical axis -> name of a curve -> values (n).
+        panels: Panels to draw, at least one.
         title: Heading of the figure.
+        figure: Figure to draw in; by default one that `savefig` writes.
 
     Raises:
-        SymofrosError: Matplotlib is not installed.
+        SymofrosError: Matplotlib is not installed, or there is nothing to draw.
     """
-    figure = figure_class()(figsize=(8.0, 2.2 * len(panels)), layout="constrained")
-    axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
-    for axis, (label, curves) in zip(axes, panels.items(), strict=True):
-        for name, values in list(curves.items())[:MOST_CURVES]:
-            axis.plot(t, values, label=name)
-        if len(curves) > MOST_CURVES:
-            axis.set_title(f"the first {MOST_CURVES} of {len(curves)}; others by their names", fontsize="small")
-        axis.set_ylabel(label)
-        axis.grid(alpha=0.3)
-        axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize="small")
-    axes[-1].set_xlabel("t [s]")
+    if not panels:
+        rule, remedy = "a plot shows outputs of blocks", "add a block with an output"
+        raise SymofrosError(Problem("plot: there is nothing to draw", "no signals", rule, remedy))
+    if figure is None:
+        figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(panels)), layout="constrained")
+    axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
+    over_time = [axis for axis, panel in zip(axes, panels, strict=True) if not panel.xy]
+    for axis, panel in zip(axes, panels, strict=True):
+        if not panel.xy:
+            axis.sharex(over_time[0])
+        panel.draw(t, axis)
+    for axis in over_time[-1:]:
+        axis.set_xlabel("t [s]")
     figure.suptitle(title)
     return figure
+
+
+def window_figure() -> Any:
+    """A figure in a window, which `show_windows` opens.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed, or has no screen to draw on.
+    """
+    figure_class()
+    pyplot = import_module("matplotlib.pyplot")
+    backend = pyplot.get_backend()
+    if backend.lower() in _PAPER:
+        raise SymofrosError(
+            Problem(
+                "plot: no window can be opened",
+                f"Matplotlib draws by '{backend}'",
+                "a window needs a screen",
+                "write a picture: --plot run.png",
+            )
+        )
+    return pyplot.figure(layout="constrained")
+
+
+def show_windows() -> None:
+    """Open the windows, and wait until they are closed."""
+    import_module("matplotlib.pyplot").show()

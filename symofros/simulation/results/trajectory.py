@@ -17,7 +17,7 @@ from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import Model
 from symofros.simulation.results.outcome import Outcome
-from symofros.simulation.results.plots import draw
+from symofros.simulation.results.plots import Panel, draw
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
 from symofros.simulation.results.section_forces import SectionForces, section_forces_of
 
@@ -236,9 +236,9 @@ class Trajectory:
         }
         if self.u.any():
             panels["inputs [N m, N]"] = _curves(known.u, self.u, names if {*names} & {*known.u} else ())
-        panels = {label: curves for label, curves in panels.items() if curves}
+        shown = [Panel(label, curves) for label, curves in panels.items() if curves]
         title = f"{self.model.record.name}: {self.statistics.method}, {self.outcome.kind} at t = {self.outcome.t:.4g} s"
-        return draw(self.t, panels, title)
+        return draw(self.t, shown, title)
 
     @checked
     def save(self, path: str | Path) -> Path:

@@ -13,14 +13,14 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.errors import CompileError
-from symofros.runtime.calls import LaneOptions
+from symofros.runtime.calls import CompiledKernel, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.stepper import Stepper
 
 # Trajectories that are active at once: eight vectors of eight lanes; few enough for the first two levels of cache.
-_SLOTS = 64
+SLOTS = 64
 # Steps of each trajectory in one call of C, between looks at Ctrl-C.
 _STEPS_PER_CALL = 64
 
@@ -46,48 +46,52 @@ class InitialStates:
     t: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BatchResults:
-    """Final states and samples of trajectories, written by C.
+    """Samples and last states of trajectories, written by C.
 
     Attributes:
-        status: Final Status (n); below zero beforehand keeps a trajectory from starting.
-        t: Final times (n) [s].
-        q: Final configurations (n, nq).
-        v: Final speeds (n, nv).
-        steps: Accepted steps (n).
-        rejected: Rejected steps (n).
-        beam_errors: Largest estimated error of each beam (n, number of beams).
-        beam_times: When that was (n, number of beams) [s].
-        beam_coordinates: Elastic coordinates of all beams, each then (n, number of elastic coordinates).
-        q_samples: Configurations at the times of the grid (n, m, nq); NaN where a trajectory ended before.
-        v_samples: Speeds (n, m, nv), as q_samples.
-        u_samples: Inputs (n, m, nu), as q_samples.
+        q: Configurations at the times of the samples (..., m, nq); NaN where a trajectory ended before.
+        v: Speeds (..., m, nv), as q.
+        u: Inputs (..., m, nu), as q.
+        t_last: End time of each trajectory (...) [s].
+        q_last: Last good configuration of each (..., nq).
+        v_last: Last good speeds of each (..., nv).
+        status: Last status code of each (...); one below zero beforehand keeps it from starting.
+        steps: Steps taken (...).
+        rejected: Steps tried in vain (...).
+        beam_errors: Largest estimated error of each beam's theory in each trajectory (..., number of beams).
+        beam_times: When that was (..., number of beams) [s].
+        beam_coordinates: Elastic coordinates of all beams, each then (..., number of elastic coordinates).
     """
 
-    status: npt.NDArray[np.int32]
-    t: Array
     q: Array
     v: Array
+    u: Array
+    t_last: Array
+    q_last: Array
+    v_last: Array
+    status: npt.NDArray[np.int32]
     steps: npt.NDArray[np.int64]
     rejected: npt.NDArray[np.int64]
     beam_errors: Array
     beam_times: Array
     beam_coordinates: Array
-    q_samples: Array
-    v_samples: Array
-    u_samples: Array
 
     @classmethod
     def empty(cls, model: Model, n: int, samples: int) -> BatchResults:
         """Arrays for n trajectories of that many samples, none of which is reached yet."""
         q, v, u = (np.full((n, samples, size), np.nan) for size in (model.nq, model.nv, model.nu))
-        steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
-        final_q, final_v = np.zeros((n, model.nq)), np.zeros((n, model.nv))
         beams = model.beams()
-        errors, times, elastic = (np.zeros((n, k)) for k in (len(beams), len(beams), sum(beam.size for beam in beams)))
+        sizes = (model.nq, model.nv, len(beams), len(beams), sum(beam.size for beam in beams))
+        q_last, v_last, errors, times, elastic = (np.zeros((n, size)) for size in sizes)
+        steps, rejected = np.zeros(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
         status = np.zeros(n, dtype=np.int32)
-        return cls(status, np.zeros(n), final_q, final_v, steps, rejected, errors, times, elastic, q, v, u)
+        return cls(q, v, u, np.zeros(n), q_last, v_last, status, steps, rejected, errors, times, elastic)
+
+    def shaped(self, shape: tuple[int, ...]) -> dict[str, npt.NDArray[Any]]:
+        """The arrays by name, whose rows (n) are those of a batch of that shape."""
+        return {name: array.reshape(shape + array.shape[1:]) for name, array in vars(self).items()}
 
 
 class BatchStepper:
@@ -115,14 +119,24 @@ class BatchStepper:
         settings.apply(self.single)
         self._native, self._memory = self.single.native, self.single.memory
         self._batch = batch = self.single.ffi.new("sym_batch *")
-        batch.slots = min(_SLOTS, max(2, -(-initial.n // stride)))
+        batch.slots = min(SLOTS, max(2, -(-initial.n // stride)))
         batch.next, batch.stride, batch.n, batch.max_steps = first, stride, initial.n, settings.max_steps or 0
+        self._prepared: list[tuple[CompiledKernel, npt.NDArray[np.float64]]] = []
         self._fill_prototype()
         self._fill_functions(initial.par)
         self._fill_rows(initial, results)
         self._fill_beams(initial.par, results)
-        if not self._native.sym_batch_start(batch, self._memory.zeros(self._native.sym_batch_size(batch))):
+        self._lay_out()
+
+    def _lay_out(self) -> None:
+        """Memory of the slots."""
+        self._start(self._batch)
+
+    def _start(self, batch: Any) -> npt.NDArray[np.float64]:
+        memory = np.zeros(max(1, self._native.sym_batch_size(batch)))
+        if not self._native.sym_batch_start(batch, self._memory.shared(memory)):
             raise CompileError("the integrator does not know every input of a batch function")
+        return memory
 
     def _fill_prototype(self) -> None:
         """The single run whose settings every slot copies, and in which first steps are evaluated."""
@@ -138,8 +152,9 @@ class BatchStepper:
             kernel = self.single.kernels.get(name)
             if kernel is None:
                 continue
-            function = getattr(self._batch, name)
-            self._fill_shared_rows(function.pre, kernel.prepare(par))
+            function, prepared = getattr(self._batch, name), kernel.prepare(par)
+            self._prepared.append((kernel, prepared))
+            self._fill_shared_rows(function.pre, prepared)
             if name == "project":
                 continue
             # Laws are few operations on what users gave: in double precision.
@@ -159,24 +174,23 @@ class BatchStepper:
         batch.signal_stride = memory.own("int64_t[]", list(initial.inputs.strides))
         arrays: dict[str, npt.NDArray[Any]] = {
             "final_status": results.status,
-            "final_t": results.t,
-            "final_q": results.q,
-            "final_v": results.v,
+            "final_t": results.t_last,
+            "final_q": results.q_last,
+            "final_v": results.v_last,
             "steps": results.steps,
             "rejected": results.rejected,
-            "record_q": results.q_samples,
-            "record_v": results.v_samples,
-            "record_u": results.u_samples,
+            "record_q": results.q,
+            "record_v": results.v,
+            "record_u": results.u,
         }
         for name, array in arrays.items():
             setattr(batch, name, memory.shared(array))
 
     def _fill_beams(self, par: Array, results: BatchResults) -> None:
         batch, memory, model = self._batch, self._memory, self.single.model
-        beams = [model.beams(values) for values in par]
-        for name in ("scale", "reach"):
-            rows = [np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams]
-            self._fill_shared_rows(getattr(batch, f"beam_{name}"), np.array(rows))
+        self._beam_rows = self._beam_numbers(par)
+        for name, rows in self._beam_rows.items():
+            self._fill_shared_rows(getattr(batch, f"beam_{name}"), rows)
         batch.n_beam_coordinates = results.beam_coordinates.shape[1]
         batch.beam_error, batch.beam_t, batch.beam_q = (
             memory.shared(array if array.size else np.zeros(1))
@@ -185,6 +199,21 @@ class BatchStepper:
         batch.beam_reference = memory.zeros(2 * results.beam_coordinates.size)
         batch.beam_weight = memory.zeros(len(results.beam_errors) * model.nv)
         batch.beam_guard = memory.own("sym_beam_guard[]", results.beam_errors.size)
+
+    def _beam_numbers(self, par: Array) -> dict[str, Array]:
+        """What beams are judged by, for each set of parameters, by its name in C."""
+        beams = [self.single.model.beams(values) for values in par]
+        return {
+            name: np.array([np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams])
+            for name in ("scale", "reach")
+        }
+
+    def set_parameters(self, rows: npt.NDArray[np.intp], par: Array) -> None:
+        """Trajectories of these numbers (m) have other parameters (m, npar) when they begin next."""
+        for kernel, prepared in self._prepared:
+            prepared[rows] = kernel.prepare(par)
+        for name, numbers in self._beam_numbers(par).items():
+            self._beam_rows[name][rows] = numbers
 
     def run(self, stop: Event) -> None:
         """Step every trajectory to its end, or until `stop` is set. The interpreter lock is released meanwhile."""

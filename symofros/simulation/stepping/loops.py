@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -21,6 +21,27 @@ _ROWS = 4096
 Show = Callable[[float], None]
 
 
+class Executor(Protocol):
+    """What moves a motion on, a number of steps or instants at a time: a `Stepper`, or the loop of a diagram."""
+
+    @property
+    def t(self) -> float:
+        """Time reached [s]."""
+        ...
+
+    def advance(self, count: int) -> int:
+        """Make at most so many steps, or meet so many instants; returns a Status."""
+        ...
+
+    def take_records(self) -> list[Array]:
+        """The records since the last call: t (n), q (n, nq), v (n, nv), u (n, nu)."""
+        ...
+
+    def take_events(self) -> list[Any]:
+        """The events met since the last call, index and time of each first."""
+        ...
+
+
 @dataclass
 class Recorded:
     """The results of a run.
@@ -28,42 +49,60 @@ class Recorded:
     Attributes:
         status: The last Status.
         states: Portions of the records: t (n), q (n, nq), v (n, nv), u (n, nu) each.
-        events: Index, t, q, v of the events located.
+        events: Events located: index, t, and the state q, v of a single model.
         interrupted: Whether Ctrl-C ended the run.
     """
 
     status: int = Status.RUNNING
     states: list[list[Array]] = field(default_factory=list)
-    events: list[tuple[int, float, Array, Array]] = field(default_factory=list)
+    events: list[Any] = field(default_factory=list)
     interrupted: bool = False
 
-    def take(self, stepper: Stepper) -> None:
+    def take(self, executor: Executor) -> None:
         """Take the records and events since the last call."""
-        self.states.append(stepper.take_records())
-        self.events += stepper.take_events()
+        self.states.append(executor.take_records())
+        self.events += executor.take_events()
 
     def arrays(self) -> list[Array]:
         """All records: t (n), q (n, nq), v (n, nv), u (n, nu)."""
         return [np.concatenate(parts) for parts in zip(*self.states, strict=True)]
 
 
+def drive(
+    executor: Executor, recorded: Recorded, most: Callable[[int], int], show: Callable[[Recorded], None]
+) -> Recorded:
+    """Drive a motion that is started to its end, or until no more is to be done.
+
+    Args:
+        executor: What moves it on.
+        recorded: Its results so far; others are added.
+        most: The number of steps or instants that one call makes, by the number that takes a moment.
+        show: Called after each call, with the results.
+    """
+    time_slice = TimeSlice()
+    try:
+        while recorded.status in (Status.RUNNING, Status.RECORDS_FULL):
+            count = most(time_slice.steps)
+            if count <= 0:
+                break
+            recorded.status = time_slice.measure(executor.advance, count)
+            recorded.take(executor)
+            show(recorded)
+    except KeyboardInterrupt:
+        recorded.interrupted = True
+        recorded.take(executor)
+    return recorded
+
+
 def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """Run our own integrator to its end, or to `max_steps`."""
     recorded = Recorded(stepper.start(q, v, max(_ROWS, len(settings.grid))))
     recorded.take(stepper)
-    time_slice = TimeSlice()
-    try:
-        while recorded.status in (Status.RUNNING, Status.RECORDS_FULL):
-            left = math.inf if settings.max_steps is None else settings.max_steps - int(stepper.run.steps)
-            if left <= 0:
-                break
-            recorded.status = time_slice.measure(stepper.advance, int(min(time_slice.steps, left)))
-            recorded.take(stepper)
-            show(float(stepper.run.t))
-    except KeyboardInterrupt:
-        recorded.interrupted = True
-        recorded.take(stepper)
-    return recorded
+
+    def most(steps: int) -> int:
+        return steps if settings.max_steps is None else min(steps, settings.max_steps - int(stepper.run.steps))
+
+    return drive(stepper, recorded, most, lambda _: show(stepper.t))
 
 
 def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:

@@ -67,6 +67,7 @@ class Stepper:
         self.kernels: dict[str, CompiledKernel] = {}
         self.system = self.ffi.new("sym_system *")
         self.run = self.ffi.new("sym_run *")
+        self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
         self._fill_system()
         self._fill_beams()
         self._fill_inputs(inputs)
@@ -137,6 +138,31 @@ class Stepper:
         self.native.sym_run_settle_beams(self.run)
         _, t, q = self._beam_record
         return worst_bendings(self.beams, t, q, amplifications)
+
+    def forget_bendings(self) -> None:
+        """Nothing is known of how far beams bend, as at the start of a run."""
+        run, model = self.run, self.model
+        for array in self._beam_record:
+            array[:] = 0.0
+        elastic = sum(beam.size for beam in self.beams)
+        self.memory.view(run.beam_reference, 2 * elastic)[:] = 0.0
+        self.memory.view(run.beam_weight, model.nv)[:] = 0.0
+        self.memory.raw(run.beam_guard, "sym_beam_guard", len(self.beams))[:] = 0
+
+    def set_parameters(self, par: Array) -> None:
+        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
+        run, view = self.run, self.memory.view
+        self.par, self.beams = par, self.model.beams(par)
+        for slot, kernel in self.kernels.items():
+            prepared = kernel.prepare(par.reshape(1, -1))
+            view(getattr(self.system, slot).pre, prepared.size)[:] = prepared[0]
+        for i, beam in enumerate(self.beams):
+            of = self.system.beams[i]
+            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
+            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
+            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
+        self.forget_bendings()
+        run.slope_valid = run.jacobian_valid = 0
 
     def judge_beams(self) -> int:
         """Judge the present state's beams, for integrators of others; returns a Status."""
@@ -218,8 +244,13 @@ class Stepper:
         Returns:
             A Status.
         """
+        self.reserve(capacity, _DIAGNOSTIC_ROWS)
+        self.set_state(q, v)
+        return int(self.native.sym_run_start(self.run))
+
+    def reserve(self, capacity: int, diagnostic_rows: int) -> None:
+        """Memory for `capacity` records, and for ends of steps kept for the diagnosis."""
         run, model, memory = self.run, self.model, self.memory
-        run.q, run.v = memory.doubles(q), memory.doubles(v)
         run.work = memory.zeros(self.native.sym_run_work_size(run))
         run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
         run.event_values = memory.zeros(constants()["SYM_EVENT_ROWS"] * len(self.events))
@@ -228,10 +259,14 @@ class Stepper:
         self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
         self._event_index = np.zeros(run.event_capacity, dtype=np.int32)
         run.event_index = memory.shared(self._event_index)
-        run.diagnostic_capacity = _DIAGNOSTIC_ROWS
+        run.diagnostic_capacity = diagnostic_rows
         sizes = {"t": 1, "q": model.nq, "v": model.nv, "u": model.nu}
-        self._diagnostic_states = memory.table(run, "diagnostic_", _DIAGNOSTIC_ROWS, **sizes)
-        return int(self.native.sym_run_start(run))
+        self._diagnostic_states = memory.table(run, "diagnostic_", diagnostic_rows, **sizes)
+
+    def set_state(self, q: Array, v: Array) -> None:
+        """Write the present q, v, where they lie."""
+        self.memory.view(self.run.q, self.model.nq)[:] = q
+        self.memory.view(self.run.v, self.model.nv)[:] = v
 
     def advance(self, steps: int) -> int:
         """Make at most `steps` steps. The interpreter lock is released meanwhile.
@@ -267,7 +302,6 @@ class Stepper:
 
     def inputs_at(self, t: float, q: Array, v: Array) -> Array:
         """The inputs at a state (nu); the last ones where a function of the caller's fails."""
-        self.run.q, self.run.v = self.memory.doubles(q), self.memory.doubles(v)
         self.place(t, np.concatenate([q, v]))
         return self.inputs_now
 
@@ -378,6 +412,11 @@ class Stepper:
     def inputs_now(self) -> Array:
         """The inputs last evaluated (nu)."""
         return self.memory.view(self.system.u, self.model.nu).copy()
+
+    @property
+    def t(self) -> float:
+        """The present time [s]."""
+        return float(self.run.t)
 
     @property
     def state(self) -> tuple[float, Array, Array]:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import Constant, Derivative, Integrator, Ramp, Sine, StateSpace, TransferFunction
-from tests.blocks.support import STEP, refused, run, run_each
+from tests.blocks.support import STEP, run, run_each
 from tests.late import late
 
 signal = late("scipy.signal")
@@ -39,25 +38,29 @@ def test_sampled_state_space_follows_its_recursion(rng: np.random.Generator) -> 
 FRACTIONS = (([1.0], [1.0, 0.6, 4.0]), ([2.0, 0.0, 1.0], [2.0, 1.0, 8.0]), ([3.0], [2.0]), ([1.0, 2.0], [1.0, 1.0]))
 
 
-def test_transfer_functions_follow_scipy() -> None:
+def test_transfer_functions_and_derivatives_follow_scipy() -> None:
     t = STEP * np.arange(300)
-    u = np.sin(3 * t)
-    blocks = [TransferFunction(name=f"f{i}", num=num, den=den) for i, (num, den) in enumerate(FRACTIONS)]
-    for (num, den), outputs in zip(
-        FRACTIONS, run_each([(block, {"u": u}) for block in blocks], kind="linear"), strict=True
-    ):
+    u, slow = np.sin(3 * t), np.sin(t)
+    fed = [(TransferFunction(name=f"f{i}", num=num, den=den), {"u": u}) for i, (num, den) in enumerate(FRACTIONS)]
+    *fractions, rate = run_each([*fed, (Derivative(name="d", tau=0.05), {"u": slow})], kind="linear")
+    for (num, den), outputs in zip(FRACTIONS, fractions, strict=True):
         y = signal.lsim((num, den), u, t)[1] if len(den) > 1 else u * num[0] / den[0]
         np.testing.assert_allclose(outputs["y"], y, atol=1e-6, err_msg=f"{num} {den}")
+    np.testing.assert_allclose(rate["y"], signal.lsim(([1.0, 0.0], [0.05, 1.0]), slow, t)[1], atol=1e-5)
 
 
-@pytest.mark.slow
-def test_sampled_transfer_functions_follow_scipys_filter() -> None:
+def test_sampled_transfer_functions_and_derivatives_follow_scipys_filter() -> None:
     u = np.sin(3 * STEP * np.arange(300))
     stable = [(num, [8.0 * den[0], *den[1:]]) for num, den in FRACTIONS]
     blocks = [TransferFunction(name=f"f{i}", num=num, den=den, period=STEP) for i, (num, den) in enumerate(stable)]
-    for (num, den), outputs in zip(stable, run_each([(block, {"u": u}) for block in blocks]), strict=True):
-        padded = [0.0] * (len(den) - len(num)) + num
-        np.testing.assert_allclose(outputs["y"], signal.lfilter(padded, den, u), atol=1e-12, err_msg=f"{num} {den}")
+    a = math.exp(-STEP / 0.05)
+    filters = [([0.0] * (len(den) - len(num)) + num, den) for num, den in stable]
+    filters += [([(1 - a) / STEP, (a - 1) / STEP], [1, -a]), ([1 / STEP, -1 / STEP], [1.0])]
+    rates = [Derivative(name=f"d{i}", tau=tau, period=STEP) for i, tau in enumerate((0.05, 0.0))]
+    fed = [(block, {"u": u}) for block in (*blocks, *rates)]
+    for (block, _), (num, den), outputs in zip(fed, filters, run_each(fed), strict=True):
+        close = 1e-11 if block in rates else 1e-12
+        np.testing.assert_allclose(outputs["y"], signal.lfilter(num, den, u), atol=close, err_msg=f"{num} {den}")
 
 
 def test_an_integrator_stands_at_its_limits_and_leaves_them_at_once() -> None:
@@ -96,26 +99,3 @@ def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int])
     assert found == pytest.approx(expected, abs=1e-12)
     limited = run(Integrator(name="x", high=1.5, period=STEP), {"u": [100.0] * 3 + [-100.0] * 2})["y"]
     assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
-
-
-@pytest.mark.slow
-def test_derivatives_are_those_of_the_filtered_signal() -> None:
-    t = STEP * np.arange(400)
-    u = np.sin(t)
-    found = run(Derivative(name="d", tau=0.05), {"u": u}, kind="linear")["y"]
-    np.testing.assert_allclose(found, signal.lsim(([1.0, 0.0], [0.05, 1.0]), u, t)[1], atol=1e-5)
-    sampled = run(Derivative(name="d", tau=0.05, period=STEP), {"u": u})["y"]
-    a = math.exp(-STEP / 0.05)
-    np.testing.assert_allclose(sampled, signal.lfilter([(1 - a) / STEP, (a - 1) / STEP], [1, -a], u), atol=1e-11)
-    plain = run(Derivative(name="d", tau=0.0, period=STEP), {"u": u})["y"]
-    np.testing.assert_allclose(plain[1:], np.diff(u) / STEP, atol=1e-11)
-
-
-@pytest.mark.parametrize(
-    ("make", "found", "remedy"),
-    [
-        (lambda: StateSpace(name="s", A=np.eye(201), B=np.ones((201, 1)), C=np.ones((1, 201))), "201", "reduce"),
-    ],
-)
-def test_what_is_wrong_is_said(make: Callable[[], object], found: str, remedy: str) -> None:
-    refused(make, found, remedy)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import Formula, PythonBlock
-from tests.blocks.support import STEP, refused, run
+from tests.blocks.support import STEP, run
 
 
 def test_formulas_of_inputs_constants_and_time(rng: np.random.Generator) -> None:
@@ -63,16 +61,3 @@ def test_what_python_returns_is_checked() -> None:
         simulation.interpret(STEP)
     run = simulation.run(STEP)
     assert run.outcome.kind == "input failed" and "returned something else" in run.outcome.reason
-
-
-@pytest.mark.parametrize(
-    ("make", "found"),
-    [
-        (lambda: run(Formula(name="f", formulas="u[3]"), {"u": np.zeros((2, 3))}), "(3,)"),
-        (lambda: run(Formula(name="f", formulas="sqrt(0 - 1)"), t_end=0.1), "not a number"),
-        (lambda: PythonBlock(name="p", function=print, period=1.0), "none"),
-        (lambda: PythonBlock(name="p", function=print, outputs={"y": ()}), "period None"),
-    ],
-)
-def test_what_is_wrong_is_said(make: Callable[[], object], found: str) -> None:
-    refused(make, found)

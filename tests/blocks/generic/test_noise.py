@@ -51,9 +51,3 @@ def test_normal_numbers_are_those_of_box_and_muller() -> None:
     np.testing.assert_allclose(found, 2 * np.sqrt(-2 * np.log(u[:, 0])) * np.cos(2 * np.pi * u[:, 1]), atol=1e-14)
     # A false alarm once in a thousand seeds; the seed is fixed.
     assert stats.kstest(found / 2, "norm").pvalue > 1e-3
-
-
-def test_components_do_not_follow_each_other() -> None:
-    found = run(Noise(name="n", seed=1, size=4, period=STEP), t_end=20.0, compare=0)["y"]
-    correlation = np.corrcoef(found.T) - np.eye(4)
-    assert abs(correlation).max() < 4 / np.sqrt(len(found))

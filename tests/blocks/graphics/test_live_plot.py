@@ -45,7 +45,6 @@ def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
     return head, rows
 
 
-@pytest.mark.slow
 def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
     head, rows = told(shown)
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
@@ -83,19 +82,3 @@ def test_rows_are_bounded_and_thinned() -> None:
     seen, rows = feed.since(0)
     assert seen == ROWS + 100 and rows[0][0] == 100.0 and 0.9 * AT_ONCE < len(rows) <= AT_ONCE
     assert feed.since(seen) == (seen, []) and len(feed.since(seen - 3)[1]) == 3
-
-
-@pytest.mark.slow
-def test_the_page_ends_with_the_program_that_began_it() -> None:
-    d = sf.Diagram("live")
-    d.add(Ramp(name="ramp"))
-    live = LivePlot(name="live", signals=("a",), period=0.01, open_browser=False)
-    d.add(live, a="ramp.y")
-    simulation = sf.Simulation(d)
-    simulation.run(0.02, dt=1e-2)
-    first = live.url
-    simulation.run(0.02, dt=1e-2)
-    page = live.__dict__["_page"]
-    assert live.url == first  # One page for all runs.
-    page.close()
-    assert page.process.poll() == 0

@@ -15,7 +15,6 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics, Sequence, View3D
 from symofros.blocks.graphics.view import with_view
-from symofros.diagrams.files.registry import kind_of
 
 PATIENCE = 10.0
 
@@ -64,19 +63,13 @@ def test_it_shows_the_run_and_does_not_change_it(
     assert np.linalg.norm(elbow) == pytest.approx(0.8)
 
 
-def test_one_page_serves_all_runs(viewed: tuple[sf.Simulation, View3D]) -> None:
+def test_the_page_shows_what_its_own_run_is_about(viewed: tuple[sf.Simulation, View3D]) -> None:
+    """One block in two diagrams, of which one has another model in place of the first; one page for all runs of one."""
     simulation, block = viewed
     simulation.run(0.1, dt=1e-2)
     first = block.viewer
-    again = simulation.run(0.2, dt=1e-2)
-    assert block.viewer is first and again.kept["view3d"]["shown"] == 6
-    interpreted = simulation.interpret(0.1, dt=1e-2)
-    assert block.viewer is first and interpreted.kept["view3d"]["shown"] == 3
-
-
-def test_the_page_shows_what_its_own_run_is_about(viewed: tuple[sf.Simulation, View3D]) -> None:
-    """One block in two diagrams, of which one has another model in place of the first."""
-    simulation, block = viewed
+    assert simulation.run(0.2, dt=1e-2).kept["view3d"]["shown"] == 6
+    assert simulation.interpret(0.1, dt=1e-2).kept["view3d"]["shown"] == 3 and block.viewer is first
     setup = replace(simulation.diagram.models["arm"], system=MODELS["pendulum"], start={}, parameters={})
     other = sf.Simulation(simulation.diagram.with_model("arm", setup))
     for one, nq in ((simulation, 2), (other, 1), (simulation, 2)):
@@ -92,13 +85,6 @@ def test_it_ends_with_the_run_if_it_is_told_to() -> None:
     assert first is not None and first.is_closed
     simulation.run(0.1, dt=1e-2)
     assert block.viewer is not first and block.viewer is not None and block.viewer.is_closed
-
-
-def test_a_paced_run_takes_its_time() -> None:
-    simulation, block = shown(paced=True, stays=False)
-    assert simulation.run(0.4, dt=1e-2).cost.seconds > 0.39
-    free, _ = shown(stays=False)
-    assert free.run(60.0, dt=0.1).cost.seconds < 60.0  # On its own, the clock does not hold it back.
 
 
 def test_prescribed_motions_are_shown() -> None:
@@ -124,14 +110,3 @@ def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_can_not_be_is_refused(fields: dict[str, Any]) -> None:
     with pytest.raises(sf.DescriptionError, match="block 'view3d': can't show that"):
         shown(**fields)
-
-
-def test_the_diagram_that_is_shown_stays_as_it_is() -> None:
-    diagram = arm()
-    shown, block = with_view(diagram)
-    assert list(diagram.blocks) == ["plant"] and list(shown.blocks) == ["plant", "view3d"] and not diagram.wires
-    assert with_view(shown)[1].name == "view3d_" and block.model == "arm"
-
-
-def test_files_call_it_by_its_name() -> None:
-    assert kind_of(View3D) == "view3d" and kind_of(ForwardDynamics) == "forward_dynamics"

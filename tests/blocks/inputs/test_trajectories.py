@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import CartesianTrajectory, JointTrajectory, Square
 from symofros.blocks.inputs.laws import LAWS
-from tests.blocks.support import refused, run
+from tests.blocks.support import run
 from tests.models import sampled
 
 TIMES = np.array([0.2, 0.7, 1.0, 1.6])
@@ -86,31 +86,10 @@ def test_frames_turn_as_they_should(law: str) -> None:
         assert (slerp * R[at[0] : at[1]].inv()).magnitude() == pytest.approx(0.0, abs=1e-7)
 
 
-@pytest.mark.slow
-def test_orientation_compiled_and_interpreted_agree() -> None:
-    points = np.hstack([POINTS, POINTS[:, :1]])
-    for law in ("trapezoidal", "spline"):
-        run(
-            CartesianTrajectory(name="c", points=points, times=TIMES, quaternions=QUATERNIONS, law=law),
-            t_end=1.8,
-            dt=0.06,
-        )
-
-
 @pytest.mark.parametrize("law", sampled(LAWS, ["trapezoidal"]))
 def test_a_square_stops_at_its_corners(law: str) -> None:
-    square = Square(
-        name="s",
-        start=(0.0, 0.1),
-        corner=(0.3, 0.3),
-        first=(0.6, 0),
-        second=(0, -0.6),
-        law=law,
-        leave=0.1,
-        approach=1.0,
-        side=0.5,
-        laps=2,
-    )
+    way: dict[str, Any] = {"start": (0.0, 0.1), "leave": 0.1, "approach": 1.0, "side": 0.5, "laps": 2}
+    square = Square(name="s", corner=(0.3, 0.3), first=(0.6, 0), second=(0, -0.6), law=law, **way)
     assert square.finish == pytest.approx(0.1 + 1.0 + 8 * 0.5)
     found = run(square, t_end=5.3, dt=0.05)
     corners = np.array([[0.3, 0.3], [0.9, 0.3], [0.9, -0.3], [0.3, -0.3]])
@@ -149,21 +128,3 @@ def test_a_square_starts_where_the_model_is() -> None:
     q = model.neutral()
     q[[0, 5]] = -0.1, 0.1
     np.testing.assert_allclose(found["p"][0], model.frame_pose("tool", q)[0][:2], atol=1e-14)
-
-
-SQUARE = dict(name="s", start=(0, 0), corner=(1, 1), first=(1, 0), second=(0, 1))
-
-
-@pytest.mark.parametrize(
-    ("make", "found"),
-    [
-        (lambda: JointTrajectory(name="j", points=POINTS, times=TIMES, law="cubic"), "'cubic'"),
-        (lambda: JointTrajectory(name="j", points=np.zeros((65, 1)), times=np.arange(65)), "65"),
-        (lambda: JointTrajectory(name="j", points=POINTS, times=TIMES, accelerating=0.6), "0.6"),
-        (lambda: CartesianTrajectory(name="c", points=np.zeros((4, 4)), times=TIMES), "(4, 4)"),
-        (lambda: CartesianTrajectory(name="c", points=POINTS, times=TIMES, quaternions=QUATERNIONS), "(4, 2)"),
-        (lambda: CartesianTrajectory(name="c", points=np.eye(3)[:2], times=[0, 1], quaternions=np.zeros((2, 4))), "0"),
-    ],
-)
-def test_what_is_wrong_is_said(make: Callable[[], object], found: str) -> None:
-    refused(make, found)

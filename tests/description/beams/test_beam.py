@@ -46,13 +46,6 @@ def test_sections_that_contradict_themselves_are_refused(entries: dict[str, obje
         rod_by(**entries)
 
 
-@pytest.mark.parametrize("entry", ["EI_yz", "tension_center", "shear_center", "mass_center", "stiffness"])
-def test_beams_of_second_order_refuse_coupled_sections(entry: str) -> None:
-    value = {"EI_yz": 1.0, "stiffness": IDENTITY}.get(entry, (0.1, 0.0))
-    with pytest.raises(sf.DescriptionError, match=f"{entry}.*\n.*second_order"):
-        sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0, bend_y=1, **{entry: value})  # type: ignore[arg-type]
-
-
 def test_rounding_across_the_diagonal_is_no_asymmetry() -> None:
     rows = [list(row) for row in IDENTITY]
     rows[0][3], rows[3][0] = 0.1, 0.1 + 1e-9

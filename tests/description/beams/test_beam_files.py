@@ -77,21 +77,3 @@ bodies:
     model = sf.compile(sf.load(tmp_path / "boom.yaml"), sf.Options(functions=("frame_pose",)))
     p, R = model.frame_pose("end", [0.0, 0.0, 0.0])
     assert p.tolist() == [3.0, 0.0, 0.0] and R[0, 0] == 1.0
-
-
-@pytest.mark.parametrize(
-    ("entry", "said"),
-    [
-        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1}\n    inertia: {mass: 1}", "not only a beam"),
-        ("beam: {length: 1}", "rhoA"),
-        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1, family: spleen}", "spline"),
-        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: 1, modes: 3}", "modes"),
-        ("beam: {length: 1, rhoA: 1, EI_z: 1, bend_y: -1}", "bend_y"),
-        ("beam: {length: 1, rhoA: 1, EI_z: 1, family: user, shapes: {bend_y: [{xi: [0], values: [0]}]}}", "xi"),
-    ],
-)
-def test_faults_name_line_and_rule(tmp_path: Path, entry: str, said: str) -> None:
-    (tmp_path / "bad.yaml").write_text(f"symofros: 1\nbodies:\n  b:\n    joint: {{kind: revolute}}\n    {entry}\n")
-    with pytest.raises(sf.DescriptionError) as caught:
-        sf.load(tmp_path / "bad.yaml")
-    assert said in str(caught.value) and "bad.yaml:" in str(caught.value)

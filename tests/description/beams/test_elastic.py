@@ -36,13 +36,3 @@ def test_entries_that_a_theory_lacks_are_refused(theory: str) -> None:
             other = 1 if item.name in STRAINS else (0.1, 0.2) if item.name.endswith("center") else 0.5
             with pytest.raises(sf.DescriptionError, match=f"it has no entry {item.name}"):
                 beam(**{"theory": theory, item.name: given.get(item.name, other)})
-
-
-def test_a_beam_answers_by_its_theory() -> None:
-    assert not beam().elastic.is_exact and beam(theory="strain").elastic.is_exact
-    assert beam(theory="strain").elastic is ELASTIC["strain"]
-
-
-def test_the_beams_of_a_system_are_those_among_its_bodies() -> None:
-    system = sf.System("s", (sf.RigidBody("r", sf.Joint("j", "fixed")), beam()))
-    assert system.beams == (system.bodies[1],)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.description.joints.joint_kinds import JOINT_KINDS, KINDS, JointKind
+from symofros.description.joints.joint_kinds import KINDS, JointKind
 
 BODY = sf.Inertia(1.0, (0.1, 0.2, 0.3), (0.02, 0.03, 0.04))
 DEFINED = [kind for kind in KINDS.values() if not kind.user_defined]
@@ -17,19 +15,6 @@ DEFINED = [kind for kind in KINDS.values() if not kind.user_defined]
 def model_of(kind: str) -> sf.Model:
     joint = sf.Joint("j", kind, axis=(1.0, 2.0, 2.0), axis2=(0.0, 1.0, 0.0), pitch=0.3)  # type: ignore[arg-type]
     return sf.compile(sf.System("one", (sf.RigidBody("body", joint, BODY),)), sf.Options(backend="interpreter"))
-
-
-def test_every_kind_has_one_row() -> None:
-    assert tuple(KINDS) == JOINT_KINDS
-
-
-def test_entries_are_fields_of_a_joint() -> None:
-    assert {entry for kind in KINDS.values() for entry in kind.entries} <= {item.name for item in fields(sf.Joint)}
-
-
-def test_kinds_with_one_axis_are_aligned_with_it() -> None:
-    aligned = {kind.name for kind in KINDS.values() if kind.aligned}
-    assert aligned == {"revolute", "continuous", "prismatic", "cylindrical", "screw"}
 
 
 @pytest.mark.parametrize("kind", [kind for kind in DEFINED if kind.coordinates], ids=lambda kind: kind.name)

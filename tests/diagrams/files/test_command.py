@@ -13,16 +13,11 @@ from typer.testing import CliRunner
 
 import symofros as sf
 from symofros.__main__ import app
-from symofros.diagrams.files.kind import is_diagram
-from tests.diagrams.files.cases import ARM, TEXT, folder_with
+from tests.diagrams.files.cases import TEXT, folder_with
 
 
 def run(*arguments: object):
     return CliRunner().invoke(app, list(map(str, arguments)))
-
-
-def test_a_diagram_is_known_by_its_key(tmp_path: Path) -> None:
-    assert is_diagram(folder_with(tmp_path)) and not is_diagram(ARM) and not is_diagram(tmp_path / "none.yaml")
 
 
 def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:

@@ -53,21 +53,6 @@ def test_what_a_file_states(tmp_path: Path) -> None:
     assert np.allclose([run["plant.q"][0], run["plant.v"][0]], [[0.5, 0.0], [0.0, 0.1]])
 
 
-def test_it_runs_as_the_same_diagram_from_python(tmp_path: Path) -> None:
-    file = folder_with(tmp_path)
-    d = sf.Diagram("held_arm")
-    d.add_model("arm", sf.load(tmp_path / "arm.yaml"), {"q1": 0.5, "dq2": 0.1}, {"m2": 0.9})
-    d.add(kinds()["forward_dynamics"](name="plant", model="arm"), u="pd.effort")  # type: ignore[call-arg]
-    d.add(
-        kinds()["joint_pd"](name="pd", kp=[40, 20], kd=2, period=0.01),  # type: ignore[call-arg]
-        q="plant.q",
-        v="plant.v",
-        q_desired="plant.q",
-    )
-    theirs, ours = sf.Simulation(d).run(0.2, dt=1e-3, record=0.01), sf.Simulation(sf.load_diagram(file)).run()
-    assert np.array_equal(theirs["plant.q"], ours["plant.q"]) and np.ptp(ours["plant.q"]) > 0.01
-
-
 @pytest.mark.parametrize(("old", "new", "line", "words"), FAULTS)
 def test_faults_say_where_they_are(tmp_path: Path, old: str, new: str, line: str, words: list[str]) -> None:
     assert old in TEXT
@@ -93,6 +78,8 @@ def test_shapes_and_units_must_fit(tmp_path: Path) -> None:
     (one,) = problems(tmp_path, text, blocks=[UnitGain])
     assert "plant.q -> g.u: units differ" in one.what and one.found == "rad" and "N m" in one.rule
     assert one.where.endswith(f":{line_of(text, 'unit_gain')}")
+    (one,) = problems(tmp_path, text.replace("takes: N m", "gain: [1, 2, 3]"), blocks=[UnitGain])
+    assert "block 'g': its fields do not fit its inputs" in one.what and "u (2,)" in one.rule
     scope = "  s: {kind: udp_receiver, port: 9, size: 3}\noutlets:"
     text = TEXT.replace("outlets:", scope).replace("{u: pd.effort}", "{u: s.signal}")
     (one,) = problems(tmp_path, text)
@@ -129,36 +116,6 @@ def test_files_of_blocks_lie_in_the_diagrams_folder(tmp_path: Path) -> None:
     with pytest.raises(sf.DescriptionError, match="outside the diagram's folder"):
         sf.save_diagram(d, tmp_path / "other" / "again.yaml")
     assert not list((tmp_path / "other").iterdir())
-
-
-def test_fields_must_fit_what_is_connected(tmp_path: Path) -> None:
-    text = TEXT.replace("outlets:", "  g: {kind: unit_gain, gain: [1, 2, 3], inputs: {u: plant.q}}\noutlets:")
-    (one,) = problems(tmp_path, text, blocks=[UnitGain])
-    assert "block 'g': its fields do not fit its inputs" in one.what and "u (2,)" in one.rule
-    assert one.where.endswith(f":{line_of(text, 'unit_gain')}")
-
-
-def test_an_algebraic_loop_is_named_along_its_path(tmp_path: Path) -> None:
-    loop = "  a: {kind: unit_gain, inputs: {u: b.y}}\n  b: {kind: unit_gain, inputs: {u: c.y}}\n"
-    text = TEXT.replace("outlets:", loop + "  c: {kind: unit_gain, inputs: {u: a.y}}\noutlets:")
-    # Nothing in this loop says what shape its signals have; where one block does, it is told as the loop that it is.
-    assert all("the shape of" in one.what for one in problems(tmp_path, text, blocks=[UnitGain]))
-    text = text.replace("{u: c.y}", "{u: d.y}").replace("outlets:", "  d: {kind: sum_of, inputs: {x: c.y}}\noutlets:")
-    (one,) = problems(tmp_path, text, blocks=[UnitGain, SumOf])
-    assert "an algebraic loop" in one.what and one.found.count(" -> ") == 4
-    assert set(one.found.split(" -> ")) == {"a.y", "b.y", "c.y", "d.y"}
-    assert int(one.where.rpartition(":")[2]) >= line_of(text, "  a: {")
-
-
-@dataclass(frozen=True, kw_only=True)
-class SumOf(Block):
-    """A scalar through."""
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((Port("x"),), (Port("y"),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": context.inputs["x"] + 1.0}
 
 
 PART = """\
@@ -228,8 +185,6 @@ def test_fields_that_are_called_as_entries_have_an_underscore(tmp_path: Path) ->
     assert d.blocks["n"] == Named(name="n", kind="odd", inputs=("a", "b"))
     sf.save_diagram(d, tmp_path / "again.yaml")
     assert sf.load_diagram(tmp_path / "again.yaml", blocks=[Named]) == d
-    (one,) = problems(tmp_path, text.replace("kind_: odd, ", ""), blocks=[Named])
-    assert "'kind_' is missing" in one.what
 
 
 @pytest.mark.parametrize("kind", sorted(kinds()))
@@ -242,7 +197,7 @@ def test_every_kind_has_fields_of_types_that_are_known(kind: str) -> None:
 
 def test_hostile_bytes_are_refused(tmp_path: Path, rng: np.random.Generator) -> None:
     data = TEXT.encode()
-    for _ in range(200):
+    for _ in range(60):
         spoilt = bytearray(data)
         for at in rng.integers(0, len(data), 3):
             spoilt[at] = rng.integers(1, 255)

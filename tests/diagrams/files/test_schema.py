@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from functools import cache
+from typing import Any
 
 import jsonschema
 import pytest
@@ -14,8 +16,13 @@ from tests.diagrams.files.cases import TEXT
 PART = "parts:\n  p: {file: x.yaml, inputs: {a: b.c}}\n  r: {diagram: {blocks: {s: {kind: scope, signals: [x]}}}}\n"
 
 
+@cache
+def schema() -> Any:
+    return json_schema()
+
+
 def check(text: str) -> None:
-    jsonschema.validate(YAML(typ="safe", pure=True).load(text), json_schema())
+    jsonschema.validate(YAML(typ="safe", pure=True).load(text), schema())
 
 
 def test_the_published_schema_is_current() -> None:

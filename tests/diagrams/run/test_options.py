@@ -19,10 +19,16 @@ def test_an_unknown_option_is_refused_with_the_nearest_known_one() -> None:
     with pytest.raises(sf.UnknownNameError, match="metod") as refusal:
         bouncing().run(1.0, metod="rk4")
     assert "'method'" in refusal.value.problems[0].remedy
-    assert "DiagramOptions" in refusal.value.problems[0].rule
+    assert "SimulationOptions" in refusal.value.problems[0].rule
 
 
 def test_start_and_interval_of_recording_are_those_of_the_options() -> None:
     run = bouncing().run(1.5, t0=1.0, dt=1e-2, record=0.1)
     np.testing.assert_allclose(run.t[[0, -1]], [1.0, 1.5])
     np.testing.assert_allclose(np.diff(run.t[np.searchsorted(run.t, [1.1, 1.2])]), 0.1)
+
+
+def test_options_of_single_models_are_refused() -> None:
+    for option in ({"every": 2}, {"max_steps": 10}, {"output": [0.1, 0.2]}):
+        with pytest.raises(sf.SymofrosError, match="diagram: "):
+            bouncing().run(1.0, **option)

@@ -8,7 +8,6 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from tests.diagrams.parts import Number
 
 
 def pendulum() -> sf.System:
@@ -20,7 +19,7 @@ def pendulum() -> sf.System:
 def simulation() -> sf.Simulation:
     diagram = sf.Diagram("bench")
     diagram.add_model("plant", pendulum())
-    diagram.add(Number(name="goal", value=1.0))
+    diagram.add(blocks.Constant(name="goal", value=1.0))
     diagram.add(blocks.ForwardDynamics(name="arm", model="plant"))
     return sf.Simulation(diagram)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import subprocess
-import time
 from pathlib import Path
 from string import Template
 
@@ -64,14 +63,6 @@ def test_strict_c_moves_as_python_does(package: tuple[str, Path]) -> None:
 def four_bar(tmp_path: Path) -> Path:
     sf.export(system_of("four_bar"), "c", tmp_path, start=STARTS["four_bar"])
     return tmp_path
-
-
-def test_the_pace_is_kept(four_bar: Path) -> None:
-    build(four_bar, "example")
-    began = time.perf_counter()
-    text = run("./example", "0.2", "0.01", cwd=four_bar)
-    assert time.perf_counter() - began >= 0.2
-    assert re.search(r"20 periods of 0\.01 s; \d+ late, at worst by [\d.]+ us", text)
 
 
 def test_chosen_functions_are_the_only_ones_beside_those_of_stepping(tmp_path: Path) -> None:

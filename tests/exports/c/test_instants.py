@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -52,23 +53,11 @@ def test_a_pulse_gives_its_impulse_in_calls_of_any_length(speeds: Speeds, shape:
             assert speed == pytest.approx(impulse, rel=BOUND[method]), (span, pulse)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_a_run_at_once_is_that_of_simulate(speeds: Speeds, shape: str) -> None:
-    """To rounding; the middle of a bell is an extremum, which is found to the root of it."""
-    force, _ = SHAPES[shape]
-    model = sf.compile(cart(force))
-    for pulse in drawn(3):
-        par = dict(zip(("late", "width"), pulse, strict=True))
-        wanted = sf.simulate(model.with_parameters(**par), t_end=END, method="dopri5", dt=0.01, rtol=1e-6, atol=1e-8)
-        bound = 1e-6 if shape == "bell" else 1e-11
-        assert speeds(force, "dopri5", END, [pulse]) == pytest.approx([wanted.v[-1, 0]], abs=bound)
-
-
 def test_more_instants_than_memory_holds_shorten_the_search(speeds: Speeds) -> None:
     """Three operands of a comb, with 9549 kinks in the run; each of its teeth counts."""
     force = "max(abs(sin(1000*t)), max(cos(1000*t), 0)) + 0*late*width"
-    model = sf.compile(cart(force))
-    wanted = sf.simulate(model, t_end=END, method="rk4", dt=1e-5, output=[END]).v[-1, 0]
+    x = np.linspace(0.0, 1000.0 * END, 4_000_001)
+    wanted = float(np.trapezoid(np.maximum(np.abs(np.sin(x)), np.cos(x)), x)) / 1000.0
     for span in (END, 0.1):
         assert speeds(force, "dopri5", span, [(5.0, 1e-3)]) == pytest.approx([wanted], rel=1e-5)
 

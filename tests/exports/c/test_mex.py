@@ -132,27 +132,3 @@ show('heavy', four_bar(1, X4, [], [2, 1])); show('light', four_bar(1, X4));
     for key, value in wanted.items():
         value = np.asarray(value).ravel()
         assert np.abs(found[key] - value).max() < SAME * max(1.0, np.abs(value).max()), key
-
-
-@pytest.mark.parametrize(
-    ("call", "says"),
-    [
-        ("four_bar(11)", "symofros:four_bar:flag no such flag"),
-        ("four_bar('x')", "symofros:four_bar:flag the flag is no number"),
-        ("four_bar(1)", "symofros:four_bar:missing X = [q; v]; it has 6 entries"),
-        ("four_bar(1, [1 2])", "symofros:four_bar:size X = [q; v]; it is a real, full array of 6 doubles"),
-        ("four_bar(1, zeros(6, 1), [], [1 2 3])", "symofros:four_bar:size Parameters"),
-        ("four_bar(4, zeros(6, 1), 'nowhere')", "symofros:four_bar:frame no such frame"),
-        ("four_bar(4, zeros(6, 1), 99)", "symofros:four_bar:frame no such frame"),
-        ("four_bar(9, zeros(6, 1), [], [], [0 1 0])", "symofros:four_bar:span"),
-        ("[a, b, c] = four_bar(1, zeros(6, 1))", "symofros:four_bar:outputs"),
-    ],
-)
-def test_errors(built: Callable[..., Path], call: str, says: str) -> None:
-    code = f"try, {call}; catch e, printf('%s %s', e.identifier, strrep(e.message, 'four_bar: ', '')), end"
-    assert says in octave(built("four_bar"), code)
-
-
-def test_help(built: Callable[..., Path]) -> None:
-    for command in ("help four_bar", "four_bar()"):
-        assert "[Mnl, gnl] = four_bar(1, X, U, Parameters, t)" in octave(built("four_bar"), command)

@@ -98,13 +98,12 @@ def test_matrices_are_those_of_python(program: Path, rng: np.random.Generator) -
         (([3.0], np.zeros(6), [0.0, np.nan, 0.0]), ":value A, the accelerations"),
         (([1.0], np.zeros(6), [], [], [np.inf]), ":value t"),
         (([1.0], np.zeros(3)), ":size X = [q; v]"),
+        (([11.0],), ":flag no such flag"),
+        (([1.0],), ":missing X = [q; v]; it has 6 entries"),
+        (([4.0], np.zeros(6), [99.0]), ":frame no such frame"),
+        (([9.0], np.zeros(6), [], [], [0.0, 1.0, 0.0]), ":span"),
     ],
 )
 def test_what_is_no_state_is_refused(program: Path, arguments: tuple[Sequence[float], ...], words: str) -> None:
     done = ask(program, 1, *arguments)
     assert done.returncode == 3 and words in done.stdout
-
-
-def test_a_row_of_times_is_one(program: Path) -> None:
-    t, x = answers(ask(program, 2, [9.0], np.zeros(6), [], [], np.array([[0.0, 0.01, 0.001]])))
-    assert t.shape == (11, 1) and x.shape == (11, 6)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib.util
-import re
 from pathlib import Path
 
 import numpy as np
@@ -73,17 +72,3 @@ def test_cpp_gets_maps_of_eigen(package: tuple[str, Path]) -> None:
     flags = ("-std=c++14", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{folder}", "-isystem", eigen)
     run("g++", *flags, "main.cpp", "model.o", "-lm", "-o", "example", cwd=folder.parent)
     check(name, q, told(folder))
-
-
-def test_the_table_has_every_function_in_the_order_of_the_arguments(package: tuple[str, Path]) -> None:
-    name, folder = package
-    table = (folder / "README.md").read_text()
-    header = " ".join(re.sub(r"/\*.*?\*/", "", (folder / f"{name}_functions.h").read_text(), flags=re.DOTALL).split())
-    rows = re.findall(rf"^\| `({name}_\w+)` \| (.*?) \| (.*?) \|", table, re.MULTILINE)
-    assert len(rows) == (folder / f"{name}.c").read_text().count("_batch},") + 1
-    for symbol, inputs, outputs in rows:
-        stated = re.findall(r"`(\w+)`", f"{inputs} {outputs}")
-        arguments = re.search(rf" {symbol}\(([^)]*)\) {{", header)
-        assert arguments is not None, symbol
-        declared = [argument.split()[-1].lstrip("*") for argument in arguments[1].split(",")]
-        assert declared[1:-1] == stated, symbol

@@ -9,7 +9,6 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.errors import ExportError, UnknownNameError
 from tests.cuda_on_host import PLAIN, SHIM, WARNINGS
 from tests.exports.cases import STRICT, run
 from tests.late import needs_program, require
@@ -66,11 +65,6 @@ def test_nvcc_warns_of_nothing(name: str, tmp_path: Path) -> None:
         )
 
 
-@pytest.mark.parametrize("language", ["c", "c++"])
-def test_the_header_is_c_and_cpp(package: Path, language: str) -> None:
-    run("gcc", "-x", language, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "double_pendulum_cuda.h", cwd=package)
-
-
 def test_files_compile_without_any_header(package: Path) -> None:
     require("nvidia.cuda_nvrtc", "cuda")
     from symofros.runtime.cuda.nvrtc import usage_of
@@ -103,17 +97,6 @@ def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> N
 def test_rollouts_of_beams_are_said_not_to_be_judged(tmp_path: Path, name: str, bends: bool) -> None:
     notes = sf.export(system(name), "cuda", tmp_path).notes
     assert bool([note for note in notes if "rollouts do not judge how far beams bend" in note]) == bends
-
-
-def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
-    (tmp_path / "mine").write_text("x")
-    with pytest.raises(ExportError, match="not overwritten"):
-        sf.export(system("double_pendulum"), "cuda", tmp_path)
-
-
-def test_a_frame_that_does_not_exist_is_named(tmp_path: Path) -> None:
-    with pytest.raises(UnknownNameError, match="no frame 'nose'"):
-        sf.export(system("double_pendulum"), "cuda", tmp_path, frames=["nose"])
 
 
 def test_hostile_names_stay_names(tmp_path: Path) -> None:

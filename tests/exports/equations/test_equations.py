@@ -64,18 +64,6 @@ def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.
             np.testing.assert_allclose(array, right, rtol=0, atol=1e-12 * max(1.0, np.abs(right).max(initial=0.0)))
 
 
-def test_the_source_of_minima_and_maxima_is_numpys(rng: np.random.Generator) -> None:
-    parameters = (sf.Parameter("k", 30.0), sf.Parameter("a", 0.2))
-    stop = sf.Stop("k", 2.0, "-a", "max(a, min(3*a, min(0.5, k)))")  # type: ignore[arg-type]
-    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(stop,), effort=("max(u1, max(dx, 0.1))*min(x, u1)",))
-    body = sf.RigidBody("block", joint, sf.Inertia(1.3))
-    system = sf.System("stopped", (body,), parameters, inputs=(sf.Input("u1"),))
-    model, written = sf.compile(system), function(sf.equations(system))
-    for q, v, u in rng.normal(size=(20, 3, 1)):
-        for array, right in zip(written(q, v, u)[:3], model.dynamics(q, v, u), strict=True):
-            np.testing.assert_allclose(array, right, rtol=1e-12, atol=1e-12)
-
-
 def test_the_double_pendulum_is_the_textbooks() -> None:
     system = sf.System(
         "point_masses",
@@ -113,19 +101,13 @@ def test_the_double_pendulum_is_the_textbooks() -> None:
     assert sympy.count_ops(equations.M) <= sympy.count_ops(right)
 
 
-@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "friction_arm", "gyroscope"])
+@pytest.mark.parametrize("name", ["double_pendulum", "four_bar"])
 def test_latex_parses(name: str) -> None:
     parser = MathTextParser("path")
     body = readable(name).latex().splitlines()[1:-1]
     assert len(body) > 3
     for line in body:
         parser.parse("$" + line.removesuffix("\\\\").replace("&", "").replace("\\operatorname", "\\mathrm") + "$")
-
-
-def test_rates_bear_dots_and_names_are_the_users() -> None:
-    text = readable("cart_pole").latex()
-    assert r"\dot{q}^{2}" in text and "m_{cart}" in text
-    assert readable("cart_pole").text().splitlines()[0] == "M[1,1] = m_cart + m_pole"
 
 
 @pytest.mark.parametrize("name", ["puma560", "stewart", "flexible_arm"])
@@ -137,13 +119,6 @@ def test_large_models_are_refused_in_words_and_have_their_recursion(name: str) -
     text = equations.recursion()
     assert text.count("\\paragraph") == sum("{Link" in line for line in text.splitlines()) >= 6
     assert text.count("\\begin") == text.count("\\end") and text.count("{") == text.count("}")
-
-
-def test_the_recursion_names_joints_offsets_axes_and_masses_as_the_user_does() -> None:
-    text = readable("double_pendulum").recursion()
-    assert "Link 2 (lower)} on link 1 (upper): revolute joint q2" in text
-    assert "p &= (L_{1},\\ 0,\\ 0)^T" in text and "n &= (0,\\ 1,\\ 0)^T" in text
-    assert "m &= m_{2}" in text and "c &= (\\frac{L_{2}}{2},\\ 0,\\ 0)^T" in text
 
 
 def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> None:
@@ -169,12 +144,3 @@ def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> Non
 def test_the_command_writes_them(words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["equations", "reference_models/closed/four_bar.yaml", *words])
     assert done.exit_code == 0 and says in done.output
-
-
-def test_the_command_refuses_large_models_in_words() -> None:
-    done = CliRunner().invoke(app, ["equations", "reference_models/rigid/puma560.yaml"])
-    assert done.exit_code == 2 and "at most 300 operations" in done.output
-
-
-def test_equations_print_in_a_line() -> None:
-    assert repr(sf.equations(MODELS["double_pendulum"])).startswith("<ReadableEquations of 'double_pendulum': ")

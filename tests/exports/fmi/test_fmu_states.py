@@ -145,14 +145,3 @@ def test_derivatives_by_parameters_while_it_is_initialised(made: Any) -> None:
     apart = [unit.slope(unknown, [name], np.array([1.0])) for name in ("par.L", "par.m")]
     assert both == pytest.approx(alone + 2.0 * apart[0] - apart[1], rel=BY_PARAMETERS, abs=BY_PARAMETERS)
     assert np.array_equal(unit.get(*unknown), first) and unit.get("par.L")[0] == 0.8
-
-
-def test_derivatives_that_there_are_none_of_are_refused(made: Any) -> None:
-    unit = made(TUNED, False, outputs=["tip"])
-    initialising(unit)
-    for unknown, known in (("energy.kinetic", "q.q1"), ("der(v.q1)", "time"), ("der(v.q1)", "der(v.q1)")):
-        with pytest.raises(FMICallException):
-            unit.slope([unknown], [known], np.array([1.0]))
-    unit.fmu.exitInitializationMode()
-    with pytest.raises(FMICallException):
-        unit.slope(["der(v.q1)"], ["par.L"], np.array([1.0]))

@@ -103,19 +103,6 @@ def test_the_inertia_of_a_line_is_raised_in_words(tmp_path: Path, moment: float,
     assert mujoco.MjModel.from_xml_path(str(done.files[0])).body_inertia[1].min() >= 1e-12
 
 
-def test_a_rigid_beam_weighs_what_the_beam_weighs(tmp_path: Path) -> None:
-    system = system_of("planar_robot")
-    done = sf.export(system, "urdf", tmp_path)
-    engine = pinocchio.buildModelFromUrdf(str(done.files[0]))
-    rigid = sf.load(done.files[0])
-    masses = [float(body.inertia.mass) for body in rigid.bodies if body.inertia is not None]
-    values = system.parameter_values()
-    beams = values["rhoA1"] * values["L1"] + values["rhoA2"] * values["L2"]
-    own = sum(sf.evaluate(body.inertia.mass, values) for body in system.bodies if body.inertia is not None)
-    assert sum(masses) == pytest.approx(beams + own, rel=1e-12)
-    assert engine.nv == 4
-
-
 def test_joints_beyond_a_format_are_named(tmp_path: Path) -> None:
     with pytest.raises(sf.ExportError, match=r"'nut' \(screw\), 'float' \(general\)"):
         sf.export(MODELS["joint_zoo"], "urdf", tmp_path)
@@ -171,15 +158,6 @@ def test_gears_are_mimics_of_urdf(tmp_path: Path, rng: np.random.Generator) -> N
     M = np.triu(M) + np.triu(M, 1).T
     assert np.abs(M - G.T @ model.mass_matrix(q) @ G).max() < SAME
     assert sf.compile(sf.load(done.files[0], mimic=True)).constraint(q) == pytest.approx([0.0], abs=1e-15)
-
-
-@pytest.mark.parametrize(
-    "residual", ["q0 - sin(q1)", "q0*q1 - 1", "q0 + q1 + q2", "q0 - q1^5", "q0^2 - q1^2", "q0 - 1/q1"]
-)
-def test_couplings_beyond_polynomials_are_dropped_in_words(tmp_path: Path, residual: str) -> None:
-    system = _pair(sf.Coupling("gear", residual))
-    for target in ("mjcf", "urdf"):
-        assert "dropped" in "\n".join(sf.export(system, target, tmp_path / target).notes)
 
 
 def test_what_mimics_has_no_place_for_stays_dropped(tmp_path: Path) -> None:

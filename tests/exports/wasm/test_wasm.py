@@ -15,7 +15,7 @@ from reference_models import MODELS
 from symofros.exports.wasm import wasm
 from symofros.native import native_text
 from tests.docs.pages import blocks
-from tests.exports.cases import PLANAR, STARTS, need, run, system_of
+from tests.exports.cases import PLANAR, need, run
 from tests.late import require
 from tests.studio.waiting import until
 
@@ -134,15 +134,6 @@ def test_the_package_tests_itself_and_is_small(package: Path) -> None:
 
 
 @pytest.mark.tools
-@pytest.mark.slow
-def test_the_arm_of_seven_axes_fits_into_200_kilobytes(tmp_path: Path) -> None:
-    need("node")
-    sf.export(system_of("panda"), "wasm", tmp_path, start=STARTS["panda"])
-    assert (tmp_path / "panda.wasm").stat().st_size < 200_000
-    assert run("node", "selftest.mjs", cwd=tmp_path).startswith("selftest 0.000e+0")
-
-
-@pytest.mark.tools
 def test_other_functions_are_in_the_module_where_they_are_asked_for(tmp_path: Path) -> None:
     need("node")
     asked = ["mass_matrix", "forward_dynamics_derivatives", "inverse_dynamics_vjp", "joint_wrenches"]
@@ -150,13 +141,6 @@ def test_other_functions_are_in_the_module_where_they_are_asked_for(tmp_path: Pa
     assert run("node", "selftest.mjs", cwd=tmp_path).startswith("selftest 0.000e+0")
     types = next(tmp_path.glob("*.d.ts")).read_text()
     assert all(f'"{name}"' in types for name in asked)
-
-
-def test_other_functions_are_of_modules_alone_and_of_the_table(tmp_path: Path) -> None:
-    with pytest.raises(sf.ExportError, match="functions are chosen for c and wasm"):
-        sf.export(MODELS["double_pendulum"], "mex", tmp_path, functions=["joint_wrenches"])
-    with pytest.raises(sf.SymofrosError, match="joint_wrenches"):
-        sf.export(MODELS["double_pendulum"], "wasm", tmp_path, functions=["joint_wrench"])
 
 
 @pytest.mark.tools
@@ -182,41 +166,6 @@ def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> No
     assert not faults and colours > 2 and nameless == 0
     # The colour of the third signal chosen is there, that of the first no longer is; numbers stand beside the names.
     assert drawn["speed"] > 20 and drawn["angle"] == 0 and np.isfinite(value)
-
-
-@pytest.mark.tools
-@pytest.mark.browser
-def test_the_motion_is_shown_again_and_goes_on_from_any_instant(package: Path, chromium: Any) -> None:
-    """On a telephone's screen, which nothing is wider than."""
-    page = chromium.new_page(viewport={"width": 390, "height": 844})
-    faults: list[str] = []
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.goto((package / "index.html").as_uri())
-    page.wait_for_function("parseFloat(document.getElementById('time').textContent) > 0.8")
-    page.get_by_role("button", name="Pause").click()
-
-    def shown() -> tuple[float, float]:
-        angle = page.locator("#signals label", has_text="q1").first.locator("output")
-        page.evaluate("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
-        return float(page.locator("#time").inner_text().split()[0]), float(angle.inner_text())
-
-    instant = page.get_by_role("slider", name="Instant that is shown")
-    (end, last), count = shown(), int(instant.get_attribute("max"))
-    instant.fill("0")
-    assert shown() == (0.0, 0.4)
-    page.get_by_role("button", name="Replay").click()
-    page.wait_for_function(f"document.getElementById('instant').value == {count}")
-    assert shown() == (end, last)
-    instant.fill(str(count // 2))
-    assert shown()[0] == pytest.approx(count // 2 / 60, abs=0.01)
-    page.get_by_role("button", name="Go on").click()
-    page.wait_for_function(f"parseFloat(document.getElementById('time').textContent) >= {end} - 1e-9")
-    page.get_by_role("button", name="Pause").click()
-    instant.fill(str(count))
-    assert shown() == (end, last)  # The same motion, simulated anew.
-    assert page.evaluate("document.documentElement.scrollWidth") == 390
-    page.close()
-    assert not faults
 
 
 def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

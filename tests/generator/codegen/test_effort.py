@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from symofros.base.routes import SHORT, TIE, choose
+from symofros.base.routes import TIE, choose
 from symofros.expr.edges import ONE, Edge
-from symofros.expr.graph import Graph, Slot
+from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
@@ -32,25 +32,12 @@ def spent(p: Program) -> float:
     return effort(p, p.functions[0])
 
 
-def test_numbers_count_once() -> None:
-    assert spent(chained(7)) == 7.0
-
-
 def test_a_pack_counts_its_operations_not_its_lanes() -> None:
     g = Graph()
     x, y = (Pack(tuple(g.input(name, i) for i in range(WIDTH))) for name in ("x", "y"))
     _, pack = linear_combination(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])
     put = 2 * WIDTH  # What the two packs of inputs are made of, lane by lane.
     assert spent(program(g, list(pack.lanes))) == PACKED * (2 + put)
-
-
-def test_constants_and_parameters_cost_nothing() -> None:
-    g = Graph()
-    product = g.mul(g.input("par", 0), g.input("par", 1))
-    staged = Program(
-        "p", g, {}, (Function("f", "", ("q",), (Output("y", (), (product,)),)),), (product,), {product: Slot("pre", 0)}
-    )
-    assert effort(staged, staged.functions[0]) == 0.0
 
 
 @pytest.mark.parametrize(
@@ -88,26 +75,3 @@ def repeated(g: Graph, times: int) -> tuple[Edge, ...]:
 def test_packs_pay_where_more_is_computed_than_put_into_lanes() -> None:
     g = Graph()
     assert gain(g, list(repeated(g, 8))) == "packs"
-
-
-def test_packs_do_not_pay_where_all_is_put_in_for_one_operation() -> None:
-    """Eight numbers are put into lanes and eight are read one by one, for two operations on a pack."""
-    g = Graph()
-    lanes = repeated(g, 1)
-    assert gain(g, [g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes)]) == "scalars"
-
-
-def test_lanes_that_are_stored_together_cost_nothing() -> None:
-    """The same pack beside 160 other operations, stored as a row and read one by one."""
-    g = Graph()
-    lanes = repeated(g, 1)
-    others = [g.mul(g.input("v", i), g.input("v", i + 1)) for i in range(160)]
-    assert gain(g, [*others, *lanes]) == "by processor"
-    assert gain(g, [*others, *(g.mul(g.input("v", i), lane) for i, lane in enumerate(lanes))]) == "scalars"
-
-
-def test_packs_of_long_functions_are_not_judged() -> None:
-    g = Graph()
-    lanes = repeated(g, 1)
-    long = [g.mul(lanes[i % WIDTH], g.input("v", i)) for i in range(SHORT)]
-    assert gain(g, long) == "packs"

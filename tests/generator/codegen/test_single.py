@@ -6,7 +6,6 @@ A sum of terms is right to eps_32 of the largest of them and of each rounding be
 from __future__ import annotations
 
 from functools import cache
-from pathlib import Path
 
 import mpmath
 import numpy as np
@@ -14,11 +13,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.compiler import Compilation, compile_library, program_of
+from symofros.compiler import program_of
 from symofros.expr.numerics.trigonometry import FAR
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, cpu_identity
-from symofros.runtime.calls.kernel import LaneOptions
-from symofros.runtime.calls.library import CompiledUnit
 from tests.models import sampled
 
 EPS = float(np.finfo(np.float32).eps)
@@ -152,30 +149,6 @@ def test_numpys_floats_in_and_out(width: str) -> None:
     assert m.with_precision("double").mass_matrix(q).dtype == np.float64
 
 
-def test_parameters_of_each_state() -> None:
-    m = sf.compile(MODELS["rx90"]).with_parameter_checks(False)  # Changed one by one they are no body's inertia.
-    rng = np.random.default_rng(4)
-    q, par = rng.uniform(-1.0, 1.0, (40, m.nq)), m.parameter_values * rng.uniform(0.5, 1.5, (40, m.npar))
-    expected = m.mass_matrix(q, par=par)
-    found = m.with_precision("single").mass_matrix(q, par=par)
-    assert np.abs(found - expected).max() < 20 * EPS * np.abs(expected).max()
-
-
-@pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_what_has_no_such_code_is_rounded(backend: str) -> None:
-    """Solvers pivot state by state; the interpreter has doubles alone. What floats can't hold is infinite."""
-    m = sf.compile(MODELS["four_bar"], sf.Options(backend=backend))  # type: ignore[arg-type]
-    q, v = m.neutral(), np.zeros(m.nv)
-    found = m.with_precision("single").forward_dynamics(q, v, None)
-    expected = m.forward_dynamics(q.astype(np.float32), v, None).astype(np.float32)
-    assert found.dtype == np.float32 and np.array_equal(found, expected)
-
-
-def test_no_such_precision() -> None:
-    with pytest.raises(ValueError, match="no such precision"):
-        sf.compile(MODELS["pendulum"]).with_precision("half")  # type: ignore[arg-type]
-
-
 def test_batches_of_motions_take_accelerations_in_floats() -> None:
     m = sf.compile(MODELS["chain7"])
     rng = np.random.default_rng(5)
@@ -185,13 +158,3 @@ def test_batches_of_motions_take_accelerations_in_floats() -> None:
     assert coarse.q_last.dtype == np.float64 and 1e-9 < error < 1e-5
     alone = sf.simulate_batch(m.with_precision("single"), q[:1], v[:1], 0.2, dt=1e-3)
     assert np.array_equal(alone.q_last[0], coarse.q_last[0])
-
-
-def test_a_library_of_floats_for_c(tmp_path: Path) -> None:
-    system, options = MODELS["chain7"], sf.Options(("mass_matrix",))
-    path, symbol = compile_library(system, options, precision="single")
-    unit = CompiledUnit(path, symbol, Compilation(system, options).record.hash)
-    kernel = unit.compiled["mass_matrix", ""]
-    assert (
-        unit.model.lanes[0].bytes == 4 and kernel.has(LaneOptions(precision="single")) and not kernel.has(LaneOptions())
-    )

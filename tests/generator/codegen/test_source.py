@@ -15,8 +15,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.base.c_text import c_string
 from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS, FRAME_FUNCTIONS, MODEL_FUNCTIONS
-from symofros.base.names import c_string, identifier, local_name
+from symofros.base.names import identifier, local_name
 from symofros.compiler import Compilation
 from symofros.description.joints.joint_kinds import JOINT_KINDS
 from symofros.native import native_text
@@ -156,77 +157,57 @@ def test_names_are_readable() -> None:
     assert c_string('a"\\?é') == '"a\\042\\134\\077\\303\\251"'
 
 
-def test_values_without_a_label_are_called_by_the_entry_that_holds_them() -> None:
-    text = source_of_functions(MODELS["puma560"], ("mass_matrix",))
-    stored = re.findall(r"^    (\w+)\[(\d+)\] = (\w+);$", text, re.MULTILINE)
-    assert any(name.startswith("M_") for _, _, name in stored)
-    assert not [name for _, _, name in stored if re.fullmatch(r"t\d+", name)]
-    for name in {name for _, _, name in stored if name.startswith("M_")}:
-        entry = int(name.split("_")[1])
-        assert ("M", str(entry), name) in stored
-
-
-def test_functions_stay_within_the_chunk_limit() -> None:
-    from reference_models.rigid.chain import chain
-
-    lines = source_of_functions(chain(24), ("dynamics",)).split("\n")
-    longest = run = 0
-    for line in lines:
-        run = 0 if line.startswith("}") else run + line.strip().startswith(("const double", "M[", "h["))
-        longest = max(longest, run)
-    assert 300 < longest <= 2000  # A statement and its store are two lines.
-
-
 def source_of_functions(stated: sf.System, functions: tuple[str, ...]) -> str:
     return Compilation(stated, sf.Options(functions=functions)).source()
 
 
-def test_what_no_output_needs_is_not_emitted() -> None:
-    """The gravity alone of an arm needs no speeds; a pose no inertia; one frame no other branch."""
-    stated = system("parametrised0")
-    text = source_of_functions(stated, ("potential_energy",))
-    assert "v[" not in text.split("static const char")[0]
-    assert source_of_functions(stated, ("mass_matrix",)).count("v[") == 0
+# Forces that use every row of the table of operations, of two inputs and a parameter.
+FORMULAS = (
+    "sin(u1) + cos(2e5*u2)",
+    "tan(u1)*asin(u2/4)",
+    "acos(u2/4) - atan(u1)",
+    "atan2(u1, u2)",
+    "sqrt(abs(u1))",
+    "exp(u1)/log(2 + abs(u2))",
+    "sinh(u1) - cosh(u2) - tanh(u1)",
+    "min(u1, u2) - max(u1, -u2)",
+    "sign(u1)*u2",
+    "abs(u1)^1.7 + u1^3 - u2^(-2) + 1.5^u2",
+    "max(u1, 1)*min(k, u2) + k^u1",
+    "-(u1 - u2) - (u1 - (u2 - 1))",
+    "u1/(u2/(u1*u2 + 3))",
+    "(u1 + u2)*(u1 - u2)/u2",
+    "2*u1 - 3*(u2*4)",
+    "-u1*-u2 - -sin(-u1)",
+    "k",
+    "atan2(1, u1)",
+    "-u1 - k*(2 - u2)",
+)
+OPERATIONS = sf.System(
+    "operations",
+    [
+        sf.RigidBody(f"b{i}", sf.Joint(f"x{i}", "prismatic", effort=(text,)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+        for i, text in enumerate(FORMULAS)
+    ],
+    [sf.Parameter("k", 0.7)],
+    inputs=[sf.Input("u1"), sf.Input("u2")],
+)
 
 
 def test_every_operation_prints_what_it_computes() -> None:
-    """One model whose efforts use every row of the op table, compiled and interpreted."""
-    formulas = [
-        "sin(u1) + cos(u2)",
-        "tan(u1)*asin(u2/4)",
-        "acos(u2/4) - atan(u1)",
-        "atan2(u1, u2)",
-        "sqrt(abs(u1))",
-        "exp(u1)/log(2 + abs(u2))",
-        "sinh(u1) - cosh(u2) - tanh(u1)",
-        "min(u1, u2) - max(u1, -u2)",
-        "sign(u1)*u2",
-        "abs(u1)^1.7 + u1^3 - u2^(-2)",
-        "-(u1 - u2) - (u1 - (u2 - 1))",
-        "u1/(u2/(u1*u2 + 3))",
-        "(u1 + u2)*(u1 - u2)/u2",
-        "2*u1 - 3*(u2*4)",
-        "-u1*-u2 - -sin(-u1)",
-        "u1 - u2*(u1 + 1)",
-    ]
-    bodies = [
-        sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", effort=(formula,)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
-        for i, formula in enumerate(formulas)
-    ]
-    stated = sf.System("ops", bodies, inputs=[sf.Input("u1"), sf.Input("u2")])
+    """Compiled, interpreted, and as Python makes of the same text."""
     u = np.random.default_rng(0).uniform(-3, 3, (200, 2))
-    zero = np.zeros(len(formulas))
-    exact = sf.compile(stated, sf.Options(flags=("-O2", "-ffp-contract=off")))
-    twin = sf.compile(stated, sf.Options(backend="interpreter"))
-    expected = twin.generalized_force(zero, zero, u)
+    zero = np.zeros(len(FORMULAS))
+    exact = sf.compile(OPERATIONS, sf.Options(flags=("-O2", "-ffp-contract=off")))
+    expected = sf.compile(OPERATIONS, sf.Options(backend="interpreter")).generalized_force(zero, zero, u)
     assert np.array_equal(exact.generalized_force(zero, zero, u), expected)
-    # And both are what Python makes of the same text.
-    for i, formula in enumerate(formulas):
+    names = {name: getattr(np, name) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "sign")}
+    names |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "abs": abs, "k": 0.7}
+    names |= {"sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "min": min, "max": max}
+    for i, formula in enumerate(FORMULAS):
         for (u1, u2), value in zip(u[:20], expected[:20, i], strict=True):
-            names = {name: getattr(np, name, None) for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "sign")}
-            names |= {"asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "abs": abs}
-            names |= {"sinh": np.sinh, "cosh": np.cosh, "tanh": np.tanh, "min": min, "max": max, "u1": u1, "u2": u2}
-            assert value == pytest.approx(eval(formula.replace("^", "**"), {}, names), rel=1e-13, abs=1e-13), formula
+            python = eval(formula.replace("^", "**"), {}, names | {"u1": u1, "u2": u2})
+            assert value == pytest.approx(python, rel=1e-13, abs=1e-13), formula
 
 
 def test_one_description_gives_one_text() -> None:
@@ -263,19 +244,6 @@ def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
     names = " *   q[0] shoulder\n *   v[0] shoulder\n *   u[0] pump\n"
     legend = f"/* dynamics: M, h and Q in one call\n{names} *   -> M[1 x 1] by rows, h[1], Q[1]\n */\n"
     assert f"{legend}static void crane_dynamics" in text
-
-
-def test_the_legend_of_init_says_which_parameters_each_entry_of_pre_depends_on() -> None:
-    joint = sf.Joint("hinge", "revolute", axis=(0, 0, 1))
-    body = sf.RigidBody("rod", joint, sf.Inertia("m", ("L/2", 0, 0), (0, "J", "J"), about="body"))
-    system = sf.System("rod", [body], [sf.Parameter(name, 1.0) for name in ("m", "L", "J")])
-    compilation = Compilation(system, sf.Options(functions=("dynamics",)))
-    text = compilation.source("rod")
-    legend = text[text.index("/* parameters -> pre") :].partition("*/")[0]
-    assert "par[0] m, par[1] L, par[2] J" in legend
-    stated = re.findall(r"pre\[(\d+)(?:\.\.(\d+))?\]", legend)
-    listed = [i for first, last in stated for i in range(int(first), int(last or first) + 1)]
-    assert listed == list(range(len(compilation.program.init))) and " of J" in legend
 
 
 def test_a_name_does_not_end_the_comment_that_states_it() -> None:

@@ -112,25 +112,6 @@ def test_partial_spins_err_by_second_order(error: Any) -> None:
         assert sizes[0] > SECOND * sizes[1] > 1e-9, (error.__name__, x, sizes)
 
 
-def test_without_foreshortening_the_axis_stretches_at_second_order() -> None:
-    shape = deformation(foreshortening=False)
-    sizes = [abs(float(stretch(shape, scale * STATE, L))) for scale in (0.5, 0.25)]
-    assert sizes[0] / sizes[1] == pytest.approx(4.0, rel=0.1)
-    assert not shape.u.terms
-
-
-def test_foreshortening_is_the_integral_of_half_the_slopes_squared() -> None:
-    shape = deformation()
-    x = np.linspace(0, 0.7 * L, 2001)
-    slopes = np.array([values((shape.yaw, shape.pitch), STATE, xi) for xi in x])
-    assert at(shape.u, STATE, 0.7 * L) == pytest.approx(-0.5 * np.trapezoid(np.sum(slopes**2, axis=1), x), rel=1e-6)
-
-
-def test_the_planes_do_not_mix_in_foreshortening() -> None:
-    shape = deformation()
-    assert all((mono[0] < 3) == (mono[1] < 3) for mono in shape.u.terms)
-
-
 def test_the_root_does_not_move() -> None:
     shape = deformation()
     np.testing.assert_array_equal(values(shape.position, STATE, 0.0), 0.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.polynomial import chebyshev
 
 import symofros as sf
 from symofros.description.beams.shapes import FAMILIES
@@ -38,32 +37,3 @@ def test_it_starts_at_the_root_and_is_straight_at_rest() -> None:
     expected[:, 0] = LENGTH * np.array(STATIONS)
     assert np.allclose(line.points(LENGTH, np.zeros(5)), expected)
     assert np.allclose(line.axes(LENGTH, np.zeros(5)), np.eye(3))
-
-
-def curve(q: np.ndarray) -> tuple[chebyshev.Chebyshev, ...]:
-    """The axis of a beam of polynomial shapes as the polynomials that it consists of."""
-    points, xi = FieldShape(beam("polynomial"), STATIONS).points(LENGTH, q), np.array(STATIONS)
-    return tuple(chebyshev.Chebyshev.fit(xi, points[:, k], 8) for k in range(3))
-
-
-def length_of(q: np.ndarray) -> float:
-    xi, w = np.polynomial.legendre.leggauss(40)
-    slopes = [part.deriv()((xi + 1) / 2) for part in curve(q)]
-    return float(np.dot(w / 2, np.linalg.norm(slopes, axis=0)))
-
-
-def test_bending_keeps_its_length_up_to_the_fourth_order() -> None:
-    """Foreshortening is of second order, so that what is left of the change of length is of fourth."""
-    q = np.array([0.3, -0.1, 0.2, 0.1, 0.0])
-    errors = [abs(length_of(eps * q) - LENGTH) for eps in (0.5, 0.25)]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.1)
-
-
-def test_sections_stand_across_the_axis_up_to_the_third_order() -> None:
-    q = np.array([0.2, -0.1, 0.15, 0.1, 0.3])
-    errors = []
-    for eps in (0.4, 0.2):
-        slopes = np.stack([part.deriv()(np.array(STATIONS)) for part in curve(eps * q)], axis=1)
-        across = FieldShape(beam("polynomial"), STATIONS).axes(LENGTH, eps * q)[:, :, 1:]
-        errors.append(float(np.abs(np.einsum("si,sij->sj", slopes, across)).max()))
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(3.0, abs=0.15)

@@ -74,21 +74,3 @@ def test_what_is_cut_is_of_second_order(case: str, rng: np.random.Generator) -> 
         for scale in (2.0**-6, 2.0**-7)
     ]
     assert np.log2(errors[0] / errors[1]) >= 1.9
-
-
-@pytest.mark.parametrize("axes", ["body", "world"])
-def test_a_moment_at_the_tip_is_a_torque_on_a_body_there(axes: Any, rng: np.random.Generator) -> None:
-    """In the world's axes; in those of the beam's root, it is not one in the axes of the tip."""
-    beam, _ = pair("beam", FREE, -1, (6, six), (2, 2, 2))
-    torque = (1.0, -2.0, 0.5)
-    loaded = replace(beam, loads=(sf.BeamLoad(torque=torque, at=1.0, axes=axes),))
-    joint = sf.Joint("weld", "fixed", "beam", "tip")
-    plate = sf.RigidBody("plate", joint, sf.Inertia(0.1, moments=(0.1, 0.1, 0.1)))
-    carrying = replace(plate, loads=(sf.Load(torque=torque, axes=axes),))
-    options = sf.Options(("generalized_force",), backend="interpreter")
-    one, other = (
-        sf.compile(sf.System("s", bodies, gravity=GRAVITY), options) for bodies in ([loaded, plate], [beam, carrying])
-    )
-    q, v = 0.3 * rng.standard_normal(one.nq), rng.standard_normal(one.nv)
-    error = np.abs(one.generalized_force(q, v, ()) - other.generalized_force(q, v, ())).max()
-    assert error < 1e-13 if axes == "world" else error > 0.01

@@ -68,16 +68,6 @@ def test_turns_converge_with_the_sixth_power_of_the_number_of_sections(counts: t
     assert 5.4 < np.log2(errors[0] / errors[1]) < 7.5
 
 
-def test_two_functions_at_the_sections_chosen_take_the_fourth_order() -> None:
-    """It errs by more than the sixth, and by less than such functions leave out."""
-    q = np.array([0.4, -0.3, 0.5, 0.2, -0.3, 0.2])
-    _, (expected,) = integrated((2, 2, 2), q, np.array([1.0]))
-    fourth, sixth = (
-        np.abs(StrainShape(rod((2, 2, 2), sections=n), {}, [1.0]).sections(q)[1][0] - expected).max() for n in (0, 3)
-    )
-    assert sixth < 0.1 * fourth and fourth < 1e-4
-
-
 @pytest.mark.parametrize("functions", [1, 2, 3])
 def test_small_turns_are_integrated_exactly_by_as_many_sections_as_functions(functions: int) -> None:
     """Beside the root, whose section is known."""
@@ -150,16 +140,3 @@ def test_a_load_between_sections_and_one_along_the_rod_do_their_work(rng: np.ran
         work[i] += spin @ (0.3, 0.2, -0.1)
     # Five sections sum up what is spread; twelve nodes do here.
     assert np.abs(forces[1](q) - forces[0](q) - work).max() < 1e-5
-
-
-def test_entries_that_the_theory_lacks_are_refused_in_words() -> None:
-    for entry in ({"retain": "all"}, {"foreshortening": False}):
-        with pytest.raises(sf.DescriptionError, match="theory 'strain'"):
-            rod((1, 0, 0), **entry)
-    with pytest.raises(sf.DescriptionError, match="theory 'second_order'"):
-        rod((1, 0, 0), theory="second_order", curvature_z=0.1)
-    with pytest.raises(sf.DescriptionError, match="sections"):
-        rod((1, 0, 0), sections=1000)
-    for family in ("hermite", "clamped_free"):
-        with pytest.raises(sf.DescriptionError, match="one of displacements"):
-            sf.compile(sf.System("s", (rod((2, 0, 0), family=family),)))

@@ -1,9 +1,8 @@
-"""What geometrically exact rods are used with: functions of the user, C beside NumPy, Jacobians, diagrams, packages."""
+"""What geometrically exact rods are used with: functions of the user, C beside NumPy."""
 
 from __future__ import annotations
 
-from functools import cache
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,25 +10,7 @@ from scipy.integrate import solve_ivp
 
 import symofros as sf
 from symofros.mechanics.beams.strain.shape import StrainShape
-from tests.exports.cases import build, run
 from tests.mechanics.beams.rods import HUB, STIFF, rod
-
-# Without contraction, so that C and NumPy round alike.
-EXACT_FLAGS = ("-O2", "-ffp-contract=off")
-FUNCTIONS = ("dynamics", "frame_pose", "frame_velocity", "frame_jacobian", "frame_jacobian_rate")
-IN_SPACE = rod(
-    (2, 2, 1), HUB, stretch=1, shear_y=1, shear_z=1, **STIFF, frames=(sf.Frame("tip"), sf.Frame("middle", at=0.4))
-)
-
-
-def in_space(backend: str) -> sf.Model:
-    options = sf.Options(FUNCTIONS, ("tip", "middle"), backend=backend, flags=EXACT_FLAGS)  # type: ignore[arg-type]
-    return sf.compile(sf.System("s", (IN_SPACE,)), options)
-
-
-@cache
-def interpreted() -> sf.Model:
-    return in_space("interpreter")
 
 
 def test_strains_of_the_user_that_are_legendres_give_the_same_equations(rng: np.random.Generator) -> None:
@@ -61,42 +42,11 @@ def test_strains_of_the_user_that_are_no_polynomials_place_the_tip() -> None:
 @pytest.mark.parametrize("size", [0.0, 1e-300, 1e-9, 0.7])
 def test_c_and_numpy_give_the_same_bits_at_small_and_no_curvature(size: float, rng: np.random.Generator) -> None:
     """The exponential has no branch and no quotient that vanishes."""
-    compiled, m = in_space("c"), interpreted()
+    system = sf.System("s", (rod((1, 1, 1), HUB, stretch=1, **STIFF),))
+    # Without contraction, so that C and NumPy round alike.
+    options = sf.Options(("dynamics",), (), flags=("-O2", "-ffp-contract=off"))
+    compiled, m = sf.compile(system, options), sf.compile(system, replace(options, backend="interpreter"))
     q, v = np.concatenate([[0.3], size * rng.standard_normal(m.nv - 1)]), rng.standard_normal(m.nv)
     for a, b in zip(compiled.dynamics(q, v, ()), m.dynamics(q, v, ()), strict=True):
         assert np.isfinite(a).all()
         assert np.array_equal(a, b)
-
-
-@pytest.mark.parametrize("frame", ["tip", "middle"])
-def test_jacobians_of_sections_and_their_rates_are_derivatives(frame: str, rng: np.random.Generator) -> None:
-    m, eps = interpreted(), 1e-6
-    q, v = rng.standard_normal((2, m.nv)) * 0.5
-    J, rate = m.frame_jacobian(frame, q), m.frame_jacobian_rate(frame, q, v)
-    assert m.frame_velocity(frame, q, v) == pytest.approx(J @ v, abs=1e-13)
-    (ahead, R_ahead), (behind, R_behind) = (m.frame_pose(frame, q + s * eps * v) for s in (1.0, -1.0))
-    turn = R_ahead @ R_behind.T / (4 * eps)
-    spin = [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
-    assert J @ v == pytest.approx([*((ahead - behind) / (2 * eps)), *spin], abs=1e-8)
-    differences = (m.frame_jacobian(frame, q + eps * v) - m.frame_jacobian(frame, q - eps * v)) / (2 * eps)
-    assert rate == pytest.approx(differences, abs=1e-7)
-
-
-PLANE = sf.System("plane", (rod((2, 0, 0), sf.Joint("pin", "revolute", actuated=True), rhoJ=0.0),))
-START = {"pin": 0.3}
-
-
-def moved() -> sf.Trajectory:
-    m = sf.compile(PLANE)
-    return sf.simulate(m, q0=START, t_end=0.2, method="rk4", dt=1e-3)
-
-
-def test_a_package_in_c_moves_a_rod_as_python_does(tmp_path: Path) -> None:
-    folder = tmp_path / "package"
-    sf.export(PLANE, "c", folder, start=START, dt=1e-3)
-    build(folder, "../example")
-    lines = [line.split() for line in run("../example", "0.2", "0.001", "--fast", cwd=folder).splitlines()]
-    found = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("q", "v", "selftest")}
-    assert found["selftest"][0] < 1e-11
-    assert found["q"] == pytest.approx(moved().q[-1], abs=1e-11)
-    assert found["v"] == pytest.approx(moved().v[-1], abs=1e-10)

@@ -43,17 +43,6 @@ def test_a_rod_that_is_rolled_up_carries_a_note_on_its_sections() -> None:
     assert bent.amplified(1e3) == bent and judged.error_bound(np.array([14.0, 6.0, 0.0])) < 1e-5
 
 
-def test_the_viewer_draws_a_rod_where_its_tip_is() -> None:
-    q = np.array([0.4, 1.1, -0.3, 0.2])
-    stated = MODELS["soft_pendulum"].bodies[0]
-    assert isinstance(stated, sf.Beam)
-    line = theory_of(stated).shape({"L": 1.0, "rhoA": 0.5, "EI": 0.4, "bob": 0.05}, STATIONS)
-    p_root, R_root = pendulum().frame_pose("rod", q)
-    p_tip, R_tip = pendulum().frame_pose("tip", q)
-    assert p_root + R_root @ line.points(1.0, q[1:])[-1] == pytest.approx(p_tip, abs=1e-14)
-    assert R_root @ line.axes(1.0, q[1:])[-1] == pytest.approx(R_tip, abs=1e-14)
-
-
 def test_what_does_not_serve_rods_refuses_them_in_words(tmp_path: Path) -> None:
     curved = sf.System("s", (rod((1, 0, 0), curvature_z=0.5),))
     with pytest.raises(sf.ExportError, match="rods that URDF can't hold"):

@@ -96,17 +96,6 @@ def exact(xi: Array, order: int, bending: bool) -> Array:
     return value + 1.0 if bending and not order else value
 
 
-@pytest.mark.parametrize("samples", [4, 9, 40])
-@pytest.mark.parametrize("name", GRIDS)
-def test_the_frequency_of_a_sampled_parabola_is_that_of_its_formula(samples: int, name: str) -> None:
-    """Rayleigh's quotient of xi^2: omega^2 = (2^2)/(1/5) EI/(rhoA L^4)."""
-    xi = grid(name, samples - 1)
-    phi = sampled(xi, xi**2, "bend_y")
-    curvature = phi.derivative().derivative()
-    ratio = float((curvature * curvature).integral()) / float((phi * phi).integral())
-    assert ratio == pytest.approx(20.0, rel=1e-10)
-
-
 @pytest.mark.parametrize("name", GRIDS)
 @pytest.mark.parametrize("direction", ["bend_y", "twist"])
 @pytest.mark.parametrize("samples", [4, 5, 17])

@@ -52,13 +52,6 @@ def test_frequencies_are_those_of_timoshenkos_beam() -> None:
         assert np.sqrt(square / exact) == pytest.approx(1.0, abs=1e-8)
 
 
-def test_a_bar_vibrates_along_its_axis() -> None:
-    m = model("mass_matrix", "generalized_force", stretch=9)
-    squares = eigh(stiffness(m), m.mass_matrix(np.zeros(9)), eigvals_only=True)
-    exact = np.array([0.5, 1.5]) * np.pi / L * np.sqrt(EA / RHO_A)
-    assert np.sqrt(squares[:2]) == pytest.approx(exact, rel=1e-8)
-
-
 def test_a_spinning_bar_stretches_as_it_does_exactly() -> None:
     """EA r'' = -rhoA Omega^2 r along the bar, so r = sin(k x)/(k cos(k L)) at any strain."""
     hub = sf.Joint("hub", "revolute")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.linalg import eigvals
 from scipy.optimize import brentq
 
@@ -54,47 +53,3 @@ def test_a_dead_load_buckles_at_eulers() -> None:
     m, straight = under(force, (5, 0, 0)), np.zeros(5)
     critical = brentq(lambda P: np.linalg.det(stiffness(m, straight, P)), 2.0, 3.0, xtol=1e-12)
     assert critical == pytest.approx(np.pi**2 / 4, rel=1e-8)
-
-
-STIFFNESS = np.array([0.7, 1.0, 4.0])  # GJ, EI_y, EI_z
-
-
-def tipping(P: float) -> float:
-    """One less the motion of the tip out of the plane by that of the point where the force acts: zero at the limit.
-
-    The moment in a section is (tip - p) x F; the tip's place is found in the plane, then moved out of it.
-    """
-
-    def ends(tip: np.ndarray) -> np.ndarray:
-        def slope(_: float, state: np.ndarray) -> np.ndarray:
-            R = state[3:].reshape(3, 3)
-            x, y, z = R.T @ np.cross(tip - state[:3], (0.0, P, 0.0)) / STIFFNESS
-            return np.concatenate([R[:, 0], (R @ np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])).ravel()])
-
-        start = np.concatenate([np.zeros(3), np.eye(3).ravel()])
-        return solve_ivp(slope, (0, 1), start, "DOP853", rtol=1e-10, atol=1e-12).y[:3, -1]
-
-    # In the plane the moment depends on how far out along x the tip is, alone.
-    x = brentq(lambda x: ends(np.array([x, 0.0, 0.0]))[0] - x, 0.3, 1.0, xtol=1e-12)
-    return 1.0 - float(ends(np.array([x, ends(np.array([x, 0.0, 0.0]))[1], 1e-4]))[2]) / 1e-4
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("functions", "error"), [(5, 5e-4), pytest.param(7, 1e-4, marks=pytest.mark.slow)])
-def test_a_strip_tips_over_where_shooting_says_at_a_finite_ratio_of_its_stiffnesses(
-    functions: int, error: float
-) -> None:
-    """The strip bends by 0.6 rad on edge before it tips, which raises its load by half of that of a stiff one."""
-    force = sf.BeamLoad((0.0, sf.formula("P", "load"), 0.0), at=1.0, axes="world")
-    m = under(force, (4, functions, functions), GJ=STIFFNESS[0], EI_y=STIFFNESS[1], EI_z=STIFFNESS[2])
-    q = np.zeros(4 + 2 * functions)
-    known = brentq(tipping, 4.0, 6.0, xtol=1e-6)
-    assert known > 1.4 * 4.0126 * np.sqrt(STIFFNESS[0] * STIFFNESS[1])  # Of a strip that stays straight on edge.
-    least = []
-    for P in ((1 - error) * known, (1 + error) * known):
-        for _ in range(4):
-            K = stiffness(m, q, P)[:4, :4]
-            q[:4] += np.linalg.solve(K, m.with_parameters(P=P).generalized_force(q, 0 * q, ())[:4])
-        K = stiffness(m, q, P)[4:, 4:]
-        least.append(np.linalg.eigvalsh(0.5 * (K + K.T))[0])
-    assert least[0] > 0.0 > least[1]

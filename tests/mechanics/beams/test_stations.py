@@ -46,43 +46,6 @@ def whole(theory: str = "strain") -> sf.Model:
     return interpreted(stated(theory), *MOTION, "kinetic_energy", "coriolis_matrix")
 
 
-def halves() -> sf.System:
-    """The same as two rods in series; its coordinates are hub, strains of the first, elbow, strains of the second."""
-    first, second = (rod((1, 1, 1), HUB, 1.3 / 2, sections=6) for _ in range(2))
-    second = replace(second, name="second", joint=sf.Joint("half", "fixed", "rod", "tip"))
-    arm, hand = CARRIED
-    bodies = (
-        replace(first, frames=(sf.Frame("tip"), sf.Frame("middle"))),
-        replace(second, frames=(sf.Frame("end"),)),
-        replace(arm, joint=replace(ELBOW, frame="middle")),
-        replace(hand, joint=replace(CLAMP, parent="second", frame="end")),
-    )
-    return sf.System("halves", bodies, gravity=GRAVITY)
-
-
-@pytest.mark.slow
-def test_bodies_at_stations_move_as_on_two_rods_in_series(rng: np.random.Generator) -> None:
-    """Constant strains turn each half by half of the angle."""
-    m = interpreted(stated(sections=9), *MOTION)
-    parts = sf.compile(halves(), sf.Options(MOTION, ("end", "middle"), backend="interpreter"))
-    own = {name: i for i, name in enumerate(m.names.q)}
-    T = np.zeros((parts.nq, m.nq))
-    for i, name in enumerate(parts.names.q):
-        whole_name = name.replace("second.", "rod.")
-        T[i, own[whole_name]] = 0.5 if "rod." in whole_name else 1.0
-    q, v, a = rng.standard_normal((3, m.nv)) * 0.5
-    Q, V = T @ q, T @ v
-    assert T.T @ parts.mass_matrix(Q) @ T == pytest.approx(m.mass_matrix(q), abs=1e-9)
-    assert T.T @ parts.bias(Q, V) == pytest.approx(m.bias(q, v), abs=1e-8)
-    assert T.T @ parts.generalized_force(Q, V, ()) == pytest.approx(m.generalized_force(q, v, ()), abs=1e-9)
-    for ours, theirs in (("middle", "middle"), ("tip", "end")):
-        for x, y in zip(m.frame_pose(ours, q), parts.frame_pose(theirs, Q), strict=True):
-            assert x == pytest.approx(y, abs=1e-9)
-        assert m.frame_jacobian(ours, q) == pytest.approx(parts.frame_jacobian(theirs, Q) @ T, abs=1e-8)
-        moved = parts.frame_acceleration(theirs, Q, V, T @ a)
-        assert m.frame_acceleration(ours, q, v, a) == pytest.approx(moved, abs=1e-7)
-
-
 @pytest.mark.parametrize("theory", ["strain", "second_order"])
 def test_stations_keep_the_identities_of_the_equations(theory: str, rng: np.random.Generator) -> None:
     m = whole(theory)
@@ -140,10 +103,3 @@ def test_segments_keep_frames_at_their_stations() -> None:
     for (p, R), (other, turned) in zip(*poses, strict=True):
         assert p == pytest.approx(other, abs=1e-9)
         assert pytest.approx(turned, abs=1e-12) == R
-
-
-def test_stations_are_refused_off_the_beam_and_on_rigid_bodies() -> None:
-    with pytest.raises(sf.DescriptionError, match="station off the beam"):
-        sf.Frame("middle", at=1.5)
-    with pytest.raises(sf.DescriptionError, match="beams alone have stations"):
-        sf.RigidBody("b", frames=(sf.Frame("middle", at=0.5),))

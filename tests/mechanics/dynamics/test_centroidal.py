@@ -10,11 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.late import require
 from tests.models import SAMPLE, model
-from validation.adapters.charted import ChartedEngine
-from validation.adapters.pinocchio import tree as trees
-from validation.contract.interface import Subject
 
 FUNCTIONS = (
     "center_of_mass",
@@ -23,8 +19,6 @@ FUNCTIONS = (
     "centroidal_momentum_rate",
     "forward_dynamics",
 )
-# Rotors that turn are none of Pinocchio's.
-IN_PINOCCHIO = ("double_pendulum", "space_arm", "heavy_top", "joint_zoo", "torque_free_body")
 
 
 @pytest.mark.parametrize("name", SAMPLE)
@@ -69,46 +63,6 @@ def test_what_floats_has_the_momentum_that_its_weight_gives(
     scale = max(1.0, np.abs(m.centroidal_momentum_matrix(q) @ a).max())
     np.testing.assert_allclose(rate[:3], mass * np.array(gravity), rtol=0, atol=1e-9 * scale)
     np.testing.assert_allclose(rate[3:], 0.0, rtol=0, atol=1e-9 * scale)
-
-
-@pytest.mark.parametrize("name", IN_PINOCCHIO)
-def test_pinocchio_has_the_same_momentum_and_rate(name: str, rng: np.random.Generator) -> None:
-    pin = require("pinocchio", "validation")
-    engine = trees.build(Subject(name, MODELS[name]))
-    assert isinstance(engine, ChartedEngine)
-    m = model(name)
-    q, v = m.random_state(rng)
-    a = rng.normal(size=m.nv)
-    T, data = engine.chart.transform(q[None])[0], engine.model.createData()
-    q_e = engine.chart.coordinates(q[None])[0]
-    pin.computeCentroidalMomentumTimeVariation(
-        engine.model,
-        data,
-        q_e,
-        engine.chart.speeds(q[None], v[None])[0],
-        engine.chart.accelerations(q[None], v[None], a[None])[0],
-    )
-    rate = np.array(data.dhg)
-    pin.ccrba(engine.model, data, q_e, engine.chart.speeds(q[None], v[None])[0])
-    scale = max(1.0, np.abs(data.Ag).max())
-    np.testing.assert_allclose(m.centroidal_momentum_matrix(q), np.array(data.Ag) @ T, rtol=0, atol=1e-12 * scale)
-    np.testing.assert_allclose(m.center_of_mass(q), data.com[0], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(
-        m.centroidal_momentum_rate(q, v, a), rate, rtol=0, atol=1e-11 * max(1.0, np.abs(rate).max())
-    )
-
-
-def test_c_is_the_interpreter(rng: np.random.Generator) -> None:
-    c, twin = model("joint_zoo", "c"), model("joint_zoo")
-    q, v = c.random_state(rng)
-    a = rng.normal(size=c.nv)
-    for ours, expected in (
-        (c.center_of_mass(q), twin.center_of_mass(q)),
-        (c.centroidal_momentum_matrix(q), twin.centroidal_momentum_matrix(q)),
-        (c.centroidal_momentum_rate(q, v, a), twin.centroidal_momentum_rate(q, v, a)),
-        (c.coriolis_matrix(q, v), twin.coriolis_matrix(q, v)),
-    ):
-        np.testing.assert_allclose(ours, expected, rtol=0, atol=1e-12 * max(1.0, np.abs(expected).max()))
 
 
 def test_a_prescribed_base_brings_its_momentum(rng: np.random.Generator) -> None:

@@ -11,7 +11,6 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.generator.passes.count import Operations, count_program
-from tests.mechanics.beams.rods import rod
 
 
 @cache
@@ -65,10 +64,3 @@ def test_unused_inertia_costs_nothing() -> None:
     heavy = MODELS["double_pendulum"].with_bodies(sf.RigidBody("ground", inertia=sf.Inertia(1e3, (1, 2, 3), (1, 1, 1))))
     found = count_program(sf.program_of(heavy, ["mass_matrix"]))["mass_matrix", ""]
     assert found == counts("double_pendulum", "mass_matrix")
-
-
-@pytest.mark.parametrize(("counts", "most"), [((3, 0, 0), 985), ((2, 2, 2), 3080)], ids=["in a plane", "in space"])
-def test_rods_form_nothing_twice(counts: tuple[int, int, int], most: int) -> None:
-    """M, h and Q of a free rod: scalar products by pairs of sections, R D from rotations, masses in the weights."""
-    system = sf.System("s", (rod(counts, sf.Joint("base", "free")),))
-    assert count_program(sf.program_of(system, ["dynamics"]))["dynamics", ""].total <= most

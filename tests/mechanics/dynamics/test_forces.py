@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models.rigid.random_tree import MORE_KINDS, random_tree
-from symofros.description.forces import Connection, Damper, Friction, Load, Potential, Spring, Stop, VirtualPower
+from symofros.description.forces import Connection, Damper, Load, Potential, Spring, Stop, VirtualPower
 from tests.identities.test_dynamics import DIFFERENCE, STEP
 from tests.models import interpreted, sampled
 
@@ -43,19 +43,6 @@ def test_stop_pushes_only_beyond_and_never_pulls() -> None:
     assert force(m, 1.1, -2.0) == pytest.approx(-10.0)
     assert force(m, -1.2, -1.0) == pytest.approx(20.0 + 5.0)
     assert m.potential_energy([1.1]) == pytest.approx(0.5) and m.potential_energy([0.5]) == 0.0
-
-
-def test_friction_of_the_papers_first_motor() -> None:
-    """Table 3: minimum velocity 0.001 rad/s, static 0.49, dynamic 0.42."""
-    m = slider(Friction(0.42, 0.49, 0.001, viscous=0.1))
-    assert force(m, 0.0, 0.0) == 0.0
-    assert force(m, 0.0, 1.0) == pytest.approx(-0.42 - 0.1)
-    assert force(m, 0.0, 0.003) == pytest.approx(-(0.42 + 0.07 * np.exp(-(0.1125**2))) - 0.0003)
-    v = np.linspace(-1, 1, 4001)
-    power = [force(m, 0.0, x) * x for x in v[::100]]
-    assert max(power) <= 0.0
-    # The peak, at the onset of motion, is the static level.
-    assert max(-force(m, 0.0, x) - 0.1 * x for x in np.linspace(0, 0.05, 401)) == pytest.approx(0.49, rel=1e-15)
 
 
 def test_virtual_power_acts_on_the_speeds_it_names(rng: np.random.Generator) -> None:

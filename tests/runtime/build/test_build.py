@@ -16,7 +16,6 @@ import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.native import native_text
 from symofros.runtime.build import toolchain
-from symofros.runtime.build.build import build_library
 from symofros.runtime.build.cache import install
 from symofros.runtime.build.toolchain import find_toolchain
 from tests.late import SHELL, require
@@ -47,16 +46,6 @@ def libraries(cache: Path) -> list[Path]:
     """Libraries of models; the extension for plain calls is built beside them, by whichever process calls first."""
     extension = native_text("interop/symofros_call.c")
     return sorted(path for path in cache.glob("*.so") if extension not in path.with_suffix(".c").read_text())
-
-
-def test_equal_content_compiles_once(cache: Path) -> None:
-    compiled(random_tree(31))
-    first = {path: path.stat().st_mtime_ns for path in libraries(cache)}
-    compiled(random_tree(31))
-    assert {path: path.stat().st_mtime_ns for path in libraries(cache)} == first and len(first) == 1
-    compiled(random_tree(32))
-    compiled(random_tree(31), sf.Options(flags=("-O1",)))
-    assert len(libraries(cache)) == 3
 
 
 def test_concurrent_processes_agree(cache: Path) -> None:
@@ -99,15 +88,6 @@ def test_a_library_that_does_not_load_is_named(cache: Path) -> None:
     done = subprocess.run([sys.executable, "-c", SCRIPT], cwd=root, capture_output=True, text=True)
     assert "CompileError: the compiled model does not load" in done.stderr
     assert f"remedy: delete {library.name}" in done.stderr
-
-
-def test_a_compile_error_shows_command_and_words(cache: Path) -> None:
-    chain = find_toolchain()
-    assert chain is not None
-    with pytest.raises(sf.CompileError, match="found:  .*model.c") as caught:
-        build_library("int broken(", "", chain)
-    assert "error" in str(caught.value)
-    assert not libraries(cache) and not list(cache.glob(".*"))
 
 
 def test_an_unwritable_cache_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

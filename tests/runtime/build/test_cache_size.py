@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import symofros as sf
 from symofros.__main__ import app
 from symofros.runtime.build import cache_size
-from symofros.runtime.build.cache_size import DEFAULT_LIMIT, entries, limit, note_use, prune
+from symofros.runtime.build.cache_size import entries, limit, note_use, prune
 
 DAY = 86400.0
 
@@ -45,13 +45,6 @@ def test_the_least_recently_used_goes_first(folder: Path) -> None:
     removed = prune(folder, 6500.0)
     assert [entry.size for entry in removed] == [3000] and names(folder) == {"a", "c"}
     assert prune(folder, 6500.0) == []
-
-
-def test_what_was_not_used_for_long_goes(folder: Path) -> None:
-    held(folder, "a", 3)
-    held(folder, "b", 9)
-    prune(folder, float("inf"), 5 * DAY)
-    assert names(folder) == {"a"}
 
 
 def test_files_of_others_and_links_are_never_removed(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
@@ -89,13 +82,6 @@ def test_a_limit_that_is_no_size_is_refused(stated: str, monkeypatch: pytest.Mon
     with pytest.raises(sf.SymofrosError, match="is not a size"):
         limit()
     assert CliRunner().invoke(app, ["cache"]).exit_code == 2
-
-
-def test_the_default_limit_and_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("SYMOFROS_CACHE_LIMIT", raising=False)
-    assert limit() == DEFAULT_LIMIT * 1e6
-    monkeypatch.setenv("SYMOFROS_CACHE_LIMIT", "0")
-    assert limit() == float("inf")
 
 
 def test_the_command_shows_and_removes(folder: Path) -> None:

@@ -17,7 +17,7 @@ from symofros.base.sources import Source
 from symofros.commands import compilation
 from symofros.runtime.build import build, prepared
 from symofros.runtime.build.toolchain import find_toolchain
-from tests.late import SHELL, require
+from tests.late import SHELL
 
 PART = """symofros: 1
 bodies:
@@ -111,42 +111,6 @@ def test_a_changed_file_is_read_again(compiling: Compiling, arm: Path, change: C
     assert compiling.read == 2
 
 
-def test_another_file_of_the_same_text_is_another_description(compiling: Compiling, arm: Path) -> None:
-    other = arm.with_name("other.yaml")
-    shutil.copy(arm, other)
-    assert [compiling(path)["name"] for path in (arm, other, arm, other)] == ["arm", "other"] * 2
-    assert compiling.read == 2
-
-
-def test_a_link_to_another_description_is_followed(compiling: Compiling, tmp_path: Path) -> None:
-    for mass in (1, 2):
-        (tmp_path / f"{mass}.urdf").write_text(URDF.format(mass=mass))
-    link = tmp_path / "robot.urdf"
-    for mass, read in ((1, 1), (2, 2), (1, 2)):
-        link.unlink(missing_ok=True)
-        link.symlink_to(f"{mass}.urdf")
-        compiling(link)
-        assert compiling.read == read
-
-
-def test_a_folder_that_is_known_by_another_path_is_looked_at_itself(compiling: Compiling, tmp_path: Path) -> None:
-    """The path by which it was known leads to the same file as before; the folder's own link leads elsewhere."""
-    for mass in (1, 2):
-        (tmp_path / f"{mass}.urdf").write_text(URDF.format(mass=mass))
-    for folder in ("first", "second"):
-        (tmp_path / folder).mkdir()
-        (tmp_path / folder / "robot.urdf").symlink_to(tmp_path / "1.urdf")
-    way = tmp_path / "way"
-    way.symlink_to("first")
-    compiling(way / "robot.urdf")
-    way.unlink()
-    way.symlink_to("second")
-    (tmp_path / "first/robot.urdf").unlink()
-    (tmp_path / "first/robot.urdf").symlink_to(tmp_path / "2.urdf")
-    compiling(tmp_path / "first/robot.urdf")
-    assert compiling.read == 2
-
-
 def test_another_request_is_no_known_one(compiling: Compiling, tmp_path: Path) -> None:
     robot = tmp_path / "robot.urdf"
     robot.write_text(URDF.format(mass=1))
@@ -205,30 +169,6 @@ def test_other_compilers_and_stated_flags_are_no_known_ones(
     assert compiling.read == 3
 
 
-def replace(library: Path, content: bytes) -> None:
-    """By another file: this process has the first one loaded."""
-    library.unlink()
-    library.write_bytes(content)
-
-
-def truncate(library: Path) -> None:
-    replace(library, library.read_bytes()[:100])
-
-
-def alter(library: Path) -> None:
-    replace(library, library.read_bytes()[:-1] + b"?")
-
-
-@pytest.mark.parametrize("spoil", [Path.unlink, truncate, alter])
-def test_a_damaged_library_is_made_anew(compiling: Compiling, arm: Path, spoil: Callable[[Path], None]) -> None:
-    compiling(arm)
-    (library,) = (path for path in compiling.cache.glob("*.so") if "kinetic" in path.with_suffix(".c").read_text())
-    content = library.read_bytes()
-    spoil(library)
-    compiling(arm)
-    assert compiling.read == 2 and library.read_bytes() == content
-
-
 @pytest.mark.parametrize(
     "content",
     [
@@ -282,23 +222,6 @@ def test_a_model_that_is_warned_of_is_warned_of_each_time(compiling: Compiling, 
     for _ in range(2):
         with pytest.warns(sf.InconsistentModelWarning):
             compiling(tmp_path / "crane.yaml")
-
-
-def test_what_a_package_reads_is_read_each_time(compiling: Compiling, tmp_path: Path) -> None:
-    """It does not tell which files it has opened."""
-    path = tmp_path / "model.xml"
-    path.write_text('<mujoco><worldbody><body><joint name="q"/><geom size="0.1"/></body></worldbody></mujoco>')
-    require("mujoco", "mjcf")
-    for _ in range(2):
-        compiling(path)
-    assert compiling.read == 2
-
-
-def test_written_c_is_the_same_of_a_known_description(compiling: Compiling, arm: Path, tmp_path: Path) -> None:
-    compiling(arm, "-o", tmp_path / "first")
-    compiling(arm, "-o", tmp_path / "second")
-    first, second = ((tmp_path / folder / "arm.c").read_text() for folder in ("first", "second"))
-    assert first == second and compiling.read == 2
 
 
 @pytest.mark.parametrize("become", [Path.mkdir, lambda path: None])

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import logging
-import sys
-import time
 from pathlib import Path
 
 import pytest
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
-from symofros.runtime.build import progress
-from symofros.runtime.build.progress import Progress
 
 
 def test_generating_and_compiling_are_logged_and_known_functions_are_silent(
@@ -31,30 +26,3 @@ def test_generating_and_compiling_are_logged_and_known_functions_are_silent(
     again = sf.compile(random_tree(31))
     again.mass_matrix(again.neutral())
     assert not caplog.messages
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_a_terminal_is_told_what_takes_long_and_wiped_clean(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr(progress, "PATIENCE", 0.01)
-    with pytest.raises(ZeroDivisionError), Progress("arm", "residual_derivatives") as shown:
-        shown.begin("generating")
-        while not terminal.getvalue():
-            time.sleep(0.005)
-        raise ZeroDivisionError
-    lines = terminal.getvalue().split("\r")
-    assert lines[1] == "symofros: arm: residual_derivatives: generating, 0 s"
-    assert lines[-2].strip() == lines[-1] == ""
-
-
-def test_what_is_quick_leaves_a_terminal_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    terminal = Terminal()
-    monkeypatch.setattr(sys, "stderr", terminal)
-    with Progress("arm", "bias") as shown:
-        shown.begin("generating")
-    assert terminal.getvalue() == ""

@@ -1,88 +1,177 @@
-"""Functions bound to their memory: the same numbers, without checks, and no array that C could not hold."""
+"""Functions bound to their memory: the bits of the plain call in any layout, and no array that C could not hold."""
 
 from __future__ import annotations
 
 import gc
+import tracemalloc
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import model
+from symofros.runtime.calls.bound import Bound
+from symofros.runtime.calls.library import MANY
+from symofros.runtime.calls.sharing import LEAST
+from tests.models import GUESSES, model
 
+CLOSED = "four_bar"
+# Function -> its inputs.
 FUNCTIONS = {
-    "mass_matrix": ("q",),
-    "bias": ("q", "v"),
-    "generalized_force": ("q", "v", "u"),
-    "inverse_dynamics": ("q", "v", "a"),
-    "kinetic_energy": ("q", "v"),
+    "mass_matrix": "q",
+    "bias": "qv",
+    "generalized_force": "qvu",
+    "dynamics": "qvu",
+    "forward_dynamics": "qvu",
+    "inverse_dynamics": "qva",
+    "kinetic_energy": "qv",
+    "frame_pose": "q",
 }
 
 
-@pytest.fixture(params=["c", "interpreter"])
-def m(request: pytest.FixtureRequest) -> sf.Model:
-    return model("parametrised0", request.param)
+@cache
+def bindable(case: str) -> tuple[sf.Model, sf.Model]:
+    """A model that is bound, and its twin in NumPy."""
+    name = "parametrised0" if case == "parametrised" else "double_pendulum"
+    twin = model(name)
+    if case == "interpreter":
+        return twin, twin
+    return (sf.compile(MODELS[name], sf.Options(batch="loop")) if case == "loop" else model(name, "c")), twin
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
-def test_the_same_as_the_method(m: sf.Model, name: str, rng: np.random.Generator) -> None:
-    bound = m.bind(name)
-    (result,) = bound.outputs.values()
+def states(m: sf.Model, n: int, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    q = m.normalized(rng.normal(size=(n, m.nq)))
+    return {"q": q, "v": rng.normal(size=(n, m.nv)), "a": rng.normal(size=(n, m.nv)), "u": rng.normal(size=(n, m.nu))}
+
+
+def written(bound: Bound, given: dict[str, np.ndarray]) -> None:
+    for group in bound.inputs.keys() & given.keys():
+        bound.inputs[group][...] = given[group]
+
+
+def check(bound: Bound, plain: object, reference: object) -> None:
+    """The bits of the plain call; by NumPy's interpreter the same within rounding."""
+    results = [value if isinstance(value, tuple) else (value,) for value in (plain, reference)]
+    for output, same, expected in zip(bound.outputs.values(), *results, strict=False):
+        assert output.shape == same.shape and np.array_equal(output, same)
+        assert output == pytest.approx(expected, rel=1e-9, abs=1e-11)
+
+
+def in_place(m: sf.Model, n: int) -> dict[str, np.ndarray]:
+    """A column of a wider array, every second state in reverse, states side by side: read and written in place."""
+    M = np.moveaxis(np.full((m.nv, m.nv, n), np.nan), -1, 0)
+    return {"q": np.zeros((n, m.nq + 3))[:, 2 : 2 + m.nq], "v": np.zeros((2 * n, m.nv))[::-2], "M": M}
+
+
+@settings(max_examples=30)
+@given(
+    st.sampled_from(["parametrised", "vector", "loop", "interpreter"]),
+    st.sampled_from([*FUNCTIONS]),
+    st.sampled_from([None, 1, 7, MANY - 1, MANY, MANY + 3]),
+    st.sampled_from(["rows", "columns", "in place"]),
+    st.sampled_from(["of all", "of each"]),
+    st.integers(0, 99),
+)
+@example("parametrised", "dynamics", MANY + 1, "in place", "of each", 0)
+@example("loop", "forward_dynamics", MANY, "columns", "of all", 0)
+@example("vector", "kinetic_energy", MANY - 1, "columns", "of each", 0)
+@example("vector", "dynamics", 3 * LEAST + 5, "columns", "of all", 0)  # By three threads.
+@example("interpreter", "bias", 4, "columns", "of all", 0)
+def test_bound_functions_have_the_bits_of_plain_calls(
+    case: str, name: str, n: int | None, layout: str, parameters: str, seed: int
+) -> None:
+    """Of one state and of batches, by rows, by columns and in the caller's memory, for other parameters."""
+    m, twin = bindable(case)
+    rng, count, frames = np.random.default_rng(seed), n or 1, m.names.frames[-1:] if name == "frame_pose" else ()
+    if count > 3 * LEAST:
+        m = m.with_threads(3)
+    of_each = parameters == "of each" and n is not None
+    par = m.parameter_values * rng.uniform(1.0, 1.5, (count, 1) if of_each else 1)
+    arrays = in_place(m, count) if layout == "in place" and n is not None else {}
+    asked: dict[str, Any] = {} if n is None else {"n": n, "layout": "rows" if arrays else layout}
+    bound = m.bind(name, *frames, par=par, **asked)
+    arrays = {key: array for key, array in arrays.items() if key in bound.inputs or key in bound.outputs}
+    if arrays:
+        bound = m.bind(name, *frames, par=par, **asked, **arrays)
+        assert all((bound.inputs | bound.outputs)[key] is array for key, array in arrays.items())
     gc.collect(1)  # What C has the addresses of must be held by the Bound.
-    for _ in range(3):
-        given = dict(zip("qv", m.random_state(rng), strict=True)) | {"a": rng.normal(size=m.nv), "u": np.ones(m.nu)}
-        for group in FUNCTIONS[name]:
-            bound.inputs[group][:] = given[group]
+    for _ in range(2):
+        stated = states(m, count, rng)
+        if n is None:
+            stated = {group: array[0] for group, array in stated.items()}
+        written(bound, stated)
         bound()
-        assert np.array_equal(result, getattr(m, name)(*(given[group] for group in FUNCTIONS[name])))
+        inputs = [stated[group] for group in FUNCTIONS[name]]
+        check(bound, *(getattr(one, name)(*frames, *inputs, par=par) for one in (m, twin)))
 
 
-def test_memory_of_the_caller_is_used(m: sf.Model, rng: np.random.Generator) -> None:
-    q, M = m.random_state(rng)[0], np.full((m.nv, m.nv), np.nan)
-    bound = m.bind("mass_matrix", q=q, M=M)
-    assert bound.inputs["q"] is q and bound.outputs["M"] is M
+def test_functions_that_a_solver_finishes(rng: np.random.Generator) -> None:
+    n = 5
+    m = sf.compile(MODELS[CLOSED])
+    bound = m.bind("project", n=n, layout="columns")
+    given = states(m, n, rng)
+    given["q"] = np.array(GUESSES[CLOSED]) + 0.01 * given["q"]
+    written(bound, given)
     bound()
-    q[:] = m.random_state(rng)[0]
+    q, v, left = m.project(given["q"], given["v"], u=given["u"])
+    check(bound, (q, v), model(CLOSED).project(given["q"], given["v"], u=given["u"])[:2])
+    # The posture is another one, and the loop is closed there: two legs of one length between equal pivots.
+    assert np.all(left < 1e-9) and np.all(np.abs(q - given["q"]).max(axis=1) > 1e-8)
+    assert q[:, 0] + q[:, 1] == pytest.approx(np.zeros(n), abs=1e-9)
+
+
+def test_times_of_each_state(rng: np.random.Generator) -> None:
+    joint = sf.Joint("j", "revolute", effort=("sin(t)",))
+    driven = sf.compile(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(1.0))]))
+    bound = driven.bind("generalized_force", n=9)
+    bound.inputs["t"][:, 0] = t = rng.normal(size=9)
     bound()
-    assert np.array_equal(M, m.mass_matrix(q))
+    expected = driven.generalized_force(np.zeros((9, 1)), np.zeros((9, 1)), np.zeros((9, driven.nu)), t=t)
+    assert np.array_equal(bound.outputs["Q"], expected)
+    assert expected[:, 0] == pytest.approx(np.sin(t), rel=1e-14)
 
 
-def test_parameters_and_frames(m: sf.Model, rng: np.random.Generator) -> None:
-    frame, par = m.names.frames[-1], 1.5 * m.parameter_values
-    bound = m.bind("frame_pose", frame, par=par)
-    bound.inputs["q"][:] = q = m.random_state(rng)[0]
+@pytest.mark.parametrize("layout", ["rows", "columns"])
+def test_a_call_keeps_no_memory(layout: Any) -> None:
+    bound = sf.compile(MODELS["double_pendulum"]).bind("dynamics", n=4096, layout=layout)
     bound()
-    for found, expected in zip(bound.outputs.values(), m.frame_pose(frame, q, par=par), strict=True):
-        assert np.array_equal(found, expected)
+    tracemalloc.start()
+    for _ in range(3):
+        bound()
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 8192  # M alone is of 131072 bytes.
 
 
-def test_inputs_begin_at_their_defaults() -> None:
-    ball = sf.RigidBody("b", sf.Joint("j", "ball", prescribed=True), sf.Inertia(1.0))
-    arm = sf.RigidBody("a", sf.Joint("q1", "revolute", "b"), sf.Inertia(1.0, (1, 0, 0)))
-    m = sf.compile(sf.System("s", [ball, arm]))
-    bound = m.bind("bias")
-    bound()
-    assert bound.inputs["u"].tolist() == list(m.record.u_default) and bound.inputs["u"].any()
-    assert np.array_equal(bound.outputs["h"], m.bias([0.0], [0.0]))
+ONE, BATCH = {}, {"n": 4}
 
 
 @pytest.mark.parametrize(
-    "array", [np.zeros(3), np.zeros(4)[::2], np.zeros(2, dtype=np.float32), [0.0, 0.0], np.zeros((1, 2))]
+    ("asked", "array"),
+    [
+        (ONE, np.zeros(3)),
+        (ONE, np.zeros(4)[::2]),
+        (ONE, np.zeros(2, dtype=np.float32)),
+        (ONE, [0.0, 0.0]),
+        (ONE, np.zeros((1, 2))),
+        (ONE, np.broadcast_to(0.0, 2)),  # Read only.
+        (BATCH, np.zeros((4, 3))),
+        (BATCH, np.zeros((3, 2))),
+        (BATCH, np.zeros((4, 2), dtype=np.float32)),
+        (BATCH, [[0.0, 0.0]] * 4),
+        (BATCH, np.broadcast_to(np.zeros(2), (4, 2))),
+        (BATCH, np.zeros((4, 2), dtype=">f8")),
+        (BATCH, np.ndarray((4, 2), buffer=bytearray(100), strides=(20, 8))),
+    ],
 )
-def test_other_arrays_are_refused(array: np.ndarray) -> None:
-    m = sf.compile(MODELS["double_pendulum"])
-    with pytest.raises(sf.ShapeError, match=r"mass_matrix: 'q' can't be bound(.|\n)*shape \(2,\)"):
-        m.bind("mass_matrix", q=array)
-
-
-def test_read_only_arrays_are_refused() -> None:
-    m = sf.compile(MODELS["double_pendulum"])
-    M = np.zeros((2, 2))
-    M.flags.writeable = False
-    with pytest.raises(sf.ShapeError, match="not contiguous or not writeable"):
-        m.bind("mass_matrix", M=M)
+def test_other_arrays_are_refused(asked: dict[str, int], array: np.ndarray) -> None:
+    shape = r"shape \(4, 2\), or \(2,\) for all states" if asked else r"shape \(2,\)"
+    with pytest.raises(sf.ShapeError, match=rf"mass_matrix: 'q' can't be bound(.|\n)*{shape}"):
+        model("double_pendulum", "c").bind("mass_matrix", **asked, q=array)
 
 
 @pytest.mark.parametrize(
@@ -97,15 +186,6 @@ def test_read_only_arrays_are_refused() -> None:
 def test_unknown_names_are_refused(name: str, frame: str, arrays: dict[str, np.ndarray], message: str) -> None:
     with pytest.raises(sf.UnknownNameError, match=message):
         sf.compile(MODELS["double_pendulum"]).bind(name, frame, **arrays)
-
-
-def test_plain_calls_write_into_arrays_of_the_callers(rng: np.random.Generator) -> None:
-    m = model("double_pendulum")
-    q = np.array([m.random_state(rng)[0] for _ in range(3)])
-    M = np.full((3, m.nv, m.nv), np.nan)
-    (result,) = m.evaluate("mass_matrix", q=q, out={"M": M})
-    assert result is M
-    assert np.array_equal(M, m.mass_matrix(q))
 
 
 @pytest.mark.parametrize("n", [3, 600], ids=["state by state", "by vectors"])
@@ -159,12 +239,3 @@ def test_outputs_that_share_memory_are_refused(rng: np.random.Generator) -> None
     rows = np.zeros((9, 2))
     with pytest.raises(sf.ShapeError, match="shares no memory with another array"):
         m.bind("bias", n=8, v=rows[:8], h=rows[1:])
-
-
-def test_outputs_beside_inputs_in_one_array_are_none_that_share_memory(rng: np.random.Generator) -> None:
-    m = model("double_pendulum", "c")
-    table = np.zeros((8, 6))
-    table[:, :4] = rng.normal(size=(8, 4))
-    bound = m.bind("bias", n=8, q=table[:, :2], v=table[:, 2:4], h=table[:, 4:])
-    bound()
-    assert np.array_equal(table[:, 4:], m.bias(table[:, :2], table[:, 2:4]))

@@ -43,12 +43,6 @@ def test_a_damaged_one_is_parsed_anew(folder: Path) -> None:
     assert interface_anew().sizeof("sym_model") > 0 and kept.read_text() == sound
 
 
-def test_without_a_folder_to_write_to_it_is_parsed_each_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "file").write_text("")
-    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "file" / "below"))
-    assert interface_anew().sizeof("sym_model") > 0
-
-
 def test_constants_are_those_of_the_headers() -> None:
     enums = re.findall(r"typedef enum (?:.|\n)*?}", native_text("stepping/symofros_stepper.h"))
     stated = re.findall(r"\b(SYM_\w+) *= *(-?\d+)", "".join(enums))

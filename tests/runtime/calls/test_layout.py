@@ -12,8 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls import library
-from symofros.runtime.calls.kernel import BatchOptions
-from symofros.runtime.calls.layout import Strided, by_columns, columns, states
+from symofros.runtime.calls.layout import Strided, states
 
 N = library.MANY + 5
 EXACT = (*DEFAULT_FLAGS, "-ffp-contract=off")
@@ -63,15 +62,6 @@ def test_every_layout_gives_the_same_bits(name: str, layout: str) -> None:
         assert np.array_equal(found, expected)
 
 
-@pytest.mark.parametrize("layouts", [("columns", "rows"), ("rows", "columns"), ("spaced", "columns")])
-def test_layouts_may_differ(layouts: tuple[str, str]) -> None:
-    """Then results are row by row."""
-    q, v, _ = given("chain7", N)
-    mixed = model().dynamics(LAYOUTS[layouts[0]](q), LAYOUTS[layouts[1]](v), None)
-    for found, expected in zip(mixed, model().dynamics(q, v, None), strict=True):
-        assert np.array_equal(found, expected) and found.flags.c_contiguous
-
-
 @pytest.mark.parametrize("n", [2, 9, library.MANY - 1, N])
 @pytest.mark.parametrize("function", ["mass_matrix", "forward_dynamics_derivatives"])
 def test_results_follow_the_inputs(function: str, n: int) -> None:
@@ -86,15 +76,6 @@ def test_results_follow_the_inputs(function: str, n: int) -> None:
         assert np.array_equal(rows, found)
     first = in_columns[0] if isinstance(in_columns, tuple) else in_columns
     assert is_columns(first) and first.ctypes.data % 64 == 0
-
-
-def test_one_state_for_all_has_no_say() -> None:
-    q, v, _ = given("chain7", N)
-    rows = model().dynamics(q, v[0], None)
-    for found, expected in zip(model().dynamics(np.asfortranarray(q), v[0], None), rows, strict=True):
-        assert np.array_equal(found, expected) and is_columns(found)
-    spread = model().dynamics(q, np.broadcast_to(v[0], v.shape), None)
-    assert all(np.array_equal(x, y) for x, y in zip(spread, rows, strict=True))
 
 
 def test_batches_of_several_dimensions() -> None:
@@ -156,20 +137,3 @@ def test_entries_that_are_always_zero_are_written() -> None:
         junk = np.full((n, 6, m.nv), 7.0)
         del junk
         assert np.array_equal(m.frame_jacobian(frame, q), expected) and np.any(expected[0] == 0.0)
-
-
-@pytest.mark.parametrize("n", [1, 7, 64, 1000, 1024, 4096])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_columns_begin_at_lines_an_odd_number_apart(n: int, dtype: type[np.float64]) -> None:
-    found = columns(n, 5, dtype)
-    lines, rest = divmod(found.strides[1], 64)
-    assert found.shape == (n, 5) and rest == 0 and found.ctypes.data % 64 == 0
-    assert lines % 2 == 1 or lines == -(-n * found.itemsize // 64) < 16
-    assert n * found.itemsize <= found.strides[1] < n * found.itemsize + 128
-
-
-def test_what_is_told_of_a_layout() -> None:
-    rows, one, scalar = np.zeros((9, 4)), np.zeros((1, 4)), np.zeros((9, 1))
-    assert by_columns([np.asfortranarray(rows), one, scalar]) and not by_columns([np.asfortranarray(rows), rows])
-    assert not by_columns([one, scalar]) and not by_columns([])
-    assert BatchOptions(columns=True).of(rows + 1.0).flags.c_contiguous is False

@@ -48,17 +48,6 @@ def test_threads_change_no_bit(name: str) -> None:
                 assert np.array_equal(found, wanted, equal_nan=True)
 
 
-def test_threads_go_along_with_parameters() -> None:
-    m = sf.compile(MODELS["cart_pole"]).with_threads(2)
-    assert m.with_parameters(**dict(m.parameters)).threads == 2 and sf.compile(MODELS["cart_pole"]).threads == 1
-
-
-@pytest.mark.parametrize("threads", [0, -1, 1.5, "two"])
-def test_not_a_number_of_threads(threads: object) -> None:
-    with pytest.raises(ValueError, match="not a number of threads"):
-        sf.compile(MODELS["pendulum"]).with_threads(threads)  # type: ignore[arg-type]
-
-
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork.*:DeprecationWarning")
 def test_after_a_fork() -> None:

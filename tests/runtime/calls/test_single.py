@@ -65,16 +65,6 @@ def test_each_call_gives_arrays_of_its_own(m: sf.Model, rng: np.random.Generator
     assert np.array_equal(m.mass_matrix(q0), before)
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [np.ndarray.tolist, tuple, lambda q: np.repeat(q, 2)[::2], lambda q: q.astype(">f8"), lambda q: q.astype(object)],
-    ids=["list", "tuple", "strided", "big-endian", "objects"],
-)
-def test_numbers_of_any_kind_give_one_answer(m: sf.Model, kind: Any, rng: np.random.Generator) -> None:
-    q, _ = m.random_state(rng)
-    assert np.array_equal(m.mass_matrix(kind(q)), m.mass_matrix(q))
-
-
 def test_parameters_and_inputs_of_a_call_do_not_stay(m: sf.Model, rng: np.random.Generator) -> None:
     given = state(m, rng)
     q, v, u = given["q"], given["v"], given["u"]
@@ -89,17 +79,6 @@ def test_parameters_and_inputs_of_a_call_do_not_stay(m: sf.Model, rng: np.random
     assert np.array_equal(m.mass_matrix(q), before[1])
 
 
-def test_time_is_a_number_or_a_batch() -> None:
-    body = sf.RigidBody("b", sf.Joint("j", "revolute", effort=("sin(t)",)), sf.Inertia(1.0))
-    m = sf.compile(sf.System("s", [body]))
-    q, v, u = np.zeros(1), np.zeros(1), np.zeros(0)
-    assert m.generalized_force(q, v, u) == pytest.approx([0.0])
-    for t in (0.5, np.float64(0.5), np.array(0.5)):
-        assert m.generalized_force(q, v, u, t=t) == pytest.approx([np.sin(0.5)], rel=1e-14)
-    assert m.generalized_force(q, v, u) == pytest.approx([0.0])
-    assert m.generalized_force(q, v, u, t=np.array([0.5, 1.0])).shape == (2, 1)
-
-
 # A call of the interpreter takes so long that threads change places within each.
 @pytest.mark.parametrize(("backend", "calls"), [("c", 50), ("interpreter", 3)])
 def test_threads_do_not_share_memory(backend: str, calls: int, rng: np.random.Generator) -> None:
@@ -112,14 +91,6 @@ def test_threads_do_not_share_memory(backend: str, calls: int, rng: np.random.Ge
 
     with ThreadPoolExecutor(8) as pool:
         assert all(pool.map(many, range(16)))
-
-
-@pytest.mark.parametrize("size", [0, 1, 7])
-def test_a_wrong_size_is_refused_after_a_right_one(m: sf.Model, size: int) -> None:
-    m.mass_matrix(m.neutral())
-    if size != m.nq:
-        with pytest.raises(sf.ShapeError, match="q has the wrong shape"):
-            m.mass_matrix(np.zeros(size))
 
 
 def test_numbers_of_any_kind_take_the_short_way_with_time_and_places(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 
 import pytest
@@ -12,7 +11,6 @@ from symofros.compiler import GENERATOR, Compilation
 from symofros.errors import CompileError
 from symofros.generator.codegen.cuda import device_code
 from symofros.runtime.calls.kernel import Precision
-from symofros.runtime.cuda import nvrtc
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.cuda.nvrtc import compile_cuda, usage_of
 from tests.exports.cases import system_of
@@ -76,35 +74,3 @@ def test_fused_products_are_taken_only_when_asked_for() -> None:
     """Else the kernels round as the C code does."""
     text = 'extern "C" __global__ void k(double *x) { *x = x[1] * x[2] + x[3]; }'
     assert compile_cuda(text, "sm_90", contract=True) != compile_cuda(text, "sm_90")
-
-
-class Recorder:
-    """NVRTC of some version, which keeps the options that it is given."""
-
-    def __init__(self, major: int, minor: int) -> None:
-        self.number, self.options = (major, minor), []
-
-    def nvrtcVersion(self, major: object, minor: object) -> int:
-        major._obj.value, minor._obj.value = self.number
-        return 0
-
-    def nvrtcCompileProgram(self, program: object, count: int, options: list[bytes]) -> int:
-        self.options = [options[k].decode() for k in range(count)]
-        return 0
-
-    def __getattr__(self, name: str) -> Callable[..., int]:
-        return lambda *arguments: 0
-
-
-@pytest.mark.parametrize(("version", "told"), [((12, 4), False), ((12, 9), True), ((13, 0), True)])
-def test_the_assembler_is_asked_anew_where_a_cache_would_answer_without_its_words(
-    monkeypatch: pytest.MonkeyPatch, version: tuple[int, int], told: bool
-) -> None:
-    """Versions that have no cache refuse the option."""
-    library = Recorder(*version)
-    monkeypatch.setattr(nvrtc, "_library", lambda: library)
-    usage_of("", "sm_90")
-    assert ("--no-cache" in library.options) == told
-    assert "--ptxas-options=-v" in library.options
-    compile_cuda("", "sm_90")
-    assert "--no-cache" not in library.options

@@ -91,12 +91,6 @@ def test_results_say_which_stream_they_are_ready_in(on_device: CudaModel, said: 
     assert "wait 30 0" in said() and not device._library.sym_events()
 
 
-def test_a_rollout_goes_into_its_stream(on_device: CudaModel, said: Any) -> None:
-    on_device.rollout(**STATES, dt=0.1, steps=2, stream=0x30)
-    asked = said()
-    assert "launch 30 0" in asked and asked[-1] == "wait 30 0"
-
-
 @pytest.mark.parametrize("stream", ["x", 2.5, True, -1, object()])
 def test_what_is_no_stream_is_refused(on_device: CudaModel, stream: Any) -> None:
     with pytest.raises(sf.ArgumentError, match="stream is no stream"):
@@ -160,11 +154,3 @@ def test_a_graph_of_another_stream_is_said(
     with pytest.raises(SymofrosError, match=r"captured from another stream(.|\n)*stream=torch.cuda.current_stream\(\)"):
         on_device.evaluate("mass_matrix", q=OnDevice(np.zeros((3, 2))), stream=stream)
     assert not any(entry.startswith("launch") for entry in said())
-
-
-def test_the_default_stream_beside_one_that_waits_for_it_is_said(
-    on_device: CudaModel, device: Driver, said: Any
-) -> None:
-    device._library.sym_capture(2)
-    with pytest.raises(SymofrosError, match="another stream captures, the call is for the default stream"):
-        on_device.evaluate("mass_matrix", q=OnDevice(np.zeros((3, 2))))

@@ -9,7 +9,6 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import compiled
 
 G = 9.81
 INTERPRETED = sf.Options(backend="interpreter")
@@ -62,8 +61,7 @@ def posture(theta: float, r: float = 1.0, rod: float = 2.5) -> tuple[np.ndarray,
     return np.array([theta, -beta - theta, r * np.cos(theta) + rod * np.cos(beta)]), float(beta)
 
 
-@pytest.mark.parametrize("scale", [1e-6, 1e-3, 1.0, 1e3])
-@pytest.mark.parametrize("mass", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize(("scale", "mass"), [(1e-6, 1e-6), (1e-3, 1e6), (1.0, 1.0), (1e3, 1e-6), (1e3, 1e6)])
 def test_the_torque_of_a_crank_that_holds_a_piston(scale: float, mass: float) -> None:
     """tau = F r sin(theta + beta)/cos(beta), by virtual work, at every size and mass; here F pushes back."""
     m = sf.compile(slider_crank(scale, 2.5 * scale, mass, actuated=True), INTERPRETED)
@@ -75,24 +73,9 @@ def test_the_torque_of_a_crank_that_holds_a_piston(scale: float, mass: float) ->
 
 
 def test_the_torque_that_holds_a_parallelogram() -> None:
-    """The coupler does not turn: V = g l sin(theta) (m_1/2 + m_2 + m_3/2)."""
-    length, base = 1.0, 2.0
-    bar = sf.Inertia(2.0, (length / 2, 0, 0), (0.1, 0.2, 0.2))
-    up = {"axis": (0, -1, 0)}
-    left = sf.RigidBody("left", sf.Joint("q1", "revolute", **up), bar, [sf.Frame("end", (length, 0, 0))])
-    coupler = sf.RigidBody(
-        "coupler",
-        sf.Joint("q2", "revolute", "left", "end", **up),
-        sf.Inertia(3.0, (base / 2, 0, 0), (0.1, 1, 1)),
-        [sf.Frame("end", (base, 0, 0))],
-    )
-    right = sf.RigidBody(
-        "right", sf.Joint("q3", "revolute", position=(base, 0, 0), **up), bar, [sf.Frame("end", (length, 0, 0))]
-    )
-    pin = sf.Closure("pin", ("right", "end"), ("coupler", "end"), ("x", "z"))
-    m = sf.compile(sf.System("parallelogram", [left, coupler, right], constraints=[pin]), INTERPRETED)
-    q = [0.7, -0.7, 0.7]
-    wanted = G * length * np.cos(0.7) * (2.0 / 2 + 3.0 + 2.0 / 2)
+    """The coupler does not turn: V = g l sin(theta) (m_1/2 + m_2 + m_3/2), here of a mass and a metre each."""
+    m = sf.compile(MODELS["four_bar"], INTERPRETED)
+    q, wanted = [0.7, -0.7, 0.7], 2.0 * G * np.cos(0.7)
     for name in ("q1", "q3"):
         assert sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), [name]).efforts == pytest.approx([wanted], rel=1e-12)
     # Two alike share alike, which is the least norm; by size in the ratio of the squares of sizes.
@@ -118,9 +101,7 @@ def test_the_effort_of_an_actuator_is_that_of_a_drive() -> None:
     assert free.joint_wrenches(start.q, start.v, a, [7.0], lam)[0, 4] == pytest.approx(-7.0, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("name", "joints"), [("four_bar", ("q1",)), ("four_bar", ()), ("bricard", ("q1",)), ("bricard", ())]
-)
+@pytest.mark.parametrize(("name", "joints"), [("four_bar", ()), ("bricard", ("q1",))])
 def test_forward_dynamics_under_the_efforts_is_the_motion(name: str, joints: tuple[str, ...]) -> None:
     """Of random efforts, at random postures, in a batch; redundant ones are of least norm (Karush, Kuhn, Tucker)."""
     m = sf.compile(actuated(MODELS[name], *joints), INTERPRETED)
@@ -140,16 +121,6 @@ def test_forward_dynamics_under_the_efforts_is_the_motion(name: str, joints: tup
     # Efforts that move nothing are orthogonal to those of least norm: the difference from u is one.
     products = np.sum((u - result.efforts) * result.efforts, axis=1)
     np.testing.assert_allclose(products, 0.0, atol=1e-9)
-
-
-def test_trees_have_their_inverse_dynamics() -> None:
-    m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
-    rng = np.random.default_rng(0)
-    q, v, a = rng.normal(size=(3, 5, m.nv))
-    result = sf.actuator_efforts(m, q, v, a, m.names.v)
-    np.testing.assert_allclose(result.efforts, m.inverse_dynamics(q, v, a), rtol=1e-12)
-    assert result.lam.shape == (5, 0)
-    assert np.all(np.isnan(sf.actuator_efforts(m, q[0] * np.nan, v[0], a[0], m.names.v).efforts))
 
 
 def test_a_beam_bent_beyond_its_theory_is_told_of() -> None:
@@ -176,13 +147,6 @@ class TestRefused:
         a = m.forward_dynamics(q, v, np.zeros(m.nu))
         assert sf.actuator_efforts(m, q, v, a, [m.names.v[0]]).efforts == pytest.approx([0.0], abs=1e-12)
 
-    def test_a_piston_at_its_dead_centre(self) -> None:
-        """The force of the piston does no work there, so that no force of it moves the crank."""
-        m = sf.compile(slider_crank(), INTERPRETED)
-        q, _ = posture(0.0)
-        with pytest.raises(sf.ActuationError, match="0 independent efforts for 1 freedoms"):
-            sf.actuator_efforts(m, q, np.zeros(3), [1.0, -1.4, 0.0], ["q3"])
-
     @pytest.mark.parametrize(
         ("q", "v", "a", "words"),
         [
@@ -204,37 +168,6 @@ class TestRefused:
         m = sf.compile(sf.System("s", [body], inputs=[sf.Input("current")]), INTERPRETED)
         with pytest.raises(sf.ActuationError, match="forces not linear in actuators 'current'"):
             sf.actuator_efforts(m, [0.0], [0.0], [2.0])
-
-    def test_names_of_nothing(self) -> None:
-        m = sf.compile(slider_crank(), INTERPRETED)
-        with pytest.raises(sf.UnknownNameError, match="no actuator 'q9'"):
-            sf.actuator_efforts(m, posture(0.8)[0], np.zeros(3), np.zeros(3), ["q9"])
-
-
-def test_what_is_stated_of_the_actuators_does_not_count() -> None:
-    m = sf.compile(slider_crank(actuated=True), INTERPRETED)
-    q, _ = posture(0.8)
-    without = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3))
-    stated = sf.actuator_efforts(m, q, np.zeros(3), np.zeros(3), u=[5.0])
-    assert stated.efforts == pytest.approx(without.efforts, rel=1e-12)
-    assert stated.u == pytest.approx(without.efforts, rel=1e-12)
-
-
-def test_an_actuator_beside_a_stiff_spring_keeps_its_digits() -> None:
-    """The column of an effort is a difference of forces a billion times larger."""
-    joint = sf.Joint("q1", "revolute", axis=(0, 1, 0), actuated=True, elements=(sf.Spring(1e9),))
-    m = sf.compile(sf.System("stiff", [sf.RigidBody("arm", joint, sf.Inertia(1.0, (0.5, 0, 0)))]), INTERPRETED)
-    a = m.forward_dynamics([0.3], [0.1], [1.234e6])
-    assert sf.actuator_efforts(m, [0.3], [0.1], a).efforts == pytest.approx([1.234e6], rel=1e-8)
-
-
-def test_an_actuator_at_a_dead_centre_has_no_effort() -> None:
-    """The piston moves the crank by rounding alone there."""
-    m = sf.compile(slider_crank(), INTERPRETED)
-    q, _ = posture(np.pi)
-    a = m.forward_dynamics(q, np.zeros(3), [])
-    result = sf.actuator_efforts(m, q, np.zeros(3), a, ["q3"])
-    assert abs(result.efforts[0]) < 1e-6 and result.redundancy == 1
 
 
 def test_efforts_that_act_alike_are_redundant() -> None:
@@ -269,17 +202,3 @@ def test_prescribed_motions_are_no_actuators() -> None:
     a = m.forward_dynamics([0.3], [0.2], u)
     result = sf.actuator_efforts(m, [0.3], [0.2], a, u=u)
     assert result.actuators == ("q",) and result.efforts == pytest.approx([1.5], rel=1e-11)
-
-
-def test_a_beam_bends_by_the_parameters_that_are_given() -> None:
-    """The slope of a displacement is its share of the length: half on a beam twice as long."""
-    model = compiled("flexible_pendulum")
-    q, rest = model.neutral() + np.array([0.0, 0.01, 0.0, 0.0]), np.zeros(model.nv)
-    own, twice = np.array(model.parameter_values), np.array(model.parameter_values)
-    twice[model.names.par.index("L")] *= 2.0
-    slopes = [
-        sf.actuator_efforts(model, q, rest, rest, model.names.v, par=par, beam_limit=np.inf).bendings[0].slope
-        for par in (None, own, twice)
-    ]
-    assert slopes[0] == slopes[1] > 0.0
-    assert slopes[2] == pytest.approx(0.5 * slopes[0], rel=1e-12)

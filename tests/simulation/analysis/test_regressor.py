@@ -89,13 +89,6 @@ def test_terms_of_joints_complete_inverse_dynamics(rng: np.random.Generator) -> 
     assert Y[0, :, 20:22].tolist() == np.diag(v[0]).tolist()
 
 
-def test_an_armature_is_told_from_the_link_only_where_another_axis_carries_it() -> None:
-    m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
-    names = sf.base_parameters(m, joint_terms=("armature", "viscous")).names
-    assert "Iyy(upper) + 0.25 m(lower) + armature(q1)" in names
-    assert {"armature(q2)", "viscous(q1)", "viscous(q2)"} < set(names)
-
-
 @pytest.mark.parametrize(
     ("given", "words"),
     [
@@ -109,12 +102,3 @@ def test_wrong_terms_are_refused_in_words(given: dict[str, Any], words: str) -> 
     m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
     with pytest.raises(sf.SymofrosError, match=words):
         m.regressor([0.1, 0.2], [0.0, 0.0], [0.0, 0.0], **given)
-
-
-def test_a_term_named_twice_and_a_smoothing_without_end_are_refused() -> None:
-    model = sf.compile(MODELS["double_pendulum"], sf.Options(backend="interpreter"))
-    q = np.zeros(2)
-    with pytest.raises(sf.ArgumentError, match="named twice"):
-        model.regressor(q, q, q, joint_terms=("viscous", "viscous"))
-    with pytest.raises(sf.ArgumentError, match="finite number above zero"):
-        model.regressor(q, q, q, joint_terms=("coulomb",), minimum_velocity=np.inf)

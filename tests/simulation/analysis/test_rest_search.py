@@ -7,7 +7,6 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.analysis.rest_search import _downhill, _unit_mass
-from tests.models import model
 
 
 def geared(ratio: float) -> sf.Model:
@@ -38,32 +37,6 @@ def test_motions_without_mass_are_damped() -> None:
     assert np.allclose(L @ L.T, M, atol=1e-8)
     assert np.all(np.isfinite(_unit_mass(np.zeros((2, 2)))))
     assert _unit_mass(np.zeros((0, 0))).shape == (0, 0)
-
-
-def test_a_relaxed_rest_is_stable() -> None:
-    machine = geared(3.0)
-    assert sf.modes(machine, sf.equilibrium(machine).q).frequencies[0] > 1.0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["delta", "chain22"])
-def test_most_postures_lead_to_a_rest(name: str) -> None:
-    """Newton's method alone finds fewer than half."""
-    machine, rng = model(name), np.random.default_rng(0)
-    rests = 0
-    for _ in range(8):
-        q, _ = machine.random_state(rng)
-        if machine.nc:
-            q = sf.assemble(machine, q).q
-        try:
-            rest = sf.equilibrium(machine, q)
-        except sf.EquilibriumError:
-            continue
-        _, h, Q = machine.dynamics(rest.q, np.zeros(machine.nv), rest.u)
-        reaction = machine.constraint_jacobian(rest.q).T @ rest.lam if machine.nc else 0.0
-        assert np.abs(h - Q - reaction).max() < 1e-8
-        rests += 1
-    assert rests >= 7
 
 
 def test_what_falls_for_ever_has_no_rest() -> None:

@@ -12,6 +12,7 @@ from symofros.runtime import manifold
 from symofros.runtime.record import ModelRecord, Segment
 from symofros.simulation.analysis.chart_derivatives import chart_slopes
 from tests.models import model
+from tests.simulation.mechanisms import turned
 
 METHODS = ("euler", "semi_implicit_euler", "rk4")
 N, H = 60, 0.02
@@ -55,7 +56,9 @@ def by_hand(x: np.ndarray, u: np.ndarray, par: np.ndarray, method: str) -> np.nd
 def test_the_gradient_is_that_of_a_complex_step(method: str, rng: np.random.Generator) -> None:
     m, u = pendulum(), rng.normal(size=N)
     names = {name: m.names.par.index(name) for name in ("m", "L", "d")}
-    run = sf.rollout(m, [0.4], [-0.3], u[:, None], H, method=method)
+    given = u[:, None].copy()
+    run = sf.rollout(m, [0.4], [-0.3], given, H, method=method)
+    given[:] = 1e3  # Inputs that are changed after the motion change no derivative.
     z = np.concatenate([[0.4, -0.3], [1.3, 0.7, 0.2], u]).astype(complex)
     w = np.array([0.8, -1.1])
     np.testing.assert_allclose([run.q[-1, 0], run.v[-1, 0]], by_hand(z[:2], z[5:], z[2:5], method).real, rtol=1e-12)
@@ -69,19 +72,23 @@ def test_the_gradient_is_that_of_a_complex_step(method: str, rng: np.random.Gene
     np.testing.assert_allclose(got, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max())
 
 
-# Trees with balls and free joints: at the base, alone, and beyond other joints.
+# Trees with balls and free joints: at the base, alone, and beyond other joints; derivatives of the last are long in C.
 FLOATING = ("heavy_top", "torque_free_body", "parametrised1")
 
 
-@pytest.mark.parametrize("case", ["double_pendulum", "friction_arm", *FLOATING])
+def of(case: str) -> sf.Model:
+    return model(case, "interpreter" if case == "parametrised1" else "c")
+
+
+@pytest.mark.parametrize("case", ["double_pendulum", *FLOATING])
 def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str, rng: np.random.Generator) -> None:
-    m = model(case, "c")
-    u = rng.normal(size=(N, m.nu))
+    m, n = of(case), 20
+    u = rng.normal(size=(n, m.nu))
     q0 = m.integrate(m.neutral(), 0.3 * rng.normal(size=m.nv))
     run = sf.rollout(m, q0, 0.1 * rng.normal(size=m.nv), u, 0.005, method=method)
-    sizes = {"dq0": (m.nv, 2), "dv0": (m.nv, 2), "du": (N, m.nu, 2), "dpar": (m.npar, 2)}
+    sizes = {"dq0": (m.nv, 2), "dv0": (m.nv, 2), "du": (n, m.nu, 2), "dpar": (m.npar, 2)}
     d = {name: rng.normal(size=shape) for name, shape in sizes.items()}
-    q_bar, v_bar = rng.normal(size=(2, N + 1, m.nv))
+    q_bar, v_bar = rng.normal(size=(2, n + 1, m.nv))
     changes = run.tangents(**d)
     forward = np.einsum("ni,nik->k", q_bar, changes.q) + np.einsum("ni,nik->k", v_bar, changes.v)
     g = run.gradient(q_bar, v_bar)
@@ -95,7 +102,7 @@ def test_the_gradient_of_turning_bodies_is_that_of_differences(
     method: str, case: str, rng: np.random.Generator
 ) -> None:
     """With weights of the quaternions' coordinates, along a random change of start, speeds, inputs and parameters."""
-    m, n = model(case, "c"), 15
+    m, n = of(case), 10
     q0, v0 = m.random_state(rng)
     u, par = rng.normal(size=(n, m.nu)), m.parameter_values
     q_bar, v_bar = rng.normal(size=(n + 1, m.nq)), rng.normal(size=(n + 1, m.nv))
@@ -151,7 +158,7 @@ def record_of(segments: tuple[Segment, ...]) -> ModelRecord:
     return ModelRecord("m", "", q, v, (), (), (), {}, (), (), (0.0,) * len(q), lower, free, segments, (False,) * len(q))
 
 
-@pytest.mark.parametrize("case", ["double_pendulum", *FLOATING])
+@pytest.mark.parametrize("case", ["double_pendulum", "heavy_top", "torque_free_body"])
 def test_the_steps_are_those_of_simulate(method: str, case: str, rng: np.random.Generator) -> None:
     m = model(case, "c")
     u = rng.normal(size=(N, m.nu))
@@ -183,27 +190,11 @@ def test_what_has_no_derivative_is_refused_in_words(case: str, changes: dict[str
         sf.rollout(m, **given)
 
 
-def test_inputs_changed_after_the_motion_change_no_derivative() -> None:
-    m, u = pendulum(), np.ones((N, 1))
-    run = sf.rollout(m, [0.4], [-0.3], u, H)
-    before = run.gradient([1.0])
-    u[:] = 1e3
-    for part, expected in zip(run.gradient([1.0]), before, strict=True):
-        np.testing.assert_array_equal(part, expected)
-
-
 def test_a_quaternion_among_the_inputs_that_is_no_rotation_is_refused() -> None:
-    wrist = sf.RigidBody("c", sf.Joint("w", "ball", prescribed=True), sf.Inertia(1.0, (0.1, 0, 0)))
-    arm = sf.RigidBody("b", sf.Joint("j", "revolute", "c", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0)))
-    m = sf.compile(sf.System("carried", [wrist, arm]))
+    m = sf.compile(turned())
     u = np.zeros((5, m.nu))
-    u[:, m.names.u.index("w.qw")] = 1.0
+    u[:, m.names.u.index("p.qw")] = 1.0
     sf.rollout(m, [0.1], [0.0], u, 0.01)
-    u[3, m.names.u.index("w.qw")] = 3.0
+    u[3, m.names.u.index("p.qw")] = 3.0
     with pytest.raises(sf.SymofrosError, match="u holds a quaternion that(.|\n)*length 3 of .* in row 3"):
         sf.rollout(m, [0.1], [0.0], u, 0.01)
-
-
-def test_a_rollout_prints_in_a_line() -> None:
-    motion = sf.rollout(pendulum(), [0.3], [0.0], np.zeros((N, 1)), H)
-    assert repr(motion) == f"<Rollout of 'p' by rk4: {N} steps of {H} s>"

@@ -49,33 +49,3 @@ def test_a_length_of_zero_inside_a_chain_is_named_by_speeds_and_parameter(zero: 
         assert outcome.kind == "singular" and outcome.reason == words and "length" in outcome.advice
     with pytest.raises(sf.SymofrosError, match=f"together move no mass; parameters that are zero: L{zero}"):
         sf.modes(m, Q)
-
-
-def test_a_default_of_zero_is_named_alike() -> None:
-    m = sf.compile(chain(0.0), sf.Options(backend="interpreter"))
-    assert "'q2', 'q3' together move no mass; parameters that are zero: L2" in singular_mass(m, Q)
-
-
-@pytest.mark.parametrize("scale", [1e-9, 1e-3, 1.0, 1e3, 1e9])
-def test_small_and_large_chains_are_regular(scale: float) -> None:
-    lengths = {f"L{i}": scale * 10.0 ** (3 - i) for i in range(1, LINKS + 1)}
-    assert singular_mass(model().with_parameters(**lengths), Q) == ""
-
-
-@pytest.mark.parametrize("pattern", range(1, 32))
-def test_parameters_of_zero_are_refused_or_regular_or_named(pattern: int) -> None:
-    """Of the double pendulum: L1 = 0 alone leaves rods of some radius, whose mass matrix is regular."""
-    m = sf.compile(sf.load("reference_models/rigid/double_pendulum.yaml"))
-    zero = [name for i, name in enumerate(m.names.par) if pattern >> i & 1]
-    try:
-        it = m.with_parameters(**dict.fromkeys(zero, 0.0))
-    except sf.ParameterError as refusal:
-        assert all(name in str(refusal) for name in set(zero) & {"r", "L2", "m2"})  # noqa: PT017
-        return
-    outcome = sf.simulate(it, Q[:2], t_end=0.01, dt=0.001).outcome
-    eigenvalues = np.linalg.eigvalsh(it.mass_matrix(Q[:2]))
-    if outcome.ok:
-        assert eigenvalues[0] > 1e-6 * eigenvalues[1]
-    else:
-        named = outcome.reason.partition("parameters that are zero: ")[2].split(", ")
-        assert outcome.kind == "singular" and named == zero

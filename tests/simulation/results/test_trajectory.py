@@ -6,7 +6,6 @@ import csv
 from pathlib import Path
 
 import numpy as np
-import pyarrow.parquet
 import pytest
 
 import symofros as sf
@@ -21,65 +20,12 @@ def run() -> sf.Trajectory:
     return sf.simulate(model, [0.3, 0.1], [0.0, 0.5], 0.1, dt=0.01)
 
 
-def test_npz(run: sf.Trajectory, tmp_path: Path) -> None:
-    with np.load(run.save(tmp_path / "run.npz")) as saved:
-        for name in ("t", "q", "v", "u", "par"):
-            np.testing.assert_array_equal(saved[name], getattr(run, name))
-        assert tuple(saved["names_q"]) == run.model.names.q
-
-
-def test_csv_loses_no_digit(run: sf.Trajectory, tmp_path: Path) -> None:
-    with open(run.save(tmp_path / "run.csv"), newline="") as stream:
-        rows = list(csv.reader(stream))
-    names = run.model.names
-    assert rows[0] == [
-        "t",
-        *names.q,
-        *(f"d{name}" for name in names.v),
-        *(f"u.{n}" if n in names.q else n for n in names.u),
-    ]
-    values = np.array(rows[1:], dtype=float)
-    np.testing.assert_array_equal(values, np.column_stack([run.t, run.q, run.v, run.u]))
-
-
-def test_parquet(run: sf.Trajectory, tmp_path: Path) -> None:
-    table = pyarrow.parquet.read_table(run.save(tmp_path / "run.parquet"))
-    np.testing.assert_array_equal(table["t"].to_numpy(), run.t)
-    assert table.num_columns == 1 + 2 * run.model.nv + run.model.nu
-
-
-def test_another_suffix(run: sf.Trajectory, tmp_path: Path) -> None:
-    with pytest.raises(sf.SymofrosError, match="can't save as 'run.xlsx'"):
-        run.save(tmp_path / "run.xlsx")
-
-
 def test_columns_by_name(run: sf.Trajectory) -> None:
     first = run.model.names.q[0]
     np.testing.assert_array_equal(run[first], run.q[:, 0])
     np.testing.assert_array_equal(run[f"d{first}"], run.v[:, 0])
     with pytest.raises(KeyError):
         run["nothing"]
-
-
-def test_a_frame_that_is_not_there_is_named_with_the_nearest(run: sf.Trajectory) -> None:
-    name = run.model.names.frames[0]
-    with pytest.raises(KeyError, match=f"did you mean '{name}'"):
-        run.frames[f"{name}x"]
-    assert f"{name}x" not in run.frames and name in run.frames and run.frames.get(f"{name}x") is None
-    with pytest.raises(KeyError):
-        run.frames[3]  # type: ignore[index]
-
-
-def test_picture(run: sf.Trajectory) -> None:
-    figure = run.plot()
-    assert figure._repr_png_().startswith(b"\x89PNG")  # What a notebook shows.
-    assert [axis.get_ylabel() for axis in figure.axes] == [
-        "coordinates [rad, m]",
-        "speeds [rad/s, m/s]",
-        "change of energy [J]",
-    ]
-    lines = figure.axes[0].get_lines()
-    np.testing.assert_array_equal(lines[0].get_ydata(), run.q[:, 0])
 
 
 def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.simulation.mechanisms import loop
 from tests.simulation.oscillator import oscillator
 
 _PARAMETERS = (sf.Parameter("L", 1.0), sf.Parameter("m", 1.0))
@@ -29,18 +30,8 @@ def rolling_disc() -> sf.Model:
 @cache
 def loop_in_space() -> sf.Model:
     """A planar four-bar, closed by a point in space: one of its three conditions says nothing but rounding."""
-    axis = (0, -1, 0)
-
-    def bar(name: str, joint: sf.Joint, length: str) -> sf.RigidBody:
-        return sf.RigidBody(name, joint, _thin(length), (sf.Frame("end", (sf.formula(length), 0, 0)),))
-
-    bodies = (
-        bar("crank", sf.Joint("q1", "revolute", axis=axis), "L/2"),
-        bar("coupler", sf.Joint("q2", "revolute", "crank", "end", axis=axis), "L"),
-        bar("rocker", sf.Joint("q3", "revolute", position=(sf.formula("L"), 0, 0), axis=axis), "L"),
-    )
-    loop = sf.Closure("loop", ("rocker", "end"), ("coupler", "end"), ("x", "y", "z"))
-    return sf.compile(sf.System("loop", bodies, _PARAMETERS, constraints=(loop,)))
+    rows = (("x", "y", "z"), ())
+    return sf.compile(loop(("L/2", "L", "L"), "L", inertia=_thin, rows=rows, parameters=_PARAMETERS))
 
 
 def end_of_disc(L: float, m: float, method: str) -> np.ndarray:
@@ -73,25 +64,12 @@ def end_of_loop(L: float, m: float, method: str) -> np.ndarray:
 def test_constrained_motion_is_the_same_at_all_scales(end, method: str) -> None:
     """A disc of 0.1 mm and 10 mg stepped by rodas4 lost its inertia against conditions of order one."""
     reference = end(1.0, 1.0, method)
-    for L, m in [(1e-4, 1e-5), (1e-6, 1e-9), (1e-3, 1e6), (1e3, 1e-6), (1e4, 1e9), (1e-5, 1.0)]:
+    for L, m in [(1e-4, 1e-5), (1e-6, 1e-9), (1e3, 1e-6), (1e4, 1e9)]:
         np.testing.assert_allclose(end(L, m, method), reference, rtol=0, atol=1e-5, err_msg=f"{L=} {m=}")
 
 
-def test_notes_on_steps_are_the_same_at_all_scales() -> None:
-    """Generalized alpha follows a turning of 60 rad 0.2 rad late: a small share of all speeds as bare numbers."""
-    for L in (1e-4, 0.1, 1.0, 1e3):
-        unit, tilt = np.sqrt(L / 9.81), 1.2
-        q = np.array([0, 0, L * np.sin(tilt), np.sin(tilt / 2), 0, 0, np.cos(tilt / 2)])
-        model = rolling_disc()
-        at = sf.assemble(model, q, np.array([0, 0, 0, 0, 0, 20.0]) / unit, held=model.names.v[3:], par=[L, 1.0])
-        run = sf.simulate(
-            model, at.q, at.v, 3.0 * unit, par=[L, 1.0], method="generalized_alpha", dt=0.01 * unit, output=unit
-        )
-        assert any("follow a mode" in note for note in run.outcome.notes), L
-
-
 @pytest.mark.parametrize("method", ["dopri5", "dop853", "rodas4"])
-@pytest.mark.parametrize("speed", [1e120, 1e150, 1e200, 1e300])
+@pytest.mark.parametrize("speed", [1e150, 1e300])
 def test_adaptive_steps_do_not_begin_at_speeds_too_large_for_their_squares(method: str, speed: float) -> None:
     """The first step is no number then, and would never be made."""
     run = sf.simulate(oscillator(), v0=[speed], t_end=1.0, method=method)

@@ -35,42 +35,16 @@ def test_it_follows_its_tolerance(name: str, method: str) -> None:
 
 
 def test_output_events_and_laws() -> None:
-    model = compiled("pendulum")
-    run = sf.simulate(
-        model,
-        [1.0],
-        t_end=2.0,
-        u={"q": "0.1*sin(t)"},
-        method="cvode_adams",
-        rtol=1e-9,
-        atol=1e-10,
-        output=0.1,
-        events={"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)},
-    )
-    same = sf.simulate(
-        model,
-        [1.0],
-        t_end=2.0,
-        u={"q": "0.1*sin(t)"},
-        method="dop853",
-        rtol=1e-11,
-        atol=1e-12,
-        events={"up": sf.Event("q", "rising", terminal=True)},
-    )
+    model, law = compiled("pendulum"), {"q": "0.1*sin(t)"}
+    events = {"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)}
+    tight = {"method": "cvode_adams", "rtol": 1e-9, "atol": 1e-10, "output": 0.1}
+    run = sf.simulate(model, [1.0], t_end=2.0, u=law, events=events, **tight)
+    same = sf.simulate(model, [1.0], t_end=2.0, u=law, events=events, method="dop853", rtol=1e-11, atol=1e-12)
     assert [event.name for event in run.events] == ["down", "up"]
     assert run.outcome.kind == "event" and run.outcome.t == pytest.approx(same.outcome.t, abs=1e-7)
     np.testing.assert_allclose(run.t[:-1], 0.1 * np.arange(len(run) - 1), atol=1e-12)
     np.testing.assert_allclose(run["q"], np.interp(run.t, same.t, same["q"]), atol=2e-2)
     np.testing.assert_allclose(run.u[:, 0], 0.1 * np.sin(run.t), atol=1e-15)
-
-
-def test_a_stiff_model_costs_little() -> None:
-    model = compiled("flyball_governor")
-    start = [0, np.pi / 6, np.pi / 6, 0.5]
-    stiff = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="cvode", rtol=1e-6, atol=1e-7)
-    plain = sf.simulate(model, start, [6.28, 0, 0, 0], 2.0, method="dopri5", rtol=1e-6, atol=1e-7)
-    assert 5 * stiff.statistics.evaluations < plain.statistics.evaluations
-    np.testing.assert_allclose(stiff.q[-1], plain.q[-1], atol=1e-4)
 
 
 def test_constraints_by_gains_only() -> None:
@@ -152,8 +126,7 @@ def test_combinations_are_judged_by_the_rows_own_sizes(scale: float) -> None:
     assert np.array_equal(alone, np.eye(4)[[0, 2]])
 
 
-@pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize(("seed", "rtol"), [(0, 1e-4), (1, 1e-6), (2, 1e-8)])
 def test_ida_moves_loops_whose_conditions_repeat_each_other_in_closed_postures_alone(rtol: float, seed: int) -> None:
     """Which combinations are independent changes along the motion."""
     bennett = Bennett.drawn(np.random.default_rng(seed))

@@ -46,7 +46,6 @@ def test_the_reference_scenes_belong_to_models(path: Path) -> None:
         ("t_end: -1\noutputs: {a: {position: tip, absolute: 1}}\n", "no span of time"),
         ("t_end: soon\noutputs: {a: {position: tip, absolute: 1}}\n", "t_end is not a number"),
         ("t_end: 1\noutputs: {}\n", "no outputs"),
-        ("t_end: 1\noutputs: {a: {position: tip}}\n", "no tolerance"),
         ("t_end: 1\noutputs: {a: {position: tip, absolute: -1}}\n", "no tolerance"),
         ("t_end: 1\noutputs: {a: {place: tip, absolute: 1}}\n", "unknown entry 'place'"),
         ("t_end: 1\noutputs: {a: {position: tip, speed: q, absolute: 1}}\n", "not of one thing"),
@@ -59,9 +58,7 @@ def test_the_reference_scenes_belong_to_models(path: Path) -> None:
         (GOOD + "keep: m\n", "keep is not a list"),
         (GOOD + "fixed_step: maybe\n", "one of True, False"),
         (GOOD + "samples: 2\n", "samples out of range"),
-        (GOOD + "t_end: 3\n", "t_end"),
         ("a: &x 1\nb: *x\n", "anchors and aliases are refused"),
-        ("", "empty"),
     ],
 )
 def test_what_does_not_fit(tmp_path: Path, text: str, words: str) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.studio.advice.scene_runner import SceneRunner
-from symofros.studio.advice.search import REFINE, _Search, _still_to_come
+from symofros.studio.advice.search import REFINE, _Search
 
 ROPE = sf.Beam("rope", sf.Joint("q", "revolute", axis=(0, 1, 0)), 1.2, 0.1, EI_y=0.01, bend_z=1, family="legendre")
 
@@ -62,10 +62,6 @@ def test_what_more_functions_still_change_counts(changes: list[float], unsettled
     assert sum(said) == sum(change > REFINE for change in changes)
     assert advice(0.02, search.unsettled).ok == (0.02 + unsettled <= 1.0)
     assert not advice(1.01, 0.0).ok and advice(1.0, 0.0).ok
-
-
-def test_nothing_is_to_come_of_a_model_without_beams() -> None:
-    assert _still_to_come([]) == 0.0
 
 
 def test_functions_of_the_users_have_none_to_be_judged_by() -> None:

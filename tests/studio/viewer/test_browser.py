@@ -5,10 +5,8 @@
 
 from __future__ import annotations
 
-import io
 import threading
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +17,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import ForwardDynamics
 from symofros.blocks.graphics.view import with_view
+from tests.studio.pictures import differing, settled, shot
 from tests.studio.waiting import PATIENCE, until
 
 pytestmark = pytest.mark.browser
@@ -40,104 +39,13 @@ def open_page(chromium: Any) -> Iterator[Open]:
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.goto(url)
         page.wait_for_selector("canvas", timeout=PATIENCE_MS)
-        until(page, lambda: (image_of(page) < 200).any(axis=2).sum() > 200)
+        until(page, lambda: (shot(page) < 200).any(axis=2).sum() > 200)
         return page
 
     yield opened
     for context in contexts:
         context.close()
     assert not errors
-
-
-def image_of(page: Any) -> np.ndarray:
-    """The canvas (height, width, 3), without what floats over it.
-
-    The page's picture is cut to it: a picture of the element waits until the page's animations let it through, which a
-    busy machine may not do within any time.
-    """
-    page.add_style_tag(content=".mantine-Notifications-root, .mantine-Notification-root {display: none !important}")
-    return whole(page, page.locator("canvas").first.bounding_box())
-
-
-def whole(page: Any, clip: Any = None) -> np.ndarray:
-    """The page, or its part within a box (height, width, 3)."""
-    shot = page.screenshot(clip=clip, timeout=PATIENCE_MS)
-    return np.asarray(import_module("PIL.Image").open(io.BytesIO(shot)).convert("RGB")).astype(int)
-
-
-def settled(page: Any) -> np.ndarray:
-    """The canvas once two looks at it agree, up to what antialiasing does."""
-    before = image_of(page)
-    for _ in range(100):
-        page.wait_for_timeout(300)
-        after = image_of(page)
-        if before.shape == after.shape and (np.abs(after - before).max(axis=2) > 20).sum() < 20:
-            return after
-        before = after
-    pytest.fail("the picture does not come to rest")
-
-
-def changed(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    return np.abs(a - b).max(axis=2) > 40
-
-
-def colored(image: np.ndarray, color: tuple[int, int, int]) -> np.ndarray:
-    """Pixels of about a color's hue: shading changes how bright it is."""
-    direction = np.array(color) - np.mean(color)
-    seen = image - image.mean(axis=2, keepdims=True)
-    size = np.linalg.norm(seen, axis=2)
-    return (seen @ direction > 0.95 * size * np.linalg.norm(direction)) & (size > 25)
-
-
-@pytest.mark.slow
-def test_a_rigid_arm_is_shown_with_all_its_links(open_page: Open) -> None:
-    with sf.Viewer(MODELS["chain7"], port=0) as viewer:
-        page = open_page(viewer.url)
-        colors = {
-            part.color for part in viewer._scene_state.scene.drawing.parts if part.kind == "bodies" and part.link >= 0
-        }
-        for color in colors:
-            until(page, lambda color=color: colored(image_of(page), color).sum() > 20, f"no {color}")
-
-
-def test_the_picture_changes_where_a_beam_bends(open_page: Open) -> None:
-    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
-        page, names = open_page(viewer.url), viewer.mechanism.model.names.q
-        straight = settled(page)
-        q = viewer.mechanism.model.neutral()
-        q[names.index("link1.bend_y[2]")] = 0.01
-        viewer.show(q)
-        little = settled(page)
-        viewer.exaggeration = 12.0
-        beam = viewer._scene_state.scene.drawing.beams[0].color
-        until(page, lambda: bow(colored(image_of(page), beam)) > 2 * bow(colored(straight, beam)))
-        much = settled(page)
-    bows = [bow(colored(image, beam)) for image in (straight, little, much)]
-    # A straight beam is off its line by its thickness, a little bent one hardly more; exaggerated, it is seen to bend.
-    assert bows[0] < 2.0 and bows[1] < bows[0] + 0.5 and bows[2] > 2 * bows[0]
-    base = np.nonzero((straight < 235).any(axis=2))[1].min()
-    assert changed(straight, much).sum() > 1000 and not changed(straight, much)[:, : base + 5].any()
-
-
-def bow(pixels: np.ndarray) -> float:
-    """How far pixels are from the line that fits them best [pixels]."""
-    places = np.argwhere(pixels).astype(float)
-    assert len(places) > 30
-    return float(np.linalg.svd(places - places.mean(axis=0), compute_uv=False)[1] / np.sqrt(len(places)))
-
-
-@pytest.mark.slow
-def test_the_controls_move_the_picture(open_page: Open) -> None:
-    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
-        page = open_page(viewer.url)
-        before = settled(page)
-        page.get_by_label("frames").click()
-        until(page, lambda: "frames" in viewer._scene_state.scene.layers)
-        until(page, lambda: changed(before, image_of(page)).sum() > 50)
-        box = page.locator("input[type=text]").nth(1)  # The number beside the first coordinate's slider.
-        box.fill("1.0")
-        box.press("Enter")
-        until(page, lambda: abs(viewer.state.q[0] - 1.0) < 0.02)
 
 
 def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
@@ -158,24 +66,12 @@ def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
         page.get_by_text("q1 [rad]").first.wait_for(timeout=PATIENCE_MS)
         assert page.title() == "planar_robot - SYMOFROS"
         until(page, lambda: page.locator("html").get_attribute("data-mantine-color-scheme") == "dark")
-        until(page, lambda: np.median(image_of(page)) < 100)
+        until(page, lambda: np.median(shot(page)) < 100)
         # Two pages have two cameras: there is no one scale.
         other = context.new_page()
         other.goto(viewer.url)
         until(page, lambda: not bar.is_visible())
         context.close()
-
-
-@pytest.mark.slow
-def test_a_motion_plays_and_pauses(open_page: Open) -> None:
-    run = sf.simulate(sf.compile(MODELS["double_pendulum"]), [1.5, 0.0], None, 2.0, dt=0.01)
-    with sf.view(MODELS["double_pendulum"], run, port=0, browser=False) as viewer:
-        page = open_page(viewer.url)
-        first = image_of(page)
-        until(page, lambda: changed(first, image_of(page)).sum() > 200)
-        page.get_by_role("button", name="Pause").click()
-        until(page, lambda: not viewer._is_playing())
-        page.get_by_role("button", name="Play").wait_for(timeout=PATIENCE_MS)
 
 
 @pytest.mark.slow
@@ -192,7 +88,7 @@ def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
     runs: list[sf.DiagramRun] = []
     worker = threading.Thread(target=lambda: runs.append(simulation.run(10.0, dt=0.01)))
     worker.start()
-    until(page, lambda: changed(first, image_of(page)).sum() > 200)
+    until(page, lambda: differing(first, shot(page)) > 200)
     assert worker.is_alive()  # It moved before the end.
     worker.join()
     until(page, lambda: np.array_equal(block.viewer.state.q, runs[0]["plant.q"][-1]))

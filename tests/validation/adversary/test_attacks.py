@@ -130,13 +130,13 @@ def test_a_planted_fault_is_found_and_its_scene_is_plain(
     assert attack.verdict(find.scene).sound
 
 
-@pytest.mark.parametrize(("scenes", "agreed"), [(8, 1), pytest.param(200, 11, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("scenes", "agreed"), [(4, 1), pytest.param(200, 11, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", ATTACKS)
 def test_scenes_contradict_nothing(name: str, scenes: int, agreed: int, tmp_path: Path) -> None:
-    find, tally = hunted(name, tmp_path, scenes, seed=int(scenes > 8))
+    find, tally = hunted(name, tmp_path, scenes, seed=int(scenes > 4))
     assert find is None, find
     # What can't be is refused by each.
-    assert tally.tried >= 8 and (tally.refused if name == "held_apart" else tally.agreed) >= agreed, tally
+    assert tally.tried >= 4 and (tally.refused if name == "held_apart" else tally.agreed) >= agreed, tally
 
 
 @pytest.mark.parametrize("name", ATTACKS)

@@ -16,19 +16,6 @@ def test_a_grid_takes_every_value_with_every_other() -> None:
     assert points[2, 1] == 100.0  # The ends are exact.
 
 
-def test_a_latin_hypercube_has_one_point_in_each_slice_of_each_parameter() -> None:
-    points = points_of(OVER, "latin_hypercube", 50, 7)
-    share = np.stack([points[:, 0] - 1.0, np.log(points[:, 1] / 1e-3) / np.log(1e4)], axis=1)
-    for column in share.T:
-        assert sorted((column * 50).astype(int)) == list(range(50))
-
-
-def test_a_sobol_sequence_is_even_in_two_dimensions() -> None:
-    points = points_of({"a": Range(low=0.0, high=1.0), "b": Range(low=0.0, high=1.0)}, "sobol", 64, 3)
-    cells = np.histogram2d(points[:, 0], points[:, 1], bins=8, range=[[0, 1], [0, 1]])[0]
-    assert (cells == 1).all()
-
-
 @pytest.mark.parametrize("design", ["latin_hypercube", "sobol"])
 def test_batches_are_parts_of_the_whole(design: Design) -> None:
     whole = points_of(OVER, design, 64, 1)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ruamel.yaml import YAML
 
 from validation.campaigns.errors import PlanError
 from validation.campaigns.plan import CheckPlan, cases, identities, make, plan_hash, read
@@ -48,46 +49,14 @@ def test_the_hash_tells_plans_and_models_apart(tmp_path: Path) -> None:
     assert same != plan_hash(plan, models | {"pendulum": "edited"})
 
 
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"models": []}, "models"),
-        ({"models": ["pendulumm"]}, "did you mean 'pendulum'"),
-        ({"models": ["pendulum", "pendulum"]}, "each model is named once"),
-        ({"models": ["nowhere.yaml"]}, "no file nowhere.yaml"),
-        ({"engines": ["adams"]}, "no engine 'adams'"),
-        ({"states": 0}, "states"),
-        ({"states": 2}, "2 states for 3 models"),
-        ({"states": 10**9, "batch": 1}, "at most 100000"),
-        ({"sed": 1}, "sed"),
-        ({"kind": "chek"}, "chek"),
-    ],
-)
-def test_a_bad_check_is_refused_in_words(change: dict[str, Any], says: str) -> None:
-    with pytest.raises(PlanError, match="remedy") as caught:
-        tasks(make(CHECK | change, "plan.toml"))
-    assert says in str(caught.value)
+BAD = YAML(typ="safe").load(Path(__file__).with_name("bad_plans.yaml"))
 
 
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"motion": None}, "'motion' belongs to quantity 'end_state'"),
-        ({"quantity": "frequencies"}, "'motion' belongs to quantity 'end_state'"),
-        ({"over": {"m1": {"low": 2.0, "high": 1.0, "count": 2}}}, "low 2 is above high 1"),
-        ({"over": {"m1": {"low": 0.0, "high": 1.0, "count": 2, "log": True}}}, "above zero"),
-        ({"over": {"m1": {"low": 0.0, "high": 1.0}}}, "a grid needs the 'count' of 'm1'"),
-        ({"points": 3}, "'points' belongs to other designs"),
-        ({"design": "sobol"}, "needs 'points'"),
-        ({"design": "sobol", "points": 8}, "'count' of 'm1' belongs to a grid"),
-        ({"design": "sobol", "points": 12, "over": {"m1": {"low": 0.0, "high": 1.0}}}, "powers of two"),
-        ({"over": {"m1": {"low": 0.0, "high": float("inf"), "count": 2}}}, "finite"),
-    ],
-)
-def test_a_bad_sweep_is_refused_in_words(change: dict[str, Any], says: str) -> None:
+@pytest.mark.parametrize("bad", BAD, ids=lambda bad: f"{bad['of']}: {bad['says']}")
+def test_a_bad_plan_is_refused_in_words(bad: dict[str, Any]) -> None:
     with pytest.raises(PlanError, match="remedy") as caught:
-        make(SWEEP | change, "plan.toml")
-    assert says in str(caught.value)
+        tasks(make({"check": CHECK, "sweep": SWEEP}[bad["of"]] | bad["change"], "plan.toml"))
+    assert bad["says"] in str(caught.value)
 
 
 def test_a_file_of_a_plan_is_read(tmp_path: Path) -> None:

@@ -90,40 +90,24 @@ def listening(process: int) -> set[tuple[str, int]]:
     return found
 
 
-def row(**given: Any) -> dict[str, Any]:
-    base = {
-        "batch": 0,
-        "model": "arm",
-        "engine": "pinocchio",
-        "quantity": "bias",
-        "status": "agree",
-        "agree": True,
-        "states": 10,
-        "states_asked": 10,
-        "error": 1e-15,
-        "worst_state": 3,
-        "scale": 2.0,
-        "tolerance": 1e-12,
-        "note": "",
-    }
-    return base | given
+# A comparison of one batch.
+ROW = dict(batch=0, model="arm", engine="pinocchio", quantity="bias", status="agree", agree=True, states=10, note="")
+ROW |= dict(states_asked=10, error=1e-15, worst_state=3, scale=2.0, tolerance=1e-12)
 
 
-def table(*rows: dict[str, Any]) -> pa.Table:
-    return pa.Table.from_pylist(list(rows), CHECKED)
+def summary(*changes: dict[str, Any]) -> dict[str, Any]:
+    return checked(pa.Table.from_pylist([ROW | change for change in changes], CHECKED))
 
 
 def test_a_summary_keeps_the_worst_state_of_all_batches() -> None:
-    rows = [row(), row(batch=1, error=4e-14, worst_state=7, scale=5.0), row(batch=2, error=1e-14)]
-    data = checked(table(*rows))
+    data = summary({}, {"batch": 1, "error": 4e-14, "worst_state": 7, "scale": 5.0}, {"batch": 2, "error": 1e-14})
     (group,) = data["groups"]
     assert data["ok"] and data["states"] == 30 and group["states"] == 30
     assert (group["error"], group["batch"], group["worst_state"], group["scale"]) == (4e-14, 1, 7, 5.0)
 
 
 def test_what_is_no_number_is_the_worst() -> None:
-    rows = [row(), row(batch=1, error=None, agree=False, status="disagree", worst_state=5)]
-    data = checked(table(*rows))
+    data = summary({}, {"batch": 1, "error": None, "agree": False, "status": "disagree", "worst_state": 5})
     (group,) = data["groups"]
     assert not data["ok"] and group["error"] is None and group["worst_state"] == 5
     spent = {"sessions": 1, "seconds": 1.0, "executions": 2, "repeated": []}
@@ -131,9 +115,9 @@ def test_what_is_no_number_is_the_worst() -> None:
 
 
 def test_agreement_with_nobody_is_none() -> None:
-    assert not checked(table(row(status="unsupported", agree=None, error=None)))["ok"]
-    failed = [row(), row(batch=1, status="failed", agree=None, error=None, engine="any", quantity="all", note="none")]
-    assert not checked(table(*failed))["ok"]
+    nobody = {"agree": None, "error": None}
+    assert not summary(nobody | {"status": "unsupported"})["ok"]
+    assert not summary({}, nobody | {"batch": 1, "status": "failed", "engine": "any", "quantity": "all"})["ok"]
 
 
 def test_a_sweep_counts_its_failures() -> None:

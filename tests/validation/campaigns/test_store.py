@@ -82,11 +82,6 @@ def test_a_missing_part_is_not_passed_over(store: Store) -> None:
     assert not store.results.exists() and store.finished()[0] == {0}
 
 
-def test_the_same_campaign_goes_on(store: Store) -> None:
-    store.write(0, part(store, 0))
-    assert Store.create(store.folder, MANIFEST | {"begun": "later"}).finished()[0] == {0}
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [

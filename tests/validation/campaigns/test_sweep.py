@@ -62,20 +62,6 @@ def test_frequencies_are_those_of_the_steady_motion() -> None:
         assert [row["frequency_1"], row["frequency_2"]] == pytest.approx(expected, rel=1e-12)
 
 
-def test_a_beam_at_rest_scales_with_its_length() -> None:
-    """omega ~ 1/L^2 at constant EI/rhoA: Euler-Bernoulli theory."""
-    rows = [row for row in sweeper(FREQUENCIES).table(0, 0, 2).to_pylist() if row["over:dhub"] == 0.0]
-    short, long = sorted(rows, key=lambda row: row["over:L"])
-    assert short["frequency_1"] / long["frequency_1"] == pytest.approx((9.0 / 6.0) ** 2, rel=1e-9)
-
-
-def test_a_point_that_fails_is_null_and_says_why() -> None:
-    data = END_STATE | {"over": {"m1": {"low": 1.0, "high": 1.0}}, "points": 1}
-    data = data | {"start": {"v": {"q2": 1e200}}}
-    (row,) = sweeper(data).table(0, 0, 1).to_pylist()
-    assert row["q:q1"] is None and row["outcome"] != DONE
-
-
 @pytest.mark.parametrize(
     ("change", "says"),
     [

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 import json
 import math
-import subprocess
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -15,14 +13,12 @@ import pytest
 from symofros.runtime.cuda import cuda_model, figures
 from symofros.runtime.cuda.driver import Driver
 from symofros.runtime.cuda.nvrtc import KernelUsage
-from tests import runtime
-from tests.cuda_on_host import on_host
-from validation.cuda import kernels, measure, record, report, states, warp
-from validation.cuda.record import PEER, KernelRow, PeerRow, Record, RolloutRow
+from tests.cuda_on_host import compile_on_host, host_driver
+from validation.cuda import kernels, measure, report, states, warp
+from validation.cuda.record import PEER, KernelRow, Record, RolloutRow
 from validation.cuda.states import Subject
 from validation.reporting.command import Run
 from validation.reporting.markdown import page
-from validation.reporting.plain import plain
 from validation.reporting.provenance import Provenance, stamp
 
 USAGE = KernelUsage(registers=40, stack=16, spill_stores=8, spill_loads=24)
@@ -31,27 +27,9 @@ USAGE = KernelUsage(registers=40, stack=16, spill_stores=8, spill_loads=24)
 @pytest.fixture(scope="module")
 def device(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
     """A driver of the host, whose kernels are C++, and batches small enough for it."""
-    folder = tmp_path_factory.mktemp("driver")
-    library = folder / "libcuda.so.1"
-    source = Path(runtime.__file__).parent / "cuda/driver_on_host.c"
-    subprocess.run(["gcc", "-shared", "-fPIC", source, "-o", library, "-ldl"], check=True)
-    made = Driver(ctypes.CDLL(str(library)))
+    made = host_driver(tmp_path_factory.mktemp("driver"))
     patch = pytest.MonkeyPatch()
-    known: dict[str, Path] = {}
-    code = cuda_model.CudaModel.code
-
-    def seen(self: cuda_model.CudaModel, name: str, frame: str = "") -> object:
-        """Keeps each text, whose library is made when it is loaded."""
-        found = code(self, name, frame)
-        if found.text not in known:
-            place = folder / str(len(known))
-            place.mkdir()
-            known[found.text] = on_host(found, place)
-        return found
-
-    patch.setattr(cuda_model.CudaModel, "code", seen)
-    patch.setattr(cuda_model, "driver", lambda: made)
-    patch.setattr(cuda_model, "compile_cuda", lambda text, *_: str(known[text]).encode() + b"\0")
+    compile_on_host(patch, made, tmp_path_factory.mktemp("kernels"))
     patch.setattr(measure, "present", lambda: made)
     patch.setattr(measure, "copied", lambda _: 4e12)
     patch.setattr(measure, "_STATES", 8)
@@ -96,11 +74,6 @@ def test_numbers_that_are_not_those_of_c_are_told(device: Driver, monkeypatch: p
     assert not Record(kernels=[row]).ok
 
 
-@pytest.mark.parametrize("rate, error", [(math.nan, math.nan), (1e9, 0.0), (1e9, record.TOLERANCES["double"])])
-def test_rows_are_right_within_the_tolerance_and_where_nothing_was_run(rate: float, error: float) -> None:
-    assert KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, rate, error).right
-
-
 def test_what_was_run_and_is_no_number_is_wrong() -> None:
     assert not KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, 1e9, math.nan).right
     assert not RolloutRow("panda", "step", "rk4", "single", 1e9, math.nan).right
@@ -109,35 +82,3 @@ def test_what_was_run_and_is_no_number_is_wrong() -> None:
 def shown(data: Mapping[str, object]) -> str:
     data = json.loads(json.dumps({"seconds": 1.0, **stamp(), **data}))
     return page(report.TOPIC.compose(data), Provenance.of(data), "")
-
-
-def measured(rate: float, error: float = 1e-15) -> Record:
-    rows = [
-        KernelRow("panda", "dynamics", precision, False, 168, 40, 0, size, rate, error)
-        for precision, size in (("double", 680), ("single", 340))
-    ]
-    rollouts = [RolloutRow("panda", "step", "semi_implicit_euler", "single", 1e10, 1e-7)]
-    peers = [PeerRow("panda", "dynamics", 8192, 1e8, 1e-6), PeerRow("panda", "step", 8192, 2e8, 1e-6)]
-    return Record("A processor", "sm_90", 4e12, rows, rollouts, peers)
-
-
-def test_the_report_says_which_goals_are_missed() -> None:
-    some = measured(3e9)
-    text = shown({"ok": some.ok, **plain(some)})
-    assert "| Panda, 7 joints | M + h | single | 5.0e+09 | **missed** 3.00e+09 |" in text
-    assert "| Panda, 7 joints | M + h | double | 2.5e+09 | 3.00e+09 |" in text
-    assert "51%" in text and "26%" in text  # Of 4e12 B/s: 680 B and 340 B at 3e9 states a second.
-    assert "30×" in text and "50×" in text  # Beside the peer: functions by functions, steps by rollouts.
-
-
-def test_numbers_further_from_c_than_is_asked_for_make_the_report_bad() -> None:
-    some = measured(3e9, 1e-3)
-    assert not some.ok
-    assert "**missed** 1.0e-03" in shown({"ok": some.ok, **plain(some)})
-
-
-def test_without_a_processor_the_report_gives_what_kernels_take() -> None:
-    some = measured(math.nan, math.nan)
-    some.device, some.copied, some.rollouts, some.peers, some.absent = "", math.nan, [], [], "MuJoCo Warp: no module"
-    text = shown({"ok": some.ok, **plain(some)})
-    assert "no graphics processor was at hand" in text and "not measured" in text and "168" in text

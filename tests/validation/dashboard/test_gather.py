@@ -1,16 +1,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
 from validation.reporting import evidence
-from validation.reporting.figures import Chart
 from validation.reporting.record import Topic
 
 DIGEST = "0123456789abcdef"
@@ -60,11 +57,6 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
     assert found.topic.command == "python -m validation fuzz"
 
 
-def test_an_absent_report_says_so(tmp_path: Path) -> None:
-    assert {one.verdict for one in gather(tmp_path, {}, digest).values()} == {"absent"}
-    assert entry(tmp_path).remarks == ("is not made yet",)
-
-
 @pytest.mark.parametrize(
     ("text", "says"),
     [("{", "can't be read"), ("[]", "layout that is not known"), ('{"ok": true}', "layout that is not known")],
@@ -91,21 +83,3 @@ def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str
 )
 def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> None:
     assert entry(write(tmp_path, FUZZ | change)).remarks == (says,)
-
-
-REPORTS = Path(__file__).parents[3] / "reports"
-PRESENT = [name for name in TOPICS if (REPORTS / f"{name}.json").is_file()]
-
-
-@pytest.fixture(scope="module")
-def entries() -> Mapping[str, Entry]:
-    return gather(REPORTS, {"numpy": "2.0"}, digest)
-
-
-@pytest.mark.parametrize("name", PRESENT)
-def test_the_reports_that_are_here_are_understood(entries: Mapping[str, Entry], name: str) -> None:
-    found = entries[name]
-    assert found.report is not None, found.remarks
-    assert found.report.summary.endswith(".") and found.page
-    for chart in found.report.first_chart:
-        assert not isinstance(chart, Chart) or any(len(curve.x) for curve in chart.curves)

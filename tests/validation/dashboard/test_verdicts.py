@@ -52,6 +52,6 @@ def test_a_report_turns_bad(name: str) -> None:
 
 
 def test_an_interrupt_comes_before_a_verdict() -> None:
-    data = stored("stability") | {"ok": False, "unfinished": ["spin"]}
+    data = stored("stability") | {"ok": False, "unfinished": ["energy"]}
     report = TOPICS["stability"].compose(data)
-    assert code(report) == 130 and "Interrupted: spin not done." in report.summary
+    assert code(report) == 130 and "Interrupted: energy not done." in report.summary

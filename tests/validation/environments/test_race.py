@@ -5,10 +5,9 @@ from __future__ import annotations
 import itertools
 from functools import partial
 
-import numpy as np
 import pytest
 
-from validation.environments import race, sides
+from validation.environments import race
 from validation.environments.in_casadi import CASADI
 from validation.environments.record import NATIVE, OURS
 from validation.environments.sides import Offer, Side, Subject, native
@@ -18,25 +17,6 @@ from validation.mechanics.geometry import Array
 @pytest.fixture(scope="module")
 def subject() -> Subject:
     return Subject.of("planar2R", 3)
-
-
-@pytest.mark.parametrize("states", [1, 3])
-def test_native_gradients_are_those_of_native_derivatives(subject: Subject, states: int) -> None:
-    for base in ("forward_dynamics", "inverse_dynamics"):
-        slopes = native(subject, f"{base}_derivatives", states).results().reshape(states, 3, 2, 2)
-        gradient = native(subject, f"{base}_vjp", states).results().reshape(states, 3, 2)
-        np.testing.assert_allclose(np.einsum("nkij,ni->nkj", slopes, subject.cotangent[:states]), gradient, rtol=1e-12)
-
-
-def test_native_derivatives_are_those_of_the_native_function(subject: Subject) -> None:
-    for base in ("forward_dynamics", "inverse_dynamics"):
-        slopes = native(subject, f"{base}_derivatives", 3).results().reshape(3, 3, 2, 2)
-        value, h = native(subject, base, 3).results(), 1e-6
-        for k, name in enumerate(("q", "v", "w")):
-            for j in range(2):
-                moved = Subject(**{**vars(subject), name: getattr(subject, name) + h * np.eye(2)[j]})
-                change = (native(moved, base, 3).results() - value) / h
-                np.testing.assert_allclose(slopes[:, k, :, j], change, rtol=1e-4, atol=1e-4)
 
 
 def _offer(who: str, results: Array, function: str, states: int) -> Side:
@@ -67,11 +47,6 @@ def test_a_side_that_differs_or_fails_is_told_and_not_timed(subject: Subject, mo
     assert "1.0e-06" in told[0][1] and "inf" in told[1][1] and told[2][1] == "KeyError: 'no such\\nfunction'"
 
 
-def test_readers_of_urdf_find_an_inertia_in_every_link(subject: Subject) -> None:
-    text = subject.urdf()
-    assert text.count("<link ") == text.count("<inertial>") and '<mass value="1"/>' in text
-
-
 @pytest.mark.parametrize("states", [1, 3])
 def test_casadis_functions_are_native_cs(subject: Subject, states: int) -> None:
     """Ours, and the recursion in its virtual machine: every function of the race."""
@@ -80,8 +55,3 @@ def test_casadis_functions_are_native_cs(subject: Subject, states: int) -> None:
     for function in CASADI.functions:
         rows = race.rows("casadi", subject, offers, function, states, 1, pytest.fail)
         assert [row.who for row in rows] == [NATIVE, OURS, "recursion, VM"]
-
-
-def test_a_derivative_is_of_its_function() -> None:
-    assert sides.plain("forward_dynamics_vjp") == "forward_dynamics"
-    assert sides.plain("inverse_dynamics") == "inverse_dynamics" and sides.plain("dynamics") == "dynamics"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from dataclasses import asdict, replace
 from typing import Any
 
@@ -15,10 +14,8 @@ from validation.environments.in_torch import TORCH
 from validation.environments.measure import take
 from validation.environments.record import NATIVE, OURS, Absent, Record, Row
 from validation.environments.report import TOPIC
-from validation.reporting import markdown
 from validation.reporting.command import composed
 from validation.reporting.plain import plain
-from validation.reporting.provenance import Provenance
 from validation.reporting.record import Report
 
 
@@ -42,36 +39,10 @@ def report(ok: bool = True, **of: Any) -> Report:
     return composed(TOPIC, {"ok": ok, "failures": {}, "unfinished": [], "turns": 3, **plain(record)})
 
 
-def test_a_race_is_a_row_of_times_and_ratios() -> None:
-    text = markdown.page(report(), Provenance(), "")
-    assert "| Panda, 7 joints | forward dynamics | 1024 | **0.09 µs** | 0.06 µs (0.67×) | 6.6 µs (73×) |" in text
-    assert "|  | forward dynamics | 1 | **20 µs** | - | 900 µs (45×) |" in text
-    assert "3 races in 2 environments: ours differ from native C by at most 2.0e-14" in text
-    assert "ours is the faster beside 2 of 2 times of peers" in text
-    assert "| JAX | 2.0e-14 | 45× to 45× | 73× to 73× |" in text and "| PyTorch | 2.0e-14 | - | - |" in text
-    assert "73× JAX: peers' time over ours, median with 1024 states a call" in text
-
-
-def test_a_side_that_differs_is_told_at_the_top() -> None:
-    failed = [("torch", "forward_dynamics", "adam", "differs from native C by 1.0e-03: its time means nothing")]
-    missed = report(False, failed=failed)
-    assert missed.ok is False and "1 side could not be raced" in missed.summary
-    assert "PyTorch: forward_dynamics, adam: differs" in markdown.page(missed, Provenance(), "")
-
-
 def test_a_record_is_good_where_something_was_measured_and_nothing_differs() -> None:
     assert Record(rows=ROWS).ok and not Record().ok
     assert not Record(rows=[row(OURS, 1.0, error=1e-3)]).ok
     assert not Record(rows=ROWS, failed=[("jax", "f", "frax", "differs")]).ok
-
-
-def test_a_race_that_ours_is_missing_from_has_no_ratio() -> None:
-    alone = Row.of("jax", "panda", "forward_dynamics", 1, "frax", [2.0, 1.0, 3.0], None, 0.0)
-    assert (alone.least, alone.median) == (1.0, 2.0) and math.isnan(alone.ratio)
-    paired = Row.of("jax", "panda", "forward_dynamics", 1, "frax", [2.0, 1.0, 9.0], [1.0, 1.0, 3.0], 0.0)
-    assert paired.ratio == 2.0
-    text = markdown.page(report(rows=[alone]), Provenance(), "")
-    assert "| Panda, 7 joints | forward dynamics | 1 | 0.001 µs |" in text
 
 
 def test_words_of_a_worker_are_taken_and_others_left() -> None:

@@ -5,24 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import reference_models
 import symofros as sf
 from symofros.commands.reading import ReadingOptions, reading_of
 from tests.validation.subjects import URDF
-from validation.inputs.cases import FILES, ROBOTS, Case, file_case, named, robot_case, standard_set
+from validation.inputs.cases import Case, file_case, named
 from validation.inputs.sampling import DEFAULT_STATES
-
-
-def test_robots_are_found_in_the_package() -> None:
-    assert len(ROBOTS) >= 12
-    for label, robot in ROBOTS.items():
-        case = robot_case(label)
-        assert case.path is not None and case.path.is_file() and case.reading.floating_base == robot.floating_base
-
-
-def test_the_standard_set_is_robots_reference_models_and_files() -> None:
-    labels = [case.label for case in standard_set()]
-    assert labels == [*ROBOTS, *reference_models.MODELS, *FILES] and len(labels) == len(set(labels))
 
 
 def test_files_of_the_standard_set_turn_inertias_where_it_counts() -> None:
@@ -49,10 +36,14 @@ def test_states_leave_a_tail_behind_vectors_of_every_width() -> None:
     assert all(DEFAULT_STATES % lanes for lanes in (2, 4, 8))
 
 
-def test_a_package_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("validation.inputs.cases.ROBOT_PACKAGE", "no-such-package")
-    with pytest.raises(FileNotFoundError, match=r"is not installed; pip install 'symofros\[validation\]'"):
-        robot_case("ur5")
+def test_names_are_told_apart_taken_once_and_known(tmp_path: Path) -> None:
+    for names, labels in (
+        (["a/arm.urdf", "b/arm.urdf"], ["a/arm.urdf", "b/arm.urdf"]),
+        (["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"], ["ur5", "arm"]),
+    ):
+        assert [case.label for case in named(names)] == labels
+    with pytest.raises(LookupError, match="did you mean 'panda'"):
+        named(["pandas"])
 
 
 def test_files_and_names_can_be_mixed(tmp_path: Path) -> None:
@@ -79,19 +70,6 @@ def test_options_that_fit_no_file_are_refused(names: list[str], reading: dict[st
     assert said in " ".join(str(caught.value).split())
 
 
-def test_files_of_one_name_are_told_apart() -> None:
-    assert [case.label for case in named(["a/arm.urdf", "b/arm.urdf"])] == ["a/arm.urdf", "b/arm.urdf"]
-
-
-def test_the_same_model_twice_is_checked_once() -> None:
-    assert [case.label for case in named(["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"])] == ["ur5", "arm"]
-
-
-def test_unknown_name() -> None:
-    with pytest.raises(LookupError, match="did you mean 'panda'"):
-        named(["pandas"])
-
-
 @pytest.mark.parametrize("floating_base", [False, True])
 def test_a_urdf_brings_its_text_and_its_digits(tmp_path: Path, floating_base: bool) -> None:
     path = tmp_path / "arm.urdf"
@@ -107,8 +85,3 @@ def test_who_reads_a_urdf_by_itself_is_not_asked_about_other_forces(tmp_path: Pa
     path = tmp_path / "arm.urdf"
     path.write_text(URDF)
     assert Case("arm", path, reading).load().urdf is None
-
-
-def test_a_file_that_is_missing(tmp_path: Path) -> None:
-    with pytest.raises((sf.DescriptionError, OSError), match="nowhere"):
-        Case("nowhere", tmp_path / "nowhere.urdf").load()

@@ -13,13 +13,6 @@ def test_same_seed_same_states() -> None:
     assert not np.allclose(a.q[10:], c.q[10:])
 
 
-def test_models_do_not_share_their_states() -> None:
-    from dataclasses import replace
-
-    other = replace(ASSEMBLY, name="another")
-    assert not np.allclose(sample(ASSEMBLY, 0, 20).v[10:], sample(other, 0, 20).v[10:])
-
-
 def test_on_the_manifold() -> None:
     states = sample(ASSEMBLY, 3, 200)
     assert states.q.shape == (200, ASSEMBLY.nq) and states.v.shape == (200, ASSEMBLY.nv) and states.u.shape == (200, 3)
@@ -39,11 +32,6 @@ def test_special_states_come_first() -> None:
     ball = next(m for m in ASSEMBLY.movers if m.kind == "ball")
     assert states.q[4, ball.q].tolist() == [0.6, 0.0, 0.8, 0.0]
     assert SPEED < np.abs(states.v[6]).max() <= FAST
-
-
-def test_fewer_states_than_special_ones() -> None:
-    assert len(sample(ASSEMBLY, 0, 1)) == 1
-    assert len(sample(ASSEMBLY, 0, 4)) == 4
 
 
 def test_a_later_part_has_states_of_its_own_and_no_special_ones() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from validation.mutation.fresh import Fresh, revision_at
-from validation.mutation.sampling import WIDER, drawn, modules
+from validation.mutation.sampling import drawn
 
 OLD = """
 def total(first, second, third):
@@ -64,10 +64,3 @@ def test_a_revision_that_is_not_there_is_said(repository: Path) -> None:
         Fresh(repository, "nowhere")
     with pytest.raises(LookupError, match="before 2001-01-01"):
         revision_at(repository, "2001-01-01")
-
-
-def test_new_code_is_looked_for_where_models_leave_the_tool_too() -> None:
-    root = Path(__file__).parents[3]
-    assert set(modules(root)) < set(modules(root, WIDER))
-    folders = {module.split("/")[1] for module in modules(root, WIDER)}
-    assert {"exports", "interop", "runtime", "blocks"} <= folders

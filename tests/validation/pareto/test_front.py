@@ -15,14 +15,6 @@ def at(error: float, seconds: float, who: str = "one", method: str = "m", ended:
     return Point(who, "model", method, "step", error, seconds, ended)
 
 
-def test_the_front_is_what_nobody_beats() -> None:
-    good = [at(1.0, 1e-3), at(1e-2, 1e-2), at(1e-5, 1.0)]
-    beaten = [at(2.0, 2e-3), at(1e-2, 2e-2), at(1e-1, 1e-2), at(1.0, 5.0)]
-    points = good + beaten
-    random.Random(1).shuffle(points)
-    assert front(points) == good
-
-
 def test_every_point_off_the_front_is_beaten_by_one_on_it() -> None:
     draw = random.Random(2)
     points = [at(10 ** draw.uniform(-8, 0), 10 ** draw.uniform(-5, 0)) for _ in range(200)]
@@ -47,12 +39,6 @@ def test_times_between_steps_follow_the_order(order: int) -> None:
     points = [at(h**order, 1.0 / h) for h in (0.5, 0.1, 0.02)]
     for h in (0.3, 0.1, 0.05):
         assert seconds_at(points, h**order) == pytest.approx(1.0 / h, rel=1e-12)
-
-
-def test_times_beyond_the_ends() -> None:
-    points = [at(1e-1, 1.0), at(1e-3, 10.0)]
-    assert seconds_at(points, 1.0) == 1.0
-    assert seconds_at(points, 1e-4) == math.inf == seconds_at([], 1.0)
 
 
 def test_nothing_is_drawn_between_methods() -> None:

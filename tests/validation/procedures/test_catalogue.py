@@ -12,7 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
 from validation.mechanics.assembly import assemble
-from validation.procedures import analyses, batches, catalogue, forces, identities, reactions, runs, steps
+from validation.procedures import analyses, batches, catalogue, identities, reactions, runs, steps
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
 from validation.procedures.scene import Cell, Scene
 
@@ -35,31 +35,12 @@ def test_every_label_is_a_reference_model() -> None:
     assert set(PROCEDURES) <= set(MODELS)
 
 
-def test_a_file_that_is_called_like_a_reference_model_is_none() -> None:
-    other = replace(MODELS["heavy_top"], name="heavy_top")
-    assert not list(judge_procedures("heavy_top", other, assemble(other)))
-
-
 @pytest.mark.slow
 def test_a_wrong_coefficient_of_a_method_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     """On the side of the formulas, which stands for one in C."""
     rk4 = steps.EXPLICIT["rk4"]
     monkeypatch.setitem(steps.STEPS, "rk4", replace(rk4, b=rk4.b + [1e-6, -1e-6, 0, 0]).step)
     assert wrong(runs.fixed_steps(scene("heavy_top"))) == ["steps by rk4"]
-
-
-@pytest.mark.slow  # In every run: a wrong coefficient of a method.
-def test_a_damper_that_is_left_out_shows(monkeypatch: pytest.MonkeyPatch) -> None:
-    system = forces.carried()
-    assert not wrong(forces.applied(scene("heavy_top")))
-    undamped = tuple(replace(one, damping=0.0) for one in system.connections)
-    monkeypatch.setattr(forces, "carried", lambda **_: replace(system, connections=undamped))
-    assert wrong(forces.applied(scene("heavy_top")))[0] == "applied forces"
-
-
-def test_a_wrong_safety_factor_shows(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(steps, "SAFETY", 0.91)
-    assert "steps chosen by dopri5" in wrong(runs.chosen_steps(scene("heavy_top")))
 
 
 def test_a_wrong_sign_of_the_gyroscopic_terms_shows(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -51,11 +51,6 @@ def test_a_picture_is_sound_and_says_what_it_shows() -> None:
     assert len(set(identifiers)) == len(identifiers) and not re.search("#[0-9a-f]{6}", svg)
 
 
-def test_the_same_data_is_the_same_picture() -> None:
-    chart = Chart("t", "x", "y", (Curve("a", Y, Y, 0, "joined"),))
-    assert charts.draw(chart) == charts.draw(chart)
-
-
 def test_without_the_library_a_page_says_so_in_place_of_its_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     page = html.chart(Chart("t", "x", "y", (Curve("a", Y, Y),)))

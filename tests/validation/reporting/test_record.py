@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from validation.reporting import html, markdown
-from validation.reporting.command import Run
 from validation.reporting.figures import Chart, Curve, Figure, Mark
 from validation.reporting.findings import Finding
 from validation.reporting.plain import plain, restored
 from validation.reporting.provenance import Provenance
 from validation.reporting.questions import findings_fold
-from validation.reporting.record import Bullets, Cell, Report, Section, Table, Text, Topic, verdict
+from validation.reporting.record import Bullets, Cell, Report, Section, Table, Text, verdict
 
 LIMIT = Mark("limit", 2.0, "x")
 CHART = Chart("t < u", "x  [m]", "y  [s]", (Curve("a", np.array([1.0, np.nan]), np.ones(2), 3),), (LIMIT,))
@@ -54,12 +53,6 @@ def test_markdown_shows_everything_but_figures() -> None:
     assert "## How | wide?" in text and "Only there" not in text and "svg" not in text and "numpy 2" in text
 
 
-def test_a_run_stamps_its_data_where_that_does_not_say_otherwise() -> None:
-    topic = Topic("t", "g", "q?", lambda data: REPORT)
-    data = Run(topic).stamped({"seconds": 3.0})
-    assert data["seconds"] == 3.0 and "numpy" in data["versions"] and data["machine"]["processor"] and data["date"]
-
-
 @pytest.mark.parametrize("text", ["<script>", "[x](javascript:alert)", '[x](#"onclick="y)', "`<b>`", "**<i>**"])
 def test_texts_can_not_break_the_page(text: str) -> None:
     shown = html.prose(text)
@@ -76,23 +69,3 @@ def test_a_finding_survives_its_json() -> None:
     assert restored(tuple[Finding, ...], plain(FINDINGS)) == FINDINGS
     lost = restored(Finding, plain(Finding("x", np.nan, 1.0)))
     assert np.isnan(lost.value) and not lost.ok
-
-
-@pytest.mark.parametrize("row", ["a |  | |x| b | ", ("a", "", "|x| b", "")])
-def test_a_row_is_a_line_of_markdown_or_its_cells(row: str | tuple[str, ...]) -> None:
-    assert Table.of("who | \n what | where | n", [row]) == Table(
-        ("who", "what", "where", "n"), (("a", "", "|x| b", ""),)
-    )
-
-
-def test_a_row_that_misses_a_cell_is_refused() -> None:
-    with pytest.raises(ValueError, match="a row of 1 cells"):
-        Table.of("who | what", ["a | b", "a"])
-
-
-def test_a_section_without_content_is_left_out() -> None:
-    folded = Section("All", (Bullets(()),))
-    empty = Section("Finds", ("These were found:", Table.of("finds", ()), Figure("", ()), folded))
-    report = Report("T", "s", True, (), (empty, Section("Words", ("alone.",)), SECTION))
-    assert [one.title for one in report.sections] == ["Words", "How | wide?"] and report.first_chart == (CHART,)
-    assert "Finds" not in html.page(report) + markdown.page(report, NOWHERE, "")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import re
 import time
 from itertools import islice
 from pathlib import Path
@@ -19,7 +18,7 @@ from validation.studies import fuzz
 from validation.studies.fuzz import KINDS, TEXT_KINDS
 from validation.studies.fuzz_file_inputs import FILE_KINDS, PLACE, mutated_files, sound_files
 from validation.studies.fuzz_files import feed_file
-from validation.studies.fuzz_inputs import CORPUS, corpus, mutated
+from validation.studies.fuzz_inputs import corpus, mutated
 
 
 @pytest.mark.slow
@@ -33,22 +32,10 @@ def test_no_input_crashes_or_hangs_the_readers() -> None:
     assert result.answers["yaml"].compiled and result.answers["urdf"].compiled
 
 
-@pytest.mark.parametrize("name", ["everything.yaml", "arm.urdf"])
-def test_the_corpus_is_sound(name: str) -> None:
-    assert sf.load(CORPUS / name).bodies
-
-
 @pytest.mark.parametrize("data", corpus("diagram"))
 def test_the_diagrams_of_the_corpus_are_sound(tmp_path: Path, data: bytes) -> None:
     fuzz._diagram(tmp_path, data)
     assert sf.load_diagram(tmp_path / "again.yaml").blocks
-
-
-def test_parameters_that_a_model_refuses_are_a_fault_of_the_diagram(tmp_path: Path) -> None:
-    data = next(data for data in corpus("diagram") if b"parameters: {" in data and b"m: " in data)
-    hostile = re.sub(rb"parameters: {[^}]*}", b"parameters: {m: -1}", data, count=1)
-    with pytest.raises(sf.DescriptionError, match="mass"):
-        fuzz._diagram(tmp_path, hostile)
 
 
 @pytest.mark.parametrize("kind", FILE_KINDS)
@@ -59,12 +46,6 @@ def test_the_files_that_mutations_start_from_are_sound(kind: str, tmp_path: Path
         feed_file(kind, tmp_path, data, 1)
 
 
-@pytest.mark.parametrize("kind", FILE_KINDS)
-def test_hostile_files_are_the_same_for_the_same_seed(kind: str) -> None:
-    first = list(islice(mutated_files(kind, 3), 20))
-    assert first == list(islice(mutated_files(kind, 3), 20)) != list(islice(mutated_files(kind, 4), 20))
-
-
 @pytest.mark.parametrize("kind", ["stl", "motion.npz", "motion.csv", "samples.csv", "document"])
 @pytest.mark.parametrize("place", ["folder", "pipe", "socket", "loop", "endless", "dangling", "nothing"])
 def test_what_is_no_file_is_refused_or_begun(kind: str, place: str, tmp_path: Path) -> None:
@@ -73,11 +54,11 @@ def test_what_is_no_file_is_refused_or_begun(kind: str, place: str, tmp_path: Pa
             feed_file(kind, tmp_path, PLACE + place.encode(), number)
 
 
-@pytest.mark.parametrize("kind", TEXT_KINDS)
+@pytest.mark.parametrize("kind", [*TEXT_KINDS, *FILE_KINDS])
 def test_inputs_are_the_same_for_the_same_seed(kind: str) -> None:
-    first = list(islice(mutated(kind, 3), 50))
-    assert first == list(islice(mutated(kind, 3), 50)) != list(islice(mutated(kind, 4), 50))
-    assert not set(first) <= set(corpus(kind))
+    made = mutated if kind in TEXT_KINDS else mutated_files
+    first = list(islice(made(kind, 3), 20))
+    assert first == list(islice(made(kind, 3), 20)) != list(islice(made(kind, 4), 20))
 
 
 def test_a_crash_is_reported_with_its_input(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -105,18 +86,3 @@ def test_a_hang_is_interrupted_and_reported(monkeypatch: pytest.MonkeyPatch) -> 
     result = fuzz.fuzz(3, seed=0)
     assert [fault.kind for fault in result.faults] == ["yaml", "urdf"]
     assert all("longer than 0.1 s" in fault.what for fault in result.faults)
-
-
-def test_a_change_by_writing_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    read = iter(sf.System(name, [sf.RigidBody("b", sf.Joint("q", "free"))]) for name in "abcdef")
-    monkeypatch.setattr(sf, "load", lambda path, **options: next(read))
-    assert "another system" in fuzz.fuzz(1, seed=0).faults[0].what
-
-
-def test_the_report_counts_every_input(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, ["fuzz", "--count", str(2 * len(KINDS)), "--seed", "5", "--report", str(tmp_path)])
-    assert done.exit_code == 0, done.output
-    data = json.loads((tmp_path / "fuzz.json").read_text())
-    assert data["ok"] and data["inputs"] == 2 * len(KINDS) and data["seed"] == 5 and data["peak_memory_mib"] > 10
-    assert [data["kinds"][kind]["inputs"] for kind in KINDS] == [2] * len(KINDS)
-    assert f"{2 * len(KINDS)} hostile inputs" in (tmp_path / "fuzz.md").read_text()

@@ -12,8 +12,7 @@ import symofros as sf
 from validation.contract import quantities
 from validation.studies import mutation
 from validation.studies.faults import FaultSimulator, faults_at
-from validation.studies.mutation import as_data, mutate
-from validation.studies.reports.mutation import compose
+from validation.studies.mutation import mutate
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "space_arm"])
@@ -64,10 +63,3 @@ def test_an_incremental_evaluation_equals_a_full_one() -> None:
             sound = simulator.outputs(function)
             if function not in touched:
                 assert all(np.array_equal(a, b) for a, b in zip(sound, expected, strict=True)), fault
-
-
-def test_the_report_counts_what_happened() -> None:
-    data = as_data([mutate("pendulum", reference_models.MODELS["pendulum"], 50)])
-    (row,) = data["models"]
-    assert row["planted"] == row["caught"] + row["silent"] + row["too_small"] + len(row["survived"]) == 50
-    assert "are caught (100 %)" in compose(data).summary

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import json
-from pathlib import Path
-
 import pytest
-from typer.testing import CliRunner
 
-from validation.__main__ import app
 from validation.studies import rollouts
 
 
@@ -23,17 +18,3 @@ def test_both_sides_move_the_same_arm(threads: int) -> None:
         assert 0 < generated.error < 1e-5 and engine.error == pytest.approx(generated.error, rel=0.05, abs=1e-12)
         assert adaptive.error < 1e-5 < first_order.error < 0.1
         assert all(row.nanoseconds[0] > 0 for row in rows)
-
-
-def test_report(tmp_path: Path) -> None:
-    command = ["rollouts", "--trajectories", "9", "--steps", "5", "--repeats", "1", "--report", str(tmp_path)]
-    found = CliRunner().invoke(app, command)
-    assert found.exit_code == 0, found.output
-    data = json.loads((tmp_path / "rollouts.json").read_text())
-    assert data["trajectories"] == 9 and len(data["rollouts"]) == 8
-    text = (tmp_path / "rollouts.md").read_text()
-    assert (
-        "# 9 motions of a 7-joint arm" in text
-        and "| PD control | MuJoCo, rollout | RK4, 1 ms | 1 |" in text
-        and "load" in text
-    )

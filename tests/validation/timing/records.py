@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from validation.timing.models import CHAINS
-from validation.timing.record import Entry, Made, Record
+from validation.timing.record import Entry, Made
 
 
 def entry(
@@ -37,12 +36,3 @@ def made(
 ) -> Made:
     counts = {"mul": operations // 2, "add": operations // 2, "div": 0, "call": 0}
     return Made(0.01, 0.3, 40000, 9000, 500, counts, 640, model, 7, function, by, "gcc -O3", time)
-
-
-def cubic() -> Record:
-    """Chains whose times grow with n^3 by us and n^1.5 by Pinocchio; operations with n^2."""
-    record = Record()
-    for n in CHAINS:
-        record.entries.append(entry(f"chain{n}", generated_time=2.0 * n**3, peer_time=70.0 * n**1.5, batch=None))
-        record.costs.append(made(f"chain{n}", operations=8 * n**2))
-    return record

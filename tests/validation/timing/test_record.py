@@ -5,22 +5,11 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from tests.validation.timing.records import cubic, entry, made
-from validation.timing.growth import exponent, growth
-from validation.timing.models import CHAINS
+from tests.validation.timing.records import entry, made
 from validation.timing.record import Record, Wait, as_data, read
-from validation.timing.report import TOPIC
-from validation.timing.targets import TARGETS, Target, Verdict, reverse_costs, verdicts
-
-
-def test_ratios_are_of_medians() -> None:
-    pair = entry(generated_time=100.0, peer_time=800.0, batch=20.0)
-    assert pair.ratio == 8.0 and pair.batch_ratio == 40.0
-    assert entry(batch=None).batch_ratio is None and pair.columns_ratio is None
-    assert entry(peer_time=800.0, columns=16.0).columns_ratio == 50.0
+from validation.timing.targets import TARGETS, Target, Verdict, verdicts
 
 
 def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
@@ -36,34 +25,6 @@ def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
     assert best is not None and best.variant == "clang 19, world"
     assert gcc is not None and gcc.ratio == 9.0
     assert record.best("panda", "bias", "pinocchio") is None
-
-
-@pytest.mark.parametrize("slope", [0.0, 1.0, 2.5, 3.0])
-def test_the_exponent_of_a_power_law_is_its_power(slope: float) -> None:
-    assert exponent(CHAINS, [3.0 * n**slope for n in CHAINS]) == pytest.approx(slope, abs=1e-12)
-
-
-def test_the_exponent_is_of_the_upper_part() -> None:
-    """A constant hides the growth of short chains."""
-    assert exponent(CHAINS, [100.0 if n < 7 else n**2.0 for n in CHAINS]) == pytest.approx(2.0, abs=1e-12)
-    assert np.isnan(exponent([7], [1.0]))
-
-
-def test_growth_is_of_each_side_and_quantity() -> None:
-    found = {(curve.who, curve.quantity): curve.exponent for curve in growth(cubic())}
-    assert found["symofros", "time [ns]"] == pytest.approx(3.0)
-    assert found["pinocchio", "time [ns]"] == pytest.approx(1.5)
-    assert found["symofros", "operations"] == pytest.approx(2.0)
-    assert ("mujoco", "time [ns]") not in found
-
-
-def test_growth_goes_on_where_no_peer_does() -> None:
-    """Beyond the sizes that others take, what was timed stands with the cost of the function."""
-    record = cubic()
-    largest = record.entries.pop()
-    record.costs = [made("chain52", time=largest.generated_time[1])]
-    (curve,) = (c for c in growth(record) if (c.who, c.quantity) == ("symofros", "time [ns]"))
-    assert curve.n == CHAINS and curve.exponent == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
@@ -89,16 +50,6 @@ def test_targets_use_the_family_and_the_batch_they_name() -> None:
     ratios = {(v.target.how, v.target.family): v.ratio for v in found}
     assert ratios == {("state by state", ""): 8.0, ("state by state", "gcc"): 12.0, ("batch by columns", ""): 50.0}
     assert {v.by_rows for v in found} == {None, 40.0}
-
-
-@pytest.mark.parametrize(("time", "met"), [(399.0, True), (401.0, False)])
-def test_a_gradient_is_judged_by_the_time_of_its_function(time: float, met: bool) -> None:
-    costs = [made(function="inverse_dynamics"), made(function="inverse_dynamics_vjp", time=time), made("ur5")]
-    costs.append(made("ur5", "forward_dynamics_vjp"))  # Whose function was not timed.
-    (found,) = reverse_costs(Record(costs=costs))
-    assert (found.model, found.ratio, found.met) == ("panda", time / 100.0, met)
-    report = TOPIC.compose(as_data(Record([entry()], costs)))
-    assert any("reverse mode" in text for text in report.missed) == (not met)
 
 
 def test_a_record_survives_its_file(tmp_path: Path) -> None:

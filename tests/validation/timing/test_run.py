@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import subprocess
 import sys
 from dataclasses import asdict
@@ -12,18 +11,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from tests.late import with_utilities
-from tests.validation.timing.records import cubic, entry, made
+from tests.validation.timing.records import entry, made
 from validation.__main__ import app
-from validation.reporting.command import write
-from validation.reporting.record import Table
-from validation.timing import measure, run, worker
+from validation.timing import measure, worker
 from validation.timing.contestants import engines
-from validation.timing.models import TIMED_MODELS
-from validation.timing.record import Record, as_data
-from validation.timing.report import TOPIC
-from validation.timing.run import jobs, peaks, take
-from validation.timing.tables import sections
+from validation.timing.record import Record
+from validation.timing.run import take
 from validation.timing.worker import Job
 
 JOB = Job("panda", ("pinocchio", "sympy"), ("dynamics",), 3, 100)
@@ -60,21 +53,6 @@ def test_a_worker_ends_with_the_process_that_started_it() -> None:
         assert process.wait(30) == 1
 
 
-def test_a_model_that_is_timed_again_has_failed_no_longer(monkeypatch: pytest.MonkeyPatch) -> None:
-    record = Record(failed=[("panda", run.LEFT, "symofros", "it died"), ("ur5", run.LEFT, "symofros", "it died")])
-    monkeypatch.setattr(sys, "executable", shutil.which("true", path=with_utilities()["PATH"]))
-    run.run_job(JOB, record)
-    assert [model for model, *_ in record.failed] == ["ur5"]
-
-
-def test_jobs_are_the_functions_that_a_model_is_timed_at() -> None:
-    found = jobs(["panda", "chain7"], ("mujoco",), ["dynamics", "step"], 5, 100)
-    assert [(job.model, job.functions) for job in found] == [("panda", ("dynamics", "step")), ("chain7", ("dynamics",))]
-    assert jobs(["chain7"], ("mujoco",), ["bias"], 5, 100) == []
-    left = jobs(["panda"], ("mujoco",), ["dynamics", "step"], 5, 100, Record([entry("panda", "dynamics")]))
-    assert [job.functions for job in left] == [("step",)], "resumed"
-
-
 @pytest.mark.slow
 def test_a_model_is_timed_beside_engines_and_symbolic_peers() -> None:
     """Whole, in this process; Pinocchio's minutes of compilation are left to the run."""
@@ -97,50 +75,6 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     worker.work(Job("planar2R", ("mujoco",), ("step",), 3, 64), lambda *what: said.append(what))
     (words,) = [value for kind, value in said if kind == "failed" and isinstance(value, list)]
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
-
-
-def test_only_the_programs_that_the_models_need_are_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    built: list[str] = []
-    monkeypatch.setattr(run, "pinocchio_builds", lambda program, say: built.append(program))
-    for model, peers in (("planar2R", ("pinocchio",)), ("planar2R", ("mujoco",)), ("four_bar", ("pinocchio",))):
-        assert run.prepare([Job(model, peers, ("forward_dynamics",), 3, 100)], print) == []
-    assert built == [engines.TREES, engines.CLOSED]
-
-
-def test_a_core_has_a_peak() -> None:
-    found = peaks()
-    assert found["vector_flops"] > found["scalar_flops"] > 1e8 and found["copied_bytes"] > 1e8
-
-
-def test_the_report_shows_targets_costs_growth_and_what_was_left_out(tmp_path: Path) -> None:
-    record = cubic()
-    record.entries.append(entry(peer_time=650.0))
-    record.costs.append(made())
-    record.skipped.append(("panda", "bias", "sympy", "too large\nwith details"))
-    record.machine = {
-        "processor": "P",
-        "load": [0.5, 1.0],
-        "scalar_flops": 1e10,
-        "vector_flops": 8e10,
-        "copied_bytes": 1e11,
-        "versions": {"pinocchio": "4.1.0"},
-    }
-    made_of_it = write(TOPIC, as_data(record), tmp_path)
-    assert made_of_it.ok is False and made_of_it.summary.startswith("0 of 43 targets are met, 40 were not measured")
-    page = (tmp_path / "timing.html").read_text()
-    for text in (page, (tmp_path / "timing.md").read_text()):
-        assert "missed by 7%" in text and "too large" in text and "with details" not in text
-        assert "4.1.0" in text and "n^3.0" in page
-    (cost,) = (
-        block
-        for section in sections(record)
-        if section.title == "How far from the machine's limit"
-        for block in section.blocks
-        if isinstance(block, Table)
-    )
-    row = next(row for row in cost.rows if row[0] == TIMED_MODELS["panda"].title)
-    # 1000 operations at 10 GFlop/s take 100 ns, which is what was measured; vectors in batches 20 ns, of 12.5.
-    assert row[cost.head.index("distance")] == "1.0" and row[cost.head.index("of batches")] == "1.6"
 
 
 def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -119,27 +119,6 @@ def test_the_reader_in_python_needs_nothing_of_ours(read_by_python: list[list[st
     assert len(read_by_python) == len(MODELS) * 3 * len(FUNCTIONS)
 
 
-def test_the_reader_in_python_without_its_folder_says_what_it_takes(tmp_path: Path) -> None:
-    for arguments, told in (([], "usage: python read.py FOLDER"), ([str(tmp_path)], "no file values/*.json in ")):
-        command = [sys.executable, "-I", str(FOLDER / "readers/read.py"), *arguments]
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 1 and done.stderr.startswith(told) and "Traceback" not in done.stderr
-
-
-@pytest.mark.tools
-def test_the_reader_in_cpp_reads_the_same(read_by_python: list[list[str]], tmp_path: Path) -> None:
-    if not (compiler := shutil.which("g++") or shutil.which("clang++")):
-        pytest.skip("no compiler of C++")
-    has = subprocess.run(
-        [compiler, "-E", "-x", "c++", "-"], input="#include <nlohmann/json.hpp>", text=True, capture_output=True
-    )
-    if has.returncode:
-        pytest.skip("nlohmann/json is not installed (Debian: nlohmann-json3-dev)")
-    source, program = FOLDER / "readers/read.cpp", tmp_path / "read"
-    subprocess.run([compiler, "-std=c++17", str(source), "-o", str(program)], check=True)
-    assert lines(subprocess.run([program, FOLDER], capture_output=True, text=True, check=True).stdout) == read_by_python
-
-
 def test_the_command_says_what_would_change(tmp_path: Path) -> None:
     shutil.copytree(FOLDER, tmp_path / "truth")
     arguments = ["truth", "--check", "--model", "two_hinges", "--output", str(tmp_path / "truth")]

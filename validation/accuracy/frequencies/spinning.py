@@ -37,14 +37,15 @@ def study(quick: bool) -> Study:
         for eta, row in reference["published_wright_delta0"].items()
     )
     apart = engine((3.0, 12.0) if quick else (0.5, 3.0, 6.0, 9.0, 12.0))
-    findings = _findings(worst, float(published), critical, apart)
+    findings = [*_findings(worst, float(published), critical, apart), *_above_divergence()]
     slow = next(row["chord"][0] for row in reference["table"] if (row["delta"], row["eta"]) == (0, 1))
     answer = (
         f"Eight functions follow the first three frequencies up to η = 12 to "
         f"{max(float(e.max()) for e in worst[8].values()):.1e}, ten to "
         f"{max(float(e.max()) for e in worst[10].values()):.1e}. Without foreshortening flap does not stiffen at all, "
         f"and lag loses its stiffness at η = {critical[0.0]:.4f}, the frequency at rest; long before it diverges "
-        f"such a model is wrong, by {1 - np.sqrt(FIRST**2 - 1) / slow:.0%} at η = 1."
+        f"such a model is wrong, by {1 - np.sqrt(FIRST**2 - 1) / slow:.0%} at η = 1. Above it flies away, at a rate of "
+        f"{growth(6.0):.2f} at η = 6, where a foreshortened beam only gets stiffer; of order zero it is as at rest."
     )
     return Study(
         "Does a beam stiffen as it should when it spins?",
@@ -136,6 +137,40 @@ def divergence(delta: float) -> float:
     """The speed at which lag without foreshortening has no stiffness left."""
     m = spinning("bend_y", 5, foreshortening=False, retain="all")
     return float(scipy.optimize.brentq(lambda eta: float(spinning_squares(m, eta, delta)[0]), 3.0, 4.0))
+
+
+def growth(eta: float) -> float:
+    """Rate at which a beam without foreshortening flies away in lag; NaN where it swings."""
+    m = spinning("bend_y", 5, foreshortening=False, retain="all")
+    squared = float(spinning_squares(m, eta, 0.0)[0])
+    return float(np.sqrt(-squared)) if squared < 0.0 else np.nan
+
+
+def _above_divergence() -> list[Finding]:
+    """What is asked of speeds above the first frequency, in lag: η up to 8, hubs up to twice the length."""
+    places = [(eta, delta) for eta in (4.0, 6.0, 8.0) for delta in (0.0, 0.5, 1.0, 2.0)]
+    stiff, ruthless = spinning("bend_y", 5), spinning("bend_y", 5, retain="zeroth_order")
+    least = min(float(spinning_squares(stiff, *place)[0]) for place in places)
+    moved = max(abs(float(spinning_squares(ruthless, *place)[0]) / FIRST**2 - 1.0) for place in places)
+    return [
+        *(
+            near(f"without foreshortening: rate of growth at η = {eta:g}", growth(eta), known, 1e-3, "√(η² − 3.516²)")
+            for eta, known in ((eta, float(np.sqrt(eta**2 - FIRST**2))) for eta in (4.0, 6.0))
+        ),
+        Finding(
+            "foreshortened, η up to 8: least square of the first frequency over that at rest",
+            least / FIRST**2,
+            np.inf,
+            1.0,
+            "it stiffens",
+        ),
+        Finding(
+            "zeroth order, η up to 8: relative change of the square",
+            moved,
+            1e-3,
+            reason="it neither stiffens nor softens",
+        ),
+    ]
 
 
 def frequencies(etas: Array, table: list[dict[str, Any]]) -> Figure:

@@ -37,7 +37,8 @@ def drive(t: float) -> tuple[float, float, float]:
 def tip(times: Array, modes: int, **changed: Any) -> Array:
     """Displacement of the tip (n, 2) along and across the undeformed beam, seen from the hub [m]."""
     hub = sf.Joint("hub", "revolute", prescribed=True)
-    beam = sf.Beam("b", hub, LENGTH, RHO_A, EI_z=EI, bend_y=modes, family="clamped_free", **changed)
+    given: dict[str, Any] = {"family": "clamped_free"} | changed
+    beam = sf.Beam("b", hub, LENGTH, RHO_A, EI_z=EI, bend_y=modes, **given)
     options = sf.Options(("forward_dynamics", "frame_pose"), ("tip",))
     m = sf.compile(sf.System("s", (beam,), gravity=(0, 0, 0)), options)
     q, _ = motion(m, np.zeros(modes), np.zeros(modes), times, 1e-9, drive)

@@ -14,7 +14,7 @@ from ...adapters.exudyn.timed_systems import bars
 from ...adapters.mujoco.steps import loaded
 from ...mechanics.geometry import Array
 from ...stability.closed_loops import four_bars
-from ...stability.closed_loops.soft_closures import DEFAULT, SOLIMP
+from ...stability.closed_loops.singular import DEFAULT, SOLIMP
 from ..contestants.exudyn import ExudynModel
 from ..contestants.mujoco import MujocoModel
 from ..contestants.symofros import SymofrosModel

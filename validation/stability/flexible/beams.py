@@ -23,6 +23,7 @@ from ..study import (
     Verdict,
     cell,
     decades,
+    longest,
     simulate,
 )
 
@@ -108,14 +109,9 @@ def closed_form(c: float, modes: int = 3) -> float:
     return float(min(steps))
 
 
-def longest(run: Callable[[float], sf.Trajectory], low: float, high: float) -> float:
-    """The longest step that holds, by bisection to 1e-4."""
-    while high / low > 1.0001:
-        middle = float(np.sqrt(low * high))
-        done = run(middle)
-        held = done.outcome.ok and growth(done) <= BOUND
-        low, high = (middle, high) if held else (low, middle)
-    return low
+def held(run: sf.Trajectory) -> bool:
+    """Whether a run comes to its end, and its energy stays."""
+    return run.outcome.ok and growth(run) <= BOUND
 
 
 def judge(maps: Maps) -> Verdict:
@@ -123,7 +119,7 @@ def judge(maps: Maps) -> Verdict:
     known = data("steel_strip")["omega_bending"]
     apart = float(np.abs(frequencies(5) / np.array(known) - 1).max())
     reached = {
-        method: longest(lambda h, m=method: ring(2, m, h), 0.5 * bound / w, 2 * bound / w) * w  # type: ignore[misc]
+        method: longest(lambda h, m=method: held(ring(2, m, h)), 0.5 * bound / w, 2 * bound / w) * w  # type: ignore[misc]
         for method, bound in IMAGINARY.items()
         for w in (float(frequencies(2)[-1]),)
     }
@@ -176,7 +172,7 @@ def judge_damped(maps: Maps) -> Verdict:
     runs = maps["rk4"]
     missed = runs.miss("y", closed_form)
     heavy = float(RETARDATION.values[-3])
-    edge = longest(lambda h: ring(3, "rk4", h, heavy), closed_form(heavy) / 2, closed_form(heavy) * 2)
+    edge = longest(lambda h: held(ring(3, "rk4", h, heavy)), closed_form(heavy) / 2, closed_form(heavy) * 2)
     omega = float(frequencies(3)[-1])
     best = max(RETARDATION.values, key=closed_form)
     findings = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -80,22 +81,18 @@ def jump() -> float:
 
 def measure(method: str) -> Callable[[float, float], Cell]:
     """Distance from the exact motion, in slips."""
+    return lambda v0, h: cell(dragged(v0, method=method, dt=h, adaptive=False), distance)
 
-    def run(v0: float, h: float) -> Cell:
-        m = block().with_parameters(v0=v0)
-        done = simulate(
-            m,
-            [0.0],
-            t_end=END,
-            method=method,
-            dt=h,
-            adaptive=False,
-            output=0.01,
-            u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"},
-        )
-        return cell(done, lambda run: float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()))
 
-    return run
+def dragged(v0: float, **settings: Any) -> sf.Trajectory:
+    """The block, dragged by its spring."""
+    m = block().with_parameters(v0=v0)
+    return simulate(m, [0.0], t_end=END, output=0.01, u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"}, **settings)
+
+
+def distance(run: sf.Trajectory) -> float:
+    """Mean distance from the exact motion, in slips."""
+    return float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump())
 
 
 def limit(bound: float) -> Limit:
@@ -179,18 +176,8 @@ def break_away(v0: float) -> float:
 
 def steady(v0: float) -> tuple[float, int]:
     """Adaptive rodas4: mean distance in slips, and steps."""
-    m = block().with_parameters(v0=v0)
-    run = simulate(
-        m,
-        [0.0],
-        t_end=END,
-        method="rodas4",
-        rtol=1e-6,
-        atol=1e-9,
-        output=0.01,
-        u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"},
-    )
-    return float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump()), run.statistics.steps
+    run = dragged(v0, method="rodas4", rtol=1e-6, atol=1e-9)
+    return distance(run), run.statistics.steps
 
 
 STUDY = ParameterStudy(

@@ -15,26 +15,17 @@ from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
-from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.events import event_notes
+from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
-from symofros.simulation.results.outcome import Kind, Outcome
+from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.user_functions import raised_where
-
-_ENDS: dict[int, tuple[Kind, str, str]] = {
-    Status.DIVERGED: ("diverged", "a state has grown without bound", "a smaller dt; look for gains that are too high"),
-    Status.SINGULAR: ("singular", "no accelerations exist", "give every speed an inertia or a constraint"),
-    Status.STEP_TOO_SMALL: ("step too small", "the tolerances ask for steps below rounding", "loosen rtol"),
-    Status.ENERGY_LOST: (
-        "constraints lost",
-        "keeping the constraints has taken the energy of the motion: they are singular here",
-        "a smaller step, or an event before it",
-    ),
-    Status.PROJECTION_FAILED: ("constraints lost", "projection does not meet the constraints again", "a smaller step"),
-}
 
 
 @dataclass(frozen=True)
@@ -48,10 +39,8 @@ class Ended:
         settings: Settings of each part.
         spacing: Shortest time between two instants, where steps end [s].
         states: All that it recorded: t (n), q, v, u.
-        crossings: Time and index of each crossing.
+        recorded: The same in portions, with its events and its last status.
         spent: Wall time in the loop, processor time by the calling thread [s].
-        status: Last status.
-        interrupted: Whether Ctrl-C ended the run.
         start_notes: What of a stated start changed in its last digits.
     """
 
@@ -61,10 +50,8 @@ class Ended:
     settings: Sequence[Settings]
     spacing: float
     states: Sequence[Array]
-    crossings: Sequence[tuple[float, int]]
+    recorded: Recorded
     spent: tuple[float, float]
-    status: int
-    interrupted: bool
     start_notes: tuple[str, ...] = ()
 
     @property
@@ -75,7 +62,7 @@ class Ended:
     @property
     def t(self) -> float:
         """Time of the end [s]."""
-        return float(self.loop.diagram.t[0])
+        return self.loop.t
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:
@@ -83,11 +70,8 @@ class Ended:
         t, q, v, u = self.states
         bendings: list[BeamBending] = []
         for stepper, part in zip(self.loop.parts, self.layout.parts, strict=True):
-            bent = stepper.bendings
-            if max((bending.error for bending in bent), default=0.0) >= UNAMPLIFIED:
-                motion = t, q[:, part.q], v[:, part.v], u
-                bent = stepper.amplified_bendings(amplifications(stepper.model, motion, self.par, "mass_matrix"))
-            bendings += bent
+            motion, bent, amplify = (t, q[:, part.q], v[:, part.v], u), stepper.bendings, stepper.amplified_bendings
+            bendings += amplified_in_motion(bent, amplify, stepper.model, motion, self.par, "mass_matrix")
         return tuple(bendings)
 
 
@@ -98,7 +82,7 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         ended: The run.
         bendings: Bending of its beams.
     """
-    loop, status, t = ended.loop, ended.status, ended.t
+    loop, status, t = ended.loop, ended.recorded.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
     closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
@@ -108,17 +92,15 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         name = names[which] if which >= 0 else ", ".join(names)
         return engaged_apart(closed[0], closed[1], name, notes), Resolution()
     notes = (*notes, *engaging_notes(*closed))
-    if ended.interrupted:
-        return Outcome("interrupted", t, "Ctrl-C; the part up to here is kept", notes=notes), Resolution()
+    if ended.recorded.interrupted:
+        return INTERRUPTED.outcome(t, notes), Resolution()
     if status == Status.CALLBACK_FAILED:
         raised = raised_where(loop.failure) if loop.failure else "an exception"
         reason, advice = f"block '{loop.failed_block}' raised {raised}", "call it by itself; outcome.failure"
         return Outcome("input failed", t, reason, advice, notes, loop.failure), Resolution()
-    fault = (loop.fault or _signal_fault(ended)) if status in _ENDS else ""
+    fault = (loop.fault or _signal_fault(ended)) if status < 0 and status != Status.BEYOND_THEORY else ""
     if fault:
-        return Outcome(
-            "input failed", t, fault, "outputs that are finite at all samples", bending_notes(bendings)
-        ), Resolution()
+        return ENDS[Status.CALLBACK_FAILED].outcome(t, bending_notes(bendings), fault), Resolution()
     failed, modes = status in (Status.DIVERGED, Status.BEYOND_THEORY), Resolution()
     for i, settings in enumerate(ended.settings):
         steps = _resolution(ended, i, failed)
@@ -128,16 +110,16 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
         if mode is not None:
             notes = (*notes, step_size_note(mode, settings.method, _stepped(ended, settings).dt))
             if failed and mode.amplified:
-                reason = f"the step is past the limit of stability of '{settings.method.name}'"
+                reason = past_stability(settings.method.name)
                 return Outcome("diverged", t, reason, remedy(mode, settings.method), notes), modes
     worst, limit = largest_bending(bendings), min((settings.beam_limit for settings in ended.settings), default=0.0)
     if worst is not None and (status == Status.BEYOND_THEORY or (status >= 0 and worst.error > limit)):
-        advice = f"{worst.remedy}; or move the limit, beam_limit=..."
-        return Outcome("beyond theory", worst.t, str(worst), advice, notes[len(bending_notes(bendings)) :]), modes
+        return beyond_theory(worst, limit, notes[len(bending_notes(bendings)) :]), modes
     if status == Status.FINISHED:
-        return Outcome("finished", float(loop.diagram.t_end), f"{int(loop.diagram.steps)} steps", notes=notes), modes
-    kind, reason, advice = _ENDS[status]
-    return Outcome(kind, t, reason, advice, notes), modes
+        t = float(loop.diagram.t_end)
+    return ENDS[status].outcome(
+        t, notes, f"{int(loop.diagram.steps)} steps" if status == Status.FINISHED else ""
+    ), modes
 
 
 def _stepped(ended: Ended, settings: Settings) -> Settings:
@@ -154,7 +136,7 @@ def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
     states = (t, q[:, place.q], v[:, place.v], u)
     steps = ((settings.t_end if failed else ended.t) - settings.t0) / settings.dt
     start, stepper = (states[1][0], states[2][0]), ended.loop.parts[part]
-    return examine_steps(stepper, settings, start, states, max(1, round(steps)))
+    return examine_steps(ExaminedRun(stepper, settings, start, states, max(1, round(steps))))
 
 
 def _signal_fault(ended: Ended) -> str:

@@ -2,26 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.diagrams.program.compiled import Resolved
-from symofros.diagrams.run.examination.step_check import Repeat, States
-from symofros.runtime.manifold import retract
-from symofros.runtime.model import Model
-from symofros.simulation.results.examination.repetition import HALVINGS, SETTLED
+from symofros.diagrams.run.examination.examined import Examined
+from symofros.simulation.results.examination.finer_steps import HALVINGS, SETTLED
 
 # Change of energy without work, over the largest kinetic energy, that is worth a note.
 _NOTED = 0.05
 # Records whose power is asked for: this share of the steps, within these numbers; fewer than are evaluated by vectors,
 # which is code that would be compiled for this.
 _SHARE, _FEWEST, _MOST = 0.005, 64, 500
-# A power is a difference of energies over this share of the time between records, or of the time in which the largest
-# speed arises where that is shorter.
-_MOMENT = 1e-3
 # Share of the work that a bend of the power may hide, (5).
 _SMOOTH = 0.25
 # Intervals, those with most energy that is not explained, that are made once more; share of that energy by which they
@@ -33,72 +26,18 @@ _CHANGED_MOTION = 0.1
 # each changes as the repeated ones do: each of many contacts may give a little. Half of what errors of first order are.
 _DRIFT = 0.15
 
-# Accelerations (n, nv) at some of the records, by number.
-Accelerations = Callable[[Array], Array]
 
-
-@dataclass(frozen=True)
-class Energies:
-    """The energies of the mechanisms of a diagram.
-
-    Attributes:
-        resolved: Diagram.
-        par: Run-time parameters (npar).
-        model_of: Name of a mechanism's description -> a model that has its energies.
-    """
-
-    resolved: Resolved
-    par: Array
-    model_of: Callable[[str], Model]
-
-    def of(self, name: str, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
-        """Kinetic and total energy (n) [J] of a block's mechanism at states of the diagram (n, nq), (n, nv)."""
-        layout, mechanism = self.resolved.layout, self.resolved.pieces[name].block.mechanism()
-        model, par = self.model_of(mechanism), self.par[layout.parameters["", mechanism].slice]
-        q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
-        kinetic = model.kinetic_energy(q, v, par=par)
-        return kinetic, kinetic + model.potential_energy(q, par=par, t=t)
-
-    def powers(self, name: str, states: States, a: Array) -> Array:
-        """Power of all forces without a potential (n) [W]: the rate of the energy along the motion.
-
-        Args:
-            name: Block of the mechanism.
-            states: States of the diagram: t (n), q (n, nq), v (n, nv).
-            a: Accelerations (n, nv).
-        """
-        (t, q, v), at = states[:3], self.resolved.layout.v[name].slice
-        fastest = np.linalg.norm(v[:, at], axis=1).max(initial=0.0)
-        pace = fastest / np.maximum(np.linalg.norm(a[:, at], axis=1), 1e-300)
-        moment = _MOMENT * np.minimum(pace, np.diff(t).max())
-        ends = []
-        for s in (moment, -moment):
-            q_s = retract(self.resolved.layout.segments, q, s[:, np.newaxis] * v)
-            ends.append(self.of(name, t + s, q_s, v + s[:, np.newaxis] * a)[1])
-        return np.asarray((ends[0] - ends[1]) / np.maximum(2.0 * moment, 1e-300))
-
-
-def energy_note(
-    energies: Energies, states: States, steps: int, accelerations: Accelerations, repeat: Repeat, *, adaptive: bool
-) -> str:
-    """Energy that came or went without work (4), (5), in words; nothing where it is little or a contact's work.
-
-    Args:
-        energies: Energies of the diagram's mechanisms.
-        states: Records of the run: t (n), q (n, nq), v (n, nv), u (n, nu).
-        steps: Number of steps.
-        accelerations: Accelerations at records.
-        repeat: Makes a part of the run once more.
-        adaptive: Whether steps adapt: their tolerances are tightened once.
-    """
+def energy_note(run: Examined) -> str:
+    """Energy that came or went without work (4), (5), in words; nothing where it is little or a contact's work."""
+    energies, states = run.energies, run.states
     layout = energies.resolved.layout
-    few = min(len(states[0]), int(min(max(_SHARE * steps, _FEWEST), _MOST)))
+    few = min(len(states[0]), int(min(max(_SHARE * run.steps, _FEWEST), _MOST)))
     if layout.driven or few < 3:
         return ""
     rows = np.unique(np.linspace(0, len(states[0]) - 1, few).astype(int))
     some = [x[rows] for x in states]
     with np.errstate(all="ignore"):  # What has exploded overflows.
-        a = accelerations(rows)
+        a = run.accelerations(rows)
         locks = some[3][:, layout.lock_inputs]
         engages = (np.diff(locks, axis=0) != 0.0).any(axis=1)  # Constraints that engage take energy.
         for name in layout.q:
@@ -112,7 +51,7 @@ def energy_note(
             if not np.any(unexplained + uncertain > noted):
                 continue
             doubts = _Doubts(gained, unseen, kinetic, evident=bool(np.any(unexplained - uncertain > noted)))
-            if _is_numerical(energies, name, states, rows, doubts, repeat, 1 if adaptive else HALVINGS):
+            if _is_numerical(run, name, rows, doubts):
                 return (
                     f"the energy of '{name}' changes by {unexplained.max():.3g} J beside the work done on it, where its"
                     f" motion has {kinetic.max():.3g} J at most: finer steps change that; a smaller dt or tighter"
@@ -138,10 +77,9 @@ class _Doubts:
     evident: bool
 
 
-def _is_numerical(
-    energies: Energies, name: str, states: States, rows: Array, doubts: _Doubts, repeat: Repeat, refinements: int
-) -> bool:
+def _is_numerical(run: Examined, name: str, rows: Array, doubts: _Doubts) -> bool:
     """Whether finer steps change what the intervals gain in which most energy is doubtful."""
+    states = run.states
     gained, kinetic = doubts.gained, doubts.kinetic
     sizes = np.maximum.accumulate(np.maximum(kinetic[1:], 1e-300))
     doubtful = np.abs(gained) if doubts.evident else np.abs(gained) + doubts.unseen
@@ -153,15 +91,15 @@ def _is_numerical(
     if doubts.evident:
         share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), share)
     changes = np.zeros(len(chosen))
-    for level in range(1, 1 + refinements):
+    for level in range(1, 1 + (HALVINGS if run.h else 1)):
         before = changes.copy()
         for k, i in enumerate(chosen):
             first, last = int(rows[i]), int(rows[i + 1])
-            finer = repeat(first, float(states[0][last]), level)
+            finer = run.repeat(first, float(states[0][last]), level)
             if finer is None:
                 return True
             ends = (np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True))
-            _, energy = energies.of(name, *ends)
+            _, energy = run.energies.of(name, *ends)
             changes[k] = energy[1] - energy[0]
         if float(np.abs(changes).sum()) >= share:
             return True

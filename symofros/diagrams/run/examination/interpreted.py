@@ -10,8 +10,8 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.options import Options
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.examination.energy_balance import Energies
-from symofros.diagrams.run.examination.remarks import Examined, remarks
+from symofros.diagrams.run.examination.examined import Energies, Examined
+from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
 from symofros.diagrams.run.python_blocks import Called, CalledBefore
 from symofros.runtime.manifold import chart_rate, retract

@@ -127,22 +127,13 @@ def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
     return along(kinematics.g, [energy], rates_per_speed(kinematics))[0]
 
 
-def rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
-    """For each speed, the rates of coordinates per unit of it: the columns of N in q' = N v."""
+def rates_per_speed(kinematics: TreeKinematics, prescribed: bool = False) -> list[dict[Edge, Edge]]:
+    """For each speed, or each of a prescribed motion, the rates of coordinates per unit of it: columns of N."""
     return [
         _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
         for link in kinematics.tree.links
-        for k in range(link.v[1])
-    ]
-
-
-def prescribed_rates_per_speed(kinematics: TreeKinematics) -> list[dict[Edge, Edge]]:
-    """For each speed of a prescribed motion, the rates of its coordinates per unit of it."""
-    return [
-        _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
-        for link in kinematics.tree.links
-        if link.joint.prescribed
-        for k in range(joint_sizes(link.joint)[1])
+        if link.joint.prescribed == prescribed
+        for k in range(joint_sizes(link.joint)[1] if prescribed else link.v[1])
     ]
 
 

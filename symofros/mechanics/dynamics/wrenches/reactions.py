@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from symofros.expr.derivative import along
 from symofros.expr.edges import Edge
-from symofros.mechanics.dynamics.applied.forces import prescribed_rates_per_speed
+from symofros.mechanics.dynamics.applied.forces import rates_per_speed
 from symofros.mechanics.dynamics.bodies.inertia import stated_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
 from symofros.mechanics.dynamics.jourdain import link_wrenches, power, spin_effort, subtree_wrenches
@@ -66,7 +66,7 @@ def prescribed_efforts(
     """
     g, lowering = kinematics.g, kinematics.lowering
     energy = g.sum(lowering.value(potential.energy) for potential in kinematics.tree.system.potentials)
-    slopes = iter(along(g, [energy], prescribed_rates_per_speed(kinematics))[0])
+    slopes = iter(along(g, [energy], rates_per_speed(kinematics, prescribed=True))[0])
     efforts = []
     for i, (link, wrench) in enumerate(zip(kinematics.links, wrenches, strict=True)):
         if link.rates is None:

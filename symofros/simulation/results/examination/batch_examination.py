@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
+from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
-from symofros.simulation.results.examination.repetition import repeatable, repeated
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_run
+from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import InitialStates
-from symofros.simulation.stepping.resolution import Mode
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -40,38 +42,54 @@ class BatchExamination:
     settings: Settings
     initial: InitialStates
 
-    def step_size(
-        self, i: int, states: tuple[Array, ...], steps: int, *, ended_well: bool, failed: bool
-    ) -> tuple[Mode | None, tuple[str, ...]]:
-        """The mode that run i resolves worst, and notes on its steps.
+    def outcome(
+        self, i: int, status: int, states: tuple[Array, ...], steps: int, bendings: tuple[BeamBending, ...]
+    ) -> Outcome:
+        """How run i ended.
 
         Args:
             i: Number of the run.
+            status: Its last Status.
             states: Samples of the run and its last state: t (n), q, v, u.
             steps: Number of steps.
-            ended_well: Whether the run came to its end.
-            failed: Whether it diverged.
+            bendings: Bending of its beams.
         """
-        stepper, start = self._stepper(i), (_row(self.initial.q, i), _row(self.initial.v, i))
-        how = {"ended_well": ended_well, "failed": failed}
-        if ended_well and len(states[0]) < steps <= _MADE_AGAIN:
-            states = self._ends_of_steps(stepper, start, states, steps)
-        return examine_run(stepper, self.settings, start, states, steps, **how)
+        last = float(states[0][-1]), states[1][-1], states[2][-1]
+        # Steps come as near to a pole as they like, and beyond it there is no number.
+        fault = self._input_fault(i, *last) if status < 0 and status != Status.STEP_TOO_SMALL else ""
+        run = self._run(i, states, steps)
+        if status >= 0 and len(states[0]) < steps <= _MADE_AGAIN:
+            run = self._with_ends_of_steps(run)
+        run.stepper.inputs_at(*last)
+        done = self.settings.max_steps is not None and steps >= self.settings.max_steps
+        return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
 
-    def _ends_of_steps(
-        self, stepper: Stepper, start: tuple[Array, Array], states: tuple[Array, ...], steps: int
-    ) -> tuple[Array, ...]:
-        """Ends of the steps of a run that is made once more, where its samples are fewer; the samples where it is not.
+    def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
+        """Notes on the steps of run i, which came to its end; arguments as of `outcome`."""
+        run = self._run(i, states, steps)
+        return examine_run(
+            self._with_ends_of_steps(run) if len(states[0]) < steps <= _MADE_AGAIN else run,
+            ended_well=True,
+            failed=False,
+        )[1]
+
+    def _run(self, i: int, states: tuple[Array, ...], steps: int) -> ExaminedRun:
+        """A single run in the place of run i."""
+        start = _row(self.initial.q, i), _row(self.initial.v, i)
+        return ExaminedRun(self._stepper(i), self.settings, start, states, steps)
+
+    def _with_ends_of_steps(self, run: ExaminedRun) -> ExaminedRun:
+        """A run that is made once more for the ends of its steps, where its samples are fewer, if it can be.
 
         What steps pass over does not depend on what is recorded of them.
         """
-        begin, every = (self.settings.t0, *start), -(-steps // _KEPT)
-        if not repeatable(stepper, self.settings, states):
-            return states
-        status, ends = repeated(stepper, self.settings, begin, float(states[0][-1]), self.settings.dt, every=every)
-        return tuple(ends) if status == Status.FINISHED and len(ends[0]) > len(states[0]) else states
+        begin, every, t = (self.settings.t0, *run.start), -(-run.steps // _KEPT), run.states[0]
+        if not run.repeatable:
+            return run
+        status, ends = run.repeated(begin, float(t[-1]), self.settings.dt, every=every)
+        return replace(run, states=ends) if status == Status.FINISHED and len(ends[0]) > len(t) else run
 
-    def input_fault(self, i: int, t: float, q: Array, v: Array) -> str:
+    def _input_fault(self, i: int, t: float, q: Array, v: Array) -> str:
         """The input of run i that is not finite about its last state, in words; "" where there is none."""
         row = _row(self.initial.inputs.constant, i)
         bad = np.flatnonzero(~np.isfinite(row))

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
 from symofros.simulation.analysis.kinematics.postures import (
     MOST_BETWEEN,
@@ -16,8 +13,8 @@ from symofros.simulation.analysis.kinematics.postures import (
     nearest_to_singular,
     worst_violation,
 )
-from symofros.simulation.results.examination.repetition import in_short_steps, same_inputs_again
-from symofros.simulation.settings import Settings
+from symofros.simulation.results.examination.finer_steps import States
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -52,39 +49,27 @@ def lost_energy(stepper: Stepper) -> str:
     return f"keeping the constraints has taken {share:.3g} of the largest kinetic energy"
 
 
-def violation(stepper: Stepper, states: Sequence[Array], projected: bool) -> Violation | None:
-    """A condition on speeds that a run without projection has not kept.
-
-    Args:
-        stepper: Stepper at its last state.
-        states: All that it recorded: t (n), q, v, u.
-        projected: Whether the run projects, and so keeps them.
-    """
-    if not stepper.model.nc or projected:
+def violation(run: ExaminedRun) -> Violation | None:
+    """A condition on speeds that a run without projection has not kept; None where it projects, and so keeps them."""
+    if not run.model.nc or run.settings.project:
         return None
-    t, q, v, u = states
+    t, q, v, u = run.states
     try:
-        worst = worst_violation(stepper.model, t, (q, v, u), stepper.par)
+        worst = worst_violation(run.model, t, (q, v, u), run.stepper.par)
     except SymofrosError:  # Options.functions left out what says it.
         return None
     return worst if worst is not None and worst.share > _VIOLATED else None
 
 
-def near_singular(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> tuple[float, float] | None:
-    """When a run came close to a singular posture, and to which share of the conditions' strength; None: it did not.
+def near_singular(run: ExaminedRun) -> tuple[float, float] | None:
+    """When a run came close to a singular posture, and to which share of the conditions' strength; None: it did not."""
+    t, q, v, _ = run.states
 
-    Args:
-        stepper: Stepper at its last state.
-        settings: Settings of the run.
-        states: States of the run: t (n), q, v, u.
-    """
-    t, q, v, _ = states
-
-    def motion(first: int, last: int) -> Sequence[Array] | None:
-        if settings.realtime or not same_inputs_again(stepper, settings, states):
+    def motion(first: int, last: int) -> States | None:
+        if run.settings.realtime or not run.same_inputs_again:
             return None
         part = float(t[last] - t[first]) / MOST_BETWEEN
-        status, along = in_short_steps(stepper, settings, (t[first], q[first], v[first]), float(t[last]), part)
+        status, along = run.in_short_steps((t[first], q[first], v[first]), float(t[last]), part)
         return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along
 
-    return nearest_to_singular(stepper.model, states, stepper.par, int(stepper.run.rank_max), motion)
+    return nearest_to_singular(run.model, run.states, run.stepper.par, int(run.stepper.run.rank_max), motion)

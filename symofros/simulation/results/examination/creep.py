@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from symofros.base.arrays import Array
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.mass_matrix import mass_matrix
-from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.results.examination.run import ExaminedRun
 
 # Speeds at which friction is looked at, relative to the one at the end: from far below it to far above.
 _SPEEDS = np.concatenate([[0.0, 0.02], np.geomspace(1.0, 1e3, 48)])
@@ -17,17 +14,13 @@ _SPEEDS = np.concatenate([[0.0, 0.02], np.geomspace(1.0, 1e3, 48)])
 _LOADED, _STEADY = 0.05, 0.1
 
 
-def creep_note(stepper: Stepper, states: Sequence[Array]) -> str:
+def creep_note(run: ExaminedRun) -> str:
     """The joint that creeps under load at the end of a run, in words; nothing where none does.
 
     Friction F(v) grows from F(0) = 0 with a slope that is steep about rest. A joint whose load is less than what F
     reaches does not stick: it moves on at the speed at which F carries the load.
-
-    Args:
-        stepper: Stepper of the run; its state stays.
-        states: States of the run: t (n), q, v, u.
     """
-    model, (t, q, v, u) = stepper.model, (x[-1:] for x in states)
+    stepper, model, (t, q, v, u) = run.stepper, run.model, (x[-1:] for x in run.states)
     for i in model.record.friction_speeds:
         if not len(v) or not v[0, i]:
             continue

@@ -10,12 +10,14 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
-from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifications
+from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
+from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.examination.constraint_faults import jump, lost_energy, near_singular, violation
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_run, remedy
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
@@ -43,16 +45,29 @@ def diagnose(
     if settings.every != 1 and not stepper.method.family.multistep:
         kept = stepper.diagnostic_states()
         states = kept if len(kept[0]) > 1 else states
-    bendings = _amplified(stepper, states)
-    return _outcome(stepper, recorded, states, settings, start, bendings), bendings
+    bendings = amplified_in_motion(stepper.bendings, stepper.amplified_bendings, stepper.model, states, stepper.par)
+    status = recorded.status
+    run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
+    told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
+    notes = (*_of_constraints(run), *_of_limits(run), *bending_notes(told), *_of_pace(run))
+    fault = input_fault(stepper) if status < 0 else ""
+    return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
 
-def _amplified(stepper: Stepper, states: Sequence[Array]) -> tuple[BeamBending, ...]:
-    """Bending of each beam where its theory errs most, amplified by the axial loads of the motion."""
-    bendings = stepper.bendings
-    if max((bending.error for bending in bendings), default=0.0) < UNAMPLIFIED:
-        return bendings
-    return stepper.amplified_bendings(amplifications(stepper.model, states, stepper.par))
+def diagnose_one(
+    run: ExaminedRun, status: int, bendings: tuple[BeamBending, ...], fault: str, *, interrupted: bool
+) -> Outcome:
+    """How a run of a batch ended: as a single one, but for what only the stepper of a single one counts.
+
+    Args:
+        run: The run; its stepper is at the last state.
+        status: Its last Status.
+        bendings: Bending of its beams.
+        fault: Input that is no number, in words; "" for none.
+        interrupted: Whether Ctrl-C ended it.
+    """
+    told = () if status == Status.BEYOND_THEORY else bendings
+    return outcome_of(run, status, bendings, (*_of_limits(run), *bending_notes(told)), fault, interrupted=interrupted)
 
 
 @dataclass(frozen=True)
@@ -60,12 +75,9 @@ class _End:
     """A run at its end.
 
     Attributes:
-        stepper: Stepper at its last state.
-        settings: Settings of the run.
+        run: The run, its stepper at its last state.
         status: Status of the stepper.
         interrupted: Whether Ctrl-C ended it.
-        states: All that it recorded: t, q, v, u.
-        start: Initial q, v.
         most_bent: The beam that bends most, if there is one.
         notes: Notes of the run.
         fault: Input that is no number, in words; "" for none.
@@ -73,63 +85,71 @@ class _End:
         mode: Mode of the motion that the step follows worst, if one was looked for.
     """
 
-    stepper: Stepper
-    settings: Settings
+    run: ExaminedRun
     status: int
     interrupted: bool
-    states: Sequence[Array]
-    start: tuple[Array, Array]
     most_bent: BeamBending | None
     notes: tuple[str, ...]
     fault: str
     failed: bool
     mode: Mode | None
 
+    @property
+    def stepper(self) -> Stepper:
+        """Stepper of the run."""
+        return self.run.stepper
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of the run."""
+        return self.run.settings
+
     def outcome(self, kind: Kind, reason: str, advice: str = "") -> Outcome:
         return Outcome(kind, self.stepper.state[0], reason, advice, self.notes)
 
+    def by_status(self, reason: str = "") -> Outcome:
+        """The outcome of its status, with a reason that says more."""
+        return ENDS[self.status].outcome(self.stepper.state[0], self.notes, reason)
 
-def _outcome(
-    stepper: Stepper,
-    recorded: Recorded,
-    states: Sequence[Array],
-    settings: Settings,
-    start: tuple[Array, Array],
+
+def outcome_of(
+    run: ExaminedRun,
+    status: int,
     bendings: tuple[BeamBending, ...],
+    notes: tuple[str, ...],
+    fault: str,
+    *,
+    interrupted: bool,
 ) -> Outcome:
-    status = recorded.status
-    told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = _notes(stepper, settings, states, told)
-    fault = input_fault(stepper) if status < 0 else ""
+    """How a run ended, once its steps are examined; arguments as of `diagnose_one`."""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
-    steps = _steps_meant(settings) if failed else int(stepper.run.steps)
-    mode, remarks = examine_run(stepper, settings, start, states, steps, ended_well=status >= 0, failed=failed)
-    most_bent = largest_bending(bendings)
-    notes = (*notes, *remarks)
-    end = _End(stepper, settings, status, recorded.interrupted, states, start, most_bent, notes, fault, failed, mode)
-    told_by = (_stopped, _without_direction, _grown, _stuck, _unconstrained, _beyond_theory, _unfinished, _violating)
+    meant = replace(run, steps=_steps_meant(run.settings)) if failed else run
+    mode, remarks = examine_run(meant, ended_well=status >= 0, failed=failed) if meant.steps else (None, ())
+    notes, most_bent = (*notes, *remarks), largest_bending(bendings)
+    end = _End(run, status, interrupted, most_bent, notes, fault, failed, mode)
+    told_by = (_stopped, _without_direction, _grown, _stuck, _beyond_theory, _unfinished, _violating)
     for said in told_by:
         outcome = said(end)
         if outcome is not None:
             return outcome
-    return end.outcome("finished", f"{int(stepper.run.steps)} steps of {settings.method.name}")
+    return end.by_status(f"{run.steps} steps of {run.settings.method.name}" if status >= 0 else "")
 
 
 def _stopped(end: _End) -> Outcome | None:
     """Outcome of a run stopped by Ctrl-C, a terminal event or an invalid input; None otherwise."""
     failure = end.stepper.failure
     if end.interrupted or isinstance(failure, KeyboardInterrupt):
-        return end.outcome("interrupted", "Ctrl-C; the part up to here is kept")
+        return INTERRUPTED.outcome(end.stepper.state[0], end.notes)
     if end.status == Status.TERMINAL_EVENT:
-        return end.outcome("event", f"event '{end.stepper.events[end.stepper.run.terminal_event].name}'")
-    if end.status == Status.CALLBACK_FAILED:
-        return replace(end.outcome("input failed", *input_failure(failure)), failure=failure)
+        return end.by_status(f"event '{end.stepper.events[end.stepper.run.terminal_event].name}'")
     if end.fault:
         return end.outcome(
             "input failed",
             end.fault,
             "inputs that are finite, quaternions among them of unit length, at all times and states of the run",
         )
+    if end.status == Status.CALLBACK_FAILED:
+        return replace(end.outcome("input failed", *input_failure(failure)), failure=failure)
     return None
 
 
@@ -138,7 +158,8 @@ def _without_direction(end: _End) -> Outcome | None:
     turning = jump(end.stepper, end.status)
     if turning is None:
         return None
-    lost = f"; {lost_energy(end.stepper)}" if end.status == Status.ENERGY_LOST else ""
+    counted = end.status == Status.ENERGY_LOST and end.stepper.run.kinetic_energy > 0.0
+    lost = f"; {lost_energy(end.stepper)}" if counted else ""
     return end.outcome(
         "singular",
         f"'{turning.name}' has no definite direction here: its row of G changes at once, by {turning.turn:.3g}"
@@ -151,57 +172,32 @@ def _grown(end: _End) -> Outcome | None:
     """Outcome of a run whose states have grown without bound; None otherwise."""
     settings, (_, q, v) = end.settings, end.stepper.state
     if end.failed and end.mode is not None and end.mode.amplified:
-        reason = f"the step is past the limit of stability of '{settings.method.name}'; {_largest(end.stepper, q, v)}"
+        reason = f"{past_stability(settings.method.name)}; {_largest(end.stepper, q, v)}"
         return end.outcome("diverged", reason, remedy(end.mode, settings.method))
     if end.status != Status.DIVERGED:
         return None
-    massless = _massless(end.stepper, end.start, q, v)
+    massless = _massless(end.stepper, end.run.start, q, v)
     if massless:
         return end.outcome("singular", massless, ADVICE)
-    return end.outcome("diverged", f"a state has grown without bound; {_largest(end.stepper, q, v)}", _steady(settings))
+    return end.by_status(f"{ENDS[end.status].reason}; {_largest(end.stepper, q, v)}")
 
 
 def _stuck(end: _End) -> Outcome | None:
-    """Outcome of a run that ends at a step which can't be taken; None otherwise."""
-    settings, (_, q, v) = end.settings, end.stepper.state
-    if end.status == Status.SINGULAR:
-        return end.outcome(
-            "singular",
-            "the mass matrix is singular beyond what the constraints bind",
-            "give every speed an inertia or a constraint",
-        )
+    """Outcome of a run that ends at a step which can't be taken, or off its constraints; None otherwise."""
+    settings, stepper, (_, q, v) = end.settings, end.stepper, end.stepper.state
+    if end.status in (Status.SINGULAR, Status.NO_CONVERGENCE):
+        return end.by_status()
     if end.status == Status.STEP_TOO_SMALL:
-        return end.outcome(
-            "step too small",
-            f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below"
-            f" rounding; {_largest(end.stepper, q, v)}",
-            "look for a force that jumps or a singular posture here; loosen rtol",
-        )
-    if end.status == Status.NO_CONVERGENCE:
-        return end.outcome("not converged", "the equations of an implicit step were not solved", "a smaller dt")
-    return None
-
-
-def _unconstrained(end: _End) -> Outcome | None:
-    """Outcome of a run whose constraints projection no longer keeps; None otherwise."""
-    stepper = end.stepper
+        bounds = f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below rounding"
+        return end.by_status(f"{bounds}; {_largest(stepper, q, v)}")
     if end.status == Status.PROJECTION_FAILED:
         t_open, q_open, _ = stepper.evaluation_point
         phi = stepper.model.constraint(q_open, u=stepper.inputs_now, par=stepper.par, t=t_open)
         worst = int(np.argmax(np.where(np.isnan(phi), math.inf, np.abs(phi))))
         name = stepper.model.names.constraints[worst]
-        return end.outcome(
-            "constraints lost",
-            f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it",
-            "a smaller step; the loop may be stretched to its end",
-        )
-    if end.status == Status.ENERGY_LOST:
-        return end.outcome(
-            "constraints lost",
-            lost_energy(stepper),
-            "a smaller step; look for a posture near here in which the loops are singular",
-        )
-    return None
+        return end.by_status(f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it")
+    lost = lost_energy(stepper) if stepper.run.kinetic_energy > 0.0 else ""  # A run of a batch has not counted it.
+    return end.by_status(lost) if end.status == Status.ENERGY_LOST else None
 
 
 def _beyond_theory(end: _End) -> Outcome | None:
@@ -211,8 +207,7 @@ def _beyond_theory(end: _End) -> Outcome | None:
         return None
     if end.status != Status.BEYOND_THEORY and not (end.status >= 0 and most_bent.error > limit):
         return None
-    reason = f"{most_bent}; the limit is {100.0 * limit:g} %"
-    return end.outcome("beyond theory", reason, f"{most_bent.remedy}; or move the limit, beam_limit=...")
+    return beyond_theory(most_bent, limit, end.notes, end.stepper.state[0])
 
 
 def _unfinished(end: _End) -> Outcome | None:
@@ -220,8 +215,8 @@ def _unfinished(end: _End) -> Outcome | None:
     run, settings = end.stepper.run, end.settings
     if end.status != Status.RUNNING or not end.stepper.state[0] < float(run.t_end):
         return None
-    done, h = f"max_steps: {int(run.steps)} steps are done", float(run.next_step)
-    if settings.adaptive and h < _CREEP * (settings.t_end - settings.t0):
+    done, h = f"max_steps: {end.run.steps} steps are done", float(run.next_step)
+    if settings.adaptive and 0.0 < h < _CREEP * (settings.t_end - settings.t0):
         look = "look for a singular posture or a force that has no bound here; for stiff models, an implicit method"
         return end.outcome("interrupted", f"{done}, and the next would be {h:.2g} s long", look)
     return end.outcome("interrupted", done)
@@ -229,7 +224,7 @@ def _unfinished(end: _End) -> Outcome | None:
 
 def _violating(end: _End) -> Outcome | None:
     """Outcome of a run in which a condition on speeds was violated; None otherwise."""
-    broken = violation(end.stepper, end.states, end.settings.project)
+    broken = violation(end.run)
     if broken is None:
         return None
     return replace(
@@ -266,33 +261,35 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
     return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
 
 
-def _steady(settings: Settings) -> str:
-    if settings.adaptive:
-        return "look for a force or posture that has no bound here"
-    return "a smaller dt, an adaptive or an implicit method; for stiff beams and contacts, an implicit one"
-
-
-def _notes(
-    stepper: Stepper, settings: Settings, states: Sequence[Array], bendings: Sequence[BeamBending]
-) -> tuple[str, ...]:
-    run = stepper.run
-    notes = []
-    if stepper.model.nc and 0 <= run.rank_min < run.rank_max:
-        notes.append(
+def _of_constraints(examined: ExaminedRun) -> list[str]:
+    """A note on a singular posture that was passed, or nearly."""
+    run = examined.stepper.run
+    if not examined.model.nc:
+        return []
+    if 0 <= run.rank_min < run.rank_max:
+        return [
             f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
             f" {run.rank_max} to {run.rank_min}"
-        )
-    elif stepper.model.nc:
-        close = near_singular(stepper, settings, states)
-        if close:
-            when, share = close
-            notes.append(
-                f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of"
-                " their strength: compare with another step"
-            )
-    record = stepper.model.record
-    notes += limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
-    notes += bending_notes(bendings)
-    if run.late_steps:
-        notes.append(f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most")
-    return tuple(notes)
+        ]
+    close = near_singular(examined)
+    if not close:
+        return []
+    when, share = close
+    return [
+        f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of their strength:"
+        " compare with another step"
+    ]
+
+
+def _of_limits(run: ExaminedRun) -> tuple[str, ...]:
+    """Notes on limits of joints that were left."""
+    record, states = run.model.record, run.states
+    return limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
+
+
+def _of_pace(examined: ExaminedRun) -> list[str]:
+    """A note on steps that began late, in real time."""
+    run = examined.stepper.run
+    if not run.late_steps:
+        return []
+    return [f"{run.late_steps} of {run.paced_steps} steps began late, by {1e3 * run.late_max:.3g} ms at most"]

@@ -5,31 +5,23 @@ docs/theory/simulation.md, section 8, (18d).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.simulation.results.examination.energy_norm import energy_norms
 from symofros.simulation.results.examination.input_impulses import AT_END, POINTS, RATE, evaluated, nodes
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.stepper import Stepper
 
-# Steps that are looked at, at most; records, about, among which the fastest is looked for.
-_STEPS, _SPEEDS = 512, 200
+# Steps that are looked at, at most.
+_STEPS = 512
 
 
-def formula_impulse_note(stepper: Stepper, settings: Settings, states: Sequence[Array]) -> str:
-    """Forces of the model's own whose impulse fixed steps misjudge (18d), in words; nothing where they do no harm.
-
-    Args:
-        stepper: Stepper of the run; its state stays.
-        settings: Settings of the run.
-        states: States of the run: t (n), q, v, u.
-    """
-    t, q, v, u = states
+def formula_impulse_note(run: ExaminedRun) -> str:
+    """Forces of the model's own whose impulse fixed steps misjudge (18d), in words; nothing where they do no harm."""
+    stepper, settings, (t, q, v, u) = run.stepper, run.settings, run.states
     if settings.adaptive or not stepper.model.nv or not len(t):
         return ""
     h, t0, t_end = settings.dt, settings.t0, float(t[-1])
@@ -40,11 +32,9 @@ def formula_impulse_note(stepper: Stepper, settings: Settings, states: Sequence[
         return ""
     begin, end = t0 + k * h, np.minimum(t0 + (k + 1) * h, t_end)
     rows = np.minimum(np.maximum(np.searchsorted(t, begin + AT_END * h) - 1, 0), len(t) - 1)
-    few = slice(None, None, -max(1, len(t) // _SPEEDS))
     with np.errstate(all="ignore"):
         missed = np.cumsum(_missed(stepper, settings, (q[rows], v[rows], u[rows]), instants, begin, end), axis=0)
-        sizes = energy_norms(stepper, q[rows], u[rows], missed)
-        fastest = float(energy_norms(stepper, q[few], u[few], v[few]).max())
+        sizes, fastest = run.norms(q[rows], u[rows], missed), run.fastest
     worst = int(np.argmax(np.nan_to_num(sizes)))
     if not sizes[worst] > TOLERANCE * fastest:
         return ""

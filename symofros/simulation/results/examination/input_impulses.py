@@ -5,7 +5,7 @@ docs/theory/simulation.md, section 8, (18c).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +13,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
 from symofros.simulation.inputs import held_samples
-from symofros.simulation.results.examination.energy_norm import energy_norms
-from symofros.simulation.settings import Settings
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.stepper import Stepper
@@ -35,8 +34,6 @@ RATE = 1e-7
 _ROUNDING = 1e-12
 # Share of the speeds at the start and of one by which formulas are asked whether they depend on the state.
 _MOVED = 0.37
-# Records, about, among which the fastest is looked for.
-_SPEEDS = 200
 
 
 @dataclass(frozen=True)
@@ -71,23 +68,15 @@ class _Misjudged:
     whole: float
 
 
-def input_impulse_note(
-    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array]
-) -> str:
-    """An input of time whose impulse fixed steps misjudge (18c), in words; nothing where none is, or does no harm.
-
-    Args:
-        stepper: Stepper of the run; its state stays.
-        settings: Settings of the run.
-        start: Initial q, v.
-        states: States of the run: t (n), q, v, u.
-    """
+def input_impulse_note(run: ExaminedRun) -> str:
+    """An input of time whose impulse fixed steps misjudge (18c), in words; nothing where none is, or does no harm."""
+    stepper, settings, states = run.stepper, run.settings, run.states
     if settings.adaptive or not stepper.model.nv or stepper.inputs.callback is not None or not len(states[0]):
         return ""
     h, t_end = settings.dt, float(states[0][-1])
-    for one in timed_inputs(stepper, settings, start):
+    for one in timed_inputs(run):
         found = _misjudged(one, settings.method, settings.t0, t_end, h)
-        if found is not None and found.missed > TOLERANCE * found.whole and _matters(stepper, states, one, found, h):
+        if found is not None and found.missed > TOLERANCE * found.whole and _matters(run, one, found, h):
             return (
                 f"steps of {h:.4g} s misjudge the input '{stepper.model.names.u[one.index]}', which changes within"
                 f" them: at t = {found.t:.6g} s its impulse is off by {found.missed:.3g}, of {found.whole:.3g} in the"
@@ -96,14 +85,9 @@ def input_impulse_note(
     return ""
 
 
-def timed_inputs(stepper: Stepper, settings: Settings, start: tuple[Array, Array]) -> Iterator[TimedInput]:
-    """The inputs that are signals, or formulas of time; none of those that prescribe motions, which are no forces.
-
-    Args:
-        stepper: Stepper of the run.
-        settings: Settings of the run.
-        start: Initial q, v.
-    """
+def timed_inputs(run: ExaminedRun) -> Iterator[TimedInput]:
+    """The inputs that are signals, or formulas of time; none of those that prescribe motions, which are no forces."""
+    stepper, settings, start = run.stepper, run.settings, run.start
     inputs, free = stepper.inputs, stepper.model.nu - stepper.model.record.driven
     for index, t, values, linear in inputs.signals:
         if index < free:
@@ -250,16 +234,14 @@ def _made(one: TimedInput, method: Method, begin: Array, end: Array) -> Array:
     return total
 
 
-def _matters(stepper: Stepper, states: Sequence[Array], one: TimedInput, found: _Misjudged, h: float) -> bool:
+def _matters(run: ExaminedRun, one: TimedInput, found: _Misjudged, h: float) -> bool:
     """Whether the motion would be faster or slower by more than TOLERANCE of its largest speed."""
-    t, q, v, u = states
+    t, q, v, u = run.states
     row = [min(max(0, int(np.searchsorted(t, found.t)) - 1), len(t) - 1)]
     pushed = np.repeat(u[row], 2, axis=0)
     pushed[1, one.index] += found.missed / h
     given = {"q": q[row], "v": v[row], "u": pushed, "t": t[row][:, np.newaxis]}
-    few = slice(None, None, -max(1, len(t) // _SPEEDS))
     with np.errstate(all="ignore"):
-        a = evaluated(stepper, "forward_dynamics", given, 2)
-        change = float(energy_norms(stepper, q[row], u[row], h * (a[1:] - a[:1]))[0])
-        fastest = float(energy_norms(stepper, q[few], u[few], v[few]).max())
-    return change > TOLERANCE * fastest
+        a = evaluated(run.stepper, "forward_dynamics", given, 2)
+        change = float(run.norms(q[row], u[row], h * (a[1:] - a[:1]))[0])
+        return change > TOLERANCE * run.fastest

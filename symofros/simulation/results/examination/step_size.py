@@ -13,10 +13,11 @@ from symofros.simulation.analysis.kinematics.postures import worst_violation
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
-from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.finer_steps import percent
 from symofros.simulation.results.examination.formula_impulses import formula_impulse_note
 from symofros.simulation.results.examination.input_impulses import input_impulse_note
-from symofros.simulation.results.examination.repetition import halved_step_note, percent, tolerance_note, windows_note
+from symofros.simulation.results.examination.repetition import halved_step_note, tolerance_note
+from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.results.examination.stepped_over import stepped_over_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
@@ -39,92 +40,66 @@ _SPEEDS = 200
 _AT_END = 1e-6
 
 
-def examine_run(
-    stepper: Stepper,
-    settings: Settings,
-    start: tuple[Array, Array],
-    states: Sequence[Array],
-    steps: int,
-    *,
-    ended_well: bool,
-    failed: bool,
-) -> tuple[Mode | None, tuple[str, ...]]:
+def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mode | None, tuple[str, ...]]:
     """The mode that a run resolves worst, and notes on its steps: on that, on half the step, on inputs, on energy.
 
     Args:
-        stepper: Stepper of the run; its state stays.
-        settings: Settings of the run.
-        start: Initial q, v.
-        states: States of the run: t (n), q, v, u.
-        steps: Number of steps.
-        ended_well: Whether the run came to its end.
+        run: The run.
+        ended_well: Whether it came to its end.
         failed: Whether it diverged; its energy means nothing then.
     """
-    resolution = examine_steps(stepper, settings, start, states, steps)
+    resolution = examine_steps(run)
     mode = resolution.worst
     notes = []
     if mode is not None:
         with np.errstate(all="ignore"):  # What overflows is left out.
-            energy = energy_that_appeared(stepper, settings, states) if mode.amplified and not failed else ""
-        notes.append(step_size_note(mode, settings.method, settings.dt, energy))
-    evident = resolution.evident and not _samples_within_steps(stepper.inputs, settings)
-    if ended_well and not evident and mode is None:
-        notes.append(halved_step_note(stepper, settings, start, states, steps))
-    if ended_well and mode is None:
-        notes.append(windows_note(stepper, settings, states, steps))
-    if ended_well:
-        notes.append(input_impulse_note(stepper, settings, start, states))
-    if ended_well and not any(notes):
-        notes.append(formula_impulse_note(stepper, settings, states))
-    if ended_well and mode is None and not any(notes):
-        notes.append(stepped_over_note(stepper, settings, start, states, steps))
-    if ended_well:
-        notes.append(tolerance_note(stepper, settings, start, states, steps))
-    if ended_well and (mode is None or not mode.amplified) and not (mode is None and any(notes)):
-        notes.append(energy_note(stepper, settings, states, steps))
-    if ended_well:
-        notes.append(creep_note(stepper, states))
+            energy = energy_that_appeared(run) if mode.amplified and not failed else ""
+        notes.append(step_size_note(mode, run.settings.method, run.settings.dt, energy))
+    if not ended_well:
+        return mode, tuple(notes)
+    evident = resolution.evident and not _samples_within_steps(run.stepper.inputs, run.settings)
+    if mode is None:
+        notes.append(halved_step_note(run, evident=evident))
+    notes.append(input_impulse_note(run))
+    if not any(notes):
+        notes.append(formula_impulse_note(run))
+    if mode is None and not any(notes):
+        notes.append(stepped_over_note(run))
+    notes.append(tolerance_note(run))
+    if (mode is None or not mode.amplified) and not (mode is None and any(notes)):
+        notes.append(energy_note(run))
+    notes.append(creep_note(run))
     return mode, tuple(note for note in notes if note)
 
 
-def examine_steps(
-    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
-) -> Resolution:
-    """How well the fixed steps of a run resolve its modes; steps that adapt are not examined.
-
-    Args:
-        stepper: Stepper of the run; its state stays.
-        settings: Settings of the run.
-        start: Initial q, v.
-        states: States of the run: t (n), q, v, u.
-        steps: Number of steps.
-    """
-    if not settings.judged or not stepper.model.nv or steps < 1:
+def examine_steps(run: ExaminedRun) -> Resolution:
+    """How well the fixed steps of a run resolve its modes; steps that adapt are not examined."""
+    stepper, settings, (t, q, v, u) = run.stepper, run.settings, run.states
+    if not settings.judged or not run.model.nv or run.steps < 1:
         return Resolution()
     if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
         return Resolution()  # What the function serves may be hardware: it is not called beside the run.
-    t, q, v, u = states
     good = _finite_rows(q, v)
     stride = max(1, good // _SPEEDS)
     rows = np.arange(0, good, stride)
-    q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(start, (q, v), strict=True))
-    metric = metrics(stepper, q_all, np.concatenate([u[:1], u[rows]]))
+    q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(run.start, (q, v), strict=True))
+    metric = run.metrics(q_all, np.concatenate([u[:1], u[rows]]))
     norms = norms_in(metric, v_all)
     # The start, and the fastest state of equal parts of the run: modes are fast where the motion is.
-    wanted = states_to_examine(steps, stepper.method.tableau.stages, stepper.model.nv)
+    wanted = states_to_examine(run.steps, stepper.method.tableau.stages, run.model.nv)
     parts = [part for part in np.array_split(np.arange(1, len(norms)), wanted - 1) if len(part)]
     chosen = [0, *(int(part[np.argmax(norms[part])]) for part in parts)]
     later = [(float(t[i]), q[i], v[i], u[i]) for i in (rows[k - 1] for k in chosen[1:])]
-    examined = [(settings.t0, *start, u[0]), *later]
+    examined = [(settings.t0, *run.start, u[0]), *later]
     speeds = [_speed_of_motion(norms, k + 1) for k in chosen]
 
     def spectrum(i: int) -> Spectrum | None:
-        return stepper.spectrum(*examined[i], settings.dt, directions(stepper.model.nv))
+        return stepper.spectrum(*examined[i], settings.dt, directions(run.model.nv))
 
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
         pull = _pull(stepper, settings, examined)
-        return resolution(stepper.method, settings.dt, steps, times, spectrum, speeds, metric[chosen], pull)
+        return resolution(stepper.method, settings.dt, run.steps, times, spectrum, speeds, metric[chosen], pull)
 
 
 def _pull(stepper: Stepper, settings: Settings, examined: Sequence[tuple[float, Array, Array, Array]]) -> Pull:

@@ -5,24 +5,16 @@ docs/theory/simulation.md, section 8.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from symofros.base.arrays import Array
-from symofros.simulation.results.examination.energy_norm import metrics, norms_in
+from symofros.simulation.results.examination.finer_steps import States, percent
 from symofros.simulation.results.examination.paths import path_within
-from symofros.simulation.results.examination.repetition import (
-    ExaminedRun,
-    in_short_steps,
-    percent,
-    repeated,
-    same_inputs_again,
-)
-from symofros.simulation.settings import Settings
+from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
-from symofros.simulation.stepping.stepper import Stepper
 
 # States within steps, about: this share of the run's evaluations within these numbers; of a function of the user's,
 # which each state calls, this many where steps adapt and the share, if that is less, where they are fixed. Steps with
@@ -38,36 +30,26 @@ _BOUNDS, _NOTED = 100.0, (0.01, TOLERANCE)
 _DOUBTED = 0.5
 
 
-def stepped_over_note(
-    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array], steps: int
-) -> str:
-    """What acts within steps unseen (18b), in words; nothing where no shorter step shows it.
-
-    Args:
-        stepper: Stepper of the run; its state stays.
-        settings: Settings of the run.
-        start: Initial q, v.
-        states: States of the run: t (n), q, v, u.
-        steps: Number of steps.
-    """
-    states = _from_the_start(stepper, settings, start, states)
-    if settings.realtime or not stepper.model.nv or steps < 1 or len(states[0]) < 2:
+def stepped_over_note(run: ExaminedRun) -> str:
+    """What acts within steps unseen (18b), in words; nothing where no shorter step shows it."""
+    settings, steps = run.settings, run.steps
+    run = _from_the_start(run)
+    if settings.realtime or not run.model.nv or steps < 1 or len(run.states[0]) < 2:
         return ""
-    function = stepper.inputs.callback is not None
-    if function and not same_inputs_again(stepper, settings, states):
+    function = run.stepper.inputs.callback is not None
+    if function and not run.same_inputs_again:
         return ""
-    share = _SHARE * steps * max(1, stepper.method.tableau.stages)
+    share = _SHARE * steps * max(1, run.stepper.method.tableau.stages)
     least, most = (_CALLS if settings.adaptive else 0, _CALLS) if function else (_LEAST, _MOST)
     number = int(min(max(share, least), most))
     noted = min(max(_BOUNDS * settings.rtol, _NOTED[0]), _NOTED[1]) if settings.adaptive else TOLERANCE
-    run = ExaminedRun(stepper, settings, states, steps)
-    for ends in _single_steps(stepper, settings, states, steps, number):
-        for i, part in _doubted(stepper, run, ends, number, _DOUBTED * noted):
+    for ends in _single_steps(run, number):
+        for i, part in _doubted(run, ends, number, _DOUBTED * noted):
             coarse, first = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
-            status, finer = in_short_steps(stepper, settings, first, float(ends[0][i + 1]), part)
+            status, finer = run.in_short_steps(first, float(ends[0][i + 1]), part)
             if status != Status.FINISHED:
                 continue
-            change = run.share(coarse, [x[[0, -1]] for x in finer])
+            change = run.change_in_part(coarse, [x[[0, -1]] for x in finer])
             if change > noted:
                 cure = f"max_step={part:.2g}" if settings.adaptive else "a smaller dt"
                 return (
@@ -77,53 +59,48 @@ def stepped_over_note(
     return ""
 
 
-def _from_the_start(
-    stepper: Stepper, settings: Settings, start: tuple[Array, Array], states: Sequence[Array]
-) -> Sequence[Array]:
-    """The states of a run, with its first one where that was not recorded."""
-    if not len(states[0]) or states[0][0] <= settings.t0:
-        return states
+def _from_the_start(run: ExaminedRun) -> ExaminedRun:
+    """A run with its first state, where that was not recorded."""
+    stepper, t0, states = run.stepper, run.settings.t0, run.states
+    if not len(states[0]) or states[0][0] <= t0:
+        return run
     with stepper.preserved():
-        u = stepper.inputs_at(settings.t0, *start)
-    return [np.concatenate([[x], y]) for x, y in zip((settings.t0, *start, u), states, strict=True)]
+        u = stepper.inputs_at(t0, *run.start)
+    return replace(run, states=[np.concatenate([[x], y]) for x, y in zip((t0, *run.start, u), states, strict=True)])
 
 
-def _single_steps(
-    stepper: Stepper, settings: Settings, states: Sequence[Array], steps: int, number: int
-) -> Iterator[Sequence[Array]]:
+def _single_steps(run: ExaminedRun, number: int) -> Iterator[States]:
     """Ends of steps, those of all or of the longest intervals; of methods with a history the records."""
-    t, q, v, _ = states
-    if steps <= len(t) - 1 or stepper.method.family.multistep:
-        yield states
+    (t, q, v, _), steps = run.states, run.steps
+    if steps <= len(t) - 1 or run.stepper.method.family.multistep:
+        yield run.states
         return
     spans = np.diff(t)
     most = max(_REPEATED[0], _REPEATED[1] * steps) * len(spans) // steps
     longest = np.argsort(-spans, kind="stable")[: int(most)]
     # Fixed steps are all alike, and states within them would be as far apart as they are.
-    if not settings.adaptive or not same_inputs_again(stepper, settings, states):
+    if not run.settings.adaptive or not run.same_inputs_again:
         return
     for i in longest:
         if number * spans[i] < _FEWEST * (t[-1] - t[0]):
             return
-        status, ends = repeated(stepper, settings, (float(t[i]), q[i], v[i]), float(t[i + 1]), settings.dt)
+        status, ends = run.repeated((t[i], q[i], v[i]), float(t[i + 1]), run.settings.dt)
         if status == Status.FINISHED and len(ends[0]) > 1:
             yield ends
 
 
-def _doubted(
-    stepper: Stepper, run: ExaminedRun, ends: Sequence[Array], number: int, least: float
-) -> list[tuple[int, float]]:
+def _doubted(run: ExaminedRun, ends: States, number: int, least: float) -> list[tuple[int, float]]:
     """Steps, by number, that leave out most change of speed, (18b), and how far apart the states within them were."""
     spans = np.diff(ends[0])
     counts = np.floor(number * spans / run.span).astype(int)
     counts[counts < _FEWEST] = 0
     if not counts.any():
         return []
-    path = path_within(stepper, ends, counts)
+    path = path_within(run.stepper, ends, counts)
     if path is None:
         return []
     chosen = np.flatnonzero(counts)
-    metric = metrics(stepper, ends[1][chosen], ends[3][chosen])
+    metric = run.metrics(ends[1][chosen], ends[3][chosen])
     left_out = []
     with np.errstate(all="ignore"):  # What has exploded overflows.
         missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval, np.newaxis]

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from symofros.errors import Problem
-from symofros.studio.editor.editing.data_edits import Path
+from symofros.studio.editor.editing.data_edits import Path, section_of
 from symofros.studio.editor.editing.yaml_spans import YamlText
 
 ShownProblem = dict[str, Any]
@@ -48,8 +48,8 @@ def _place(problem: Problem, data: Any) -> tuple[Path, str]:
     """The entry that a message names, and the input of the block that it is about; () and "" if none."""
     what = re.sub(r"^diagram '[^']*': ", "", problem.what)
     for pattern in _PORTS:
-        if (match := pattern.search(what)) and match["block"] in _section(data, "blocks"):
-            entry = _section(data, "blocks")[match["block"]]
+        if (match := pattern.search(what)) and match["block"] in section_of(data, "blocks"):
+            entry = section_of(data, "blocks")[match["block"]]
             inputs = entry.get("inputs") if isinstance(entry, dict) else None
             inside = ("inputs", match["port"]) if isinstance(inputs, dict) and match["port"] in inputs else ()
             return ("blocks", match["block"], *inside), match["port"]
@@ -57,8 +57,8 @@ def _place(problem: Problem, data: Any) -> tuple[Path, str]:
         return path, str(path[-1])
     for match in _FIELD.finditer(what):
         section = _SECTIONS[match["what"]]
-        if match["name"] in _section(data, section):
-            entry = _section(data, section)[match["name"]]
+        if match["name"] in section_of(data, section):
+            entry = section_of(data, section)[match["name"]]
             known = isinstance(entry, dict) and match["field"] in entry
             return (section, match["name"], *([match["field"]] if known else [])), ""
     return (), ""
@@ -67,7 +67,7 @@ def _place(problem: Problem, data: Any) -> tuple[Path, str]:
 def _fed_by(source: str, data: Any) -> Path:
     """The first input that a source is written for."""
     for section in ("blocks", "parts"):
-        for name, entry in _section(data, section).items():
+        for name, entry in section_of(data, section).items():
             inputs = entry.get("inputs") if isinstance(entry, dict) else None
             for port, text in inputs.items() if isinstance(inputs, dict) else ():
                 if text == source:
@@ -88,8 +88,3 @@ def _by_line(source: YamlText, line: int) -> Path:
                 break
             best = (section, name)
     return best
-
-
-def _section(data: Any, section: str) -> dict[str, Any]:
-    entries = data.get(section) if isinstance(data, dict) else None
-    return entries if isinstance(entries, dict) else {}

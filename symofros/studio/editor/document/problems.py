@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from symofros.description import ExpressionError, parse
 from symofros.description.yaml import NativeFile, default_joint_name, placed_problems
 from symofros.errors import Problem, first_of
-from symofros.studio.editor.editing.data_edits import Path
+from symofros.studio.editor.editing.data_edits import Path, section_of
 from symofros.studio.editor.editing.formulas import formulas
 from symofros.studio.editor.editing.yaml_spans import YamlText
 
@@ -97,13 +97,13 @@ def _named(what: str, data: dict[str, Any]) -> Path:
         return ("system",) if "system" in data else ()
     for kind, name in _NAMED.findall(what):
         if kind == "joint":
-            for body, entry in _mapping(data, "bodies").items():
+            for body, entry in section_of(data, "bodies").items():
                 joint = entry.get("joint") if isinstance(entry, dict) else None
                 if isinstance(joint, dict) and joint.get("name", default_joint_name(body)) == name:
                     return ("bodies", body, "joint")
         else:
             for section in _SECTION_OF[kind]:
-                if name in _mapping(data, section):
+                if name in section_of(data, section):
                     return (section, name)
     return ()
 
@@ -184,11 +184,6 @@ def _first(data: Any, matches: Callable[..., bool]) -> Path:
                 deeper.append(((*path, key), child))
         level = deeper
     return ()
-
-
-def _mapping(data: Any, key: str) -> dict[str, Any]:
-    section = data.get(key) if isinstance(data, dict) else None
-    return section if isinstance(section, dict) else {}
 
 
 def _at(data: Any, path: Path) -> Any:

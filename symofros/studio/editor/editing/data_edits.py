@@ -61,6 +61,12 @@ class Edit:
     index: int | None = None
 
 
+def section_of(data: Any, key: str) -> dict[str, Any]:
+    """A section of a document's data; an empty one where it has none, or something else in its place."""
+    section = data.get(key) if isinstance(data, dict) else None
+    return section if isinstance(section, dict) else {}
+
+
 def same(a: Any, b: Any) -> bool:
     """Whether two values are equal; order counts in mappings, and true is not 1."""
     if isinstance(a, dict) and isinstance(b, dict):

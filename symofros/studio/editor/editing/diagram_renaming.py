@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
+from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, section_of
 
 _NAME = re.compile(r"[A-Za-z]\w*\Z", re.ASCII)
 
@@ -26,7 +26,7 @@ def renaming_in_diagram(data: dict[str, Any], edit: Edit) -> list[Edit]:
     if len(edit.path) != 2 or section not in ("blocks", "parts", "models"):
         return [edit]
     others = ("models",) if section == "models" else ("blocks", "parts")
-    taken = {name for other in others for name in _mapping(data, other)} - {old}
+    taken = {name for other in others for name in section_of(data, other)} - {old}
     if not _NAME.match(new) or new in taken:
         stated = f"'{new[:50]}' is taken" if new in taken else f"'{new[:50]}'"
         raise fault(
@@ -36,7 +36,7 @@ def renaming_in_diagram(data: dict[str, Any], edit: Edit) -> list[Edit]:
         return [*_model(data, old, new), edit]
     changed = _reference(old, new)
     edits = [Edit("set", path, after) for path, text in _signals(data) if (after := changed(text)) != text]
-    wires = [key for key in _mapping(data, "wires") if changed(key) != key]
+    wires = [key for key in section_of(data, "wires") if changed(key) != key]
     return [*edits, *(Edit("rename", ("wires", key), key=changed(key)) for key in wires), edit]
 
 
@@ -47,11 +47,11 @@ def _reference(old: str, new: str) -> Callable[[str], str]:
 
 
 def _model(data: dict[str, Any], old: str, new: str) -> Iterator[Edit]:
-    for name, block in _mapping(data, "blocks").items():
+    for name, block in section_of(data, "blocks").items():
         if isinstance(block, dict) and block.get("model") == old:
             yield Edit("set", ("blocks", name, "model"), new)
-    for name in _mapping(data, "parts"):
-        for inner, model in _mapping(_mapping(_mapping(data, "parts"), name), "models").items():
+    for name in section_of(data, "parts"):
+        for inner, model in section_of(section_of(section_of(data, "parts"), name), "models").items():
             if model == old:
                 yield Edit("set", ("parts", name, "models", inner), new)
 
@@ -59,12 +59,12 @@ def _model(data: dict[str, Any], old: str, new: str) -> Iterator[Edit]:
 def _signals(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
     """Every place that names a signal."""
     for section in ("blocks", "parts"):
-        for name in _mapping(data, section):
-            inputs = _mapping(_mapping(_mapping(data, section), name), "inputs")
+        for name in section_of(data, section):
+            inputs = section_of(section_of(section_of(data, section), name), "inputs")
             yield from _texts(inputs, (section, name, "inputs"))
     for section in ("wires", "inlets", "outlets"):
-        yield from _texts(_mapping(data, section), (section,))
-    yield from _texts(_mapping(data, "simulation").get("plots"), ("simulation", "plots"))
+        yield from _texts(section_of(data, section), (section,))
+    yield from _texts(section_of(data, "simulation").get("plots"), ("simulation", "plots"))
 
 
 def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
@@ -73,8 +73,3 @@ def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
     pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, item in pairs:
         yield from _texts(item, (*path, key))
-
-
-def _mapping(data: Any, key: str) -> dict[str, Any]:
-    section = data.get(key) if isinstance(data, dict) else None
-    return section if isinstance(section, dict) else {}

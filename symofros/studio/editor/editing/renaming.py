@@ -11,7 +11,7 @@ from symofros.description.yaml import DIAGRAM, default_joint_name
 from symofros.errors import DescriptionError
 from symofros.expr import CONSTANTS
 from symofros.mechanics.topology import motion_symbols
-from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault
+from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, section_of
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
 from symofros.studio.editor.editing.formulas import formulas, with_names
 
@@ -59,7 +59,7 @@ def _body(data: Any, at: Path, new: str) -> list[Edit]:
     if new == WORLD:
         raise fault(at, f"'{WORLD}'", f"'{WORLD}' is the ground's own name", "choose another")
     edits = [Edit("set", path, new) for path, name in _bodies_named(data) if name == old and old != WORLD]
-    joint = _mapping(_mapping(_mapping(data, "bodies"), old), "joint")
+    joint = section_of(section_of(section_of(data, "bodies"), old), "joint")
     if joint and "name" not in joint:
         before, after = (symbols_of(joint, default_joint_name(name)) for name in (old, new))
         edits += _symbols(data, at, dict(zip(before, after, strict=True)))
@@ -68,8 +68,8 @@ def _body(data: Any, at: Path, new: str) -> list[Edit]:
 
 def _bodies_named(data: Any) -> Iterator[tuple[Path, str]]:
     """Every place that names a body."""
-    for name, body in _mapping(data, "bodies").items():
-        joint = _mapping(body, "joint")
+    for name, body in section_of(data, "bodies").items():
+        joint = section_of(body, "joint")
         if isinstance(joint.get("parent"), str):
             yield ("bodies", name, "joint", "parent"), joint["parent"]
         rotors = joint.get("rotors")
@@ -88,26 +88,26 @@ def anchors(data: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
         ("closures", ("first", "second")),
         ("nonholonomic", ("knife_edge", "rolling")),
     ):
-        for name, entry in _mapping(data, section).items():
+        for name, entry in section_of(data, section).items():
             for side in sides:
-                if anchor := _mapping(entry, side):
+                if anchor := section_of(entry, side):
                     yield (section, name, side), anchor
 
 
 def _frame(data: Any, body: str, old: str, new: str) -> list[Edit]:
     """References to a frame: of joints that sit in it, anchors, loads."""
-    bodies = _mapping(data, "bodies")
+    bodies = section_of(data, "bodies")
     base = next((name for name, entry in bodies.items() if "joint" not in (entry or {})), WORLD)
     names = {body, WORLD} if body == base else {body}
     edits = []
     for name, entry in bodies.items():
-        joint = _mapping(entry, "joint")
+        joint = section_of(entry, "joint")
         if joint.get("frame") == old and joint.get("parent", WORLD) in names:
             edits.append(Edit("set", ("bodies", name, "joint", "frame"), new))
     for path, anchor in anchors(data):
         if anchor.get("frame") == old and anchor.get("body") in names:
             edits.append(Edit("set", (*path, "frame"), new))
-    loads = _mapping(bodies, body).get("loads")
+    loads = section_of(bodies, body).get("loads")
     for i, load in enumerate(loads if isinstance(loads, list) else []):
         if isinstance(load, dict) and load.get("at") == old:
             edits.append(Edit("set", ("bodies", body, "loads", i, "at"), new))
@@ -139,11 +139,11 @@ def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
 
 def taken(data: Any) -> set[str]:
     """The names that formulas could use."""
-    names = {TIME, *CONSTANTS, *_mapping(data, "parameters"), *map(symbol_of, _mapping(data, "inputs"))}
-    for body, entry in _mapping(data, "bodies").items():
-        if _mapping(entry, "beam"):
+    names = {TIME, *CONSTANTS, *section_of(data, "parameters"), *map(symbol_of, section_of(data, "inputs"))}
+    for body, entry in section_of(data, "bodies").items():
+        if section_of(entry, "beam"):
             names.add(STATION)
-        joint = _mapping(entry, "joint")
+        joint = section_of(entry, "joint")
         stated = joint.get("coordinates") if joint.get("kind") == "general" else None
         if isinstance(stated, list):
             names.update(symbol_of(f"{rate}{name}") for rate in ("", "d", "dd") for name in stated)
@@ -178,15 +178,10 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
 def speeds_as_keys(data: Any) -> Iterator[tuple[Path, list[str]]]:
     """Every mapping whose keys are speeds: its path, and these."""
     for section, inner in _BY_SPEED:
-        for name, entry in _mapping(data, section).items():
-            speeds = _mapping(entry, inner) if inner else entry
+        for name, entry in section_of(data, section).items():
+            speeds = section_of(entry, inner) if inner else entry
             if isinstance(speeds, dict):
                 yield ((section, name, inner) if inner else (section, name)), list(speeds)
-
-
-def _mapping(data: Any, key: str) -> dict[str, Any]:
-    section = data.get(key) if isinstance(data, dict) else None
-    return section if isinstance(section, dict) else {}
 
 
 def _at(data: Any, path: Path) -> Any:

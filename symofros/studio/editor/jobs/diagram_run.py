@@ -17,10 +17,9 @@ from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import entries, split
 from symofros.diagrams.simulation import Simulation
 from symofros.diagrams.wiring import Source, Wired
-from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.studio.editor.jobs.bent_beams import bent_beams
-from symofros.studio.editor.jobs.request import Json, Tell, diagram_of
+from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, number_of
 
 # Points of a curve that are sent at most at the end, and with one message meanwhile.
 MAX_POINTS, MAX_TOLD = 3000, 200
@@ -36,11 +35,11 @@ def run_diagram(request: Json, tell: Tell) -> Json:
     wired = simulation.resolved.wired
     plots = (plots_of(wired) or [Plot(name, (name,)) for name in _outputs(wired)])[:MAX_PLOTS]
     settings = diagram.simulation.keywords()
-    settings |= {key: _number(options[key], key) for key in SETTINGS if options.get(key) is not None}
+    settings |= {key: number_of(options[key], key, from_zero=True) for key in SETTINGS if options.get(key) is not None}
     if options.get("method"):
         settings["method"] = str(options["method"])
-    t_end = _number(options.get("t_end") or diagram.simulation.t_end or 1.0, "t_end")
-    stops = [_number(stop, "a breakpoint") for stop in (options.get("breakpoints") or [])[:MAX_STOPS]]
+    t_end = number_of(options.get("t_end") or diagram.simulation.t_end or 1.0, "t_end", from_zero=True)
+    stops = [number_of(stop, "a breakpoint", from_zero=True) for stop in (options.get("breakpoints") or [])[:MAX_STOPS]]
     observer = LiveObserver(tell, wired, plots, t_end, stops)
     interpreted = options.get("mode") == "interpreted"
     tell(0, 100, "compiling each block" if interpreted else "compiling the diagram")
@@ -60,8 +59,7 @@ def run_diagram(request: Json, tell: Tell) -> Json:
         outcome = run.outcome
         cost = {"steps": run.cost.steps, "loop_s": run.cost.worked}
         t, signals = run.t, run  # type: ignore[assignment]
-    end: Json = {key: getattr(outcome, key) for key in ("ok", "t", "reason", "advice")}
-    end |= {"notes": list(outcome.notes)}
+    end: Json = {"ok": outcome.ok, **outcome.as_data()}
     end |= {"ok": True, "reason": "stopped where you said"} if observer.ended else {}
     kept = _thinned(len(t), MAX_POINTS)
     return {
@@ -200,15 +198,3 @@ def _thinned(n: int, most: int) -> npt.NDArray[np.int64]:
 def _floats(values: Array) -> list[float | None]:
     """Numbers as JSON holds them, with the figures that a plot can show; None where one is not finite."""
     return [float(f"{x:.7g}") if math.isfinite(x) else None for x in np.asarray(values, dtype=np.float64).tolist()]
-
-
-def _number(given: Any, what: str) -> float:
-    try:
-        number = float(given)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number) or number < 0.0:
-        raise SymofrosError(
-            Problem(f"{what} is not a number", f"{given!r:.100}", "a finite number from zero", "mend it")
-        )
-    return number

@@ -27,7 +27,7 @@ from symofros.mechanics.topology import SpanningTree, build_tree
 from symofros.simulation.analysis.kinematics.starts import closed_start
 from symofros.simulation.simulate import prepare_run
 from symofros.studio.editor.jobs.bent_beams import bent_beams
-from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, system_of
+from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, number_of, system_of
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
@@ -139,7 +139,7 @@ def simulate(request: Json, tell: Tell) -> Json:
     tell(0, 100, "reading")
     system = system_of(request)
     options = request.get("options", {})
-    t_end = _number(options.get("t_end", 1.0), "t_end")
+    t_end = number_of(options.get("t_end", 1.0), "t_end")
     tell(0, 100, "compiling")
     model = compile_system(system)
     par = _vector(model.names.par, options.get("parameters"), model.parameter_values, "parameter")
@@ -152,7 +152,7 @@ def simulate(request: Json, tell: Tell) -> Json:
     start = closed_start(model, q, v, stated, moved, par=par)
     points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
-    chosen |= {key: _number(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
+    chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
     inputs = {
         str(name): _formula(text) for name, text in (options.get("inputs") or {}).items() if text not in ("", None)
     }
@@ -207,14 +207,7 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
             "total": _numbers(run.energy),
         },
         "beams": bent_beams(run.bendings),
-        "outcome": {
-            "ok": end.ok,
-            "kind": end.kind,
-            "t": end.t,
-            "reason": end.reason,
-            "advice": end.advice,
-            "notes": list(end.notes),
-        },
+        "outcome": {"ok": end.ok, **end.as_data()},
     }
 
 
@@ -236,10 +229,10 @@ def page(request: Json, tell: Tell) -> Json:
     """A page that simulates the model by itself, from a start, by WebAssembly."""
     tell(0, 2, "reading")
     system, options = system_of(request), request.get("options", {})
-    start = {str(name): _number(x, str(name)) for name, x in (options.get("q0") or {}).items()}
-    start |= {f"d{quoted(str(name))}": _number(x, str(name)) for name, x in (options.get("v0") or {}).items()}
+    start = {str(name): number_of(x, str(name)) for name, x in (options.get("q0") or {}).items()}
+    start |= {f"d{quoted(str(name))}": number_of(x, str(name)) for name, x in (options.get("v0") or {}).items()}
     stepping: Json = {"method": options["method"]} if options.get("method") else {}
-    stepping |= {key: _number(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
+    stepping |= {key: number_of(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
     tell(1, 2, "compiling for WebAssembly; the first time takes a minute or two")
     with tempfile.TemporaryDirectory() as folder:
         done = sf.export(system, "wasm", folder, start=start, **stepping)
@@ -251,16 +244,6 @@ def import_model(request: Json, tell: Tell) -> Json:
     tell(0, 1, "reading")
     system = sf.load(request["file"])
     return {"text": write_yaml(system), "notes": list(system.notes)}
-
-
-def _number(given: Any, what: str) -> float:
-    try:
-        number = float(given)
-    except (TypeError, ValueError):
-        number = math.nan
-    if not math.isfinite(number):
-        raise SymofrosError(Problem(f"{what} is not a number", f"{given!r:.100}", "a finite number", "mend it"))
-    return number
 
 
 def _whole(given: Any, low: int, high: int, default: int) -> int:
@@ -282,7 +265,7 @@ def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
                     f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
                 )
             )
-        values[names.index(plain)] = _number(number, name)
+        values[names.index(plain)] = number_of(number, name)
     return values
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +13,7 @@ from symofros.description import System, in_order
 from symofros.description.yaml import read_yaml
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram
-from symofros.errors import DescriptionError
+from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.mechanics.topology import find_problems
 
 Json = dict[str, Any]
@@ -47,6 +48,22 @@ def system_of(request: Json) -> System:
     if reading.system is None or reading.problems or problems:
         raise DescriptionError(in_order([*reading.problems, *problems]))
     return reading.system
+
+
+def number_of(given: Any, what: str, from_zero: bool = False) -> float:
+    """A finite number of a request, or one that is not negative.
+
+    Raises:
+        SymofrosError: It is none.
+    """
+    try:
+        number = float(given)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number) or (from_zero and number < 0.0):
+        rule = "a finite number from zero" if from_zero else "a finite number"
+        raise SymofrosError(Problem(f"{what} is not a number", f"{given!r:.100}", rule, "mend it"))
+    return number
 
 
 def diagram_of(request: Json) -> Diagram:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import csv
-from array import array as packed
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -18,14 +16,13 @@ from symofros.base.arrays import Array, numeric
 from symofros.base.names import TIME, symbol_of
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.results.csv_columns import read_csv, refuse_doubled
 from symofros.simulation.results.npz import TooLargeError, read_npz
 from symofros.simulation.results.trajectory import Trajectory
 
 SUFFIXES = (".npz", ".csv", ".parquet")
 # Half a gigabyte.
 MAX_NUMBERS = 64_000_000
-# Bytes of a number in a CSV file, with what is beside it.
-_WIDEST = 26
 # Coordinate beyond which a motion has diverged, and component below which a quaternion has no direction: their squares
 # are numbers.
 _LARGEST, _SHORTEST = 1e100, 1e-100
@@ -178,21 +175,7 @@ def _read_arrays(file: Path, model: Model) -> PlayedMotion:
 
 
 def _read_csv(file: Path, model: Model) -> PlayedMotion:
-    if file.stat().st_size > _WIDEST * MAX_NUMBERS:
-        raise TooLargeError(f"{file.stat().st_size} bytes")
-    numbers = packed("d")
-    with file.open(newline="", encoding="utf-8-sig") as stream:
-        rows = csv.reader(stream)
-        head = next(rows, [])
-        _refuse_doubled(head)
-        for row in rows:
-            if row and len(row) != len(head):
-                raise ValueError(f"line {rows.line_num} has {len(row)} of {len(head)} columns")
-            numbers.extend(map(float, row))
-            if len(numbers) > MAX_NUMBERS:
-                raise TooLargeError(f"more than {MAX_NUMBERS} numbers")
-    table = np.array(numbers).reshape(-1, len(head) or 1)
-    return _from_columns(dict(zip(head, table.T, strict=True)) if head else {}, file, model)
+    return _from_columns(read_csv(file, MAX_NUMBERS), file, model)
 
 
 def _read_parquet(file: Path, model: Model) -> PlayedMotion:
@@ -211,23 +194,12 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
     with parquet.ParquetFile(file) as stored:
         wanted = {TIME, *map(symbol_of, model.names.q), *model.names.u, *(f"u.{name}" for name in model.names.u)}
         columns = [name for name in stored.schema_arrow.names if name in wanted]
-        _refuse_doubled(columns)
+        refuse_doubled(columns)
         # A column of one value, repeated, takes a few bytes whatever its length.
         if stored.metadata.num_rows * len(columns) > MAX_NUMBERS:
             raise TooLargeError(f"{stored.metadata.num_rows} rows of {len(columns)} columns")
         table = stored.read(columns)
     return _from_columns({name: table[name].to_numpy() for name in table.column_names}, file, model)
-
-
-def _refuse_doubled(names: Sequence[str]) -> None:
-    """Refuse columns of one name.
-
-    Raises:
-        ValueError: With the names.
-    """
-    doubled = [name for name, count in Counter(names).items() if count > 1]
-    if doubled:
-        raise ValueError(f"several columns are called {_some(doubled)}")
 
 
 def _from_columns(columns: Mapping[str, Array], file: Path, model: Model) -> PlayedMotion:

@@ -43,17 +43,16 @@ def ellipse(y: float, z: float) -> list[tuple[float, float]]:
     ("closed", "outline", "holes"),
     [
         (sections.rectangle(STEEL, 2.0, 1.0), [(0, 0), (2, 0), (2, 1), (0, 1)], ()),
-        (sections.circle(STEEL, 1.0), ellipse(1.0, 1.0), ()),
         (sections.ellipse(STEEL, 1.5, 0.6), ellipse(1.5, 0.6)[::4], ()),
         (sections.tube(STEEL, 1.0, 0.4), ellipse(1.0, 1.0)[::4], (ellipse(0.6, 0.6)[::4],)),
     ],
-    ids=["rectangle", "circle", "ellipse", "tube"],
+    ids=["rectangle", "ellipse", "tube"],
 )
 def test_closed_forms_are_those_of_finite_elements(
     closed: Section, outline: list[tuple[float, float]], holes: tuple[list[tuple[float, float]], ...]
 ) -> None:
     meshed = sections.polygon(STEEL, outline, holes)
-    # A polygon of 720 corners lacks 2.5e-5 of the moments of its circle, one of 180 4e-4; thin meshes err by 1e-5.
+    # A polygon of 180 corners lacks 4e-4 of the moments of its circle; thin meshes err by 1e-5.
     error = 8e-4 if len(outline) == 180 else 6e-5
     for label in ("EA", "GJ", "EI_y", "EI_z", "GA_y", "GA_z", "rhoA", "rhoI_y", "rhoI_z"):
         assert number(getattr(meshed, label)) == pytest.approx(number(getattr(closed, label)), rel=error), label
@@ -76,11 +75,6 @@ def test_a_tube_is_a_circle_without_its_core() -> None:
         assert number(getattr(tube, label)) == pytest.approx(
             number(getattr(whole, label)) - number(getattr(core, label)), rel=1e-14
         )
-
-
-def test_an_ellipse_of_equal_axes_is_a_circle() -> None:
-    circle, ellipse = sections.circle(STEEL, 0.7), sections.ellipse(STEEL, 0.7, 0.7)
-    assert ellipse.beam_properties("strain") == pytest.approx(circle.beam_properties("strain"), rel=1e-14)
 
 
 def test_sizes_may_be_formulas() -> None:
@@ -132,19 +126,6 @@ def test_principal_axes_of_an_l_section() -> None:
     assert number(turned.EI_z) > number(turned.EI_y)
 
 
-@pytest.mark.slow
-@elements
-def test_symmetric_outlines_serve_beams_at_any_size() -> None:
-    size = 1e-6
-    unit = sections.i_section(STEEL, 2.0, 1.0, 0.1, 0.15).beam_properties()
-    scaled = sections.i_section(STEEL, 2.0 * size, size, 0.1 * size, 0.15 * size).beam_properties()
-    powers = dict.fromkeys(("EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z"), 4)
-    powers |= dict.fromkeys(("rhoA", "EA", "GA_y", "GA_z"), 2)
-    assert scaled == pytest.approx({label: number(unit[label]) * size ** powers[label] for label in unit}, rel=1e-9)
-    # 2 b f ((h - f)/2)^2 and so on, by hand.
-    assert number(unit["EI_z"]) == pytest.approx(2.6 * (1.0 * 2.0**3 - 0.9 * 1.7**3) / 12)
-
-
 @pytest.mark.parametrize(
     "outline",
     [
@@ -183,22 +164,6 @@ def test_a_section_in_the_file_is_that_of_python(tmp_path: Path) -> None:
     (beam,) = sf.load(tmp_path / "a.yaml").bodies
     expected = sections.rectangle(Material(70e9, 26e9, 2700.0), "b*(2 - x/L)", 0.005).beam_properties()
     assert {label: getattr(beam, label) for label in expected} == expected
-
-
-@pytest.mark.parametrize(
-    ("entry", "fault"),
-    [
-        ("section: {shape: tube, E: 1, G: 1, rho: 1, radius: 1}", "add thickness"),
-        ("section: {shape: circle, E: 1, G: 1, rho: 1, radius: 1, y: 2}", "remove y"),
-        ("section: {shape: hexagon, E: 1, G: 1, rho: 1}", "rectangle"),
-        ("section: {shape: circle, E: 1, G: 1, rho: 1, radius: 1}\n      rhoA: 2", "keep the one or the other"),
-        ("twist: 0", "a beam without mass"),
-    ],
-)
-def test_faults_of_sections_are_said(tmp_path: Path, entry: str, fault: str) -> None:
-    (tmp_path / "a.yaml").write_text(FILE.format(section=entry))
-    with pytest.raises(sf.DescriptionError, match=fault):
-        sf.load(tmp_path / "a.yaml")
 
 
 COUPLED = Section(
@@ -278,14 +243,6 @@ def test_a_rod_takes_a_section_off_its_axis_as_it_is() -> None:
     assert (beam.EI_yz, beam.rhoI_yz) == (0.5, 0.004)
     # Shears along y and z are coupled then, by what is not known.
     assert not {"GA_y", "GA_z"} & entries.keys()
-
-
-@pytest.mark.parametrize(
-    "entries", [{"tension_center": [1.0]}, {"mass_center": None}, {"shear_center": 5.0}, {"stiffness": [[1.0, 0.0]]}]
-)
-def test_sections_of_other_sizes_are_refused(entries: dict[str, Any]) -> None:
-    with pytest.raises(DescriptionError, match="wrong number of entries|1 rows"):
-        replace(COUPLED, **entries)
 
 
 def test_a_product_is_small_beside_both_stiffnesses() -> None:

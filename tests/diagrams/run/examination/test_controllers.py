@@ -2,47 +2,48 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 
 import symofros as sf
 from symofros import blocks
+from tests.diagrams.parts import moving
 
 PERIOD = 1e-3
 
 
+@cache
 def arm(
-    kd: float,
-    gravity: float = 0.0,
-    EI: float = 20.0,
-    kp: float = 50.0,
-    hold: bool = False,
-    elements: tuple[sf.Spring | sf.Damper, ...] = (),
+    gravity: float = 0.0, EI: float = 20.0, hold: bool = False, elements: tuple[sf.Spring | sf.Damper, ...] = ()
 ) -> sf.Simulation:
     """A flexible arm under a sampled law; with `hold` the law is continuous, and a hold samples it."""
     joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True, elements=elements)
     beam = sf.Beam("boom", joint, length=1.0, rhoA=0.5, EI_z=EI, bend_y=2)
-    diagram = sf.Diagram("law")
-    diagram.add_model("arm", sf.System("arm", (beam,), gravity=(0, -gravity, 0)), start={"q": 0.1})
-    diagram.add(blocks.ForwardDynamics(name="plant", model="arm"), u="sampled" if hold else "pd")
+    diagram = moving(sf.System("arm", (beam,), gravity=(0, -gravity, 0)), {"q": 0.1}, u="sampled" if hold else "pd")
     for of in "qv":
-        diagram.add(blocks.Pick(name=of, model="arm", of=of, entries="actuated"), u=f"plant.{of}")
+        diagram.add(blocks.Pick(name=of, model="plant", of=of, entries="actuated"), u=f"plant.{of}")
     diagram.add(blocks.Constant(name="goal", value=[0.0], unit="rad"))
-    pd = blocks.JointPD(name="pd", kp=kp, kd=kd, period=None if hold else PERIOD)
+    pd = blocks.JointPD(name="pd", kp=50.0, kd=1.0, period=None if hold else PERIOD)
     diagram.add(pd, q_desired="goal", q="q", v="v")
     if hold:
         diagram.add(blocks.Hold(name="sampled", period=PERIOD), u="pd")
     return sf.Simulation(diagram)
 
 
-def driven_apart(elements: tuple[sf.Spring | sf.Damper, ...], kp: float, kd: float) -> sf.Simulation:
-    """A joint that its own elements drive apart, under a law that is sampled."""
+def gains(kp: float, kd: float) -> dict[str, float]:
+    return {"pd.kp": kp, "pd.kd": kd}
+
+
+@cache
+def driven_apart(damping: float) -> sf.Simulation:
+    """A joint on a spring that its own damper drives apart, where it is negative, under a law that is sampled."""
+    elements = (sf.Spring(1e4), sf.Damper(damping))
     joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True, elements=elements)
     body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
-    diagram = sf.Diagram("law")
-    diagram.add_model("arm", sf.System("arm", (body,), gravity=(0, 0, 0)), start={"q": 0.1})
-    diagram.add(blocks.ForwardDynamics(name="plant", model="arm"), u="pd")
+    diagram = moving(sf.System("arm", (body,), gravity=(0, 0, 0)), {"q": 0.1}, u="pd")
     diagram.add(blocks.Constant(name="goal", value=[0.0], unit="rad"))
-    pd = blocks.JointPD(name="pd", kp=kp, kd=kd, period=0.02)
+    pd = blocks.JointPD(name="pd", kp=1.0, kd=1.0, period=0.02)
     diagram.add(pd, q_desired="goal", q="plant.q", v="plant.v")
     return sf.Simulation(diagram)
 
@@ -55,9 +56,7 @@ def flutter(kp: float, kd: float) -> sf.Simulation:
     ]
     carriage = sf.RigidBody("carriage", slides[0], sf.Inertia(0.01, (0, 0, 0), (1.0, 1.0, 1.0)))
     load = sf.RigidBody("load", slides[1], sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
-    diagram = sf.Diagram("law")
-    diagram.add_model("pair", sf.System("pair", (carriage, load), gravity=(0, 0, 0)), start={"x": 0.1})
-    diagram.add(blocks.ForwardDynamics(name="plant", model="pair"), u="all")
+    diagram = moving(sf.System("pair", (carriage, load), gravity=(0, 0, 0)), {"x": 0.1}, u="all")
     diagram.add(blocks.Gain(name="follower", gain=[[0.0, 4000.0], [-4000.0, 0.0]]), u="plant.q")
     diagram.add(blocks.Constant(name="goal", value=[0.0, 0.0], unit="m"))
     pd = blocks.JointPD(name="pd", kp=kp, kd=kd, period=0.02)
@@ -72,9 +71,7 @@ def two_laws(bad: str) -> sf.Simulation:
     turn = sf.Joint("y", "revolute", "carriage", axis=(0, 0, 1), actuated=True)
     carriage = sf.RigidBody("carriage", slide, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
     link = sf.RigidBody("link", turn, sf.Inertia(1.0, (0, 0.1, 0), (1.0, 1.0, 1.0)))
-    diagram = sf.Diagram("law")
-    diagram.add_model("pair", sf.System("pair", (carriage, link), gravity=(0, 0, 0)), start={"dx": 0.1, "dy": 0.1})
-    diagram.add(blocks.ForwardDynamics(name="plant", model="pair"), u="all")
+    diagram = moving(sf.System("pair", (carriage, link), gravity=(0, 0, 0)), {"dx": 0.1, "dy": 0.1}, u="all")
     for name, row in (("x", [1.0, 0.0]), ("y", [0.0, 1.0])):
         gain = 400.0 if name == bad else 1.0
         diagram.add(blocks.Gain(name=name, gain=[[-gain * value for value in row]]), u="plant.v")
@@ -85,74 +82,70 @@ def two_laws(bad: str) -> sf.Simulation:
 
 
 @pytest.mark.parametrize(("hold", "named"), [(False, "pd"), (True, "sampled")])
-@pytest.mark.parametrize("kd", [8.0, 20.0, 100.0, 1000.0])
+@pytest.mark.parametrize("kd", [8.0, 100.0, 1000.0])
 def test_an_unstable_gain_is_named(kd: float, hold: bool, named: str) -> None:
-    outcome = arm(kd, hold=hold).run(1.0).outcome
+    outcome = arm(hold=hold).run(1.0, parameters=gains(50.0, kd)).outcome
     assert not outcome.ok
     assert outcome.reason.startswith(f"block '{named}', sampled every 0.001 s, drives the motion apart"), str(outcome)
     assert f"lower the gains of '{named}'" in outcome.advice and "divide it" not in outcome.advice
 
 
 def test_it_is_named_whatever_the_records() -> None:
-    outcome = arm(20.0).run(1.0, record=0.1).outcome
+    outcome = arm().run(1.0, record=0.1, parameters=gains(50.0, 20.0)).outcome
     assert "block 'pd'" in outcome.reason
 
 
 def test_a_law_that_is_stable_is_not() -> None:
-    assert arm(1.0).run(0.2).outcome.ok
+    assert arm().run(0.2).outcome.ok
 
 
 def test_a_load_that_bends_a_beam_beyond_its_theory_is_said_of_the_beam() -> None:
     """Also where a law holds its root, as well as it can."""
-    outcome = arm(1.0, gravity=200.0, EI=2.0).run(1.0).outcome
+    outcome = arm(gravity=200.0, EI=2.0).run(1.0).outcome
     assert outcome.kind == "beyond theory" and "beam 'plant.boom' bends by" in outcome.reason
     assert "divide it into" in outcome.advice
 
 
 def test_a_step_past_the_limit_of_stability_is_said_of_the_step() -> None:
     """The same law is stable with steps that the beam allows."""
-    stiff = arm(1.0, EI=2e5)
+    stiff = arm(EI=2e5)
     outcome = stiff.run(0.5, dt=1e-3).outcome
     assert outcome.kind == "diverged" and "past the limit of stability" in outcome.reason, str(outcome)
     assert stiff.run(0.01, dt=2e-6).outcome.ok
 
 
-@pytest.mark.parametrize(("kp", "kd"), [(0.1, 0.01), (5.0, 0.5), (0.0, 0.0)])
+@pytest.mark.parametrize(("kp", "kd"), [(5.0, 0.5), (0.0, 0.0)])
 def test_a_joint_that_drives_itself_apart_is_not_said_of_a_weak_law(kp: float, kd: float) -> None:
     """With gains of zero it diverges just the same."""
-    outcome = driven_apart((sf.Spring(1e4), sf.Damper(-40.0)), kp, kd).run(400.0).outcome
+    outcome = driven_apart(-40.0).run(400.0, parameters=gains(kp, kd)).outcome
     assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
 
 
 def test_a_law_that_drives_the_same_joint_apart_is_named() -> None:
-    outcome = driven_apart((sf.Spring(1e4), sf.Damper(1.0)), 0.0, 2000.0).run(400.0).outcome
+    outcome = driven_apart(1.0).run(400.0, parameters=gains(0.0, 2000.0)).outcome
     assert outcome.reason.startswith("block 'pd', sampled every 0.02 s"), str(outcome)
 
 
-@pytest.mark.parametrize("kp", [0.0, 0.1])
-def test_flutter_is_not_said_of_an_idle_law(kp: float) -> None:
-    outcome = flutter(kp, 0.01).run(400.0).outcome
+def test_flutter_is_not_said_of_an_idle_law() -> None:
+    outcome = flutter(0.1, 0.01).run(400.0).outcome
     assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
 
 
-@pytest.mark.parametrize(("EI", "k"), [(200.0, 10.0), (200.0, 300.0), (1000.0, 10.0)])
+@pytest.mark.parametrize(("EI", "k"), [(200.0, 300.0), (1000.0, 10.0)])
 def test_a_loaded_beam_that_its_joint_drives_apart_is_not_said_of_a_weak_law(EI: float, k: float) -> None:
-    weak = arm(1e-3, gravity=1.0, EI=EI, kp=1e-2, elements=(sf.Spring(k), sf.Damper(-2.0)))
-    outcome = weak.run(2.0, dt=2e-5).outcome
+    weak = arm(gravity=1.0, EI=EI, elements=(sf.Spring(k), sf.Damper(-2.0)))
+    outcome = weak.run(2.0, dt=2e-5, parameters=gains(1e-2, 1e-3)).outcome
     assert outcome.kind == "beyond theory" and "'pd'" not in str(outcome), str(outcome)
 
 
-@pytest.mark.parametrize("kd", [230.0, 2000.0])
-def test_a_law_in_python_is_named(kd: float) -> None:
+def test_a_law_in_python_is_named() -> None:
     """What it gave is replayed: it is the motion that says whether it grows without the law."""
     joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True)
     body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
-    diagram = sf.Diagram("law")
-    diagram.add_model("arm", sf.System("arm", (body,), gravity=(0, 0, 0)), start={"dq": 0.1})
-    diagram.add(blocks.ForwardDynamics(name="plant", model="arm"), u="pd.u")
+    diagram = moving(sf.System("arm", (body,), gravity=(0, 0, 0)), {"dq": 0.1}, u="pd.u")
     law = blocks.PythonBlock(
         name="pd",
-        function=lambda t, given: {"u": -kd * given["v"]},
+        function=lambda t, given: {"u": -230.0 * given["v"]},
         inputs={"v": None},
         outputs={"u": (1,)},
         period=0.02,

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import Formula, ForwardDynamics, PythonBlock
-from symofros.diagrams.run import simulate
+from symofros.blocks import Formula, PythonBlock
+from tests.diagrams.parts import moving
 from tests.models import sampled
 from tests.simulation.oscillator import oscillator_system
 
 
 def pushed(law: str, force: str, **start: float) -> sf.Simulation:
     """A mass of 1 kg under a continuous force and a sampled one of zero, by a formula or a function of Python's."""
-    diagram = sf.Diagram("pushed")
-    diagram.add_model("plant", oscillator_system(k=1e-6), start=start)
+    diagram = moving(oscillator_system(k=1e-6), start=start, u="all.force")
     if law == "formula":
         diagram.add(Formula(name="law", formulas={"force": ["0*t"]}, period=0.1))
     else:
@@ -35,7 +32,6 @@ def pushed(law: str, force: str, **start: float) -> sf.Simulation:
     diagram.add(
         Formula(name="all", formulas={"force": [f"{force} + u[0] + 0*v[0]"]}), x="plant.q", v="plant.v", u="law.force"
     )
-    diagram.add(ForwardDynamics(name="plant", model="plant"), u="all.force")
     return sf.Simulation(diagram)
 
 
@@ -67,8 +63,7 @@ def test_a_contact_that_steps_leap_over_is_told_and_one_that_they_follow_is_not(
 
 def sampled_loop(law: str, damping: float = 2.0) -> sf.Simulation:
     """A mass of 1 kg that a sampled law holds with 100 N/m and a damping [N s/m], too late to hold it still."""
-    diagram = sf.Diagram("loop")
-    diagram.add_model("plant", oscillator_system(k=1.0), start={"x": 1.0})
+    diagram = moving(oscillator_system(k=1.0), start={"x": 1.0}, u="law.force")
     given = {"x": "plant.q", "v": "plant.v"}
     if law == "formula":
         diagram.add(Formula(name="law", formulas={"force": [f"-100*x[0] - {damping}*v[0]"]}, period=0.1), **given)
@@ -79,7 +74,6 @@ def sampled_loop(law: str, damping: float = 2.0) -> sf.Simulation:
 
         ports = {"x": (1,), "v": (1,)}
         diagram.add(PythonBlock(name="law", function=held, inputs=ports, outputs={"force": (1,)}, period=0.1), **given)
-    diagram.add(ForwardDynamics(name="plant", model="plant"), u="law.force")
     return sf.Simulation(diagram)
 
 
@@ -95,28 +89,16 @@ def test_errors_that_add_up_through_samples_are_told(law: str, method: str, dt: 
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-@pytest.mark.parametrize("law", ["formula", "python"])
-def test_positions_that_a_long_step_shifts_between_samples_are_told(law: str) -> None:
-    """Forces that are held leave no error in the speed; that of the position feeds an unstable loop.
-
-    `validation adversary` came upon it: 570 m/s where finer steps come to 7, without a note.
-    """
-    run = sampled_loop(law, damping=20.0).run(1.0, method="semi_implicit_euler", dt=0.1, record=0.1)
-    assert any("do not determine the motion of 'plant'" in note for note in run.outcome.notes)
-
-
-@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
-def test_phases_that_drift_by_errors_of_amplitudes_are_told(size: float) -> None:
+def test_phases_that_drift_by_errors_of_amplitudes_are_told() -> None:
     """Half the step changes a window by less than a thousandth, and the run by all of it."""
-    simulation = pushed("formula", f"-{1e3 / size**2}*x[0]^3", x=size)
+    simulation = pushed("formula", "-1e9*x[0]^3", x=1e-3)
     coarse, fine = (simulation.run(8.0, dt=dt, record=0.05) for dt in (1e-2, 2e-3))
     assert np.abs(coarse.v - fine.v).max() > 0.3 * np.abs(fine.v).max()
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-@pytest.mark.parametrize("law", ["formula", "python"])
-def test_energy_that_each_of_many_contacts_takes_is_told(law: str) -> None:
-    simulation = pushed(law, "-9.81 + max(0, -1e3*x[0])", x=1.0)
+def test_energy_that_each_of_many_contacts_takes_is_told() -> None:
+    simulation = pushed("python", "-9.81 + max(0, -1e3*x[0])", x=1.0)
     coarse, fine = (simulation.run(20.0, method=m, dt=1e-3, record=0.1) for m in ("euler", "rk4"))
     assert np.abs(coarse.v).max() > 1.5 * np.abs(fine.v).max()
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
@@ -134,19 +116,8 @@ def test_motion_that_grows_without_bound_has_diverged_before_its_energy_overflow
         assert np.isfinite(np.square(run.v)).all()
 
 
-@pytest.mark.slow
-def test_interpreted_runs_are_judged_alike() -> None:
-    simulation = bounce("python", 0.0)
-    assert simulation.interpret(2.0, dt=1e-2, record=0.1, compiled=False).outcome.notes
-    simulation = pushed("formula", "-2000*x[0]^3", dx=2.0)
-    assert simulation.interpret(5.0, dt=0.05, record=0.05, compiled=False).outcome.notes
-    assert not simulation.interpret(2.0, dt=2e-3, record=0.05, compiled=False).outcome.notes
-
-
 def test_an_interpreted_step_past_the_limit_of_stability_is_told_with_the_mode() -> None:
-    diagram = sf.Diagram("stiff")
-    diagram.add_model("plant", oscillator_system(k=1e6), start={"x": 1e-3})
-    diagram.add(ForwardDynamics(name="plant", model="plant"))
+    diagram = moving(oscillator_system(k=1e6), start={"x": 1e-3})
     simulation = sf.Simulation(diagram)
     (note,) = simulation.interpret(0.3, dt=3e-3, record=3e-3, compiled=False).outcome.notes
     assert "past the limit of stability" in note and "oscillates at 1000 rad/s" in note
@@ -157,46 +128,11 @@ def test_an_interpreted_step_past_the_limit_of_stability_is_told_with_the_mode()
 def test_work_of_dampers_and_sampled_efforts_is_no_fault_at_any_scale(scale: float) -> None:
     joint = sf.Joint("q", "revolute", axis=(0, -1, 0), elements=(sf.Damper(0.2 * scale),), actuated=True)
     bar = sf.RigidBody("bar", joint, sf.Inertia(scale, (1.0, 0, 0), (0.01 * scale,) * 3))
-    diagram = sf.Diagram("swing")
-    diagram.add_model("plant", sf.System("swing", (bar,)), start={"q": 1.0})
+    diagram = moving(sf.System("swing", (bar,)), start={"q": 1.0}, u="push.effort")
     diagram.add(Formula(name="push", formulas={"effort": [f"{0.5 * scale}*sin(3*t)"]}, period=0.1))
-    diagram.add(ForwardDynamics(name="plant", model="plant"), u="push.effort")
     for record in (0.01, 0.1):
         run = sf.Simulation(diagram).run(30.0, dt=0.01, record=record)
         assert run.outcome.ok and not run.outcome.notes, run.outcome
-
-
-def test_a_window_goes_on_from_a_record_as_the_run_did(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Made once more by the same steps, with memory, delays and outputs of Python's as they were, it is bit for bit."""
-    compared = []
-    sound = simulate._resumed
-
-    def resumed(task: Any, states: Any, given: Any, i: int) -> Any:
-        again = sound(replace(task, options=replace(task.options, dt=1e-2)), states, given, i)
-        t, q, v, u = again
-        rows = slice(i, i + len(t))
-        compared.append([np.array_equal(x, y[rows]) for x, y in zip((t, q, v), states[:3], strict=True)])
-        return again
-
-    monkeypatch.setattr(simulate, "_resumed", resumed)
-    bounce("python", 0.0).run(10.0, dt=1e-2, record=1e-2)
-    assert compared and np.all(compared)
-
-
-def test_no_more_than_the_first_20_000_steps_are_made_once_more_however_few_records_there_are(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    spans, sound = [], simulate._resumed
-
-    def resumed(task: Any, states: Any, given: Any, i: int) -> Any:
-        spans.append((float(states[0][i]), task.t_end))
-        return sound(task, states, given, i)
-
-    monkeypatch.setattr(simulate, "_resumed", resumed)
-    monkeypatch.setattr("symofros.diagrams.run.examination.remarks.energy_note", lambda *_, **__: "")
-    pushed("formula", "-2000*x[0]^3", dx=2.0).run(400.0, dt=4e-3, record=200.0)
-    begin, end = spans[-1]
-    assert begin == 0.0 and end == pytest.approx(20_000 * 4e-3)
 
 
 @pytest.mark.parametrize(

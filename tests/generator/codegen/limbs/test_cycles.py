@@ -13,15 +13,6 @@ def test_a_chain_has_no_groups() -> None:
     assert not list(strongly_connected({i: {i - 1} for i in range(1, 50_000)}))
 
 
-def test_two_loops_that_meet_are_one_group() -> None:
-    needs = {1: {2}, 2: {3, 4}, 3: {1}, 4: {2, 5}, 5: {6}, 6: {7}, 7: {6}}
-    assert sorted(map(sorted, strongly_connected(needs))) == [[1, 2, 3, 4], [6, 7]]
-
-
-def test_what_needs_itself_is_a_group_of_one() -> None:
-    assert list(strongly_connected({1: {2}, 2: {2, 3}, 3: set()})) == [[2]]
-
-
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25))
 def test_groups_are_what_reaches_each_other(pairs: list[tuple[int, int]]) -> None:
     needs: dict[int, set[int]] = {}

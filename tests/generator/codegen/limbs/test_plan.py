@@ -102,14 +102,6 @@ def test_rows_of_equal_parts_are_loops() -> None:
     assert "for (i = 0; i < " in stated and not VECTOR.findall(stated)
 
 
-def test_five_limbs_are_three_and_two() -> None:
-    graph, edges = of_limbs(5, lambda g, q, k: g.add(g.mul(g.mul(q(0), q(1)), q(2)), g.mul(q(0), g.constant(1.5 + k))))
-    made = plan(graph, 5, edges)
-    computed = {id(vector): vector for vector in made.vector_of_node.values()}.values()
-    assert {len(vector.nodes) for vector in computed} == {2, 3}
-    assert made.vector_of_node.keys() == {*needed_nodes(graph, edges)}
-
-
 def test_vectors_do_not_wait_for_themselves() -> None:
     """A vector of the second limb's end and the first one's would wait for a pack, whose other lane waits for it."""
     g = Graph()
@@ -141,21 +133,3 @@ def test_what_packs_and_sines_need_is_left_to_them() -> None:
     packs = PackPlan(program.graph, needed_nodes(program.graph, edges), {}, edges)
     made = LimbPlan(program.graph, packs.nodes, {}, edges, program.limbs, packs)
     assert packs.vector_of_node and not packs.vector_of_node.keys() & made.vector_of_node.keys()
-
-
-def test_a_result_is_no_vector_if_that_takes_scalars_of_each_limb() -> None:
-    """What a vector spares in the last operation, putting its operand together costs."""
-
-    def limb(g: Graph, q: Joint, k: int) -> Edge:
-        return g.mul(cubed(g, g.mul(q(0), q(1))), g.apply("exp", q(2)))
-
-    graph, edges = of_limbs(2, limb)
-    made = plan(graph, 2, edges)
-    assert made.vector_of_node and not {abs(edge) for edge in edges} & made.vector_of_node.keys()
-
-
-def test_few_operations_are_left_alone() -> None:
-    """Six lanes are put in and six read, for three vectors."""
-    graph, edges = of_limbs(2, lambda g, q, k: g.mul(q(0), q(1)))
-    outer = [graph.apply("exp", edge) for edge in edges]
-    assert plan(graph, 2, outer).spared == 0

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 from symofros.base import routes
 from symofros.expr.edges import Edge
@@ -34,49 +35,10 @@ _OPERANDS = st.tuples(
 _STEPS = st.tuples(
     st.sampled_from(["add", "sub", "mul", "mul", "div", "stop"]), st.tuples(_OPERANDS, _OPERANDS), st.booleans()
 )
-# Limbs that differ at their ends alone; mirror images; signs that contradict each other.
-_ENDS: list[Step] = [
-    ("mul", (("joint", 0), ("one's own", 0)), False),
-    ("mul", (("joint", 1), ("joint", 2)), False),
-    ("add", (("own", 1), ("own", 0)), False),
-    ("mul", (("own", 2), ("joint", 0)), True),
-    ("sub", (("own", 3), ("common", 0)), True),
-]
-_MIRRORED: list[Step] = [
-    ("mul", (("joint", 0), ("mirrored", 1)), False),
-    ("mul", (("joint", 1), ("number", 0)), False),
-    ("add", (("own", 0), ("own", 1)), False),
-    ("mul", (("own", 2), ("own", 0)), True),
-]
-_CONTRADICTING: list[Step] = [
-    ("add", (("joint", 0), ("joint", 1)), False),
-    ("mul", (("own", 0), ("mirrored", 0)), False),
-    ("mul", (("own", 0), ("own", 1)), False),
-    ("mul", (("own", 2), ("joint", 2)), False),
-    ("add", (("own", 3), ("own", 0)), True),
-    ("add", (("own", 1), ("own", 0)), True),
-    ("sub", (("own", 4), ("common", 1)), True),
-]
-# In the second round a sum is an operand of the sum that stands in its place of the other limb.
-_WAITING: list[Step] = [
-    ("mul", (("joint", 0), ("total", 0)), False),
-    ("add", (("own", 0), ("neighbour", 1)), False),
-    ("mul", (("own", 1), ("own", 1)), False),
-    ("mul", (("own", 2), ("own", 2)), False),
-    ("mul", (("own", 3), ("own", 3)), True),
-]
-
-
-# Lanes of several signs, times a number, which takes the signs of both.
-_TURNED: list[Step] = [
-    ("mul", (("joint", 0), ("mirrored", 1)), False),
-    ("mul", (("own", 0), ("joint", 1)), False),
-    ("mul", (("joint", 0), ("joint", 1)), False),
-    ("add", (("own", 1), ("own", 2)), False),
-    ("mul", (("own", 1), ("same number", 2)), False),
-    ("add", (("own", 3), ("own", 4)), False),
-    ("mul", (("own", 5), ("own", 5)), True),
-]
+STEPS: dict[str, list[Step]] = {
+    name: [(operation, ((kind, a), (other, b)), stored) for operation, (kind, a), (other, b), stored in steps]
+    for name, steps in YAML(typ="safe").load(Path(__file__).with_name("steps.yaml")).items()
+}
 
 
 def limbs(steps: list[Step], count: int, numbers_first: bool = False) -> tuple[Program, tuple[Output, ...]]:
@@ -163,18 +125,18 @@ def assert_exact(made: tuple[Program, tuple[Output, ...]], folder: Path, seed: i
     return text.code
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(st.lists(_STEPS, min_size=1, max_size=14), st.integers(2, 6), st.booleans(), st.integers(0, 3))
-@example(_ENDS, 2, False, 0)
-@example(_ENDS, 3, True, 0)
-@example(_MIRRORED, 4, False, 0)
-@example(_MIRRORED, 4, True, 0)
-@example(_CONTRADICTING, 2, False, 0)
-@example(_CONTRADICTING, 5, True, 0)
-@example(_TURNED, 2, False, 0)
-@example(_TURNED, 2, True, 0)
-@example(_WAITING, 2, False, 0)
-@example(_WAITING, 4, True, 0)
+@example(STEPS["ends"], 2, False, 0)
+@example(STEPS["ends"], 3, True, 0)
+@example(STEPS["mirrored"], 4, False, 0)
+@example(STEPS["mirrored"], 4, True, 0)
+@example(STEPS["contradicting"], 2, False, 0)
+@example(STEPS["contradicting"], 5, True, 0)
+@example(STEPS["turned"], 2, False, 0)
+@example(STEPS["turned"], 2, True, 0)
+@example(STEPS["waiting"], 2, False, 0)
+@example(STEPS["waiting"], 4, True, 0)
 def test_vectors_compute_the_bits_of_the_graph(
     tmp_path_factory: pytest.TempPathFactory, steps: list[Step], count: int, numbers_first: bool, seed: int
 ) -> None:

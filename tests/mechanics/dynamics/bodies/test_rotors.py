@@ -83,25 +83,3 @@ def test_a_rotor_on_the_ground_is_an_armature(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(rotor.mass_matrix(q), armature.mass_matrix(q), rtol=1e-15)
     np.testing.assert_allclose(rotor.bias(q, v), armature.bias(q, v), rtol=1e-15)
     assert armature.mass_matrix(q)[0, 0] == pytest.approx(1.0 + 0.04 + 0.2)
-
-
-def test_a_rotor_across_the_carriers_axis_couples_where_an_armature_does_not(rng: np.random.Generator) -> None:
-    """The gyroscopic term itself: a rotor's spin times the carrier's turn about another axis."""
-    solid = sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))
-    yaw = sf.RigidBody("yaw", sf.Joint("q1", "revolute"), solid)
-
-    def model(**joint: object) -> sf.Model:
-        pitch = sf.RigidBody("pitch", sf.Joint("q2", "revolute", "yaw", axis=(1, 0, 0), **joint), solid)  # type: ignore[arg-type]
-        roll = sf.RigidBody("roll", sf.Joint("q3", "revolute", "pitch", axis=(0, 1, 0)), solid)
-        return interpreted(sf.System("s", [yaw, pitch, roll], gravity=(0, 0, 0)))
-
-    geared, plain = model(rotors=(Rotor(1e-2, 50.0),)), model(armature=25.0)
-    q, v = np.zeros(3), np.array([2.0, 3.0, 0.0])
-    np.testing.assert_allclose(geared.mass_matrix(q), plain.mass_matrix(q), rtol=1e-14)
-    # Spinning about x on the yawing carrier, the rotor's moment is about y, where the carrier has no joint.
-    np.testing.assert_allclose(geared.bias(q, v), plain.bias(q, v), atol=1e-12)
-    # With the rotor inside the pitch link (its own carrier), spinning about y, the yaw feels it when pitched.
-    inside = model(rotors=(Rotor(1e-2, 50.0, (0, 1, 0), "pitch"),))
-    q = np.array([0.0, 0.5, 0.0])
-    assert abs(inside.mass_matrix(q)[0, 1]) == pytest.approx(1e-2 * 50.0 * np.sin(0.5))
-    assert not np.allclose(inside.bias(q, v), plain.bias(q, v))

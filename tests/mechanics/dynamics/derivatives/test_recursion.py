@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -83,19 +82,3 @@ def test_a_pair_of_speeds_costs_a_bounded_number_of_operations() -> None:
         counts.append(operations(e, recursive))
     assert counts[2] - 2 * counts[1] + counts[0] < 110 * 3**2
     assert counts[2] < operations(e, differentiated) / 2
-
-
-def test_branches_form_no_pairs() -> None:
-    """Two arms on one base cost twice one arm."""
-    arm = chain(5, symbolic=False)
-    twin = []
-    for body in arm.bodies:
-        parent = body.joint.parent if body.joint.parent == "world" else f"{body.joint.parent}_2"
-        joint = replace(body.joint, name=f"{body.joint.name}_2", parent=parent)
-        twin.append(replace(body, name=f"{body.name}_2", joint=joint))
-    one, two = (
-        Equations(build_tree(replace(arm, bodies=tuple(bodies)))) for bodies in (arm.bodies, (*arm.bodies, *twin))
-    )
-    e_one, e_two = (operations(e, (e.inverse_dynamics_by_q, e.inverse_dynamics_by_v)) for e in (one, two))
-    assert e_two == 2 * e_one
-    assert all(row[5:] == [0] * 5 for row in two.inverse_dynamics_by_q[:5])

@@ -165,12 +165,6 @@ def test_operations_grow_in_proportion_to_the_links() -> None:
     assert grown["factors"] > 2.2
 
 
-def test_zeros_of_free_joints_cost_nothing() -> None:
-    """A revolute joint passes no moment about its axis on: a link of the chain costs 15 entries, not 21."""
-    per_link = (counted(52, "articulated").total - counted(26, "articulated").total) / 26
-    assert per_link <= 390
-
-
 @cache
 def error(links: int, way: Way, load: float) -> float:
     """Of accelerations in doubles, against forty digits: the geometric mean over states.

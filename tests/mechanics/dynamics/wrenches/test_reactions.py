@@ -107,33 +107,6 @@ def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
     assert slope(energy, 1e-4) == pytest.approx(sum(powers), abs=1e-9 * np.abs(powers).sum())
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_power_of_the_wrench_at_the_root_of_a_bent_beam(seed: int) -> None:
-    """Its root is moved in all six directions at once: the drive's efforts are the wrench, d(T + V)/dt its power."""
-    base = sf.Joint("base", "free", prescribed=True)
-    beam = sf.Beam(
-        "beam", base, 1.0, 0.5, 20.0, 30.0, 10.0, 0.01, bend_y=2, bend_z=2, twist=1, rotary_inertia=True, retain="all"
-    )
-    load = sf.RigidBody("load", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0), (0.1,) * 3))
-    m = sf.compile(sf.System("s", [beam, load]), INTERPRETED)
-    pose = sf.compile(sf.System("p", [sf.RigidBody("b", sf.Joint("p", "free"), sf.Inertia(1.0))]), INTERPRETED)
-    rng = np.random.default_rng(seed)
-    start, (twist, rate) = pose.random_state(rng)[0], rng.normal(size=(2, 6))
-    q, v = 0.1 * rng.normal(size=m.nv), rng.normal(size=m.nv)
-    u = np.concatenate([start, twist, rate])
-    a = m.forward_dynamics(q, v, u)
-
-    def energy(s: float) -> float:
-        moved = np.concatenate([pose.integrate(start, s * twist), twist + s * rate, rate])
-        x, w = q + s * v, v + s * a
-        return float(m.kinetic_energy(x, w, u=moved) + m.potential_energy(x, u=moved))
-
-    efforts = m.prescribed_efforts(q, v, a, u)
-    np.testing.assert_allclose(m.joint_wrenches(q, v, a, u)[0], efforts, rtol=1e-13)
-    powers = efforts * twist
-    assert slope(energy, 1e-4) == pytest.approx(powers.sum(), abs=1e-8 * np.abs(powers).sum())
-
-
 def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
     """Wrenches through the loop are those of its multipliers: without them the drive of the crank would be wrong."""
     system = MODELS["flexible_slider_crank"]
@@ -173,53 +146,6 @@ class TestClosedForms:
         )
         assert wrench[[2, 0]] == pytest.approx([along, across], rel=1e-13)
         assert wrench[4] == pytest.approx(-(wanted - armature * acceleration), rel=1e-14)
-
-    def test_what_the_root_of_a_cantilever_holds(self) -> None:
-        """Its weight, a load along it, a load at its tip and what it carries; the tip holds the last alone."""
-        loads = (sf.BeamLoad(force=(0, 0, -3.0)), sf.BeamLoad(force=(0, 0, -2.0), at=1.0))
-        clamp = sf.Joint("clamp", "fixed")
-        beam = sf.Beam("beam", clamp, 2.0, 0.5, 1e9, 1e9, 1e9, 0.1, bend_y=2, bend_z=2, twist=1, loads=loads)
-        weight = sf.RigidBody("weight", sf.Joint("weld", "fixed", "beam", "tip"), sf.Inertia(0.3, (0.1, 0, 0)))
-        m = sf.compile(sf.System("c", [beam, weight]), INTERPRETED)
-        root, tip = m.joint_wrenches(np.zeros(5), np.zeros(5), np.zeros(5), [])
-        force = 1.0 * G + 6.0 + 2.0 + 0.3 * G
-        assert root == pytest.approx([0, 0, force, 0, -(G + 6.0 + 4.0 + 0.3 * 2.1 * G), 0], abs=1e-12)
-        assert tip == pytest.approx([0, 0, 0.3 * G, 0, -0.03 * G, 0], abs=1e-13)
-
-    def test_the_bars_of_a_truss(self) -> None:
-        """Two light bars at 30 degrees carry 100 N at their apex: each is compressed by 100 / (2 sin 30) N."""
-        half, span = np.deg2rad(30), np.cos(np.deg2rad(30))
-        inertia = sf.Inertia(1.0, (0.5, 0, 0), (0.01, 0.01, 0.01))
-        left = sf.RigidBody(
-            "left",
-            sf.Joint("a", "revolute", axis=(0, -1, 0)),
-            inertia,
-            [sf.Frame("apex", (1, 0, 0))],
-            loads=[sf.Load((0, 0, -100.0), at="apex", axes="world")],
-        )
-        joint = sf.Joint("b", "revolute", position=(2 * span, 0, 0), axis=(0, -1, 0))
-        right = sf.RigidBody("right", joint, inertia, [sf.Frame("apex", (1, 0, 0))])
-        pin = sf.Closure("pin", ("left", "apex"), ("right", "apex"), ("x", "z"))
-        truss = sf.System("truss", [left, right], constraints=[pin], gravity=(0, 0, 0))
-        m = sf.compile(truss, INTERPRETED)
-        q = [half, np.pi - half]
-        a, lam = m.forward_dynamics(q, [0.0, 0.0], [], multipliers=True)
-        wrenches = m.joint_wrenches(q, [0.0, 0.0], a, [], lam)
-        assert wrenches == pytest.approx(np.array([[100.0, 0, 0, 0, 0, 0]] * 2), abs=1e-11)
-
-
-def test_c_is_what_the_interpreter_says() -> None:
-    """One state and a batch; the fast path, generated C."""
-    compiled = sf.compile(EVERYTHING, sf.Options(functions=FUNCTIONS[:2]))
-    interpreted = sf.compile(EVERYTHING, sf.Options(functions=FUNCTIONS[:2], backend="interpreter"))
-    rng = np.random.default_rng(2)
-    q, v, a = 0.3 * rng.normal(size=(3, 9, compiled.nv))
-    u = rng.normal(size=(9, compiled.nu))
-    for name in FUNCTIONS[:2]:
-        wanted = getattr(interpreted, name)(q, v, a, u)
-        result = getattr(compiled, name)(q, v, a, u)
-        np.testing.assert_allclose(result, wanted, rtol=0, atol=1e-13 * np.abs(wanted).max())
-        np.testing.assert_allclose(getattr(compiled, name)(q[0], v[0], a[0], u[0]), wanted[0], atol=1e-11)
 
 
 def test_a_rotor_turned_about_another_axis_loads_the_joint_of_its_carrier() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.mechanics.beams.rods import BODY, HUB, OFF_AXIS, SECTION, integrated, rod
+from tests.mechanics.beams.rods import BODY, HUB, OFF_AXIS, SECTION, integrated
 
 G = 9.81
 L = 1.3
@@ -67,53 +67,6 @@ def test_forces_jump_by_what_a_station_carries(theory: str) -> None:
     np.testing.assert_allclose(forces[:, 2], -shear, rtol=1e-12)
     bending = SECTION["rhoA"] * G * (L * 0.6) ** 2 / 2 + 0.7 * G * 0.05
     assert forces[1, 4] == pytest.approx(bending, rel=1e-12)
-
-
-@pytest.mark.parametrize("theory", THEORIES)
-def test_a_cantilever_under_its_weight_and_a_load_at_its_tip(theory: str) -> None:
-    """Undeformed: V(x) = -(w (L - x) + P), M(x) = w (L - x)^2/2 + P (L - x), whatever the shape functions."""
-    P, w, N, T = 3.0, SECTION["rhoA"] * G, 0.7, 0.4
-    load = sf.BeamLoad(force=(N, 0, -P), torque=(T, 0, 0), at=1.0)
-    m = compiled([beam(sf.Joint("clamp", "fixed"), loads=(load,), **THEORIES[theory])])
-    none = np.zeros(m.nv)
-    rest = L * (1.0 - np.array(STATIONS))
-    wanted = np.zeros((len(STATIONS), 6))
-    wanted[:, 0], wanted[:, 2], wanted[:, 3] = N, -(w * rest + P), T
-    wanted[:, 4] = w * rest**2 / 2 + P * rest
-    np.testing.assert_allclose(m.section_forces(none, none, none, []), wanted, atol=1e-10)
-
-
-def test_they_are_exact_for_the_deformed_shape_at_rest() -> None:
-    """Bent far, a massless rod carries P (x_tip - x) across: its lever, to rounding of the positions."""
-    P, stiff = 2.0, {"rhoA": 1e-9, "EI_z": 1.0, "family": "legendre"}
-    load = sf.BeamLoad(force=(0, P, 0), at=1.0, axes="world")
-    one = sf.Beam("b", sf.Joint("c", "fixed"), L, **stiff, bend_y=7, theory="strain", loads=(load,), stations=STATIONS)
-    system = sf.System("s", [one], gravity=(0, 0, 0))
-    m = sf.compile(system, INTERPRETED)
-    q = sf.equilibrium(m).q
-    forces = m.section_forces(q, 0 * q, 0 * q, [])
-    p, R = integrated((7, 0, 0), q, np.array(STATIONS))
-    lever = L * (p[-1, 0] - p[:, 0])
-    np.testing.assert_allclose(
-        forces[:, 5], P * lever, atol=1e-7 * P * L
-    )  # Between sections tangents are interpolated.
-    np.testing.assert_allclose(forces[:, :3], P * R[:, 1, :], atol=1e-7 * P)
-    # E I k of the shape functions is the lower one in accuracy.
-    assert np.hypot(forces[0, 0], forces[0, 1]) == pytest.approx(P, rel=1e-12)
-
-
-@pytest.mark.parametrize("theory", THEORIES)
-def test_a_turning_beam_is_in_tension(theory: str) -> None:
-    """N(x) = rho A W^2 (L^2 - x^2)/2 + m W^2 L in steady rotation without deformation."""
-    W, mass = 5.0, 0.6
-    one = beam(sf.Joint("hub", "revolute", axis=(0, 0, 1)), **THEORIES[theory])
-    m = compiled([one, sf.RigidBody("m", sf.Joint("weld", "fixed", "b", "tip"), sf.Inertia(mass))], (0, 0, 0))
-    zero = np.zeros(m.nv)
-    forces = m.section_forces(zero, np.eye(1, m.nv)[0] * W, zero, np.zeros(m.nu))
-    x = L * np.array(STATIONS)
-    wanted = SECTION["rhoA"] * W**2 * (L**2 - x**2) / 2 + mass * W**2 * L
-    np.testing.assert_allclose(forces[:, 0], wanted, rtol=1e-13)
-    np.testing.assert_allclose(forces[:, 1:], 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("theory", ["first order", "strain"])
@@ -195,10 +148,3 @@ def test_they_change_the_momentum_of_what_lies_beyond(theory: str, center: tuple
     wanted = -np.concatenate([R_WS.T @ forces.sum(axis=0), R_WS.T @ np.cross(arms, forces).sum(axis=0)])
     got = m.section_forces(q, v, a, np.zeros(m.nu))[station]
     np.testing.assert_allclose(got, wanted, atol=3e-7 * np.abs(wanted).max())
-
-
-def test_stations_are_refused_off_the_beam() -> None:
-    with pytest.raises(sf.DescriptionError, match="stations x/L rise"):
-        rod((1, 0, 0), stations=(0.0, 1.5))
-    with pytest.raises(sf.DescriptionError, match="stations x/L rise"):
-        rod((1, 0, 0), stations=(0.5, 0.5))

@@ -10,6 +10,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.calls.kernel import Array
+from tests.simulation.mechanisms import links
 
 FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
 
@@ -17,13 +18,8 @@ FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
 @cache
 def arm(limit: float = np.inf) -> sf.Model:
     """Three links of 1 m in the plane."""
-    limits = sf.Limits(-limit, limit) if np.isfinite(limit) else None
-    bodies: list[sf.Body] = []
-    for i in range(3):
-        parent, frame = (f"b{i - 1}", "end") if i else ("world", None)
-        joint = sf.Joint(f"q{i}", "revolute", parent, frame, limits=limits)
-        bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0), (sf.Frame("end", (1.0, 0, 0)),)))
-    return sf.compile(sf.System("arm", tuple(bodies)), FUNCTIONS)
+    limits = dict.fromkeys(range(3), sf.Limits(-limit, limit)) if np.isfinite(limit) else {}
+    return sf.compile(sf.System("arm", links((1.0, 1.0, 1.0), limits=limits)), FUNCTIONS)
 
 
 def solutions(p: Array, limit: float) -> Array:
@@ -42,7 +38,7 @@ def solutions(p: Array, limit: float) -> Array:
 
 
 @pytest.mark.parametrize("limit", [np.inf, 0.8])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_no_posture_nearby_that_reaches_the_target_is_nearer_to_rest(limit: float, seed: int) -> None:
     """All solutions of an arm with one freedom, enumerated; with limits as without."""
     rng, m = np.random.default_rng(seed), arm(limit)
@@ -56,7 +52,7 @@ def test_no_posture_nearby_that_reaches_the_target_is_nearer_to_rest(limit: floa
     assert len(others) > 50 and np.linalg.norm(others - rest, axis=1).min() >= reached.distance - 1e-9
 
 
-@pytest.mark.parametrize("far", [0.01, 0.3, 1.0])
+@pytest.mark.parametrize("far", [0.01, 1.0])
 @pytest.mark.parametrize("name", ["rx90", "space_arm"])
 def test_what_is_left_of_the_distance_is_at_right_angles_to_the_solutions(name: str, far: float) -> None:
     """Spatial arms, one on a base that floats: every small motion that keeps the target leads away from rest."""
@@ -105,13 +101,6 @@ def test_limits_push_inwards_where_they_hold() -> None:
     assert np.all(multipliers[2:] > 0.0)
 
 
-def test_rest_that_meets_the_target_is_the_answer() -> None:
-    rest = np.array([0.3, 0.4, -0.2])
-    p, _ = arm().frame_pose("b2.end", rest)
-    reached = sf.inverse_kinematics(arm(), {"b2.end": sf.Target(p)}, [-0.6, 0.9, 0.5], rest=rest)
-    assert reached.converged and reached.distance < 1e-9
-
-
 def test_a_farthest_posture_is_no_answer() -> None:
     """A link of 2 m on two slides, its tip held: d^2 = 5 + 4 cos c + c^2.
 
@@ -126,9 +115,3 @@ def test_a_farthest_posture_is_no_answer() -> None:
     reached = sf.inverse_kinematics(m, {"tip": sf.Target([0.0, 0, 0])}, [-2.0, 0, 0], rest=[1.0, 0, 0])
     assert reached.converged
     assert abs(reached.q[2]) == pytest.approx(1.895494267, abs=1e-8)
-
-
-def test_held_coordinates_stay_whatever_rest_says() -> None:
-    target, rest = {"b2.end": sf.Target([2.0, 0.8, 0.0])}, [0.9, -0.5, -0.2]
-    reached = sf.inverse_kinematics(arm(), target, [0.2, 0.3, 0.1], rest=rest, held=["q0"])
-    assert reached.converged and reached.q[0] == 0.2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ CHANGE = re.compile(r"(\w+) = (\S+) would be ([^\s,]+), ")
 LOOPS = {"parallelogram": ((1.0, 1.0, 1.0), 1.0), "rocker": ((0.4, 1.0, 0.8), 0.9)}
 
 
+@cache
 def four_bar(name: str) -> sf.Model:
     lengths, ground = LOOPS[name]
     bodies = [sf.RigidBody("base", frames=(sf.Frame("end", (ground, 0, 0)),))]
@@ -28,7 +30,7 @@ def four_bar(name: str) -> sf.Model:
         reach = length
     shut = sf.Closure("shut", ("base", "end"), (bodies[-1].name, "end"), ("x", "y"))
     system = sf.System("loop", tuple(bodies), constraints=(shut,))
-    return sf.compile(system, sf.Options(FUNCTIONS, backend="interpreter"))
+    return sf.compile(system, sf.Options(FUNCTIONS))
 
 
 def reported(m: sf.Model, q: np.ndarray, v: np.ndarray, names: list[str], rates: list[str]) -> dict[str, float]:
@@ -56,7 +58,7 @@ def along(m: sf.Model, q: np.ndarray, step: float, count: int) -> list[np.ndarra
 
 
 @pytest.mark.parametrize("name", LOOPS)
-@pytest.mark.parametrize("stated", [[0, 1], [0, 2], [1, 2], [0, 1, 2]])
+@pytest.mark.parametrize("stated", [[0, 2], [1, 2], [0, 1, 2]])
 def test_no_closed_posture_is_nearer(name: str, stated: list[int], rng: np.random.Generator) -> None:
     """Nearly closed starts, drawn, on either branch; what is not stated is neutral."""
     m = four_bar(name)
@@ -68,19 +70,6 @@ def test_no_closed_posture_is_nearer(name: str, stated: list[int], rng: np.rando
         changed = reported(m, asked, np.zeros(3), [m.names.q[k] for k in stated], [])
         distances = [np.linalg.norm((q - asked)[stated]) for q in along(m, closed, 0.008, 15)]
         assert np.linalg.norm(list(changed.values())) <= 1.1 * min(distances) + 1e-6
-
-
-@pytest.mark.parametrize("name", LOOPS)
-def test_no_consistent_speeds_are_nearer(name: str, rng: np.random.Generator) -> None:
-    m = four_bar(name)
-    for _ in range(5):
-        closed = sf.assemble(m, [1.0, -1.0, -2.0]).q
-        motion = np.linalg.svd(m.constraint_jacobian(closed))[2][-1]
-        v = rng.normal(size=3)
-        changed = reported(m, closed, v, [], ["q0", "q2"])
-        share = v[[0, 2]] @ motion[[0, 2]] / (motion[[0, 2]] @ motion[[0, 2]])
-        nearest = np.linalg.norm(share * motion[[0, 2]] - v[[0, 2]])
-        assert np.linalg.norm(list(changed.values())) == pytest.approx(nearest, rel=1e-3)
 
 
 @pytest.mark.parametrize("reach", [0.25, 4.0])
@@ -120,8 +109,3 @@ def test_digits_that_were_not_typed_are_found_on_the_branch_that_is_stated() -> 
     found = start(q0=1.0472, q1=-1.047)
     assert found.q[:2] == pytest.approx([1.0472, -1.047], abs=3e-4)
     assert "start: q0 = 1.0472 was taken as 1.0471, which meets the constraints" in found.notes
-
-
-def test_the_refusal_says_the_nearest_that_is_found() -> None:
-    with pytest.raises(sf.AssemblyError, match=r"nearest found: q0 = 0\.3 would be 0\.1, 0\.2 off; q1 = 0\.1 would"):
-        start(q0=0.3, q1=0.1)

@@ -12,6 +12,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.calls.kernel import Array
 from tests.models import compiled, sampled
+from tests.simulation.mechanisms import links
 
 FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
 CROSSED = 0.1
@@ -21,15 +22,10 @@ LINKS = 0.2, 0.25
 @cache
 def five_bar(limit: float = np.inf) -> sf.Model:
     """Two arms of two links in the plane, their tips joined; shoulders at x = -0.1 and 0.1."""
-    bodies: list[sf.Body] = []
-    limits = sf.Limits(-limit, limit) if np.isfinite(limit) else None
-    for side, x in (("a", -CROSSED), ("b", CROSSED)):
-        upper = sf.Joint(f"{side}1", "revolute", position=(x, 0, 0), limits=limits)
-        lower = sf.Joint(f"{side}2", "revolute", side, "end")
-        bodies.append(sf.RigidBody(side, upper, sf.Inertia(1.0), (sf.Frame("end", (LINKS[0], 0, 0)),)))
-        bodies.append(sf.RigidBody(f"{side}_", lower, sf.Inertia(1.0), (sf.Frame("tip", (LINKS[1], 0, 0)),)))
-    loop = sf.Closure("loop", ("a_", "tip"), ("b_", "tip"), translations=("x", "y"))
-    return sf.compile(sf.System("five_bar", tuple(bodies), constraints=(loop,)))
+    limits = {0: sf.Limits(-limit, limit)} if np.isfinite(limit) else {}
+    sides = [links(LINKS, n, f"q{n}", position=(x, 0, 0), limits=limits) for n, x in (("a", -CROSSED), ("b", CROSSED))]
+    loop = sf.Closure("loop", ("a1", "end"), ("b1", "end"), translations=("x", "y"))
+    return sf.compile(sf.System("five_bar", (*sides[0], *sides[1]), constraints=(loop,)))
 
 
 GUESS = [2.2, -1.0, 0.9, 1.0]
@@ -48,36 +44,32 @@ def nearest_in_reach(p: Array) -> float:
     return float(np.linalg.norm(edge[within] - p, axis=1).min())
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_beyond_its_reach_a_loop_stays_closed_and_comes_nearest(seed: int) -> None:
     m, rng = five_bar(), np.random.default_rng(seed)
     angle, far = rng.uniform(0.3, np.pi - 0.3), rng.uniform(0.5, 2.0)
     p = far * np.array([np.cos(angle), np.sin(angle), 0.0])
-    found = sf.inverse_kinematics(m, {"a_.tip": sf.Target(p)}, GUESS)
+    found = sf.inverse_kinematics(m, {"a1.end": sf.Target(p)}, GUESS)
     assert not found.converged and found.gap <= 1e-10
     assert np.abs(m.constraint(found.q)).max() <= 1e-9
-    miss = np.linalg.norm(m.frame_pose("a_.tip", found.q)[0] - p)
+    miss = np.linalg.norm(m.frame_pose("a1.end", found.q)[0] - p)
     assert miss == pytest.approx(nearest_in_reach(p[:2]), abs=1e-8)
-    assert found.error == pytest.approx(np.abs(m.frame_pose("a_.tip", found.q)[0] - p).max(), abs=1e-15)
-
-
-def test_the_error_of_targets_is_told_apart_from_the_gap() -> None:
-    """Both arms straight: the point above both shoulders is the nearest."""
-    found = sf.inverse_kinematics(five_bar(), {"a_.tip": sf.Target([0.0, 0.9, 0.0])}, GUESS)
-    assert found.error == pytest.approx(0.9 - np.sqrt(sum(LINKS) ** 2 - CROSSED**2), abs=1e-9)
-    assert found.gap <= 1e-10 and found.starts > 1
-
-
-def test_a_coarse_tolerance_of_targets_leaves_loops_closed() -> None:
-    found = sf.inverse_kinematics(five_bar(), {"a_.tip": sf.Target([0.05, 0.3, 0.0])}, GUESS, tolerance=0.05)
-    assert found.converged and found.error <= 0.05 and found.gap <= 1e-10
+    assert found.error == pytest.approx(np.abs(m.frame_pose("a1.end", found.q)[0] - p).max(), abs=1e-15)
 
 
 def test_limits_hold_in_closed_loops_beyond_their_reach() -> None:
-    m = five_bar(2.0)
-    found = sf.inverse_kinematics(m, {"a_.tip": sf.Target([-0.9, 0.2, 0.0])}, [1.9, -1.0, 0.9, 1.0])
-    shoulders = found.q[[0, 2]]
-    assert not found.converged and found.gap <= 1e-10 and np.abs(shoulders).max() <= 2.0
+    found = sf.inverse_kinematics(five_bar(2.0), {"a1.end": sf.Target([-0.9, 0.2, 0.0])}, [1.9, -1.0, 0.9, 1.0])
+    assert not found.converged and found.gap <= 1e-10 and np.abs(found.q[[0, 2]]).max() <= 2.0
+
+
+def test_beyond_the_reach_a_stretched_arm_is_found_to_all_digits() -> None:
+    found = sf.inverse_kinematics(arm(), {"b2.end": sf.Target([4.0, 0.0, 0.0])}, [0.4, -0.3, 0.2])
+    assert not found.converged and found.error == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_coarse_tolerance_of_targets_leaves_loops_closed() -> None:
+    found = sf.inverse_kinematics(five_bar(), {"a1.end": sf.Target([0.05, 0.3, 0.0])}, GUESS, tolerance=0.05)
+    assert found.converged and found.error <= 0.05 and found.gap <= 1e-10
 
 
 def test_loops_that_nothing_closes_are_said() -> None:
@@ -92,20 +84,16 @@ def test_loops_that_nothing_closes_are_said() -> None:
 
 
 @cache
-def arm(limit: float) -> sf.Model:
-    bodies: list[sf.Body] = []
-    for i in range(3):
-        parent, frame = (f"b{i - 1}", "end") if i else ("world", None)
-        joint = sf.Joint(f"q{i}", "revolute", parent, frame, limits=sf.Limits(-limit, limit))
-        bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0), (sf.Frame("end", (1.0, 0, 0)),)))
-    return sf.compile(sf.System("arm", tuple(bodies)), FUNCTIONS)
+def arm(limit: float = np.inf) -> sf.Model:
+    limits = dict.fromkeys(range(3), sf.Limits(-limit, limit)) if np.isfinite(limit) else {}
+    return sf.compile(sf.System("arm", links((1.0, 1.0, 1.0), limits=limits)), FUNCTIONS)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(3))
 def test_no_posture_within_limits_is_nearer_than_what_is_returned(seed: int) -> None:
-    """All postures of three limited joints on a grid of 0.01 rad: none misses the target by less."""
+    """All postures of three limited joints on a grid of 0.02 rad: none misses the target by less."""
     limit, rng = 0.8, np.random.default_rng(seed)
-    angles = np.linspace(-limit, limit, 161)
+    angles = np.linspace(-limit, limit, 81)
     a, b, c = np.meshgrid(angles, angles, angles, indexing="ij")
     x, y = (sum(f(s) for s in (a, a + b, a + b + c)) for f in (np.cos, np.sin))
     p = rng.uniform(-3.5, 3.5, 2)
@@ -114,21 +102,6 @@ def test_no_posture_within_limits_is_nearer_than_what_is_returned(seed: int) -> 
     miss = float(np.linalg.norm(arm(limit).frame_pose("b2.end", found.q)[0][:2] - p))
     assert np.abs(found.q).max() <= limit and miss <= best + 1e-9
     assert found.converged or miss >= best - 0.05
-
-
-def test_beyond_the_reach_a_stretched_arm_is_found_to_all_digits() -> None:
-    bodies = [
-        sf.RigidBody(
-            f"b{i}",
-            sf.Joint(f"q{i}", "revolute", *((f"b{i - 1}", "end") if i else ())),
-            sf.Inertia(1.0),
-            (sf.Frame("end", (1.0, 0, 0)),),
-        )
-        for i in range(3)
-    ]
-    m = sf.compile(sf.System("arm", tuple(bodies)), FUNCTIONS)
-    found = sf.inverse_kinematics(m, {"b2.end": sf.Target([4.0, 0.0, 0.0])}, [0.4, -0.3, 0.2])
-    assert not found.converged and found.error == pytest.approx(1.0, abs=1e-12)
 
 
 def within_limits(m: sf.Model, q: Array) -> bool:
@@ -153,31 +126,7 @@ def test_every_pose_that_exists_is_found_whatever_the_joints(name: str) -> None:
         assert np.abs(reached[0] - p).max() < 1e-9 and np.abs(reached[1] - R).max() < 1e-9
 
 
-ARMS = {
-    "panda": "panda_link8",
-    "ur5": "tool0",
-    "kinova": "j2s6s200_end_effector",
-    "xarm7": "link_eef",
-    "baxter": "left_gripper",
-}
-
-
-@pytest.mark.parametrize("name", sampled(tuple(ARMS), ["panda"]))
-def test_poses_within_the_limits_of_real_arms_are_found(name: str) -> None:
-    """Neutral lies outside of the Panda's limits, and at a singular posture of Baxter's arm."""
-    from validation.inputs.cases import robot_case
-
-    m = sf.compile(robot_case(name).load().system, FUNCTIONS)
-    rng, solved, poses = np.random.default_rng(7), 0, 40
-    for _ in range(poses):
-        p, R = m.frame_pose(ARMS[name], m.random_state(rng)[0])
-        found = sf.inverse_kinematics(m, {ARMS[name]: sf.Target(p, R)})
-        assert within_limits(m, found.q)
-        solved += found.converged
-    assert solved == poses
-
-
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_a_guess_that_leads_to_the_target_is_not_left(seed: int) -> None:
     """The answer is that of the guess alone, to the last bit, and is told to be of one start."""
     m, rng = sf.compile(MODELS["rx90"], FUNCTIONS), np.random.default_rng(seed)
@@ -191,13 +140,9 @@ def test_a_guess_that_leads_to_the_target_is_not_left(seed: int) -> None:
 
 def two_arms(*more: str) -> sf.Model:
     """Two arms of two links of 1 m in the plane; the first one's shoulder turns by 3 rad either way."""
-    bodies: list[sf.Body] = []
-    for side in "ab":
-        for i in range(2):
-            limits = sf.Limits(-3.0, 3.0) if side == "a" and not i else None
-            joint = sf.Joint(f"{side}{i}", "revolute", *((f"{side}l{i - 1}", "end") if i else ()), limits=limits)
-            bodies.append(sf.RigidBody(f"{side}l{i}", joint, sf.Inertia(1.0), (sf.Frame("end", (1.0, 0, 0)),)))
-    return sf.compile(sf.System("two", tuple(bodies)), sf.Options(functions=("frame_pose", "frame_jacobian", *more)))
+    first, second = links((1.0, 1.0), "al", "a", limits={0: sf.Limits(-3.0, 3.0)}), links((1.0, 1.0), "bl", "b")
+    functions = ("frame_pose", "frame_jacobian", *more)
+    return sf.compile(sf.System("two", (*first, *second)), sf.Options(functions=functions))
 
 
 # The shoulder would go on from 2.9 to 3.2 rad, or back to 3.2 - 2 pi: the limit lies between.
@@ -220,7 +165,7 @@ def test_further_starts_are_the_same_each_time_and_keep_what_no_target_depends_o
 
 def test_held_coordinates_stay_in_every_start() -> None:
     m = five_bar()
-    found = sf.inverse_kinematics(m, {"a_.tip": sf.Target([0.0, 0.9, 0.0])}, [1.8, -1.0, 0.9, 1.0], held=["a1"])
+    found = sf.inverse_kinematics(m, {"a1.end": sf.Target([0.0, 0.9, 0.0])}, [1.8, -1.0, 0.9, 1.0], held=["qa0"])
     assert found.q[0] == 1.8 and found.gap <= 1e-10 and not found.converged
 
 
@@ -241,9 +186,3 @@ def test_paths_do_not_change_branches() -> None:
     m, still = two_arms("frame_jacobian_rate"), np.zeros((2, 3))
     with pytest.raises(sf.AssemblyError, match="sample 1"):
         sf.joint_motion(m, "al1.end", [at_turn(BEFORE[:2]), at_turn(BEYOND)], still, still, q=BEFORE)
-
-
-@pytest.mark.parametrize("starts", [0, -3, 10**400])
-def test_no_start_and_endless_ones_are_refused(starts: int) -> None:
-    with pytest.raises(sf.SymofrosError, match="starts is out of range"):
-        sf.inverse_kinematics(arm(0.8), {"b2.end": sf.Target([1.0, 0, 0])}, starts=starts)

@@ -12,23 +12,16 @@ from hypothesis import strategies as st
 import symofros as sf
 from symofros.simulation.analysis.kinematics.restarts import nearest_turns
 from symofros.simulation.analysis.kinematics.targets import Task
+from tests.simulation.mechanisms import links
 
 LIMIT = 4.0  # Of the wrist, which has room for a little more than a turn.
 
 
 @cache
 def arm() -> sf.Model:
-    bodies = [
-        sf.RigidBody(
-            f"l{i}",
-            sf.Joint(f"q{i}", "revolute", *((f"l{i - 1}", "end") if i else ()), axis=(0, 1, 0), limits=limits),
-            sf.Inertia(1.0),
-            (sf.Frame("end", (1.0 - 0.2 * i, 0.0, 0.0)),),
-        )
-        for i, limits in enumerate((None, None, sf.Limits(-LIMIT, LIMIT)))
-    ]
+    bodies = links((1.0, 0.8, 0.6), "l", axis=(0, 1, 0), limits={2: sf.Limits(-LIMIT, LIMIT)})
     functions = ("frame_pose", "frame_jacobian")
-    return sf.compile(sf.System("arm", tuple(bodies)), sf.Options(functions, backend="interpreter"))
+    return sf.compile(sf.System("arm", bodies), sf.Options(functions, backend="interpreter"))
 
 
 OFF = st.floats(-3.1, 3.1)  # Less than half a turn.

@@ -10,14 +10,14 @@ import pytest
 
 import symofros as sf
 from tests.models import compiled
+from tests.simulation.mechanisms import turned
 from tests.simulation.oscillator import oscillator
 
 BAD = (np.nan, np.inf, -np.inf)
-METHODS = ("rk4", "semi_implicit_euler", "dopri5", "dop853", "implicit_euler", "rodas4", "generalized_alpha")
+METHODS = ("rk4", "dopri5", "implicit_euler", "rodas4", "generalized_alpha")
 
 
-@pytest.mark.parametrize("bad", BAD)
-@pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
+@pytest.mark.parametrize(("method", "bad"), zip(("rk4", "dopri5", "cvode"), BAD, strict=True))
 def test_a_function_that_returns_no_finite_number_is_named_with_its_line(method: str, bad: float) -> None:
     def push(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         return np.array([bad if t > 0.1 else 1.0])
@@ -41,22 +41,14 @@ def test_a_formula_without_a_value_is_named(formula: str, bad: str, method: str)
     assert formula in run.outcome.reason
 
 
-@pytest.mark.parametrize("bad", BAD)
-@pytest.mark.parametrize("given", ["array", "number"])
+@pytest.mark.parametrize(("given", "bad"), [("array", np.nan), ("number", np.inf)])
 def test_constants_that_are_not_finite_are_refused_by_name(given: str, bad: float) -> None:
     u: Any = [bad] if given == "array" else {"x": bad}
     with pytest.raises(sf.ShapeError, match="input 'x' is not a finite number"):
         sf.simulate(oscillator(), u=u)
 
 
-@pytest.mark.parametrize("bad", BAD)
-def test_samples_that_are_not_finite_are_refused(bad: float) -> None:
-    with pytest.raises(sf.ShapeError, match="all finite"):
-        sf.Signal([0.0, 1.0], [0.0, bad])
-
-
-@pytest.mark.parametrize("bad", BAD)
-@pytest.mark.parametrize("given", ["rows", "named"])
+@pytest.mark.parametrize(("given", "bad"), [("rows", np.nan), ("named", -np.inf)])
 def test_a_constant_of_a_batch_that_is_not_finite_ends_its_own_trajectory(given: str, bad: float) -> None:
     for which in (0, 2):
         values = np.ones(4)
@@ -88,13 +80,8 @@ def test_an_exception_of_a_function_keeps_its_traceback(method: str) -> None:
     assert names[-2:] == ["push", "inner"]
 
 
-def test_feedback_of_a_state_that_diverged_is_not_blamed() -> None:
-    run = sf.simulate(oscillator(), [1.0], t_end=40.0, dt=0.2, u={"x": "-1e4*x - 1e-3*dx"})
-    assert run.outcome.kind == "diverged" and "stability" in run.outcome.reason
-
-
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "euler", "dop853"])
-@pytest.mark.parametrize("name", ["pendulum", "double_pendulum", "cart_pole", "rx90", "chain7", "gyroscope", "car"])
+@pytest.mark.parametrize("name", ["double_pendulum", "cart_pole", "chain7", "gyroscope"])
 def test_a_step_that_is_too_long_is_no_singular_mass_matrix(name: str, method: str) -> None:
     model = compiled(name)
     q, v = model.random_state(np.random.default_rng(2))
@@ -103,18 +90,9 @@ def test_a_step_that_is_too_long_is_no_singular_mass_matrix(name: str, method: s
         assert run.outcome.kind in ("finished", "diverged"), (dt, run.outcome)
 
 
-TURNED = sf.System(
-    "turned",
-    (
-        sf.RigidBody("base", sf.Joint("p", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1))),
-        sf.RigidBody("arm", sf.Joint("q", "revolute", "base", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0))),
-    ),
-)
-
-
-@pytest.mark.parametrize("length", [1.0, 0.9, 1.5, np.nan])
+@pytest.mark.parametrize("length", [1.0, 0.9, np.nan])
 def test_analyses_take_rotations_alone_for_inputs(length: float) -> None:
-    model = sf.compile(TURNED)
+    model = sf.compile(turned())
     u = np.array([0, 0, 0, length, *[0.0] * 6])
     analyses = (
         lambda: sf.equilibrium(model, [1.5], u=u),
@@ -131,19 +109,11 @@ def test_analyses_take_rotations_alone_for_inputs(length: float) -> None:
                 analysis()
 
 
-def test_one_number_for_all_inputs_is_refused_in_words() -> None:
-    with pytest.raises(sf.SymofrosError, match="inputs p.qx|shape"):
-        sf.equilibrium(sf.compile(TURNED), [1.5], u=2.0)
-
-
-METHODS = ["rk4", "dopri5", "semi_implicit_euler", "rodas4", "generalized_alpha"]
-CASES = [(method, kind) for method in METHODS for kind in ("number", "formula", "samples")]
-
-
-@pytest.mark.parametrize(("method", "kind"), [*CASES, ("rk4", "function"), ("dopri5", "function")])
+@pytest.mark.parametrize("kind", ["number", "formula", "samples", "function"])
+@pytest.mark.parametrize("method", METHODS)
 def test_quaternions_that_prescribe_a_motion_are_of_unit_length(method: str, kind: str) -> None:
     """Of another length they would turn and stretch what they carry, without a word."""
-    model = sf.compile(TURNED)
+    model = sf.compile(turned())
     array = np.array([0, 0, 0, 1.5, *[0.0] * 6])
     samples = sf.Signal([0.0, 0.1, 0.2], [1.0, 1.0, 0.0])  # Turned by 2 pi: the chord between q and -q is no rotation.
     u = {
@@ -152,6 +122,8 @@ def test_quaternions_that_prescribe_a_motion_are_of_unit_length(method: str, kin
         "samples": {"p.qw": samples},
         "function": lambda t, q, v: array,
     }[kind]
+    if kind == "function" and method not in ("rk4", "dopri5"):
+        return
     run = sf.simulate(model, [0.3], u=u, t_end=0.3, dt=0.01, method=method)
     assert run.outcome.kind == "input failed" and run.outcome.t < 0.15
     assert "p.qx, p.qy, p.qz, p.qw are a quaternion of length" in run.outcome.reason

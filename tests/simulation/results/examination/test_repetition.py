@@ -11,6 +11,7 @@ import scipy.linalg
 
 import symofros as sf
 from tests.models import sampled
+from tests.simulation.mechanisms import slide
 from tests.simulation.oscillator import oscillator
 
 
@@ -20,9 +21,9 @@ def two_masses() -> sf.Model:
     names = ("m1", "m2", "k1", "k2", "c1", "c2")
 
     def mass(i: int, *parent: str) -> sf.RigidBody:
-        elements = (sf.Spring(sf.formula(f"k{i}")), sf.Damper(sf.formula(f"c{i}")))
+        elements = (sf.Spring(f"k{i}"), sf.Damper(f"c{i}"))
         joint = sf.Joint(f"x{i}", "prismatic", *parent, axis=(1, 0, 0), elements=elements)
-        return sf.RigidBody(f"mass{i}", joint, sf.Inertia(sf.formula(f"m{i}")))
+        return sf.RigidBody(f"mass{i}", joint, sf.Inertia(f"m{i}"))
 
     parameters = tuple(sf.Parameter(name, 1.0) for name in names)
     return sf.compile(sf.System("two_masses", (mass(1), mass(2, "mass1")), parameters, gravity=(0, 0, 0)))
@@ -42,7 +43,7 @@ def exact_state(par: tuple[float, ...], q: np.ndarray, t: float) -> tuple[np.nda
 def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
     """Whatever the ratio of masses, the stiffness, the damping and the step."""
     rng, wrong = np.random.default_rng(0), 0
-    for _ in range(60):
+    for _ in range(40):
         mass, stiffness, damping, h = 10.0 ** rng.integers([-4, -4, -2, -2], [5, 5, 3, 1])
         par = (1.0, mass, 1.0, stiffness, damping, damping * np.sqrt(mass * stiffness))
         steps, q = int(rng.integers(3, 80)), rng.uniform(-1.0, 1.0, 2)
@@ -99,21 +100,11 @@ def test_energy_is_judged_whatever_is_recorded() -> None:
 
 def test_a_contact_between_two_records_takes_energy_without_a_note() -> None:
     stop = sf.Stop(1e4, damping=40.0, lower=0.0)
-    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(stop,)), sf.Inertia(1.0))
-    model = sf.compile(sf.System("ball", [ball]))
+    model = sf.compile(slide(stop, name="z", axis=(0, 0, 1), gravity=(0, 0, -9.81)))
     run = sf.simulate(model, [1.0], t_end=1.2, method="rk4", dt=1e-4, output=[0.0, 0.4, 0.8, 1.2])
     assert run.energy[-1] < 0.9 * run.energy[0] and not run.outcome.notes
     many = sf.simulate_batch(model, [[1.0], [1.1]], t_end=1.2, method="rk4", dt=1e-4, output=[0.0, 0.4, 0.8, 1.2])
     assert not many.outcome(0).notes and not many.outcome(1).notes
-
-
-def test_batches_say_which_energy_no_force_takes() -> None:
-    par = (1.0, 1.0, 10.0, 10.0, 0.0, 0.0)
-    many = sf.simulate_batch(
-        two_masses(), [[1.0, 0.0], [0.0, 0.1]], t_end=40.0, method="semi_implicit_euler", dt=0.1, par=par, output=4.0
-    )
-    alone = sf.simulate(two_masses(), [1.0, 0.0], t_end=40.0, method="semi_implicit_euler", dt=0.1, par=par, output=4.0)
-    assert bool(many.outcome(0).notes) == bool(alone.outcome.notes) is True
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rodas4", "dop853"])
@@ -137,10 +128,8 @@ def test_an_absolute_tolerance_beyond_the_speeds_is_noted_where_it_harms(method:
 def stiffened() -> sf.Model:
     """A mass on a spring that is stiffer by k about one instant late in a run, at any scale of time."""
     force = sf.formula("-400/T^2*x*(1 + k*exp(-((t/T - when)/width)^2))", "F")
-    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0))
-    mass = sf.RigidBody("mass", joint, sf.Inertia(1.0), loads=(sf.Load((force, 0.0, 0.0)),))
     parameters = tuple(sf.Parameter(name, 1.0) for name in ("T", "k", "when", "width"))
-    return sf.compile(sf.System("stiffened", (mass,), parameters, gravity=(0, 0, 0)))
+    return sf.compile(slide(loads=(sf.Load((force, 0.0, 0.0)),), parameters=parameters))
 
 
 def test_long_runs_that_err_late_bear_a_note() -> None:
@@ -164,7 +153,7 @@ def test_long_runs_that_err_late_bear_a_note() -> None:
     ("t_end", "said"),
     [
         (1.0, "do not show the motion: with half of that it does not come to this end"),
-        (15.0, "do not show the motion from t = 0 s: with half of that it does not go on"),
+        (15.0, "do not show the motion: with half of that it does not come to this end from t = 0 s"),
     ],
 )
 @pytest.mark.parametrize("met", [True, False])
@@ -172,23 +161,19 @@ def test_steps_that_leap_over_what_ends_the_motion_are_noted(t_end: float, said:
     """A force that is no number for an instant: half the step asks for it there, or no step does."""
     instant = 0.1125 if met else 0.1107
     force = sf.formula(f"-20*x^3 + 1e-9*sqrt((t - {instant})^2 - 1e-7)")
-    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0))
-    mass = sf.RigidBody("mass", slide, sf.Inertia(1.0), loads=(sf.Load((force, 0.0, 0.0)),))
-    run = sf.simulate(sf.compile(sf.System("gap", (mass,), gravity=(0, 0, 0))), [1.0], t_end=t_end, dt=0.05)
+    run = sf.simulate(sf.compile(slide(loads=(sf.Load((force, 0.0, 0.0)),))), [1.0], t_end=t_end, dt=0.05)
     assert [said in note for note in run.outcome.notes] == [True] * met, run.outcome
 
 
-@pytest.mark.parametrize("options", [{"dt": 0.05}, {"dt": 0.01}, {"dt": 1e-3}, {"method": "dopri5"}], ids=str)
-@pytest.mark.parametrize("kind", ["pure", "remembering"])
-def test_a_function_is_asked_once_whether_it_gives_the_same_inputs(options: dict[str, Any], kind: str) -> None:
-    """However many notes would make parts of the run once more: the last record, and then one before it."""
-    calls: list[float] = []
-
-    def law(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
-        calls.append(t)
-        return [-200.0 * float(q[0]) ** 3 + 1e-3 * len(calls) * (kind == "remembering")]
-
-    run = sf.simulate(oscillator(), [0.0], [2.0], 5.0, u=law, **options)
-    asked = run.t[:: -max(1, len(run.t) // 8)]
-    count = sum(calls[i : i + 3] == [*asked[:3]] for i in range(len(calls)))
-    assert count == 1, run.outcome
+@pytest.mark.parametrize(
+    ("force", "options", "said"),
+    [
+        ("0*t", {"method": "semi_implicit_euler", "dt": 0.01, "t_end": 60.0}, False),
+        ("x - 1e3*x^3", {"method": "rk4", "dt": 0.01, "t_end": 8.0}, True),
+        ("x - 1e3*x^3", {"method": "rk4", "dt": 0.002, "t_end": 8.0}, False),
+    ],
+)
+def test_errors_that_add_up_over_a_long_run_are_noted(force: str, options: dict[str, Any], said: bool) -> None:
+    """Of which no window shows a tenth (simulation.md, 17b); semi-implicit Euler errs by h/2 for ever."""
+    run = sf.simulate(oscillator(), [1.0], u={"x": force}, output=0.07, **options)
+    assert bool([note for note in run.outcome.notes if "do not determine the motion" in note]) == said, run.outcome

@@ -59,15 +59,6 @@ def test_a_note_names_limit_mode_and_energy(method: str) -> None:
     assert appeared == pytest.approx(run.energy[-1] - run.energy[0], rel=0.01)
 
 
-def test_dissipation_is_no_energy_that_appeared() -> None:
-    """What a damper takes is work; the rest of the change was brought in by the steps."""
-    run, _ = oscillation("rk4", 2.9, 0.02, 120)
-    (note,) = step_notes(run)
-    appeared = float(note.split(" J appeared")[0].split()[-1])
-    work = -np.trapezoid(2.0 * 0.02 * 2.9 / H * run.v[:, 0] ** 2, run.t)
-    assert appeared == pytest.approx(run.energy[-1] - run.energy[0] - work, rel=0.05)
-
-
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler"])
 def test_feedback_is_part_of_the_spectrum(method: str) -> None:
     """By a formula, and by a Python function."""
@@ -77,57 +68,6 @@ def test_feedback_is_part_of_the_spectrum(method: str) -> None:
         assert not step_notes(fine)
         coarse = sf.simulate(oscillator(), [1e-3], t_end=0.2, dt=1e-2, u=law, method=method)
         assert step_notes(coarse) and f"{math.sqrt(gain):.4g} rad/s" in step_notes(coarse)[0]
-
-
-def test_a_function_of_inputs_is_left_alone_in_real_time() -> None:
-    times: list[float] = []
-
-    def call(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        times.append(t)
-        return np.zeros(1)
-
-    sf.simulate(oscillator(), [1.0], t_end=0.02, dt=1e-3, u=call, realtime=True)
-    assert max(times) == times[-1]
-
-
-@pytest.mark.parametrize("dt", [3.5e-4, 1e-3])
-def test_the_stiff_governor_past_the_limit_of_rk4(dt: float) -> None:
-    """Its fastest mode decays at 8117 1/s: five centimetres off at 0.35 ms, and diverging beyond."""
-    model = compiled("flyball_governor")
-    q, v = [0.0, np.pi / 6, np.pi / 6, 0.5], [2 * np.pi, 0.0, 0.0, 0.0]
-    assert not step_notes(sf.simulate(model, q, v, 0.5, dt=3e-4))
-    run = sf.simulate(model, q, v, 0.5, dt=dt)
-    assert "stable up to 0.00034" in step_notes(run)[0]
-    assert run.outcome.kind == ("finished" if dt < 4e-4 else "diverged") and "0.00034" in str(run.outcome)
-
-
-def test_the_run_is_not_changed_by_being_judged() -> None:
-    model = oscillator()
-    long = sf.simulate(model, [1.0], t_end=0.1, dt=1e-3)
-    assert long.outcome.t == 0.1 and long.statistics.evaluations == 4 * 100
-    np.testing.assert_array_equal(long.q[50], sf.simulate(model, [1.0], t_end=0.05, dt=1e-3).q[-1])
-
-
-# Rigid reference models at the usual step; elastic ones need their own.
-USUAL = (
-    "pendulum",
-    "double_pendulum",
-    "cart_pole",
-    "rx90",
-    "chain7",
-    "friction_arm",
-    "heavy_top",
-    "gyroscope",
-    "space_arm",
-)
-
-
-@pytest.mark.parametrize("name", USUAL)
-def test_no_note_on_reference_models_at_their_usual_step(name: str) -> None:
-    model = compiled(name)
-    q, v = model.random_state(np.random.default_rng(1))
-    for method in ("rk4", "semi_implicit_euler"):
-        assert not step_notes(sf.simulate(model, q, v, 1.0, method=method, dt=1e-3, output=0.02))
 
 
 def test_each_run_of_a_batch_is_judged_by_its_own_parameters() -> None:
@@ -175,22 +115,8 @@ def two_bars(length: float, size: float, mass: float) -> sf.Model:
     return sf.compile(sf.System("two_bars", tuple(bodies)))
 
 
-@pytest.mark.parametrize("method", ["dopri5", "rk4", "semi_implicit_euler"])
-@pytest.mark.parametrize("step", [5e-3, 1e-2, 2e-2])
-def test_an_explosion_is_no_measure_of_the_motion(method: str, step: float) -> None:
-    """Whatever the number of steps, to the last one before numbers overflow."""
-    for steps in range(1, 25):
-        run = sf.simulate(
-            two_bars(1e-2, 1e-2, 1e-2), [0.0, 1.0], [30.0, 0.0], steps * step, method=method, dt=step, adaptive=False
-        )
-        if run.outcome.kind != "finished":
-            break
-        gained = run.energy[-1] - run.energy[0]
-        assert run.outcome.notes or gained < run.kinetic_energy[0], (steps, str(run.outcome))
-
-
-@pytest.mark.parametrize("step", [0.1, 0.32, 1.0])
-@pytest.mark.parametrize("method", ["rodas4", "rk4", "dopri5", "semi_implicit_euler", "generalized_alpha"])
+@pytest.mark.parametrize("step", [0.1, 1.0])
+@pytest.mark.parametrize("method", ["rodas4", "rk4", "semi_implicit_euler", "generalized_alpha"])
 def test_energy_of_motions_much_faster_than_the_step_is_judged(method: str, step: float) -> None:
     """Their power is that of a moment in which they turn little, however long the step is."""
     starts = (([1.0, 0.0], 1.0), ([1.0, 0.0], 6.3), ([1.0, 0.0], 40.0), ([0.1, 3.0], 0.0))
@@ -215,13 +141,12 @@ def motion_of_bricard() -> sf.Trajectory:
     return sf.simulate(*pushed("bricard"), 0.5, method="dop853", rtol=1e-10, atol=1e-12)
 
 
-@pytest.mark.parametrize("gains", [None, (5, 5), (20, 20)])
+@pytest.mark.parametrize("gains", [None, (20, 20)])
 @pytest.mark.parametrize(
     ("method", "dt", "error"),
     [
         ("rk4", 1e-3, 2e-8),
         ("dopri5", 2e-2, 2e-6),
-        ("dopri5", 1e-3, 1e-9),
         ("dop853", 1e-2, 1e-9),
         ("semi_implicit_euler", 5e-3, 1e-2),
     ],
@@ -234,12 +159,6 @@ def test_loops_that_gains_keep_bear_no_note_where_they_are_right(
     run = sf.simulate(*pushed("bricard"), 0.5, method=method, dt=dt, **options)  # type: ignore[arg-type]
     assert np.abs(run.q[-1] - right.q[-1]).max() < error and np.abs(run.v[-1] - right.v[-1]).max() < error
     assert not run.outcome.notes, run.outcome
-
-
-def test_loops_that_gains_keep_bear_a_note_where_they_are_wrong() -> None:
-    """Off by two thirds after two seconds."""
-    options = {"method": "semi_implicit_euler", "dt": 0.02, "stabilisation": "baumgarte", "gains": (5, 5)}
-    assert step_notes(sf.simulate(*pushed("bricard"), 2.0, **options))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(("name", "times"), [("bricard", 1.0), ("four_bar", 1.0), ("sleigh", 2.0)])

@@ -15,10 +15,10 @@ from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.stepper import Stepper
 from tests.models import compiled
+from tests.simulation.mechanisms import slide
 
 ADAPTIVE = ("dopri5", "dop853", "rodas4")
-SLIDE = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
-CART = sf.System("cart", (sf.RigidBody("b", SLIDE, sf.Inertia(1.0)),), gravity=(0, 0, 0))
+CART = slide(actuated=True)
 
 
 def noted(run: Any) -> list[str]:
@@ -26,7 +26,7 @@ def noted(run: Any) -> list[str]:
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_a_narrow_force_is_met_or_noted(method: str, seed: int) -> None:
     """A coasting cart meets a force on a small part of its way, which no one knows beforehand, whatever the date."""
     t0, rng = 1e4 * (seed % 2), np.random.default_rng(seed)
@@ -72,7 +72,7 @@ def test_a_run_of_a_batch_says_so_too() -> None:
         assert (abs(many.v[i, -1, 0] - first - exact) < 1e-3) != bool(noted(many[i])), str(many.outcome(i))
 
 
-@pytest.mark.parametrize("name", ["torque_free_body", "slider_crank", "space_arm"])
+@pytest.mark.parametrize("name", ["torque_free_body", "slider_crank"])
 def test_a_path_between_records_is_the_motion(name: str) -> None:
     """Of rotations and loops as well: the states within steps are those of a run with short steps, to h^4."""
     model = compiled(name)

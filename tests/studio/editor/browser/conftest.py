@@ -17,6 +17,7 @@ from PIL import Image
 from playwright.sync_api import Browser, Page
 
 import symofros.studio.editor
+from tests.studio.editor.browser import steps
 
 TOKEN = "token-of-the-tests"
 # The oldest that builds the page.
@@ -56,8 +57,14 @@ class Server:
             self.kill()
 
 
+# What fixtures give: a server of a file, the faults that a page has, a picture under a name.
+Serve = Callable[..., Server]
+Faults = Callable[[], list[str]]
+Picture = Callable[[str], None]
+
+
 @pytest.fixture
-def serve(tmp_path: Path) -> Iterator[Callable[..., Server]]:
+def serve(tmp_path: Path) -> Iterator[Serve]:
     """Starts servers: `serve("double.yaml")` in the test's folder, a copy of `source` or with `content`."""
     servers: list[Server] = []
 
@@ -89,6 +96,33 @@ def page(chromium: Browser) -> Iterator[Page]:
     yield page
     context.close()
     assert not errors
+
+
+@pytest.fixture
+def opened(serve: Serve, page: Page) -> Serve:
+    """Serves a file, as `serve` does, and opens it in the page."""
+
+    def start(*file: Any, **more: Any) -> Server:
+        server = serve(*file, **more)
+        steps.open_editor(page, server.url)
+        return server
+
+    return start
+
+
+@pytest.fixture
+def arm(opened: Serve) -> Server:
+    """A double pendulum, open in the page."""
+    return opened("arm.yaml", source=steps.PENDULUM)
+
+
+@pytest.fixture
+def other(arm: Server, chromium: Browser) -> Iterator[Page]:
+    """Another page on the server of the double pendulum."""
+    page = chromium.new_page()
+    steps.open_editor(page, arm.url)
+    yield page
+    page.close()
 
 
 def _is_ours(kind: str, text: str) -> bool:
@@ -124,7 +158,7 @@ def node_modules() -> Path:
 
 
 @pytest.fixture
-def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
+def faults(page: Page, node_modules: Path) -> Faults:
     """Runs axe on what the page shows now, and again where a page that still settles has faults: those that stay."""
     source = (node_modules / "axe-core" / "axe.min.js").read_text()
 
@@ -146,7 +180,7 @@ def faults(page: Page, node_modules: Path) -> Callable[[], list[str]]:
 
 
 @pytest.fixture
-def picture(page: Page) -> Callable[[str], None]:
+def picture(page: Page) -> Picture:
     """Keeps what the page shows as a picture of the documentation, when SYMOFROS_PICTURES names a folder."""
 
     def shoot(name: str) -> None:

@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
+import numpy as np
 from playwright.sync_api import Locator, Page, expect
+
+from tests.studio.pictures import MANY, settled, shot
+from tests.studio.waiting import PATIENCE, until
+
+MODELS = Path(__file__).parents[4] / "reference_models"
+PENDULUM = MODELS / "rigid" / "double_pendulum.yaml"
+ROBOT = MODELS / "flexible" / "planar_robot.yaml"
+JOB = 60_000  # A job may take on a busy machine [ms].
 
 
 def block(page: Page, node: str) -> Locator:
@@ -74,3 +84,71 @@ def saved(page: Page) -> None:
     """Save by the keyboard, and wait until it is done."""
     page.locator("body").press("Control+s")
     expect(page.get_by_role("banner").get_by_text("unsaved")).to_have_count(0)
+
+
+def port(page: Page, name: str) -> Locator:
+    """A port of a block of a diagram, such as `input u of speed`."""
+    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
+
+
+def menu(page: Page, title: str, command: str) -> None:
+    """Choose a command of a menu of the tool bar."""
+    page.get_by_role("banner").get_by_role("button", name=title, exact=True).click()
+    page.get_by_role("menuitem", name=command).click()
+
+
+def new_file(page: Page, name: str, kind: str = "") -> None:
+    """Begin another document."""
+    menu(page, "File", "New")
+    fill(page, "File", name)
+    if kind:
+        window(page).get_by_label("Kind").select_option(kind)
+    window(page).get_by_role("button", name="Create").click()
+    expect(page.get_by_role("heading", level=1)).to_contain_text(name)
+
+
+def open_file(page: Page, name: str) -> None:
+    """Go to another file of the folder."""
+    page.keyboard.press("Control+o")
+    window(page).get_by_label("Filter files").fill(name)
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("heading", level=1)).to_contain_text(name)
+    expect(window(page)).to_have_count(0)
+
+
+def job(page: Page, command: str, **typed: str) -> None:
+    """A job from its command's window to its end; `Start_of_q1="1"` fills the field *Start of q1*."""
+    run(page, f"{command}…")
+    for label, text in typed.items():
+        fill(page, label.replace("_", " "), text)
+    window(page).get_by_role("button", name=command, exact=True).click()
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+
+
+def type_at_the_head(page: Page, text: str) -> None:
+    """Type into the text of the file, before all else."""
+    page.get_by_role("tab", name="YAML").click()
+    page.get_by_label("Text of the file").click()
+    page.keyboard.press("Control+Home")
+    page.keyboard.type(text)
+
+
+def set_parameter(page: Page, name: str, value: str) -> None:
+    """Type a value into the table of parameters."""
+    field = page.get_by_label(f"Value of {name}", exact=True)
+    field.fill(value)
+    field.press("Enter")
+
+
+def has_value(page: Page, name: str, value: str) -> None:
+    """Wait for a value in the table of parameters."""
+    expect(page.get_by_label(f"Value of {name}", exact=True)).to_have_value(value)
+
+
+def open_view(page: Page) -> np.ndarray:
+    """Open the 3-D pane, and wait until the mechanism is drawn: its picture."""
+    run(page, "3-D")
+    page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
+    until(page, lambda: bool((shot(page) < 200).any(axis=2).sum() >= MANY), "nothing is drawn")
+    return settled(page)

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Faults, Picture, Serve, Server
 from tests.studio.waiting import fits, lies_within
 
 pytestmark = pytest.mark.browser
 
-MODELS = Path(__file__).parents[4] / "reference_models"
 # A fast loop within a slow one; nothing is wrong with it.
 DRAWN = """symofros_diagram: 1
 simulation: {t_end: 1, dt: 0.01}
@@ -26,29 +22,10 @@ blocks:
 """
 
 
-SMALL = pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
-
-
-def look(page: Page, faults: Callable[[], list[str]], width: int) -> None:
-    """Nothing is wrong with the page, nor wider than the window; the head's buttons can be scrolled into it."""
-    assert faults() == []
-    fits(page, width)
-    for button in page.get_by_role("banner").get_by_role("button").all():
-        button.scroll_into_view_if_needed()
-        lies_within(button, width)
-
-
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_the_page_and_its_windows(
-    serve: Callable[..., Server],
-    page: Page,
-    faults: Callable[[], list[str]],
-    picture: Callable[[str], None],
-    theme: str,
-) -> None:
+def test_the_page_and_its_windows(opened: Serve, page: Page, faults: Faults, picture: Picture, theme: str) -> None:
     page.emulate_media(color_scheme=theme)
-    server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
-    steps.open_editor(page, server.url)
+    opened("robot.yaml", source=steps.ROBOT)
     assert faults() == []
     steps.open_window(page, "bodies/link1")
     assert faults() == []
@@ -71,19 +48,16 @@ def test_the_page_and_its_windows(
     page.get_by_role("group", name="Pose").get_by_text("Parameters").click()
     assert faults() == []
     steps.run(page, "Simulate")
-    steps.fill(page, "Duration", "0.3")
-    steps.fill(page, "Speed of q1", "2")
     assert faults() == []
-    steps.window(page).get_by_role("button", name="Simulate").click()
-    expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
+    page.keyboard.press("Escape")
+    steps.job(page, "Simulate", Duration="0.3", Speed_of_q1="2")
     assert faults() == []
     if theme == "dark":
         picture("dark")
 
 
-def test_a_diagram_and_its_windows(serve: Callable[..., Server], page: Page, faults: Callable[[], list[str]]) -> None:
-    server = serve("drawn.yaml", content=DRAWN)
-    steps.open_editor(page, server.url)
+def test_a_diagram_and_its_windows(opened: Serve, page: Page, faults: Faults) -> None:
+    opened("drawn.yaml", content=DRAWN)
     assert faults() == []
     steps.open_window(page, "blocks/slow")
     assert faults() == []
@@ -102,67 +76,45 @@ def test_a_diagram_and_its_windows(serve: Callable[..., Server], page: Page, fau
     assert faults() == []
 
 
-@SMALL
-def test_small_pages(
-    serve: Callable[..., Server],
-    page: Page,
-    faults: Callable[[], list[str]],
-    picture: Callable[[str], None],
-    width: int,
-    height: int,
-) -> None:
+# Kind of document -> a block, fields of its window, the command that runs it and what is typed then.
+KINDS = {
+    "model": ("bodies/link1", ("Modes along y", "Modes of shear along z", "Length"), "Simulate", {"Duration": "0.3"}),
+    "diagram": ("blocks/slow", ("Name", "Sample time", "Source of u"), "Run", {}),
+}
+
+
+@pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_small_pages(opened: Serve, page: Page, faults: Faults, kind: str, width: int, height: int) -> None:
     """Nothing is cut off: no page is wider than the window, and what is pressed lies in it, or is scrolled into it."""
+
+    def look() -> None:
+        assert faults() == []
+        fits(page, width)
+        for button in page.get_by_role("banner").get_by_role("button").all():
+            button.scroll_into_view_if_needed()
+            lies_within(button, width)
+
+    block, labels, command, typed = KINDS[kind]
     page.set_viewport_size({"width": width, "height": height})
-    server = serve("robot.yaml", source=MODELS / "flexible" / "planar_robot.yaml")
-    steps.open_editor(page, server.url)
-    look(page, faults, width)
-    picture(f"small-{width}")
-    steps.open_window(page, "bodies/link1")
+    opened("small.yaml", **{"source": steps.ROBOT} if kind == "model" else {"content": DRAWN})
+    look()
+    steps.open_window(page, block)
     assert faults() == []
-    for label in ("Modes along y", "Modes of shear along z", "Length"):
+    for label in labels:
         steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
     lies_within(steps.window(page).get_by_role("button", name="OK"), width, height)
-    picture(f"small-window-{width}")
     page.keyboard.press("Escape")
-    steps.run(page, "Simulate")
-    steps.fill(page, "Duration", "0.3")
-    steps.window(page).get_by_role("button", name="Simulate").click()
+    steps.run(page, f"{command}…")
+    assert faults() == []
+    page.keyboard.press("Escape")
+    steps.job(page, command, **typed)
     expect(steps.results(page).get_by_role("img").first).to_be_visible(timeout=60_000)
-    look(page, faults, width)
-    picture(f"small-results-{width}")
-
-
-@SMALL
-def test_a_diagram_on_small_pages(
-    serve: Callable[..., Server],
-    page: Page,
-    faults: Callable[[], list[str]],
-    picture: Callable[[str], None],
-    width: int,
-    height: int,
-) -> None:
-    page.set_viewport_size({"width": width, "height": height})
-    server = serve("drawn.yaml", content=DRAWN)
-    steps.open_editor(page, server.url)
-    look(page, faults, width)
-    picture(f"small-diagram-{width}")
-    steps.open_window(page, "blocks/slow")
-    assert faults() == []
-    for label in ("Name", "Sample time", "Source of u"):
-        steps.window(page).get_by_label(label, exact=True).click(trial=True)  # Nothing lies over it.
-    page.keyboard.press("Escape")
-    steps.run(page, "Run…")
-    assert faults() == []
-    steps.window(page).get_by_role("button", name="Run").click()
-    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=60_000)
     lies_within(steps.results(page).locator("figure.plot").first, width)
-    look(page, faults, width)
-    picture(f"small-diagram-run-{width}")
+    look()
 
 
-def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("robot.yaml", source=MODELS / "rigid" / "double_pendulum.yaml")
-    steps.open_editor(page, server.url)
+def test_a_window_holds_the_focus_and_gives_it_back(arm: Server, page: Page) -> None:
     steps.open_window(page, "bodies/upper")
     for _ in range(40):
         page.keyboard.press("Tab")
@@ -173,9 +125,8 @@ def test_a_window_holds_the_focus_and_gives_it_back(serve: Callable[..., Server]
     expect(steps.block(page, "bodies/upper")).to_be_focused()
 
 
-def test_a_body_is_added_and_opened_by_the_keyboard_alone(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("new.yaml")
-    steps.open_editor(page, server.url)
+def test_a_body_is_added_and_opened_by_the_keyboard_alone(opened: Serve, page: Page) -> None:
+    opened("new.yaml")
     page.get_by_role("button", name="Rigid body", exact=True).focus()
     page.keyboard.press("Enter")
     expect(steps.block(page, "bodies/body")).to_be_visible()

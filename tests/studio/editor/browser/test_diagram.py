@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Locator, Page, Position, expect
+from playwright.sync_api import Page, Position, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
-from tests.studio.waiting import until
+from tests.studio.editor.browser.conftest import Picture, Serve, Server
+from tests.studio.waiting import at_rest, until
 
 pytestmark = pytest.mark.browser
 
-MODELS = Path(__file__).parents[4] / "reference_models"
-JOB = 60_000
 MIDDLE: Position = {"x": 60, "y": 12}
 DRAWN = """symofros_diagram: 1
 name: drawn   # a comment that stays
@@ -50,26 +47,20 @@ blocks:
 
 
 @pytest.fixture
-def square(serve: Callable[..., Server], tmp_path: Path) -> Server:
-    shutil.copytree(MODELS / "flexible", tmp_path / "flexible")
-    return serve("square.yaml", source=MODELS / "square.yaml")
-
-
-def port(page: Page, name: str) -> Locator:
-    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
+def square(serve: Serve, tmp_path: Path) -> Server:
+    shutil.copytree(steps.MODELS / "flexible", tmp_path / "flexible")
+    return serve("square.yaml", source=steps.MODELS / "square.yaml")
 
 
 def curve(page: Page) -> str:
     """The flexible robot's tool in the picture of figure 9."""
     picture = steps.results(page).get_by_role("img", name="Tool and path: tip.p, path.p in a plane")
-    expect(picture).to_be_visible(timeout=JOB)
-    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    expect(picture).to_be_visible(timeout=steps.JOB)
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=steps.JOB)
     return picture.locator("path.series").first.get_attribute("d") or ""
 
 
-def test_the_papers_square_runs_and_another_model_is_one_choice(
-    square: Server, page: Page, picture: Callable[[str], None]
-) -> None:
+def test_the_papers_square_runs_and_another_model_is_one_choice(square: Server, page: Page, picture: Picture) -> None:
     text = square.file.read_text()
     steps.open_editor(page, square.url)
     expect(page.locator(".signal-block")).to_have_count(16)
@@ -80,7 +71,7 @@ def test_the_papers_square_runs_and_another_model_is_one_choice(
     steps.fill(page, "Pause at", "4")
     steps.window(page).get_by_role("button", name="Run").click()
     going = steps.results(page).get_by_role("button", name="Go on")
-    expect(going).to_be_visible(timeout=JOB)
+    expect(going).to_be_visible(timeout=steps.JOB)
     expect(steps.results(page).get_by_text("paused at t = 4 s")).to_be_visible()
     # Drawn while it waits.
     until(page, lambda: bool(steps.results(page).locator("path.series").first.get_attribute("d")))
@@ -101,12 +92,9 @@ def test_the_papers_square_runs_and_another_model_is_one_choice(
     assert square.file.read_text() == text.replace(f"{plant}}}", f"{plant}, functions: 0}}")
 
 
-def test_a_model_has_a_canvas_of_its_own_and_a_way_back(
-    serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
-    shutil.copy(MODELS / "rigid" / "double_pendulum.yaml", tmp_path / "arm.yaml")
-    server = serve("held.yaml", content=HELD)
-    steps.open_editor(page, server.url)
+def test_a_model_has_a_canvas_of_its_own_and_a_way_back(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    server = opened("held.yaml", content=HELD)
     steps.problems(page, 0)
     steps.block(page, "models/arm").dblclick()
     expect(steps.block(page, "bodies/upper")).to_be_visible()
@@ -123,15 +111,29 @@ def test_a_model_has_a_canvas_of_its_own_and_a_way_back(
     assert server.file.read_text() == changed
 
 
+def copied_and_taken_back(page: Page) -> None:
+    """Blocks are copied with the wires between them, as text; the loops show though the copies are not fed."""
+    for name in ("speed", "sum"):
+        steps.block(page, f"blocks/{name}").click(modifiers=["Control"] if name == "sum" else [], position=MIDDLE)
+    page.keyboard.press("Control+c")
+    page.keyboard.press("Control+v")
+    expect(steps.wire(page, "blocks/sum2/inputs/u1")).to_have_count(1)
+    expect(steps.block(page, "blocks/speed2")).to_be_visible()
+    steps.problems(page, 3)
+    expect(page.locator(".react-flow__edge.loop")).to_have_count(2)
+    assert '"symofros_blocks"' in page.evaluate("navigator.clipboard.readText()")
+    page.keyboard.press("Control+z")
+    expect(steps.block(page, "blocks/sum2")).to_have_count(0)
+
+
 def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_it_was(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
+    opened: Serve, page: Page, picture: Picture
 ) -> None:
-    server = serve("drawn.yaml", content=DRAWN)
-    steps.open_editor(page, server.url)
+    server = opened("drawn.yaml", content=DRAWN)
     steps.problems(page, 1)  # Nothing feeds the gain.
 
     # From port to port; the server's check of the units stands on the wire.
-    port(page, "output y of source").drag_to(port(page, "input u of speed"))
+    steps.port(page, "output y of source").drag_to(steps.port(page, "input u of speed"))
     expect(page.locator(".react-flow__edge.wrong")).to_have_count(1)
     expect(page.locator(".wire-label")).to_have_text("rad → rad/s")
     steps.wire(page, "blocks/speed/inputs/u").focus()
@@ -151,25 +153,14 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
         page.locator(".react-flow__pane"), target_position={"x": 300, "y": 500}
     )
     expect(steps.block(page, "blocks/sum")).to_be_visible()
-    port(page, "output y of speed").drag_to(port(page, "input u1 of sum"))
+    steps.port(page, "output y of speed").drag_to(steps.port(page, "input u1 of sum"))
     expect(steps.wire(page, "blocks/sum/inputs/u1")).to_have_count(1)
-    port(page, "output y of sum").drag_to(port(page, "input u2 of sum"))
+    steps.port(page, "output y of sum").drag_to(steps.port(page, "input u2 of sum"))
     expect(page.locator(".react-flow__edge.loop")).to_have_count(1)
     expect(page.locator(".wire-label")).to_have_text("algebraic loop")
     picture("diagram-loop")
 
-    # Blocks are copied with the wires between them, as text; the loops show though the copies are not fed.
-    for name in ("speed", "sum"):
-        steps.block(page, f"blocks/{name}").click(modifiers=["Control"] if name == "sum" else [], position=MIDDLE)
-    page.keyboard.press("Control+c")
-    page.keyboard.press("Control+v")
-    expect(steps.wire(page, "blocks/sum2/inputs/u1")).to_have_count(1)
-    expect(steps.block(page, "blocks/speed2")).to_be_visible()
-    steps.problems(page, 3)
-    expect(page.locator(".react-flow__edge.loop")).to_have_count(2)
-    assert '"symofros_blocks"' in page.evaluate("navigator.clipboard.readText()")
-    page.keyboard.press("Control+z")
-    expect(steps.block(page, "blocks/sum2")).to_have_count(0)
+    copied_and_taken_back(page)
 
     # Fed by a signal of the same unit, by the keyboard alone; a scope on a signal; then it runs.
     steps.open_window(page, "blocks/sum")
@@ -184,7 +175,7 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     steps.run(page, "Run…")
     steps.window(page).get_by_label("How").select_option("interpreted")
     steps.window(page).get_by_role("button", name="Run").click()
-    expect(steps.results(page).get_by_role("img", name="speed.y over time")).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_role("img", name="speed.y over time")).to_be_visible(timeout=steps.JOB)
     steps.saved(page)
     assert server.file.read_text() == DRAWN.replace(
         'rad/s, unit_out: "rad/s", inputs: {}', 'rad, unit_out: "rad/s", inputs: {u: source.y}'
@@ -194,16 +185,51 @@ def test_a_diagram_is_checked_as_it_is_drawn_and_saved_with_every_other_byte_as_
     )
 
 
-def test_states_that_are_exchanged_are_refused_in_units(
-    serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
-    shutil.copy(MODELS / "rigid" / "double_pendulum.yaml", tmp_path / "arm.yaml")
-    server = serve("law.yaml", content=EXCHANGED)
-    steps.open_editor(page, server.url)
+PICKED = """symofros_diagram: 1
+models: {arm: {file: arm.yaml}}
+blocks:
+  plant: {kind: forward_dynamics, model: arm}
+  choice: {kind: pick, model: arm, inputs: {u: plant.q}}
+  total: {kind: sum, signs: "+", unit: rad}
+"""
+
+
+def wire(page: Page, source: str, target: str) -> None:
+    """Drag from port to port; blocks that are being arranged move both."""
+    at_rest(steps.port(page, source))
+    at_rest(steps.port(page, target))
+    steps.port(page, source).drag_to(steps.port(page, target))
+
+
+def test_ports_of_blocks_of_a_diagram(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    opened("picked.yaml", content=PICKED)
+    # The block gets its output when it is told which entries it picks.
+    steps.open_window(page, "blocks/choice")
+    steps.fill(page, "Entries", "q1")
+    steps.accept(page)
+    # And the other one a second input.
+    steps.open_window(page, "blocks/total")
+    steps.fill(page, "Signs", "+-")
+    steps.accept(page)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+    # Undo takes wire and input away; the input comes back at its place.
+    page.keyboard.press("Control+z")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(0)
+    page.keyboard.press("Control+z")
+    expect(steps.port(page, "input u2 of total")).to_have_count(0)
+    page.keyboard.press("Control+y")
+    expect(steps.port(page, "input u2 of total")).to_have_count(1)
+    wire(page, "output y of choice", "input u2 of total")
+    expect(steps.wire(page, "blocks/total/inputs/u2")).to_have_count(1)
+
+
+def test_states_that_are_exchanged_are_refused_in_units(opened: Serve, page: Page, tmp_path: Path) -> None:
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    opened("law.yaml", content=EXCHANGED)
     steps.problems(page, 2)
     page.get_by_role("banner").get_by_role("button", name="2 problems").click()
-    results = steps.results(page)
-    expect(results).to_contain_text("speed.y -> pd.q: units differ")
-    expect(results).to_contain_text("place.y -> pd.v: units differ")
-    expect(results).to_contain_text("rad/s")
-    expect(results).not_to_contain_text("shapes differ")
+    for words in ("speed.y -> pd.q: units differ", "place.y -> pd.v: units differ", "rad/s"):
+        expect(steps.results(page)).to_contain_text(words)
+    expect(steps.results(page)).not_to_contain_text("shapes differ")

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
+import symofros as sf
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve, Server
 from tests.studio.waiting import fits, until
 
 pytestmark = pytest.mark.browser
 
-PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
-JOB = 60_000
 FREE = """symofros: 1
 system: {gravity: [0, 0, 0]}
 bodies:
@@ -27,11 +25,7 @@ bodies:
 WHOLE = "(element) => element.scrollWidth <= element.clientWidth"
 
 
-def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(
-    serve: Callable[..., Server], page: Page
-) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(arm: Server, page: Page) -> None:
     steps.open_window(page, "bodies/upper")
     steps.tab(page, "Forces")
     field = steps.fill(page, "Effort", "-tauu*3", nth=1)
@@ -51,9 +45,8 @@ def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet
     expect(alert).to_contain_text("unknown symbol 'weight'")
 
 
-def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(opened: Serve, serve: Serve, page: Page) -> None:
+    server = opened("arm.yaml", source=steps.PENDULUM)
     page.get_by_role("tab", name="YAML").click()  # The text editor is loaded.
     expect(page.get_by_label("Text of the file")).to_be_visible()
     page.get_by_role("tab", name="Parameters").click()
@@ -88,9 +81,9 @@ def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(serve: Callabl
     assert "value: 2.5" in again.file.read_text()
 
 
-def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Callable[..., Server], chromium: Browser) -> None:
+def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Serve, chromium: Browser) -> None:
     """The text editor is loaded when it is opened: then the server may be gone."""
-    server = serve("arm.yaml", source=PENDULUM)
+    server = serve("arm.yaml", source=steps.PENDULUM)
     page = chromium.new_page()
     steps.open_editor(page, server.url)
     server.kill()
@@ -102,10 +95,9 @@ def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Callable[..., Serv
     page.close()
 
 
-def test_units_are_shown_whole(serve: Callable[..., Server], page: Page) -> None:
-    text = PENDULUM.read_text().replace("unit: kg,", "unit: kg m^2/s,").replace("unit: kg}", "unit: kg m^2/s}")
-    server = serve("arm.yaml", content=text)
-    steps.open_editor(page, server.url)
+def test_units_are_shown_whole(opened: Serve, page: Page) -> None:
+    text = steps.PENDULUM.read_text().replace("unit: kg,", "unit: kg m^2/s,").replace("unit: kg}", "unit: kg m^2/s}")
+    opened("arm.yaml", content=text)
     for width in (1280, 900, 640, 400):
         page.set_viewport_size({"width": width, "height": 760})
         if page.get_by_role("complementary").count() == 0:
@@ -118,20 +110,16 @@ def test_units_are_shown_whole(serve: Callable[..., Server], page: Page) -> None
         fits(page, width)
 
 
-def test_the_sample_time_is_called_so(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("wave.yaml", content="symofros_diagram: 1\nblocks: {wave: {kind: sine}}\n")
-    steps.open_editor(page, server.url)
+def test_the_sample_time_is_called_so(opened: Serve, page: Page) -> None:
+    opened("wave.yaml", content="symofros_diagram: 1\nblocks: {wave: {kind: sine}}\n")
     steps.open_window(page, "blocks/wave")
-    field = steps.window(page).get_by_label("Sample time", exact=True)
-    expect(field).to_be_visible()
-    expect(steps.window(page).get_by_text("Period", exact=True)).to_have_count(0)
-    row = steps.window(page).locator(".row").filter(has=page.get_by_label("Sample time", exact=True))
+    sample_time = page.get_by_label("Sample time", exact=True)
+    row = steps.window(page).locator(".row").filter(has=sample_time)
     expect(row.locator(".row-unit")).to_have_text("s")
+    expect(steps.window(page).get_by_text("Period", exact=True)).to_have_count(0)
 
 
-def test_an_export_goes_to_a_folder_of_its_own(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_an_export_goes_to_a_folder_of_its_own(arm: Server, page: Page, tmp_path: Path) -> None:
 
     def export(kind: str, folder: str = "") -> None:
         steps.run(page, "Export…")
@@ -141,21 +129,18 @@ def test_an_export_goes_to_a_folder_of_its_own(serve: Callable[..., Server], pag
         steps.window(page).get_by_role("button", name="Export", exact=True).click()
 
     export("URDF")
-    expect(steps.results(page)).to_contain_text("arm_urdf/", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("arm_urdf/", timeout=steps.JOB)
     export("MJCF (MuJoCo)")
-    expect(steps.results(page)).to_contain_text("arm_mjcf/", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("arm_mjcf/", timeout=steps.JOB)
     export("MJCF (MuJoCo)", "arm_urdf")
-    expect(steps.results(page)).to_contain_text("holds another export, which would be removed", timeout=JOB)
+    expect(steps.results(page)).to_contain_text("holds another export, which would be removed", timeout=steps.JOB)
     assert list((tmp_path / "arm_urdf").glob("*.urdf")) and list((tmp_path / "arm_mjcf").glob("*.xml"))
     export("URDF", "arm_urdf")  # The same again is written anew.
-    expect(steps.results(page)).to_contain_text(".urdf", timeout=JOB)
+    expect(steps.results(page)).to_contain_text(".urdf", timeout=steps.JOB)
 
 
-def test_joints_of_several_coordinates_are_started_and_driven(
-    serve: Callable[..., Server], page: Page, tmp_path: Path
-) -> None:
-    server = serve("free.yaml", content=FREE)
-    steps.open_editor(page, server.url)
+def test_joints_of_several_coordinates_are_started_and_driven(opened: Serve, page: Page, tmp_path: Path) -> None:
+    opened("free.yaml", content=FREE)
     steps.run(page, "Simulate…")
     typed = {
         "Duration": "0.2",
@@ -176,10 +161,72 @@ def test_joints_of_several_coordinates_are_started_and_driven(
         steps.fill(page, label, text)
     with page.expect_request(lambda request: request.url.endswith("/api/jobs")) as asked:
         steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
-    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+    expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=steps.JOB)
     expect(steps.results(page).locator(".bad")).to_have_count(0)
     options = asked.value.post_data_json["options"]
     assert options["inputs"] == {label.split()[-1]: text for label, text in typed.items() if "Formula" in label}
     assert options["v0"] == {"top.wz": 0.5, "craft.vx": 3, "puck.angle": -1}
     for joint in ("top", "craft"):
         assert sum(options["q0"][f"{joint}.{part}"] ** 2 for part in ("qx", "qy", "qz", "qw")) == pytest.approx(1)
+
+
+# All kinds of joints; rotors and friction; closures and springs; both conditions; beams; nested forms of inertia.
+FILES = (
+    "rigid/joint_zoo.yaml",
+    "rigid/friction_arm.yaml",
+    "closed/andrews_squeezer.yaml",
+    "closed/sleigh.yaml",
+    "closed/rolling_disc.yaml",
+    "flexible/spinning_beam.yaml",
+    "../tests/studio/editor/browser/blade.yaml",  # Rods off the centres of their sections.
+)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_a_window_that_is_only_looked_at_changes_nothing(opened: Serve, page: Page, file: str) -> None:
+    opened("model.yaml", source=steps.MODELS / file)
+    seen = page.locator(".react-flow__node, .react-flow__edge.closure, .react-flow__edge.connection")
+    for index in range(seen.count()):
+        steps.open_window(page, str(seen.nth(index).get_attribute("data-id")))
+        tabs = steps.window(page).get_by_role("tab")
+        for number in range(tabs.count()):
+            tabs.nth(number).click()
+            expect(steps.window(page).get_by_role("alert")).to_have_count(0)
+        steps.accept(page)
+    expect(page.get_by_role("button", name="Undo", exact=True)).to_be_disabled()
+
+
+def test_coordinates_are_coupled_by_formula(opened: Serve, page: Page) -> None:
+    server = opened("pair.yaml", source=steps.PENDULUM)
+    page.get_by_role("button", name="Coupling…").click()
+    steps.fill(page, "Name of a new entry of couplings of coordinates", "gear")
+    page.keyboard.press("Enter")
+    steps.window(page).get_by_label("Couplings of coordinates gear", exact=True).fill("q2 - 3*q1")
+    steps.accept(page)
+    steps.problems(page, 0)
+    steps.saved(page)
+    system = sf.load(server.file)
+    assert [item.name for item in system.constraints] == ["gear"]
+    # A coordinate that there is not: its problem leads back to the window that has it.
+    page.get_by_role("button", name="Coupling…").click()
+    steps.window(page).get_by_label("Couplings of coordinates gear", exact=True).fill("q2 - 3*q9")
+    steps.accept(page)
+    steps.problems(page, 1)
+    page.get_by_role("banner").get_by_role("button", name="1 problem").click()
+    steps.results(page).get_by_role("button", name="q9").click()
+    expect(steps.window(page).get_by_label("Couplings of coordinates gear", exact=True)).to_have_value("q2 - 3*q9")
+
+
+@pytest.mark.parametrize("how", ["a base that is a body", "the ground alone"])
+def test_gravity_is_in_the_window_of_the_ground(opened: Serve, page: Page, how: str) -> None:
+    server = opened("pair.yaml", source=steps.PENDULUM)
+    if how == "a base that is a body":
+        page.get_by_role("button", name="Base", exact=True).click()
+        expect(steps.block(page, "world")).to_contain_text("ground")
+    steps.open_window(page, "world")
+    steps.fill(page, "Gravity z", "-1.62")
+    steps.accept(page)
+    expect(steps.block(page, "world")).to_contain_text("[0, 0, -1.62]")
+    steps.problems(page, 0)
+    steps.saved(page)
+    assert sf.load(server.file).gravity == (0.0, 0.0, -1.62)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,11 +9,10 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve, Server
 
 pytestmark = pytest.mark.browser
 
-PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
 URDF = """<robot name="arm">
   <link name="base"/>
   <link name="boom">
@@ -25,28 +23,21 @@ URDF = """<robot name="arm">
 """
 
 
-def menu(page: Page, title: str, command: str) -> None:
-    page.get_by_role("banner").get_by_role("button", name=title, exact=True).click()
-    page.get_by_role("menuitem", name=command).click()
-
-
-def test_a_urdf_is_imported(serve: Callable[..., Server], page: Page, tmp_path: Path) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
+def test_a_urdf_is_imported(serve: Serve, page: Page, tmp_path: Path) -> None:
+    server = serve("arm.yaml", source=steps.PENDULUM)
     (tmp_path / "robot.urdf").write_text(URDF)
     steps.open_editor(page, server.url)
     with page.expect_file_chooser() as chooser:
-        menu(page, "File", "Import")
+        steps.menu(page, "File", "Import")
     chooser.value.set_files(tmp_path / "robot.urdf")
     expect(steps.block(page, "bodies/boom")).to_contain_text("slew")
     expect(page.get_by_role("heading", level=1)).to_contain_text("unsaved")
 
 
 @pytest.mark.parametrize("kind", ["SVG", "PNG"])
-def test_a_picture_of_the_diagram(serve: Callable[..., Server], page: Page, kind: str) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_a_picture_of_the_diagram(arm: Server, page: Page, kind: str) -> None:
     with page.expect_download() as download:
-        menu(page, "File", f"Picture of the diagram, {kind}")
+        steps.menu(page, "File", f"Picture of the diagram, {kind}")
     data = Path(download.value.path()).read_bytes()
     if kind == "SVG":
         texts = [node.text for node in ElementTree.fromstring(data).iter("{http://www.w3.org/2000/svg}text")]
@@ -55,9 +46,7 @@ def test_a_picture_of_the_diagram(serve: Callable[..., Server], page: Page, kind
         assert data.startswith(b"\x89PNG") and len(data) > 5000
 
 
-def test_a_part_is_kept_and_used_in_another_model(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
-    steps.open_editor(page, server.url)
+def test_a_part_is_kept_and_used_in_another_model(arm: Server, page: Page) -> None:
     steps.block(page, "bodies/lower").click()
     page.get_by_role("button", name="Save selection").click()
     steps.fill(page, "Name", "forearm")
@@ -65,7 +54,7 @@ def test_a_part_is_kept_and_used_in_another_model(serve: Callable[..., Server], 
     part = page.get_by_role("button", name="forearm")
     expect(part).to_be_visible()
 
-    menu(page, "File", "New")
+    steps.menu(page, "File", "New")
     steps.fill(page, "File", "other")
     steps.window(page).get_by_role("button", name="Create").click()
     expect(steps.block(page, "bodies/upper")).to_have_count(0)

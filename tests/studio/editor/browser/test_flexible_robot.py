@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Faults, Picture, Serve
 
 pytestmark = pytest.mark.browser
 
-ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_robot.yaml"
 JOB = 120_000
 
 
 @pytest.mark.slow
-def test_beams_become_rigid_and_the_engines_agree(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("robot.yaml", source=ROBOT)
-    steps.open_editor(page, server.url)
+def test_beams_become_rigid_and_the_engines_agree(opened: Serve, page: Page, picture: Picture) -> None:
+    server = opened("robot.yaml", source=steps.ROBOT)
     picture("robot")
     steps.run(page, "Compile")
     expect(steps.results(page)).to_contain_text("nq 10", timeout=JOB)
@@ -47,17 +41,14 @@ def test_beams_become_rigid_and_the_engines_agree(
     picture("cross-check")
 
     steps.saved(page)
-    before, after = ROBOT.read_text().splitlines(), server.file.read_text().splitlines()
+    before, after = steps.ROBOT.read_text().splitlines(), server.file.read_text().splitlines()
     changed = [(old, new) for old, new in zip(before, after, strict=True) if old != new]
     assert [new for _, new in changed] == [old.replace("bend_y: 3", "bend_y: 0") for old, _ in changed]
     assert len(changed) == 2
 
 
-def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
-    server = serve("pendulum.yaml", source=ROBOT.with_name("flexible_pendulum.yaml"))
-    steps.open_editor(page, server.url)
+def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(opened: Serve, page: Page) -> None:
+    opened("pendulum.yaml", source=steps.ROBOT.with_name("flexible_pendulum.yaml"))
     steps.open_window(page, "bodies/rod")
     figures = steps.window(page).get_by_role("status", name="What the section brings")
     expect(figures).to_contain_text("Hz")
@@ -66,28 +57,22 @@ def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(
     steps.fill(page, "Rho", "5400")
     expect(figures).to_contain_text("rhoA 0.54 kg/m")
     expect(figures).to_contain_text("bending along y 11.63")
-    figures.scroll_into_view_if_needed()
-    picture("beam-section")
     steps.accept(page)
     steps.problems(page, 0)
 
 
 def test_how_far_its_theory_reaches_is_shown_on_the_beam(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None], faults: Callable[[], list[str]]
+    opened: Serve, page: Page, picture: Picture, faults: Faults
 ) -> None:
-    text = ROBOT.with_name("flexible_pendulum.yaml").read_text()
-    server = serve("pendulum.yaml", content=text.replace("value: 20.0", "value: 0.25"))
-    steps.open_editor(page, server.url)
+    text = steps.ROBOT.with_name("flexible_pendulum.yaml").read_text()
+    opened("pendulum.yaml", content=text.replace("value: 20.0", "value: 0.25"))
     # In its window, before anything has moved.
     steps.open_window(page, "bodies/rod")
     figures = steps.window(page).get_by_role("status", name="What the section brings")
     expect(figures).to_contain_text("Its theory errs by 1 % at 0.099 m (0.15 rad)")
     page.keyboard.press("Escape")
     # After a run: beside the curves, on the block, in the window.
-    steps.run(page, "Simulate…")
-    steps.fill(page, "Start of swing", "1.2")
-    steps.fill(page, "Duration", "0.3")
-    steps.window(page).get_by_role("button", name="Simulate").click()
+    steps.job(page, "Simulate", Start_of_swing="1.2", Duration="0.3")
     beams = steps.results(page).get_by_role("table", name="Beams where their theory errs most")
     expect(beams).to_be_visible(timeout=JOB)
     expect(beams.get_by_role("row", name="rod")).to_contain_text("% of its deflection")
@@ -95,13 +80,9 @@ def test_how_far_its_theory_reaches_is_shown_on_the_beam(
     badge = steps.block(page, "bodies/rod").locator(".block-theory")
     expect(badge).to_have_text(re.compile(r"^± \d+(\.\d)? %$"))
     picture("beam-theory")
-    for colours in ("dark", "light"):
-        page.emulate_media(color_scheme=colours)
-        assert faults() == []
+    assert faults() == []
     steps.open_window(page, "bodies/rod")
     expect(figures).to_contain_text("In the newest simulation beam 'rod' bends by")
-    figures.scroll_into_view_if_needed()
-    picture("beam-reach")
     page.keyboard.press("Escape")
     # A pose says the same of itself, whatever the picture exaggerates.
     page.get_by_role("tab", name="3-D").click()
@@ -111,7 +92,6 @@ def test_how_far_its_theory_reaches_is_shown_on_the_beam(
     instant = beams.get_by_role("row", name="rod").inner_text().partition("t = ")[2].split(" s")[0]
     steps.results(page).get_by_role("slider", name="Time [s]").fill(instant)
     expect(theory).to_contain_text("beam 'rod' bends by", timeout=JOB)
-    picture("beam-bent")
     # Once the model is another one, nothing is said of it.
     steps.open_window(page, "bodies/rod")
     steps.fill(page, "Length", "1.1")
@@ -119,9 +99,8 @@ def test_how_far_its_theory_reaches_is_shown_on_the_beam(
     expect(badge).to_have_count(0)
 
 
-def test_a_job_is_cancelled(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("robot.yaml", source=ROBOT)
-    steps.open_editor(page, server.url)
+def test_a_job_is_cancelled(opened: Serve, page: Page) -> None:
+    opened("robot.yaml", source=steps.ROBOT)
     steps.run(page, "Cross-check")
     steps.results(page).get_by_role("button", name="Cancel").click()
     expect(steps.results(page)).to_contain_text("Cancelled")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
 
@@ -12,12 +11,11 @@ from playwright.sync_api import Browser, Page, expect
 from tests.description.test_hostile import CASES
 from tests.models import sampled
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve
 from validation.studies.fuzz_inputs import corpus, mutated
 
 pytestmark = pytest.mark.browser
 
-PENDULUM = Path(__file__).parents[4] / "reference_models" / "rigid" / "double_pendulum.yaml"
 SOUND = "symofros: 1\nbodies: {a: {joint: {kind: fixed}}}\n"
 # Text -> the line where its problem is shown; 0: none.
 UNREADABLE = {
@@ -34,7 +32,7 @@ LARGEST = 1 << 20  # What the editor takes.
 
 @pytest.mark.parametrize("text", UNREADABLE)
 def test_what_can_not_be_read_is_shown_with_its_problem_and_can_be_mended(
-    serve: Callable[..., Server], page: Page, tmp_path: Path, text: str
+    serve: Serve, page: Page, tmp_path: Path, text: str
 ) -> None:
     (tmp_path / "wrong.yaml").write_text(text)
     server = serve("wrong.yaml")
@@ -75,13 +73,12 @@ PARTS = 4
 
 
 @pytest.mark.parametrize("part", sampled([*range(PARTS), *LARGE], list(range(PARTS))))
-def test_no_file_leaves_a_blank_page(serve: Callable[..., Server], page: Page, tmp_path: Path, part: int | str) -> None:
+def test_no_file_leaves_a_blank_page(opened: Serve, page: Page, tmp_path: Path, part: int | str) -> None:
     small = [name for name in HOSTILE if name not in LARGE]
     names = small[part::PARTS] if isinstance(part, int) else [part]
     for name in names:
         (tmp_path / name).write_bytes(HOSTILE[name])
-    server = serve("start.yaml", content=SOUND)
-    steps.open_editor(page, server.url)
+    opened("start.yaml", content=SOUND)
     for name in names:
         page.keyboard.press("Control+o")
         steps.window(page).get_by_label("Filter files").fill(name)
@@ -110,7 +107,7 @@ def test_no_file_leaves_a_blank_page(serve: Callable[..., Server], page: Page, t
                 expect(steps.window(page)).to_have_count(0)
 
 
-def test_more_blocks_than_can_be_drawn_are_said(serve: Callable[..., Server], page: Page) -> None:
+def test_more_blocks_than_can_be_drawn_are_said(serve: Serve, page: Page) -> None:
     lines = (f"  b{i}: {{joint: {{kind: fixed}}}}\n" for i in range(1600))
     server = serve("many.yaml", content=f"symofros: 1\nbodies:\n{''.join(lines)}")
     page.goto(server.url)
@@ -118,11 +115,9 @@ def test_more_blocks_than_can_be_drawn_are_said(serve: Callable[..., Server], pa
     expect(page.get_by_label("Text of the file")).to_contain_text("b0")
 
 
-def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(
-    serve: Callable[..., Server], chromium: Browser
-) -> None:
+def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(serve: Serve, chromium: Browser) -> None:
     """The server's answer is spoilt, so that the diagram can't be drawn: a fault of the page itself."""
-    server = serve("arm.yaml", source=PENDULUM)
+    server = serve("arm.yaml", source=steps.PENDULUM)
     page = chromium.new_page()
     spoilt = [True]
 
@@ -139,7 +134,7 @@ def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(
     expect(failed).to_contain_text("TypeError")
     with page.expect_download() as download:
         failed.get_by_role("button", name="Download the text").click()
-    assert download.value.path().read_text() == PENDULUM.read_text()
+    assert download.value.path().read_text() == steps.PENDULUM.read_text()
     failed.get_by_role("button", name="Show the text").click()
     expect(page.get_by_label("Text of the file")).to_contain_text("double_pendulum")
     spoilt[0] = False
@@ -148,8 +143,8 @@ def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(
     page.close()
 
 
-def test_a_document_that_is_not_given_is_said(serve: Callable[..., Server], page: Page) -> None:
-    server = serve("arm.yaml", source=PENDULUM)
+def test_a_document_that_is_not_given_is_said(serve: Serve, page: Page) -> None:
+    server = serve("arm.yaml", source=steps.PENDULUM)
     fault = {"object": "the server met a fault of its own", "found": "KeyError", "rule": "none", "remedy": "report it"}
     page.route("**/api/document", lambda route: route.fulfill(status=500, json={"error": fault}))
     page.goto(server.url)

@@ -2,29 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
-
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.late import require
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
+from tests.studio.editor.browser.conftest import Serve
 
 pytestmark = pytest.mark.browser
 
-ROBOT = Path(__file__).parents[4] / "reference_models" / "flexible" / "planar_robot.yaml"
 # The first module of a machine takes the compiler a minute or two.
 JOB = 300_000
 
 
-def test_the_flexible_robot_moves_on_without_the_server(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None]
-) -> None:
+def test_the_flexible_robot_moves_on_without_the_server(opened: Serve, page: Page) -> None:
     require("ziglang", "zig")
-    server = serve("robot.yaml", source=ROBOT)
-    steps.open_editor(page, server.url)
+    server = opened("robot.yaml", source=steps.ROBOT)
     steps.run(page, "Simulate…")
     for what, text in (("Start of q1", "0.3"), ("Speed of q2", "1"), ("Step", "0.0001")):
         steps.fill(page, what, text)
@@ -40,4 +33,3 @@ def test_the_flexible_robot_moves_on_without_the_server(
     after = float(time.inner_text().split()[0])
     assert after > before + 0.2
     assert inner.locator("#said").inner_text() == ""
-    picture("in-page")

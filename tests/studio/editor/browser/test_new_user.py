@@ -5,23 +5,21 @@ from __future__ import annotations
 import re
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
 import symofros as sf
 from tests.exports.cases import build
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Server
-from tests.studio.editor.browser.scene import changed, open_view
+from tests.studio.editor.browser.conftest import Picture, Serve
+from tests.studio.pictures import changed
 from tests.studio.waiting import at_rest
 
 pytestmark = pytest.mark.browser
-
-JOB = 60_000
 
 
 @contextmanager
@@ -39,16 +37,12 @@ def put(page: Page, title: str, into: str) -> None:
     expect(steps.block(page, into)).to_be_visible()
 
 
-def port(page: Page, name: str) -> Locator:
-    return page.locator(f'.react-flow__handle[aria-label^="{name}"]')
-
-
 def actuate(page: Page) -> None:
     steps.tab(page, "Forces")
     steps.window(page).get_by_label("Actuated").check()
 
 
-def draw_the_arm(page: Page, picture: Callable[[str], None]) -> None:
+def draw_the_arm(page: Page, picture: Picture) -> None:
     page.get_by_role("button", name="Rigid body", exact=True).drag_to(
         page.locator(".react-flow__pane"), target_position={"x": 260, "y": 180}
     )
@@ -79,15 +73,6 @@ def draw_the_arm(page: Page, picture: Callable[[str], None]) -> None:
     steps.saved(page)
 
 
-def begin_a_diagram(page: Page) -> None:
-    page.get_by_role("button", name="File", exact=True).click()
-    page.get_by_role("menuitem", name="New…").click()
-    steps.fill(page, "File", "held.yaml")
-    steps.window(page).get_by_label("Kind").select_option("diagram")
-    steps.window(page).get_by_role("button", name="Create").click()
-    expect(page.get_by_role("banner")).to_contain_text("held.yaml")
-
-
 def draw_the_law(page: Page) -> None:
     """A law reads the motors' entries of the arm's state: elastic coordinates are among the others."""
     put(page, "Model", "models/model")
@@ -116,9 +101,9 @@ def draw_the_law(page: Page) -> None:
     # The last one with the mouse: from port to port.
     with page.expect_response(lambda answer: answer.url.endswith("/api/layout")):
         page.get_by_role("button", name="Arrange the blocks").click()
-    output = port(page, "output effort of joint_pd")
+    output = steps.port(page, "output effort of joint_pd")
     at_rest(output)
-    output.drag_to(port(page, "input u of forward_dynamics"))
+    output.drag_to(steps.port(page, "input u of forward_dynamics"))
     expect(steps.wire(page, "blocks/forward_dynamics/inputs/u")).to_have_count(1)
     steps.problems(page, 0)
     steps.saved(page)
@@ -131,33 +116,29 @@ def feed(page: Page, name: str, source: str) -> None:
 
 @pytest.mark.slow
 def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
-    serve: Callable[..., Server], page: Page, picture: Callable[[str], None], tmp_path: Path
+    serve: Serve, page: Page, picture: Picture, tmp_path: Path
 ) -> None:
     server = serve("arm.yaml")
     with action("open the page"):
         steps.open_editor(page, server.url)
     with action("draw the arm: a rigid link, a beam, two motors"):
         draw_the_arm(page, picture)
-    picture("new-user-arm")
     with action("begin a diagram"):
-        begin_a_diagram(page)
+        steps.new_file(page, "held.yaml", "diagram")
     with action("draw the law: a model, five blocks, six wires"):
         draw_the_law(page)
     picture("new-user-law")
 
     with action("run it for 3 s"):
-        steps.run(page, "Run…")
-        steps.fill(page, "End", "3")
-        steps.window(page).get_by_role("button", name="Run").click()
-        expect(steps.results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
+        steps.job(page, "Run", End="3")
     with action("see it in three dimensions"):
-        still = open_view(page)
+        still = steps.open_view(page)
         pose = page.get_by_role("group", name="Pose")
         expect(pose.get_by_label("q1 [rad]")).to_have_value("0")
     with action("play it at five times its speed"):
         page.get_by_label("Speed").select_option("5")
         steps.results(page).get_by_role("button", name="Play").click()
-        expect(steps.results(page).get_by_role("button", name="Play")).to_be_visible(timeout=JOB)
+        expect(steps.results(page).get_by_role("button", name="Play")).to_be_visible(timeout=steps.JOB)
         # Where the law holds it, to a step of the slider.
         expect(pose.get_by_label("q1 [rad]")).to_have_value(re.compile(r"^0\.(59|60|61)"))
     changed(page, still)
@@ -168,7 +149,7 @@ def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
         steps.run(page, "Export…")
         steps.fill(page, "Folder", "program")
         steps.window(page).get_by_role("button", name="Export").click()
-        expect(steps.results(page).get_by_text("program/main.c")).to_be_visible(timeout=JOB)
+        expect(steps.results(page).get_by_text("program/main.c")).to_be_visible(timeout=steps.JOB)
     # What was exported is a program that tells the same end.
     run = sf.Simulation(sf.load_diagram(tmp_path / "held.yaml")).run(3.0)
     told = subprocess.run([build(tmp_path / "program", "program"), "3", "3"], capture_output=True, text=True)

@@ -14,6 +14,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import LivePlot, Sine
 from symofros.studio.viewer.drawing.poses import Mechanism
+from tests.studio.editor.browser.conftest import Faults, Picture
 from tests.studio.waiting import fits, until
 
 pytestmark = pytest.mark.browser
@@ -25,7 +26,7 @@ CURVES = 10
 
 
 @pytest.fixture
-def looked(page: Page, faults: Callable[[], list[str]]) -> Callable[[], None]:
+def looked(page: Page, faults: Faults) -> Callable[[], None]:
     """Looks at the page in dark colours on a desk, in light ones on a phone and at 200 %."""
 
     def look() -> None:
@@ -61,7 +62,7 @@ def live() -> Iterator[LivePlot]:
     plot.__dict__["_page"].close()
 
 
-def test_live_plots(page: Page, looked: Callable[[], None], live: LivePlot, picture: Callable[[str], None]) -> None:
+def test_live_plots(page: Page, looked: Callable[[], None], live: LivePlot) -> None:
     page.goto(live.url)
     expect(page.get_by_role("status")).to_have_text("ended at t = 1.50 s")
     expect(page.get_by_role("checkbox")).to_have_count(CURVES)
@@ -74,7 +75,6 @@ def test_live_plots(page: Page, looked: Callable[[], None], live: LivePlot, pict
 
     for colours in ("dark", "light"):
         page.emulate_media(color_scheme=colours)
-        picture(f"live-{colours}")
         is_dark = colours == "dark"
         until(page, lambda is_dark=is_dark: level() < 60 if is_dark else level() > 200)
 
@@ -87,7 +87,7 @@ def replay(tmp_path: Path) -> Path:
     return sf.record(MODELS["planar_robot"], (t, q), tmp_path / "m.html", rate=10, exaggeration=5, speed=0.5)
 
 
-def test_replays(page: Page, looked: Callable[[], None], replay: Path, picture: Callable[[str], None]) -> None:
+def test_replays(page: Page, looked: Callable[[], None], replay: Path, picture: Picture) -> None:
     page.emulate_media(color_scheme="dark")
     page.set_viewport_size({"width": 800, "height": 500})
     page.goto(replay.as_uri())
@@ -127,7 +127,6 @@ def test_replays(page: Page, looked: Callable[[], None], replay: Path, picture: 
     until(page, lambda: metre() > 1.5 * first)
     looked()
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")  # The last that was looked at.
-    picture("replay-phone")
 
 
 @pytest.mark.parametrize("colours", ["dark", "light"])

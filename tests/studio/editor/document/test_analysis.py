@@ -15,7 +15,7 @@ from symofros.studio.editor.editing import yaml_spans
 from symofros.studio.editor.editing.data_edits import Edit
 from symofros.studio.editor.editing.formulas import formulas
 from symofros.studio.editor.editing.yaml_edits import apply
-from tests.studio.editor.texts import DATA, FILES, ODD, TEXTS
+from tests.studio.editor.texts import DATA, FILES, TEXTS
 
 # A change of the four-bar, the path of the problem that follows, its block.
 FAULTS = (
@@ -25,17 +25,14 @@ FAULTS = (
         ["bodies", "coupler", "joint", "frame"],
         "bodies/coupler",
     ),
-    ("parent: crank, frame", "parent: cra, frame", ["bodies", "coupler", "joint", "parent"], "bodies/coupler"),
     ("[L/2, 0, 0]", "[K/2, 0, 0]", ["bodies", "crank", "inertia", "center_of_mass", 0], "bodies/crank"),
     ("{mass: m,", "{mass: m+,", ["bodies", "crank", "inertia", "mass"], "bodies/crank"),
     ("kind: revolute", "kind: revo", ["bodies", "crank", "joint", "kind"], "bodies/crank"),
     ("axis: [0, -1, 0]", "axis: [0, 0, 0]", ["bodies", "crank", "joint", "axis"], "bodies/crank"),
-    ("axis: [0, -1, 0]", "axis: [0, 0]", ["bodies", "crank", "joint", "axis"], "bodies/crank"),
     ("axis: [0, -1, 0]", "axes: [0, -1, 0]", ["bodies", "crank", "joint", "axes"], "bodies/crank"),
     ("closures:", "closurs:", ["closurs"], ""),
     ("[x, z]", "[x, w]", ["closures", "loop", "translations", 1], ""),
     ("coupler, frame: end}, t", "coupler, frame: foo}, t", ["closures", "loop", "second", "frame"], ""),
-    ("rocker, frame: end}, s", "rock, frame: end}, s", ["closures", "loop", "first", "body"], ""),
     ("L: {value: 1.0", "L: {value: abc", ["parameters", "L", "value"], ""),
     ("system: {name", "system: {gravity: [0, 0, g], name", ["system", "gravity", 2], "world"),
 )
@@ -114,10 +111,7 @@ def test_every_reference_model_is_drawn_whole(name: str) -> None:
 
 
 NO_DOCUMENTS = (
-    None,
-    3,
-    [],
-    {"bodies": 1},
+    *(None, 3, [], {"bodies": 1}),
     {"bodies": {"a": None, "b": [], "c": {"joint": 1}}},
     {"bodies": {"a": {"joint": {"parent": ["x"], "frame": {}}}}},
     {"closures": {"c": {"first": {"body": {}}, "second": 4}}, "nonholonomic": {"n": {"rolling": 1}}},
@@ -134,6 +128,10 @@ def test_a_broken_wire_goes_to_the_body_itself_and_one_to_nowhere_is_left_out() 
     body = {"joint": {"kind": "fixed", "parent": "a", "frame": "none"}}
     found = diagram({"bodies": {"a": {"joint": {"kind": "fixed"}}, "b": body, "c": {"joint": {"parent": "zz"}}}})
     assert [(edge["source"], edge["source_port"]) for edge in found["edges"]] == [("world", ""), ("bodies/a", "")]
+    # The body without a joint is the ground.
+    found = diagram({"bodies": {"ground": {"frames": {"m": {}}}, "a": {"joint": {"parent": "ground", "frame": "m"}}}})
+    assert found["nodes"][0]["title"] == "ground" and found["nodes"][0]["path"] == ["bodies", "ground"]
+    assert found["edges"][0]["source_port"] == "m"
 
 
 def test_frames_may_be_called_like_ports() -> None:
@@ -150,18 +148,7 @@ def test_frames_may_be_called_like_ports() -> None:
     assert found["edges"][1]["source_port"] == "body"
 
 
-def test_the_body_without_a_joint_is_the_ground() -> None:
-    found = diagram({"bodies": {"ground": {"frames": {"m": {}}}, "a": {"joint": {"parent": "ground", "frame": "m"}}}})
-    assert found["nodes"][0]["title"] == "ground" and found["nodes"][0]["path"] == ["bodies", "ground"]
-    assert found["edges"][0]["source_port"] == "m"
-
-
-def test_numbers_that_json_lacks_become_texts() -> None:
-    found = analyse(FILES["four_bar"], ODD.replace("value: 1,", "value: .inf,"))
-    assert found.data["parameters"]["L1"]["value"] == ".inf"
-
-
-@pytest.mark.parametrize("value", ["0,5", "1e999", "[1]"])
+@pytest.mark.parametrize("value", ["0,5", "1e999"])
 def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None:
     text = TEXTS["four_bar"].replace("L: {value: 1.0", f"L: {{value: {value!r}", 1)
     before, found = analyse(FILES["four_bar"], TEXTS["four_bar"]), analyse(FILES["four_bar"], text)
@@ -206,12 +193,6 @@ def test_a_text_is_read_once(monkeypatch: pytest.MonkeyPatch) -> None:
             typed = typed[step]
         assert check_field(FILES["four_bar"], text, now, tuple(path), str(typed))["ok"]
     assert texts == [text]
-
-
-def test_keys_that_appear_twice_name_their_file() -> None:
-    text = TEXTS["four_bar"] + "bodies: {}\n"
-    (problem,) = analyse(FILES["four_bar"], text).problems
-    assert problem["object"] == "'bodies' appears twice" and problem["line"] > 0
 
 
 def _with(data: Any, path: tuple[Any, ...], value: Any) -> Any:

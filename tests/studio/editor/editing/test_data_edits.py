@@ -37,11 +37,7 @@ def test_an_edit(edit: Edit, expected: Any) -> None:
 @pytest.mark.parametrize(
     ("a", "b", "equal"),
     [
-        (1, 1.0, True),
-        (1, True, False),
-        (0, False, False),
-        (1, "1", False),
-        (None, False, False),
+        *((1, 1.0, True), (1, True, False), (0, False, False), (1, "1", False), (None, False, False)),
         (float("nan"), float("nan"), True),
         ({"a": 1, "b": 2}, {"b": 2, "a": 1}, False),
         ([1, [2]], [1, [2.0]], True),

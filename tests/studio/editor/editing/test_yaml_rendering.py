@@ -16,20 +16,16 @@ from tests.studio.editor.texts import KEYS, TROUBLE, values
 keys = st.sampled_from([*KEYS, *(text for text in TROUBLE if text != "<<")]) | st.text(min_size=1, max_size=8)
 
 
-@settings(max_examples=100)
+@settings(max_examples=30)
 @given(values)
 def test_a_value_on_one_line_is_read_back(value: Any) -> None:
-    for text in (f"a: {inline(value, flow=False)}\n", f"a: [1, {inline(value)}, 2]\n", f"a: {{b: {inline(value)}}}\n"):
+    for text, whole in (
+        (f"a: {inline(value, flow=False)}\n", value),
+        (f"a: [1, {inline(value)}, 2]\n", [1, value, 2]),
+        (f"a: {{b: {inline(value)}}}\n", {"b": value}),
+    ):
         assert text.count("\n") == 1
-        data = YamlText(text).root.plain()["a"]
-        assert same(
-            data
-            if not isinstance(data, (list, dict)) or text.startswith(f"a: {inline(value, flow=False)}\n")
-            else data[1]
-            if isinstance(data, list)
-            else data["b"],
-            value,
-        )
+        assert same(YamlText(text).root.plain()["a"], whole)
 
 
 @pytest.mark.slow
@@ -47,8 +43,6 @@ def test_a_mapping_on_lines_is_read_back(value: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("value", "text"),
     [
-        (1, "1"),
-        (0.5, "0.5"),
         (1e-5, "1e-05"),
         (float("inf"), ".inf"),
         (10**16, "1e+16"),

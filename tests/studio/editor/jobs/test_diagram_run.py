@@ -66,7 +66,7 @@ def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
     curves = {curve["name"]: curve for plot in job.result["plots"] for curve in plot["curves"]}
     names = list(dict.fromkeys(curve["name"] for plot in first["plots"] for curve in plot["curves"]))
     for i, name in enumerate(names):
-        assert [x for part in rest_of(told) for x in part["values"][i]] == curves[name]["values"]
+        assert [x for part in samples(told)[1:] for x in part["values"][i]] == curves[name]["values"]
     assert curves["wave.rate"]["unit"] == "rad/s"
 
 
@@ -96,18 +96,13 @@ def test_a_run_in_pace_with_the_clock_pauses_and_stops_when_it_is_told(jobs: Job
     assert before < job.result["t"][-1] < 60.0
 
 
-def rest_of(told: Told) -> list[dict[str, Any]]:
-    return samples(told)[1:]
-
-
-def test_what_can_not_run_says_so_in_four_parts(jobs: Jobs, tmp_path: Path) -> None:
+def test_what_can_not_run_says_so_in_four_parts_and_orders_that_are_none_are_refused(
+    jobs: Jobs, tmp_path: Path
+) -> None:
     job = started(jobs, tmp_path, TEXT.replace("u2: wave.rate", "u2: wave.fish"))
     assert job.over.wait(60.0)
     assert job.state == "failed" and job.error is not None
     assert "no output 'fish'" in job.error["object"] and all(job.error.values())
-
-
-def test_orders_that_are_none_are_refused(jobs: Jobs, tmp_path: Path) -> None:
     job = started(jobs, tmp_path)
     with pytest.raises(EditError, match="no such order"):
         jobs.order(job.key, "explode\nresume")

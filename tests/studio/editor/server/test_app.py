@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 from pathlib import Path
 
@@ -10,7 +11,6 @@ import pytest
 from jsonschema import Draft202012Validator
 from starlette.testclient import TestClient
 
-import symofros as sf
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.editor.document import session as session_module
 from symofros.studio.editor.document.analysis import analyse
@@ -49,19 +49,10 @@ def test_edit_undo_redo_save(client: TestClient, folder: Path) -> None:
     assert not saved["dirty"] and (folder / "four_bar.yaml").read_text() == saved["text"]
 
 
-def test_an_edit_that_makes_no_sense_is_told_in_four_parts(client: TestClient) -> None:
+def test_an_edit_without_sense_or_of_a_text_that_is_not_yaml_is_refused(client: TestClient) -> None:
     edit = {"op": "remove", "path": ["bodies", "nobody"]}
     answer = client.post("/api/edit", json={"revision": 1, "edits": [edit]})
-    assert answer.status_code == 422
-    assert answer.json()["error"] == {
-        "object": "bodies / nobody: the edit can't be applied",
-        "found": "no 'nobody'",
-        "rule": "the path leads to an entry that exists",
-        "remedy": "reload the document",
-    }
-
-
-def test_an_edit_of_a_text_that_is_not_yaml_is_refused(client: TestClient) -> None:
+    assert answer.status_code == 422 and answer.json()["error"]["found"] == "no 'nobody'"
     broken = client.post("/api/text", json={"revision": 1, "text": "a: ]"}).json()
     edit = {"op": "set", "path": ["a"], "value": 1}
     answer = client.post("/api/edit", json={"revision": broken["revision"], "edits": [edit]})
@@ -102,76 +93,50 @@ def test_a_double_pendulum_can_be_drawn_from_nothing(client: TestClient) -> None
     assert joints == [("world", "", "bodies/upper"), ("bodies/upper", "tip", "bodies/lower")]
 
 
-@pytest.mark.parametrize("part", PALETTE, ids=lambda part: f"{part['section']}/{part['name']}")
-def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient, part: dict) -> None:
-    text = TEXTS["double_pendulum"]
-    path = (part["section"], part["name"])
-    done = apply(text, Edit("set", path, part["template"]))
+def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient) -> None:
+    catalogue = client.get("/api/schema").json()
+    assert [method["name"] for method in catalogue["methods"]] == list(METHODS)
+    assert {"kg", "N m"} <= set(catalogue["units"]) and {"c", "fmu3"} <= set(catalogue["targets"])
+    schema = Draft202012Validator(catalogue["schema"])
     # On the world alone, a massless body has nothing to carry, and constraints nothing to hold.
-    own = {
-        "massless_body": "massless",
-        "closure": "world",
-        "rod": "world",
-        "connection": "world",
-        "nonholonomic": "world",
-    }
-    problems = analyse(FILES["double_pendulum"], done).problems
-    assert all(tuple(problem["path"][:2]) == path and part["kind"] in own for problem in problems)
-    schema = client.get("/api/schema").json()["schema"]
-    assert not list(Draft202012Validator(schema).iter_errors(analyse(FILES["double_pendulum"], done).data))
+    own = {"massless_body", "closure", "rod", "connection", "nonholonomic"}
+    for part in PALETTE:
+        path = (part["section"], part["name"])
+        found = analyse(FILES["double_pendulum"], apply(TEXTS["double_pendulum"], Edit("set", path, part["template"])))
+        assert all(tuple(problem["path"][:2]) == path and part["kind"] in own for problem in found.problems), path
+        assert not list(schema.iter_errors(found.data)), path
 
 
-def test_the_catalogue_names_methods_units_targets(client: TestClient) -> None:
-    found = client.get("/api/schema").json()
-    assert [method["name"] for method in found["methods"]] == list(METHODS)
-    assert found["version"] == sf.__version__
-    assert found["sizes"]["solid"]["sphere"] == ["radius", "hole"]
-    assert found["sizes"]["section"]["tube"] == ["radius", "thickness"]
-    assert {"kg", "N m"} <= set(found["units"]) and {"c", "fmu3"} <= set(found["targets"])
-
-
-@pytest.mark.parametrize(
-    ("path", "text", "expected"),
-    [
-        ([], "2*(1+2)", {"ok": True, "names": [], "value": 6.0}),
-        ([], "2*q1 - L", {"ok": True, "names": ["L", "q1"]}),
-        (
-            ["bodies", "crank", "inertia", "mass"],
-            "2*L + pi",
-            {"ok": True, "names": ["L"], "value": 2 + 3.141592653589793},
-        ),
-        (["bodies", "crank", "inertia", "center_of_mass", 0], "L", {"ok": True, "names": ["L"], "value": 1.0}),
-    ],
-)
-def test_a_good_formula(client: TestClient, path: list, text: str, expected: dict) -> None:
-    (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
-    assert expected.items() <= found.items()
-
-
-@pytest.mark.parametrize(
-    ("path", "text", "column", "says"),
-    [
-        ([], "2*L +", 6, "too early"),
-        ([], "2 L", 3, "unexpected"),
-        ([], "1/(2-2)", 0, "divi"),
-        (["bodies", "crank", "inertia", "mass"], "2*K", 3, "unknown symbol 'K'"),
-        (["bodies", "crank", "inertia", "mass"], "q1", 1, "may not be used"),
-        (["bodies", "crank", "joint", "axis", 0], "L*q2", 3, "may not be used"),
-        (["parameters", "L", "value"], "2*m", 0, "not a number"),
-    ],
-)
-def test_a_bad_formula_says_where(client: TestClient, path: list, text: str, column: int, says: str) -> None:
-    before = client.get("/api/document").json()
-    (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
-    assert not found["ok"] and says in found["error"]["found"] and found["error"]["column"] == column
-    assert client.get("/api/document").json() == before
+MASS = ["bodies", "crank", "inertia", "mass"]
+# Path and text of a field -> what is answered: of a formula that is good, or where another one is not, and why.
+FIELDS: list[tuple[list[str | int], str, dict[str, object]]] = [
+    ([], "2*(1+2)", {"ok": True, "names": [], "value": 6.0}),
+    ([], "2*q1 - L", {"ok": True, "names": ["L", "q1"]}),
+    (MASS, "2*L + pi", {"ok": True, "names": ["L"], "value": 2 + math.pi}),
+    (["bodies", "crank", "inertia", "center_of_mass", 0], "L", {"ok": True, "names": ["L"], "value": 1.0}),
+    ([], "2*L +", {"column": 6, "found": "too early"}),
+    ([], "2 L", {"column": 3, "found": "unexpected"}),
+    ([], "1/(2-2)", {"column": 0, "found": "divi"}),
+    (MASS, "2*K", {"column": 3, "found": "unknown symbol 'K'"}),
+    (MASS, "q1", {"column": 1, "found": "may not be used"}),
+    (["bodies", "crank", "joint", "axis", 0], "L*q2", {"column": 3, "found": "may not be used"}),
+    (["parameters", "L", "value"], "2*m", {"column": 0, "found": "not a number"}),
+]
 
 
 def test_fields_of_a_window_are_checked_in_one_request(client: TestClient) -> None:
-    mass = ["bodies", "crank", "inertia", "mass"]
-    fields = [{"path": mass, "text": text} for text in ("2*L", "2*K")]
+    before = client.get("/api/document").json()
+    fields = [{"path": path, "text": text} for path, text, _ in FIELDS]
     checks = client.post("/api/expression", json={"fields": fields}).json()["checks"]
-    assert [check["ok"] for check in checks] == [True, False]
+    for check, (_, text, expected) in zip(checks, FIELDS, strict=True):
+        if check["ok"]:
+            assert expected.items() <= check.items(), text
+        else:
+            assert check["error"]["column"] == expected["column"] and expected["found"] in check["error"]["found"], text
+    assert client.get("/api/document").json() == before
+    for none in (None, {}, ["L"], [{"path": "L", "text": "1"}], [{"text": "1"}] * 1001):
+        answer = client.post("/api/expression", json={"fields": none})
+        assert answer.status_code == 422 and "of the request is malformed" in answer.json()["error"]["object"]
 
 
 def test_frequencies_of_a_beam_follow_from_its_section(client: TestClient) -> None:
@@ -186,23 +151,11 @@ def test_frequencies_of_a_beam_follow_from_its_section(client: TestClient) -> No
     assert figures["frequencies"]["bend_z"][0] == pytest.approx(first / 4)
     twist = np.sqrt(figures["section"]["GJ"] / figures["section"]["rhoJ"]) / 8
     assert figures["frequencies"]["twist"] == pytest.approx([twist, 3 * twist, 5 * twist])
-
-
-def test_a_beam_that_tapers_has_no_frequencies_of_a_uniform_one(client: TestClient) -> None:
-    beam = {"length": 1, "rhoA": "1 - x/2", "EI_z": 10, "bend_y": 1}
-    figures = client.post("/api/beam", json={"beam": beam}).json()
+    tapered = {"length": 1, "rhoA": "1 - x/2", "EI_z": 10, "bend_y": 1}
+    figures = client.post("/api/beam", json={"beam": tapered}).json()
     assert figures["frequencies"] == {} and figures["section"]["EI_z"] == 10 and "rhoA" not in figures["section"]
-
-
-@pytest.mark.parametrize("beam", [None, {}, {"length": 1, "rhoA": -1, "E": 2}, {"length": "1 +", "rhoA": 1}])
-def test_what_is_no_beam_has_no_figures(client: TestClient, beam: object) -> None:
-    assert client.post("/api/beam", json={"beam": beam}).status_code == 422
-
-
-@pytest.mark.parametrize("fields", [None, {}, ["L"], [{"path": "L", "text": "1"}], [{"text": "1"}] * 1001])
-def test_fields_that_are_none_are_refused(client: TestClient, fields: object) -> None:
-    answer = client.post("/api/expression", json={"fields": fields})
-    assert answer.status_code == 422 and "of the request is malformed" in answer.json()["error"]["object"]
+    for none in (None, {}, {"length": 1, "rhoA": -1, "E": 2}, {"length": "1 +", "rhoA": 1}):
+        assert client.post("/api/beam", json={"beam": none}).status_code == 422
 
 
 def test_the_document_can_be_changed_while_a_field_is_checked(
@@ -233,29 +186,12 @@ def test_shape_functions(client: TestClient) -> None:
     assert found["curves"][0]["values"] == [x * x for x in found["xi"]] and found["curves"][0]["length"]
     user = {"family": "user", "modes": 1, "direction": "twist", "shapes": ["sin(xi)"]}
     assert client.post("/api/shapes", json=user).json()["curves"][0]["values"][0] == pytest.approx(0.0, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    "wrong",
-    [
-        {"family": "fourier"},
-        {"direction": "x"},
-        {"modes": 41},
-        {"modes": "2"},
-        {"family": "hermite", "modes": 5},
-        {"family": "user", "modes": 1, "shapes": ["1/xi"]},
-        {"family": "user", "modes": 1, "shapes": [{"xi": 3}]},
-    ],
-)
-def test_shape_functions_that_there_are_not(client: TestClient, wrong: dict) -> None:
-    answer = client.post("/api/shapes", json=wrong)
-    assert answer.status_code == 422 and answer.json()["error"]["remedy"]
-
-
-def test_positions_are_remembered_without_a_revision(client: TestClient) -> None:
-    client.post("/api/layout", json={"positions": {"world": [3, 4]}})
-    found = client.get("/api/document").json()
-    assert found["layout"] == {"world": [3.0, 4.0]} and found["revision"] == 1 and not found["can_undo"]
+    for wrong in (
+        *({"family": "fourier"}, {"direction": "x"}, {"modes": 41}, {"modes": "2"}, {"family": "hermite", "modes": 5}),
+        *({"family": "user", "modes": 1, "shapes": [shape]} for shape in ("1/xi", {"xi": 3})),
+    ):
+        answer = client.post("/api/shapes", json=wrong)
+        assert answer.status_code == 422 and answer.json()["error"]["remedy"], wrong
 
 
 def test_parts(client: TestClient) -> None:
@@ -287,8 +223,12 @@ def test_data_are_a_mapping_whatever_the_text_is(client: TestClient) -> None:
         assert isinstance(answer.json()["data"], dict) and answer.json()["problems"]
 
 
-def test_places_of_another_document_are_refused(client: TestClient, folder: Path) -> None:
+def test_places_are_remembered_without_a_revision_and_of_another_document_refused(
+    client: TestClient, folder: Path
+) -> None:
     answer = client.post("/api/layout", json={"path": "other.yaml", "positions": {"bodies/crank": [1, 2]}})
     assert answer.status_code == 409 and not (folder / ".four_bar.editor.json").exists()
     answer = client.post("/api/layout", json={"path": "four_bar.yaml", "positions": {"bodies/crank": [1, 2]}})
     assert answer.json()["layout"]["bodies/crank"] == [1.0, 2.0]
+    found = client.get("/api/document").json()
+    assert found["layout"] == answer.json()["layout"] and found["revision"] == 1 and not found["can_undo"]

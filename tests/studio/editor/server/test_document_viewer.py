@@ -18,6 +18,7 @@ from starlette.websockets import WebSocketDisconnect
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.server.app import Editor, application
 from symofros.studio.editor.server.relay import MAX_SOCKETS
+from tests.late import require
 from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished, look, pose
 from tests.studio.editor.texts import FILES
 
@@ -39,16 +40,6 @@ def edit(client: TestClient, *path: str | int, value: Any) -> None:
     assert answer.status_code == 200, answer.text
 
 
-def test_it_says_what_moves_it(client: TestClient) -> None:
-    view = look(client)
-    assert view["address"].startswith("/view/") and TOKEN not in view["address"]
-    assert view["fault"] is None and not view["flexible"]
-    for one in view["coordinates"]:
-        assert set(one) == {"name", "unit", "low", "high", "elastic"} and one["low"] < one["high"]
-    assert {one["unit"] for one in view["coordinates"]} == {"rad"}
-    assert set(view["q"]) == {one["name"] for one in view["coordinates"]}
-
-
 def test_a_pose_says_which_beams_it_bends_how_far(client: TestClient, folder: Path) -> None:
     shutil.copy(FILES["double_pendulum"].parents[1] / "flexible" / "flexible_pendulum.yaml", folder)
     assert client.post("/api/open", json={"path": "flexible_pendulum.yaml"}).status_code == 200
@@ -61,6 +52,10 @@ def test_a_pose_says_which_beams_it_bends_how_far(client: TestClient, folder: Pa
 
 def test_loops_close_around_what_is_moved(client: TestClient) -> None:
     view = look(client)
+    assert view["address"].startswith("/view/") and TOKEN not in view["address"]
+    assert view["fault"] is None and not view["flexible"]
+    assert all(one["low"] < one["high"] and one["unit"] == "rad" for one in view["coordinates"])
+    assert set(view["q"]) == {one["name"] for one in view["coordinates"]}
     name = view["coordinates"][0]["name"]
     found = pose(client, q={name: view["q"][name] + 0.3})
     assert found["q"][name] == pytest.approx(view["q"][name] + 0.3, abs=1e-12)
@@ -86,22 +81,17 @@ def test_a_parameter_moves_it_before_the_document_changes(crank: TestClient) -> 
     assert crank.get("/api/document").json()["dirty"] is False
 
 
-def drawn(client: TestClient, ground: str) -> dict[str, Any]:
-    """The view of a four-bar whose links lie in one line, at a distance of its pivots."""
+@pytest.mark.parametrize(("ground", "gap"), [("0.7*L", 0.0), ("5*L", 4.0)], ids=["closes", "out of reach"])
+def test_a_loop_that_was_just_drawn_is_shown_closed_or_says_by_how_much_it_is_open(
+    client: TestClient, ground: str, gap: float
+) -> None:
+    """A four-bar whose links lie in one line, at a distance of its pivots."""
     text = client.get("/api/document").json()["text"]
     text = text.replace("position: [L, 0, 0], axis", f"position: [{ground}, 0, 0], axis")
     assert client.post("/api/text", json={"revision": 1, "text": text}).status_code == 200
-    return look(client)
-
-
-def test_a_loop_that_was_just_drawn_is_shown_closed(client: TestClient) -> None:
-    view = drawn(client, "0.7*L")
-    assert view["gap"] < 1e-9 and any(abs(value) > 0.1 for value in view["q"].values())
-
-
-def test_a_loop_that_can_not_close_says_by_how_much_it_is_open(client: TestClient) -> None:
-    view = drawn(client, "5*L")
-    assert view["gap"] == pytest.approx(4.0) and view["gap_unit"] == "m"
+    view = look(client)
+    assert view["gap"] == pytest.approx(gap, abs=1e-9) and (view["gap_unit"] == "m" or not gap)
+    assert any(abs(value) > 0.1 for value in view["q"].values()) or gap
 
 
 def test_where_loops_can_not_be_closed_it_stays(crank: TestClient) -> None:
@@ -131,26 +121,13 @@ def test_nothing_is_shown_of_a_model_that_never_was_sound(client: TestClient) ->
     assert client.post("/api/pose", json={"q": {}}).json()["error"]["object"] == "nothing is shown"
 
 
-@pytest.mark.parametrize(
-    "body",
-    [
-        {"q": 3},
-        {"q": {"nobody": 1.0}},
-        {"par": {"nobody": 1.0}},
-        {"marked": "bodies/crank"},
-        {"marked": [1]},
-        {"q": {"a": "1"}},
-        {"q": {"a": 10**400}},
-        {"q": {"a": True}},
-        {"exaggeration": 1e9},
-        {"exaggeration": "2"},
-        {"par": [1.0]},
-    ],
-)
-def test_odd_poses_are_refused(client: TestClient, body: Json) -> None:
+def test_odd_poses_are_refused(client: TestClient) -> None:
     before = look(client)["q"]
-    answer = client.post("/api/pose", json=body)
-    assert answer.status_code == 422 and set(answer.json()["error"]) == {"object", "found", "rule", "remedy"}
+    bodies: list[Json] = [{"q": q} for q in (3, {"nobody": 1.0}, {"a": "1"}, {"a": 10**400}, {"a": True})]
+    bodies += [{"par": {"nobody": 1.0}}, {"par": [1.0]}, {"marked": "bodies/crank"}, {"marked": [1]}]
+    for body in (*bodies, {"exaggeration": 1e9}, {"exaggeration": "2"}):
+        answer = client.post("/api/pose", json=body)
+        assert answer.status_code == 422 and set(answer.json()["error"]) == {"object", "found", "rule", "remedy"}, body
     assert look(client)["q"] == before
 
 
@@ -178,11 +155,13 @@ def test_its_page_is_kept_apart_from_ours(bare: TestClient, address: str) -> Non
     assert answer.headers["cache-control"] == "no-store"
 
 
-@pytest.mark.parametrize("end", ["", "wrong/", "../view/wrong/", f"{TOKEN}/"])
-def test_its_page_needs_its_own_token(bare: TestClient, address: str, end: str) -> None:
-    for path in (f"/view/{end}", address[:-2] + "/", address + "more", address[:-1] + "x/"):
+def test_its_page_needs_its_own_token(bare: TestClient, address: str) -> None:
+    others = (f"/view/{end}" for end in ("", "wrong/", "../view/wrong/", f"{TOKEN}/"))
+    for path in (*others, address[:-2] + "/", address + "more", address[:-1] + "x/"):
         answer = bare.get(path)
         assert answer.status_code == 401 and b"Viser" not in answer.content
+    assert bare.get(f"{address}page/99").status_code == 422  # A page that simulates, of a run that there is not.
+    assert bare.get("/view/wrong/page/99").status_code == 401
 
 
 def test_its_token_opens_nothing_else(bare: TestClient, address: str) -> None:
@@ -192,57 +171,28 @@ def test_its_token_opens_nothing_else(bare: TestClient, address: str) -> None:
     assert bare.post("/api/pose", json={}, headers={"Authorization": f"Bearer {token}"}).status_code == 401
 
 
-@pytest.mark.parametrize(
-    "headers",
-    [
-        {"Host": "evil.example"},
-        {"Host": f"evil.example:{PORT}"},
-        {"Sec-Fetch-Site": "cross-site"},
-        {"Origin": "https://evil.example"},
-    ],
-)
-def test_its_page_is_for_ours_only(bare: TestClient, address: str, headers: dict[str, str]) -> None:
-    assert bare.get(address, headers=headers).status_code == 403
+def test_its_page_is_for_ours_only(bare: TestClient, address: str) -> None:
+    foreign = [{"Host": host} for host in ("evil.example", f"evil.example:{PORT}")]
+    for headers in (*foreign, {"Sec-Fetch-Site": "cross-site"}, {"Origin": "https://evil.example"}):
+        assert bare.get(address, headers=headers).status_code == 403, headers
 
 
-@pytest.mark.parametrize("origin", ["null", BASE])
-def test_the_socket_hands_on_what_the_viewer_says(bare: TestClient, address: str, origin: str) -> None:
-    with socket_at(bare, address[:-1], origin) as socket:
-        assert socket.accepted_subprotocol == PROTOCOL
-        assert len(socket.receive_bytes()) > 100
-
-
-@pytest.mark.parametrize(
-    ("cut", "origin", "host"),
-    [
-        (-1, "https://evil.example", OWN),
-        (-1, "http://127.0.0.1:1", OWN),
-        (-1, None, OWN),
-        (-1, BASE, "evil.example"),
-        (-1, "null", f"evil.example:{PORT}"),
-        (-2, BASE, OWN),
-        (-2, "null", OWN),
-        (6, BASE, OWN),
-    ],
-)
-def test_the_socket_is_for_who_has_its_address(
-    bare: TestClient, address: str, cut: int, origin: str | None, host: str
-) -> None:
-    with pytest.raises(WebSocketDisconnect), socket_at(bare, address[:cut], origin, Host=host):
-        pass
-
-
-@pytest.mark.parametrize("path", ["/", "/api/events", "/api/document"])
-def test_there_are_no_other_sockets(bare: TestClient, path: str) -> None:
-    with pytest.raises(WebSocketDisconnect), socket_at(bare, path, Authorization=f"Bearer {TOKEN}"):
-        pass
-
-
-def test_the_guard_goes_on_after_sockets(bare: TestClient, address: str) -> None:
-    """More in turn than may be open at once."""
-    for _ in range(MAX_SOCKETS + 2):
-        with socket_at(bare, address[:-1]) as socket:
-            socket.receive_bytes()
+def test_the_socket_is_for_who_has_its_address(bare: TestClient, address: str) -> None:
+    """And hands on what the viewer says, to more in turn than may be open at once."""
+    own = address[:-1]
+    refused = [(own, origin, OWN) for origin in ("https://evil.example", "http://127.0.0.1:1", None)]
+    refused += [(own, BASE, "evil.example"), (own, "null", f"evil.example:{PORT}")]
+    refused += [(address[:-2], BASE, OWN), (address[:-2], "null", OWN), (address[:6], BASE, OWN)]
+    for path, origin, host in refused:
+        with pytest.raises(WebSocketDisconnect), socket_at(bare, path, origin, Host=host):
+            pytest.fail(f"{path} {origin} {host}")
+    for path in ("/", "/api/events", "/api/document"):  # There are no other sockets.
+        with pytest.raises(WebSocketDisconnect), socket_at(bare, path, Authorization=f"Bearer {TOKEN}"):
+            pytest.fail(path)
+    for k in range(MAX_SOCKETS + 2):
+        with socket_at(bare, own, "null" if k % 2 else BASE) as socket:
+            assert socket.accepted_subprotocol == PROTOCOL
+            assert len(socket.receive_bytes()) > 100
 
 
 def test_a_run_is_shown_at_a_time_and_kept_as_a_file(client: TestClient, folder: Path) -> None:
@@ -310,3 +260,24 @@ def test_a_film_is_refused_where_somebody_changes_the_document_between_two_steps
             run = finished(client, "simulate", t_end=0.1, points=3)["id"]
     outdated = client.get(f"/api/jobs/{run}/film.gif")
     assert outdated.status_code == 422 and "has changed since" in outdated.json()["error"]["object"]
+
+
+@pytest.mark.slow  # In every run: that its address needs the view's token.
+def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: TestClient) -> None:
+    """A page that simulates by itself: the job that makes it, its address, what it may do."""
+    require("ziglang", "zig")
+    job = finished(client, "page", 300.0, q0={"q1": 1.2}, v0={"q1": 0.5}, method="rk4", dt=1e-3)
+    assert job["state"] == "done" and set(job["result"]) == {"address", "notes"}
+    address = job["result"]["address"]
+    assert address.startswith("/view/") and TOKEN not in address
+    page = client.get(address, headers={"Authorization": ""})
+    assert page.status_code == 200 and "WebAssembly.instantiate" in page.text
+    policy = page.headers["content-security-policy"]
+    assert policy.startswith("sandbox allow-scripts; default-src 'none'")
+    assert page.headers["cache-control"] == "no-store"
+    known = address.split("/")[2]
+    assert client.get(address.replace(known, "x" * len(known))).status_code == 401
+    assert client.get(f"/view/{known}/page/99").status_code == 422
+    assert client.get(f"{address}/more").status_code == 401
+    wrong = finished(client, "page", method="cvode")
+    assert wrong["state"] == "failed" and "cvode" in wrong["error"]["object"]

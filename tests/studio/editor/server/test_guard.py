@@ -34,7 +34,6 @@ def refused(client: TestClient, method: str, address: str, status: int, headers:
     assert answer.status_code == status
     assert set(answer.json()["error"]) == {"object", "found", "rule", "remedy"}
     assert "access-control-allow-origin" not in answer.headers
-    assert client.get("/api/document", headers=GRANTED).status_code == 200
 
 
 @pytest.fixture
@@ -48,39 +47,31 @@ def test_nothing_is_done_without_the_token(bare: TestClient, session: Session) -
     for method, address in addresses(bare.app):
         for headers in ({}, *({"Authorization": each} for each in wrong)):
             refused(bare, method, address, 401, headers)
+        assert bare.get("/api/document", headers=GRANTED).status_code == 200
     assert session.document.text == TEXTS["four_bar"]
 
 
 def test_a_foreign_page_is_refused_though_it_had_the_token(bare: TestClient) -> None:
-    origins = (
-        "https://evil.example",
-        "http://127.0.0.1:1",
-        f"https://127.0.0.1:{PORT}",
-        "null",
-        f"http://localhost:{PORT}.evil.example",
-    )
-    foreign = [{"Origin": each} for each in origins] + [
-        {"Sec-Fetch-Site": f"{each}-site"} for each in ("cross", "same")
-    ]
+    origins = ["https://evil.example", "http://127.0.0.1:1", "null"]
+    origins += [f"https://127.0.0.1:{PORT}", f"http://localhost:{PORT}.evil.example"]
+    foreign = [{"Origin": each} for each in origins]
+    foreign += [{"Sec-Fetch-Site": f"{each}-site"} for each in ("cross", "same")]
     for method, address in addresses(bare.app):
         for headers in foreign:
             refused(bare, method, address, 403, {**GRANTED, **headers})
+        assert bare.get("/api/document", headers=GRANTED).status_code == 200
 
 
-@pytest.mark.parametrize(
-    "host", ["evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:1", f"[::1]:{PORT}", ""]
-)
-def test_another_host_is_refused_also_for_the_page_itself(bare: TestClient, host: str) -> None:
-    """A name of somebody else's that resolves to this machine (DNS rebinding)."""
-    refused(bare, "GET", "document", 403, {**GRANTED, "Host": host})
-    refused(bare, "POST", "save", 403, {**GRANTED, "Host": host})
-    assert bare.get("/", headers={"Host": host}).status_code == 403
-
-
-@pytest.mark.parametrize("host", [f"127.0.0.1:{PORT}", f"localhost:{PORT}", f"LOCALHOST:{PORT}"])
-def test_the_own_page_is_let_in(bare: TestClient, host: str) -> None:
-    origin = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
-    assert bare.get("/api/document", headers={**GRANTED, **origin}).status_code == 200
+def test_another_host_is_refused_also_for_the_page_itself(bare: TestClient) -> None:
+    """A name of somebody else's that resolves to this machine (DNS rebinding); the own page is let in."""
+    for host in ("evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:1", f"[::1]:{PORT}", ""):
+        refused(bare, "GET", "document", 403, {**GRANTED, "Host": host})
+        refused(bare, "POST", "save", 403, {**GRANTED, "Host": host})
+        assert bare.get("/", headers={"Host": host}).status_code == 403
+    for host in (f"127.0.0.1:{PORT}", f"localhost:{PORT}", f"LOCALHOST:{PORT}"):
+        origin = {"Host": host, "Origin": f"http://{host}", "Sec-Fetch-Site": "same-origin"}
+        assert bare.get("/api/document", headers={**GRANTED, **origin}).status_code == 200
+    assert bare.post("/", json={}, headers=GRANTED).status_code == 405  # Outside of the API one reads only.
 
 
 def test_the_token_in_the_address_opens_events_only(bare: TestClient) -> None:
@@ -97,14 +88,9 @@ def test_a_form_can_not_post(bare: TestClient, session: Session) -> None:
 
 
 def test_a_huge_body_is_refused_by_its_length_alone() -> None:
-    """Nothing of it is read."""
-    sent = _asked([(b"content-length", str(MAX_BODY + 1).encode())], lambda: pytest.fail("the body was read"))
-    assert sent == 413
-
-
-@pytest.mark.parametrize("length", [b"-1", b"1e9", b"x", b"9" * 5000])
-def test_a_length_that_is_none_is_refused(length: bytes) -> None:
-    assert _asked([(b"content-length", length)], lambda: pytest.fail("the body was read")) == 413
+    """Nothing of it is read; nor of one whose length is none."""
+    for length in (str(MAX_BODY + 1).encode(), b"-1", b"1e9", b"x", b"9" * 5000):
+        assert _asked([(b"content-length", length)], lambda: pytest.fail("the body was read")) == 413
 
 
 def test_a_body_without_a_length_is_cut_off_at_the_limit() -> None:
@@ -169,32 +155,24 @@ def test_answers_carry_the_policies(client: TestClient) -> None:
     assert client.get("/api/document").headers["cache-control"] == "no-store"
 
 
-@pytest.mark.parametrize(
-    "path", ["/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/assets/../../guard.py", "//etc/passwd"]
-)
-def test_the_page_s_folder_is_not_left(client: TestClient, path: str) -> None:
-    answer = client.get(path)
-    assert answer.status_code in (400, 404, 405) and b"import" not in answer.content
+def test_the_page_s_folder_is_not_left(client: TestClient) -> None:
+    for path in ("/../app.py", "/%2e%2e/app.py", "/..%2fapp.py", "/assets/../../guard.py", "//etc/passwd"):
+        answer = client.get(path)
+        assert answer.status_code in (400, 404, 405) and b"import" not in answer.content, path
 
 
-def test_only_reading_is_allowed_outside_of_the_api(client: TestClient) -> None:
-    assert client.post("/", json={}).status_code == 405
-
-
-@pytest.mark.parametrize(
-    "body", [b"", b"[]", b"{", b"3", b"[" * 200_000, b'{"revision": NaN, "text": "a"}', b"\xff", b"null"]
-)
-def test_odd_bodies_are_refused_and_the_server_goes_on(client: TestClient, session: Session, body: bytes) -> None:
-    answer = client.post("/api/text", content=body, headers={"Content-Type": "application/json"})
-    assert answer.status_code in (409, 422) and "error" in answer.json()
+def test_odd_bodies_are_refused_and_the_server_goes_on(client: TestClient, session: Session) -> None:
+    for body in (b"", b"[]", b"{", b"3", b"[" * 200_000, b'{"revision": NaN, "text": "a"}', b"\xff", b"null"):
+        answer = client.post("/api/text", content=body, headers={"Content-Type": "application/json"})
+        assert answer.status_code in (409, 422) and "error" in answer.json(), body[:20]
     assert session.document.text == TEXTS["four_bar"]
 
 
 HOSTILE = {
     "anchors": "a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n",
     "deep": "a: " + "[" * 10_000,
-    "tag": '!!python/object/apply:os.system ["touch {mark}"]\n',
-    "code": "symofros: 1\nbodies: {{a: {{inertia: {{mass: \"__import__('os').system('touch {mark}')\"}}}}}}\n",
+    "tag": '!!python/object/apply:os.system ["touch MARK"]\n',
+    "code": "symofros: 1\nbodies: {a: {inertia: {mass: \"__import__('os').system('touch MARK')\"}}}\n",
     "escape": 'a: "\\xZZ"',
     "nul": "a: \0",
     "merge": "a: {<<: {b: 1}}",
@@ -206,23 +184,14 @@ HOSTILE = {
 @pytest.mark.parametrize("name", sorted(HOSTILE))
 def test_hostile_texts_are_told_and_nothing_is_run(client: TestClient, tmp_path: Path, name: str) -> None:
     mark = tmp_path / "mark"
-    text = (
-        HOSTILE[name].replace("{mark}", str(mark)).replace("{{", "{").replace("}}", "}")
-        if "mark" in HOSTILE[name]
-        else HOSTILE[name]
-    )
-    revision = client.get("/api/document").json()["revision"]
-    answer = client.post("/api/text", json={"revision": revision, "text": text})
+    answer = client.post("/api/text", json={"revision": 1, "text": HOSTILE[name].replace("MARK", str(mark))})
     assert answer.status_code == 200 and answer.json()["problems"]
     assert "root:" not in answer.text and not mark.exists()
     assert client.post("/api/undo", json={"revision": answer.json()["revision"]}).json()["problems"] == []
 
 
-@pytest.mark.parametrize(
-    "text",
-    ["__import__('os')", "().__class__", "L.__init__", "open('x')", "1e999", "(" * 999, "a" * 20_000, "9" * 9000],
-)
-def test_hostile_formulas_are_refused(client: TestClient, text: str) -> None:
-    for path in ([], ["bodies", "crank", "inertia", "mass"]):
-        (found,) = client.post("/api/expression", json={"fields": [{"path": path, "text": text}]}).json()["checks"]
-        assert not found["ok"] and found["error"]["rule"]
+def test_hostile_formulas_are_refused(client: TestClient) -> None:
+    texts = "__import__('os')", "().__class__", "L.__init__", "open('x')", "1e999", "(" * 999, "a" * 20_000, "9" * 9000
+    fields = [{"path": path, "text": text} for text in texts for path in ([], ["bodies", "crank", "inertia", "mass"])]
+    for found in client.post("/api/expression", json={"fields": fields}).json()["checks"]:
+        assert not found["ok"] and found["error"]["rule"], found

@@ -36,13 +36,6 @@ def test_it_has_the_inertia_of_the_body(name: str) -> None:
     assert np.allclose(found.center, inertia.center_of_mass)
 
 
-def test_a_uniform_box_is_found_again() -> None:
-    edges, mass = np.array([0.1, 0.4, 0.9]), 3.0
-    moments = mass / 12 * (np.sum(edges**2) - edges**2)
-    found = inertia_box(body(sf.Inertia(mass, moments=tuple(moments))), Numbers(sf.System("s")))
-    assert found is not None and np.allclose(np.sort(found.edges), edges)
-
-
 @pytest.mark.parametrize("inertia", [None, sf.Inertia(0.0), sf.Inertia(0.0, moments=(0.1, 0.1, 0.1))])
 def test_what_has_no_mass_has_no_box(inertia: sf.Inertia | None) -> None:
     assert inertia_box(body(inertia), Numbers(sf.System("s"))) is None

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import struct
-import subprocess
-import sys
 import warnings
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,9 +18,9 @@ from reference_models import MODELS
 from symofros.description.visual import Visual
 from symofros.studio.viewer.drawing import visual_meshes
 from symofros.studio.viewer.drawing.layers import shown_at_first
-from symofros.studio.viewer.drawing.meshes import Mesh
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+from tests.studio.viewer.drawing.test_meshes import volume
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -40,12 +39,6 @@ def obj(file: Path) -> None:
 def off(file: Path) -> None:
     corners = "\n".join(f"{x} {y} {z}" for x, y, z in CORNERS)
     file.write_text(f"OFF\n4 4 0\n{corners}\n" + "\n".join(f"3 {a} {b} {c}" for a, b, c in FACES))
-
-
-def volume(mesh: Mesh) -> float:
-    """Above zero where all triangles are seen from outside."""
-    a, b, c = (mesh.vertices[mesh.faces[:, i]] for i in range(3))
-    return float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6)
 
 
 @pytest.mark.parametrize(
@@ -95,9 +88,7 @@ def test_a_file_that_was_changed_is_read_again(tmp_path: Path) -> None:
         ("m.stl", bytes(80) + b"\xff\xff\xff\x7f", "not a .stl file|0 triangles"),
         ("m.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "not a .obj file|0 triangles|without a corner"),
         ("m.obj", b"v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n", "finite corners"),
-        ("m.dae", b"<COLLADA/>", "no triangles"),
         ("m.dae", b"<COLLADA><library_geometries><geometry/></library_geometries></COLLADA>", "no triangles"),
-        ("m.dae", b'<COLLADA><accessor stride="0"/></COLLADA>', "no triangles"),
         ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "not a .ply file|0 triangles"),
     ],
 )
@@ -132,20 +123,7 @@ def test_bodies_look_as_their_file_says() -> None:
     assert not {"bodies", "joints"} & shown_at_first(whole)
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        ('stride="3"', 'stride="0"'),
-        ('"VERTEX"', '"NORMAL"'),
-        ("accessor", "nothing"),
-        ("<p>0 1 2</p>", "<p>0 1 99999999999999999999</p>"),
-        ("<p>0 1 2</p>", "<p>0 1 7</p>"),
-    ],
-    ids=["stride of 0", "no vertices", "no accessor", "index beyond integers", "index beyond the vertices"],
-)
-def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_drawn(
-    damage: tuple[str, str], tmp_path: Path
-) -> None:
+def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_drawn(tmp_path: Path) -> None:
     xyz = '<param name="X"/><param name="Y"/><param name="Z"/>'
     text = f"""<COLLADA><library_geometries><geometry id="g"><mesh>
         <source id="p"><float_array>0 0 0 1 0 0 0 1 0</float_array>
@@ -154,7 +132,7 @@ def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_draw
         <triangles><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
         </mesh></geometry></library_geometries></COLLADA>"""
     (tmp_path / "sound.dae").write_text(text)
-    (tmp_path / "damaged.dae").write_text(text.replace(*damage))
+    (tmp_path / "damaged.dae").write_text(text.replace('stride="3"', 'stride="0"'))
     sound, damaged = (
         Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / name)) for name in ("sound.dae", "damaged.dae")
     )
@@ -181,10 +159,12 @@ def test_meshes_that_are_no_files_are_not_waited_for(place: str, tmp_path: Path)
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file))) is None
 
 
-def test_what_a_mesh_is_not_is_said_once(tmp_path: Path) -> None:
-    """No traceback of the library's own readers beside the warning."""
-    file = tmp_path / "m.stl"
-    file.write_bytes(b"solid\nfacet normal 0 0 x\nendsolid")
-    code = f"from symofros.tools import Visual, visual_mesh; visual_mesh(Visual('mesh', (1, 1, 1), file={str(file)!r}))"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert "'m.stl' is not drawn" in done.stderr and "Traceback" not in done.stderr
+def test_what_a_mesh_is_not_is_said_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No traceback of the library's own readers beside the warning, where nobody handles what they log."""
+    monkeypatch.setattr(logging.getLogger(), "handlers", [])
+    (tmp_path / "m.stl").write_bytes(b"solid\nfacet normal 0 0 x\nendsolid")
+    with pytest.warns(UserWarning, match="'m.stl' is not drawn"):
+        visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl")))
+    assert capsys.readouterr().err == ""

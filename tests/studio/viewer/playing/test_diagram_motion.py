@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -78,16 +75,6 @@ def test_a_run_is_played(one: DiagramRun) -> None:
         viewer.toggle()
         viewer.seek(0.1)
         assert np.allclose(viewer.state.q, one["plant.q"][-1])
-
-
-def test_a_recording_of_a_run_is_that_of_its_motion(one: DiagramRun, tmp_path: Path) -> None:
-    images, size = import_module("PIL.Image"), (160, 120)
-    system, states = shown_of(one)
-    first = sf.record(one, tmp_path / "a.png", size=size)
-    second = sf.record(system, states, tmp_path / "b.png", size=size)
-    other = sf.record(system, (one.t, one["plant.q"]), tmp_path / "c.png", size=size)  # Of another length.
-    a, b, c = (np.asarray(images.open(file)) for file in (first, second, other))
-    assert np.array_equal(a, b) and not np.array_equal(a, c)
 
 
 def test_what_is_neither_is_refused(one: DiagramRun) -> None:

@@ -10,12 +10,9 @@ from scipy.special import ellipk
 
 import symofros as sf
 from tests.models import sampled
-from validation.adapters.exudyn.steps import Solver
-from validation.adapters.exudyn.timed_systems import SlenderBeam, pendulum
 from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
-from validation.pareto.problems import andrews, arm, closed_forms, four_bar, robot, rod, soft_pendulum, spin_up
-from validation.pareto.problems import pendulum as swing
+from validation.pareto.problems import closed_forms, four_bar, robot, soft_pendulum, spin_up
 from validation.pareto.race import race
 
 
@@ -46,15 +43,6 @@ def test_closed_form_of_the_four_bar_against_its_equation() -> None:
     assert four_bar.far(solved) < 1e-9 and four_bar.far(solved + 1e-3) == pytest.approx(1e-3, rel=1e-6)
 
 
-def test_the_chain_of_links_converges_with_the_square_of_their_length() -> None:
-    soft = SlenderBeam(1.0, 1.0, 1e6, 1.0, 2.0, 2.0)
-    t = np.linspace(0.0, 2.0, 21)
-    fine = rod.linked(soft, t, 24)
-    errors = [float(np.abs(rod.linked(soft, t, n) - fine).max()) for n in (3, 6)]
-    assert 3.0 < errors[0] / errors[1] < 6.0
-    assert float(np.abs(rod.tip(soft, t, 6) - fine).max()) < errors[1] / 3.0
-
-
 @pytest.mark.slow  # In every run: rods against Exudyn's exact elements.
 def test_rods_come_within_a_hundred_thousandth_of_the_references() -> None:
     """The largest shares of deflection, effect of flexibility, length that are left at steps that are fine enough."""
@@ -64,18 +52,3 @@ def test_rods_come_within_a_hundred_thousandth_of_the_references() -> None:
     assert max(spun.error, arms.error, swung.error) < 1e-5
     floor = soft_pendulum.judged_model("x", soft_pendulum.model(5, theory="second_order"))
     assert not floor.measured(method="dop853", rtol=1e-9).error < 1e-2, "second order does not serve"
-
-
-def test_exudyn_and_the_closed_form_of_the_pendulum() -> None:
-    recorded = pendulum(swing.GRAVITY).run(Solver("RK67"), 0.02, 5.0, 1.0)
-    exact = np.pi / 2 + closed_forms.swinging(-np.pi / 2, swing.GRAVITY, np.arange(6.0))
-    np.testing.assert_allclose(recorded.values[:, 0], exact, atol=1e-8)
-    assert recorded.seconds > 0 and recorded.t.tolist() == pytest.approx(list(range(6)))
-
-
-@pytest.mark.slow
-def test_errors_are_of_the_motion() -> None:
-    names = tuple(andrews.known()["end"])
-    end = np.array(list(andrews.known()["end"].values()))
-    assert andrews.far(end, names) == 0.0 and andrews.far(end + 1e-3, names) == pytest.approx(1e-3)
-    assert arm.far(arm.reference()) == 0.0

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
-
 import numpy as np
 import pytest
 
-import reference_models
 import symofros as sf
-from validation.adapters.exudyn.planar import Cable, planar_tree, smallest
-from validation.reporting.record import Table
 from validation.timing.flexible import equal_accuracy
 from validation.timing.flexible.equal_accuracy import (
-    EA,
-    POSTURE,
     NotTheSameError,
     exudyn_frequencies,
     exudyn_robot,
@@ -23,14 +16,10 @@ from validation.timing.flexible.equal_accuracy import (
     robot,
 )
 from validation.timing.flexible.loop import GeneratedLoop
-from validation.timing.flexible.report import flexible_section
-from validation.timing.flexible.worker import JOBS, measure
 
 # Of the two lowest frequencies, those of the elastic drive and of the first bending: three functions and two elements
 # both have them to 1.3e-5.
 LOWEST = 2e-5
-# Of all seven, with eight splines a strip: the highest errs by 2.8e-4; stretch, which only Exudyn's strips do, by 3e-5.
-ALL = 3e-4
 
 
 def test_both_sides_are_one_robot() -> None:
@@ -41,54 +30,11 @@ def test_both_sides_are_one_robot() -> None:
     assert fine.frequencies(3).max() < 1e-3 * expected[0]
 
 
-@pytest.mark.slow  # In every run: the lowest two, with few functions.
-def test_with_many_functions_both_sides_have_the_same_seven_frequencies() -> None:
-    np.testing.assert_allclose(generated_frequencies(8), exudyn_frequencies(exudyn_robot(12)), rtol=ALL)
-
-
-@pytest.mark.parametrize("changed", ["rotors", "elements"])
-def test_rotors_and_the_elastic_drive_are_in_the_frequencies(changed: str) -> None:
-    """So that agreement above means that they agree too."""
-    system = reference_models.MODELS["planar_robot"]
-    bodies = [replace(b, joint=replace(b.joint, **{changed: ()})) for b in system.bodies if b.joint is not None]  # type: ignore[arg-type]
-    cables = {name: Cable(2, stiffness) for name, stiffness in EA.items()}
-    without = planar_tree(replace(system, bodies=tuple(bodies)), POSTURE, cables).frequencies(10)
-    assert np.abs(without[3:] / exudyn_frequencies(exudyn_robot(2)) - 1.0).max() > 0.1
-
-
-def test_elements_converge_with_their_fourth_power() -> None:
-    reference = exudyn_frequencies(exudyn_robot(32))
-    errors = [np.abs(exudyn_frequencies(exudyn_robot(n)) / reference - 1.0).max() for n in (4, 8)]
-    assert np.log2(errors[0] / errors[1]) == pytest.approx(4.0, abs=0.2)
-
-
-@pytest.mark.slow
-def test_the_coarsest_mesh_that_errs_no_more_is_chosen() -> None:
-    (pair,) = pairs([3])
-    reference = exudyn_frequencies(exudyn_robot(equal_accuracy.FINE))
-    coarser = np.abs(exudyn_frequencies(exudyn_robot(pair.elements - 1)) / reference - 1.0).max()
-    assert pair.error[1] <= pair.error[0] < coarser
-
-
 @pytest.mark.slow
 def test_sides_that_are_not_one_robot_are_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(equal_accuracy, "SAME_ROBOT", 1e-3)
     with pytest.raises(NotTheSameError, match="3 functions: frequencies err by 2.8e-02"):
         list(pairs([3]))
-
-
-@pytest.mark.slow
-def test_the_study_runs_and_reports() -> None:
-    rows = measure(3, (3,), 5)
-    assert [row.quantity for row in rows] == list(JOBS)
-    for row in rows:
-        assert row.sizes == (10, 42, 32) and row.elements == 2
-        assert 0 < row.generated_time[0] <= row.generated_time[1]
-        assert row.calls[0] < row.engine_time[0] and 0 < row.corrected < row.ratio
-    section = flexible_section(asdict(row) for row in rows)
-    (table,) = (block for block in section.blocks if isinstance(block, Table))
-    assert "at equal accuracy" in section.title
-    assert ("3 (10)", "2 (42 + 32)", "2.8e-02, 1.9e-02", "M + h + Q") in [row[:4] for row in table.rows]
 
 
 def test_the_loop_computes_what_the_model_does(rng: np.random.Generator) -> None:
@@ -100,22 +46,3 @@ def test_the_loop_computes_what_the_model_does(rng: np.random.Generator) -> None
     for name, outputs in expected.items():
         rows = np.concatenate([output.reshape(len(q), -1) for output in outputs], axis=1)
         np.testing.assert_allclose(loop.results(name), rows, rtol=1e-12, atol=1e-12)
-
-
-def test_the_smallest_system_has_one_coordinate() -> None:
-    M, force = smallest().at(np.zeros(1), np.zeros(1))
-    assert M.tolist() == [[1.0]] and force.tolist() == [0.0]
-
-
-@pytest.mark.parametrize(
-    ("joint", "word"),
-    [
-        (sf.Joint("q", "revolute", axis=(1, 0, 0)), "not a hinge about z"),
-        (sf.Joint("q", "prismatic"), "not a hinge about z"),
-        (sf.Joint("q", "revolute", rotation=sf.Rotation.rpy(0.1, 0, 0)), "turned"),
-    ],
-)
-def test_what_is_not_planar_is_named(joint: sf.Joint, word: str) -> None:
-    body = sf.RigidBody("b", joint, sf.Inertia(1.0, moments=(1, 1, 1)))
-    with pytest.raises(ValueError, match=f"joint 'q': .*{word}"):
-        planar_tree(sf.System("s", [body]), {}, {})

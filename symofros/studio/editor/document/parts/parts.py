@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from symofros.description.yaml import VERSION, default_joint_name
-from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same
+from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same, section_of
 from symofros.studio.editor.editing.formulas import formulas, names_in
 from symofros.studio.editor.editing.renaming import anchors, renaming, speeds_as_keys, symbols_of, taken
 
@@ -26,9 +26,9 @@ def extracted(data: Any, bodies: list[str]) -> Json:
     Raises:
         EditError: There is no such body, or one is the base.
     """
-    stated = _mapping(data, "bodies")
+    stated = section_of(data, "bodies")
     for name in bodies:
-        if not _mapping(stated.get(name), "joint"):
+        if not section_of(stated.get(name), "joint"):
             raise fault(
                 ("bodies", name), "no such body, or no joint", "a part is made of bodies with joints", "choose others"
             )
@@ -42,14 +42,14 @@ def extracted(data: Any, bodies: list[str]) -> Json:
     for section in _BETWEEN:
         kept = {
             name: entry
-            for name, entry in _mapping(data, section).items()
+            for name, entry in section_of(data, section).items()
             if _belongs(section, name, entry, set(bodies), _symbols(part), foreign)
         }
         if kept:
             part[section] = kept
     used = {name for _, text in formulas(part) for name in names_in(text)}
     for section in ("parameters", "inputs"):
-        kept = {name: entry for name, entry in _mapping(data, section).items() if name in used}
+        kept = {name: entry for name, entry in section_of(data, section).items() if name in used}
         if kept:
             part[section] = kept
     return {section: part[section] for section in SECTIONS if section in part}
@@ -78,8 +78,8 @@ def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str
 def _symbols(data: Any) -> set[str]:
     """What formulas call the coordinates and speeds of a document's bodies."""
     symbols: set[str] = set()
-    for name, body in _mapping(data, "bodies").items():
-        joint = _mapping(body, "joint")
+    for name, body in section_of(data, "bodies").items():
+        joint = section_of(body, "joint")
         stated = joint.get("coordinates") if joint.get("kind") == "general" else None
         if isinstance(stated, list):
             symbols.update(f"{rate}{symbol}" for rate in ("", "d", "dd") for symbol in stated)
@@ -102,10 +102,10 @@ def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> l
     part = _distinct(data, part)
     edits: list[Edit] = []
     for section in SECTIONS:
-        for name, entry in _mapping(part, section).items():
+        for name, entry in section_of(part, section).items():
             if section in ("symofros", "include", "system", "options"):
                 continue
-            there = _mapping(data, section)
+            there = section_of(data, section)
             if section in ("parameters", "inputs") and name in there and same(there[name], entry):
                 continue
             edits.append(Edit("set", (section, name), _carried(entry, parent, frame) if section == "bodies" else entry))
@@ -113,7 +113,7 @@ def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> l
 
 
 def _carried(body: Any, parent: str | None, frame: str | None) -> Any:
-    joint = _mapping(body, "joint")
+    joint = section_of(body, "joint")
     if parent is None or not joint or "parent" in joint:
         return body
     placed = {"kind": joint.get("kind"), "parent": parent, **({"frame": frame} if frame else {}), **joint}
@@ -131,17 +131,17 @@ def _distinct_symbols(data: Any, part: Json) -> Json:
     """Parameters and inputs: one that is there and is the same stays."""
     names = taken(data)
     for section in ("parameters", "inputs"):
-        there = _mapping(data, section)
-        for name, entry in list(_mapping(part, section).items()):
+        there = section_of(data, section)
+        for name, entry in list(section_of(part, section).items()):
             if name in names and not (name in there and same(there[name], entry)):
                 part = _renamed(part, (section, name), _free(name, names | taken(part)))
     return part
 
 
 def _distinct_bodies(data: Any, part: Json) -> Json:
-    for name in list(_mapping(part, "bodies")):
-        bodies = {*_mapping(data, "bodies"), *_mapping(part, "bodies")}
-        if name in _mapping(data, "bodies"):
+    for name in list(section_of(part, "bodies")):
+        bodies = {*section_of(data, "bodies"), *section_of(part, "bodies")}
+        if name in section_of(data, "bodies"):
             part = _renamed(part, ("bodies", name), _free(name, bodies))
     return part
 
@@ -149,8 +149,8 @@ def _distinct_bodies(data: Any, part: Json) -> Json:
 def _distinct_joints(data: Any, part: Json) -> Json:
     """Joints and their coordinates."""
     names, joints = taken(data), _joints(data)
-    for name, body in list(_mapping(part, "bodies").items()):
-        joint = _mapping(body, "joint")
+    for name, body in list(section_of(part, "bodies").items()):
+        joint = section_of(body, "joint")
         own = str(joint.get("name", default_joint_name(name)))
         if joint and (own in joints or set(symbols_of(joint, own)) & names):
             part = _renamed(part, ("bodies", name, "joint"), _free(own, joints | _joints(part) | names | taken(part)))
@@ -164,17 +164,17 @@ def _distinct_joints(data: Any, part: Json) -> Json:
 def _distinct_relations(data: Any, part: Json) -> Json:
     """What stands between bodies: connections, constraints, forces."""
     for section in _BETWEEN:
-        for name in list(_mapping(part, section)):
-            if name in _mapping(data, section):
-                known = {*_mapping(data, section), *_mapping(part, section)}
+        for name in list(section_of(part, section)):
+            if name in section_of(data, section):
+                known = {*section_of(data, section), *section_of(part, section)}
                 part = _renamed(part, (section, name), _free(name, known))
     return part
 
 
 def _joints(data: Any) -> set[str]:
     """Names of joints, those that nothing formulas use follows from included."""
-    bodies = _mapping(data, "bodies").items()
-    return {str(_mapping(body, "joint").get("name", default_joint_name(name))) for name, body in bodies}
+    bodies = section_of(data, "bodies").items()
+    return {str(section_of(body, "joint").get("name", default_joint_name(name))) for name, body in bodies}
 
 
 def _renamed(part: Json, path: Path, new: str) -> Json:
@@ -189,8 +189,3 @@ def _free(name: str, known: Iterable[str]) -> str:
     first = int(name[len(stem) :][-9:] or 1) + 1
     known = set(known)
     return next(new for n in range(first, first + len(known) + 1) if (new := f"{stem}{n}") not in known)
-
-
-def _mapping(data: Any, key: str) -> dict[str, Any]:
-    section = data.get(key) if isinstance(data, dict) else None
-    return section if isinstance(section, dict) else {}

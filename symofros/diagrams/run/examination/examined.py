@@ -1,0 +1,210 @@
+"""A run of a diagram as its steps are examined: its records, parts of it made once more, what finer steps change.
+
+docs/theory/diagrams.md, section 7; docs/theory/simulation.md, (17).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from symofros.base.arrays import Array
+from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.program.layout import Layout
+from symofros.runtime.constrained import STILL
+from symofros.runtime.manifold import difference, retract
+from symofros.runtime.model import Model
+from symofros.simulation.results.examination.energy_balance import EXPLODED
+from symofros.simulation.results.examination.finer_steps import HALVINGS, HeldRun, Part, States
+from symofros.simulation.stepping.resolution import TOLERANCE
+from symofros.simulation.stepping.windows import Window
+
+# Differences of displacements count by this share: coordinates may be larger than how they change.
+_POSITIONS = 3.0
+# Share of the tolerance that is allowed where external blocks do not answer to the change.
+_UNANSWERED = 0.08
+
+# A power is a difference of energies over this share of the time between records, or of the time in which the largest
+# speed arises where that is shorter.
+_MOMENT = 1e-3
+
+# The records of a run that goes on from a record (its number) to a time, by steps that are refined so many times: they
+# are half as long each time, or have a hundredth of the tolerances; None where it does not get there.
+Repeat = Callable[[int, float, int], States | None]
+# Records (n, m) of a vector -> its size.
+Norm = Callable[[Array], float]
+
+
+def _largest(rows: Array) -> float:
+    """Largest norm of a row."""
+    return float(np.sqrt(np.square(rows).sum(axis=1)).max(initial=0.0))
+
+
+def _mean(rows: Array) -> float:
+    """Root mean square of the rows: where speeds jump, an instant earlier or later is no other motion."""
+    return float(np.sqrt(np.square(rows).sum(axis=1).mean()))
+
+
+# Accelerations (n, nv) at some of the records, by number.
+Accelerations = Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Energies:
+    """The energies of the mechanisms of a diagram.
+
+    Attributes:
+        resolved: Diagram.
+        par: Run-time parameters (npar).
+        model_of: Name of a mechanism's description -> a model that has its energies.
+    """
+
+    resolved: Resolved
+    par: Array
+    model_of: Callable[[str], Model]
+
+    def of(self, name: str, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
+        """Kinetic and total energy (n) [J] of a block's mechanism at states of the diagram (n, nq), (n, nv)."""
+        layout, mechanism = self.resolved.layout, self.resolved.pieces[name].block.mechanism()
+        model, par = self.model_of(mechanism), self.par[layout.parameters["", mechanism].slice]
+        q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
+        kinetic = model.kinetic_energy(q, v, par=par)
+        return kinetic, kinetic + model.potential_energy(q, par=par, t=t)
+
+    def powers(self, name: str, states: States, a: Array) -> Array:
+        """Power of all forces without a potential (n) [W]: the rate of the energy along the motion.
+
+        Args:
+            name: Block of the mechanism.
+            states: States of the diagram: t (n), q (n, nq), v (n, nv).
+            a: Accelerations (n, nv).
+        """
+        (t, q, v), at = states[:3], self.resolved.layout.v[name].slice
+        fastest = np.linalg.norm(v[:, at], axis=1).max(initial=0.0)
+        pace = fastest / np.maximum(np.linalg.norm(a[:, at], axis=1), 1e-300)
+        moment = _MOMENT * np.minimum(pace, np.diff(t).max())
+        ends = []
+        for s in (moment, -moment):
+            q_s = retract(self.resolved.layout.segments, q, s[:, np.newaxis] * v)
+            ends.append(self.of(name, t + s, q_s, v + s[:, np.newaxis] * a)[1])
+        return np.asarray((ends[0] - ends[1]) / np.maximum(2.0 * moment, 1e-300))
+
+
+@dataclass(frozen=True)
+class Examined(HeldRun):
+    """A run that has come to its end.
+
+    Each mechanism is judged by itself, in its own speeds: those of others may be of another size.
+
+    Attributes:
+        energies: Energies of its mechanisms.
+        states: Records of the run: t (n), q (n, nq), v (n, nv), u (n, nu).
+        dt: Step [s]; 0: it adapts.
+        atol: Absolute bound of the local error of adaptive steps.
+        steps: Number of steps.
+        repeat: Makes a part of the run once more, from a record to a time, as it was or with finer steps.
+        accelerations: Accelerations at records.
+    """
+
+    energies: Energies
+    states: States
+    dt: float
+    atol: float
+    steps: int
+    repeat: Repeat
+    accelerations: Accelerations
+    longer = math.inf  # A loop through samples amplifies errors by no power of time: no shorter part tells.
+
+    @property
+    def h(self) -> float:
+        """Step [s]; 0: it adapts."""
+        return self.dt
+
+    @property
+    def layout(self) -> Layout:
+        """Layout of the diagram's vectors."""
+        return self.energies.resolved.layout
+
+    @cached_property
+    def external(self) -> str:
+        """The first external block that answers to the motion, one with inputs and outputs; "" where there is none.
+
+        In what is made once more it answers as it did, so that a smaller change counts.
+        """
+        resolved = self.energies.resolved
+        wired, listening = resolved.wired, {block for block, _ in resolved.wired.sources}
+        outside = (name for name, piece in resolved.pieces.items() if piece.is_external and wired.ports[name].outputs)
+        return next((name for name in outside if name in listening), "")
+
+    @property
+    def tolerance(self) -> float:
+        """Change that is worth a note."""
+        return (_UNANSWERED if self.external else 1.0) * TOLERANCE
+
+    def coarse(self, window: Window, every: int) -> States | None:
+        """Its records; made once more where none lies in the window."""
+        t, first = self.states[0], window.first
+        last = window.last if window.last is not None else int(np.searchsorted(t, window.t_end, side="right")) - 1
+        if last > first:
+            return [x[first : last + 1] for x in self.states]
+        return self.repeat(first, window.t_end, 0)
+
+    def fine(self, window: Window, refinements: int, every: int) -> States | None:
+        """Recorded at the same instants."""
+        return self.repeat(window.first, window.t_end, refinements)
+
+    def halvings(self, part: Part) -> int:
+        """Steps over a contact may all err in the same way: windows of fixed ones are looked at more closely."""
+        return HALVINGS if self.h and part != "part" else 1
+
+    def jumps(self, fine: States) -> bool:
+        """Whether the speed of a mechanism changes by half of its largest from one record to the next."""
+        v = fine[2]
+        with np.errstate(all="ignore"):
+            return any(
+                2.0 * _largest(np.diff(v[:, places.slice], axis=0)) > _largest(v[:, places.slice])
+                for places in self.layout.v.values()
+            )
+
+    def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
+        """Of the mechanism that changes most."""
+        run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
+        shares = ((_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v)
+        return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)
+
+
+def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States, norm: Norm) -> float:
+    """Difference of a mechanism's speeds and displacements, relative to the size of each.
+
+    Args:
+        layout: Layout of the diagram's vectors.
+        block: Block of the mechanism.
+        run: Records of the whole run, where these are of a window: its largest speed counts, and what that makes of
+            the window's time, up to its largest displacement.
+        coarse: Records by the step.
+        fine: Records by half of it.
+        norm: What counts of the records.
+    """
+    at = layout.v[block].slice
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        _, i, j = np.intersect1d(coarse[0], fine[0], return_indices=True)  # Crossings are met at times of their own.
+        q, v, q_half, v_half = coarse[1][i], coarse[2][i], fine[1][j], fine[2][j]
+        moved = difference(layout.segments, np.broadcast_to(q_half[0], q_half.shape), q_half)[:, at]
+        apart = difference(layout.segments, q_half, q)[:, at]
+        fastest, faster = norm(v_half[:, at]), norm((v - v_half)[:, at])
+        span = float(fine[0][-1] - fine[0][0])
+        reach = norm(moved)
+        if run is not None:
+            largest = norm(run[2][:, at])
+            # What a motion grows to later is no measure of it, nor of its start where it grows without bounds.
+            by_then = max(fastest, norm(run[2][: np.searchsorted(run[0], fine[0][-1], side="right"), at]))
+            if fine[0][0] > run[0][0] or largest > EXPLODED * by_then:
+                largest = by_then
+            wide = norm(difference(layout.segments, np.broadcast_to(run[1][0], run[1].shape), run[1])[:, at])
+            # What goes to and fro comes no farther, however long the window is.
+            fastest, reach = max(fastest, largest), max(reach, min(largest * span, wide))
+        return max(faster / max(fastest, STILL), norm(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS)

@@ -1,0 +1,102 @@
+/* Runs that are stepped by hand: symofros_hand.h. */
+
+/* Inputs u that are held from the present state on. What was evaluated there with others is not valid any more. */
+static void sym_hold(sym_run *r, const int32_t *held, int32_t n, const double *u, double *constant) {
+    int32_t i, changed = 0;
+    for (i = 0; i < n; ++i) changed |= constant[held[i]] != u[i];
+    if (!changed) return;
+    for (i = 0; i < n; ++i) constant[held[i]] = u[i];
+    r->slope_valid = r->jacobian_valid = 0;
+    r->system->held_anew = 1;
+}
+
+/* Note the inputs from the present state on. */
+static void sym_hand_note(sym_hand *hand) {
+    const int32_t nu = hand->run->system->nu;
+    hand->noted_t[hand->n] = hand->run->t;
+    memcpy(hand->noted_u + hand->n * nu, hand->u, (size_t)nu * sizeof *hand->u);
+    ++hand->n;
+}
+
+/* Whether the mark that is wanted is reached. */
+static int32_t sym_hand_is_there(const sym_hand *hand) {
+    const sym_run *r = hand->run;
+    return r->adaptive ? r->t >= r->t_end : r->steps >= hand->target;
+}
+
+SYM_EXPORT int32_t sym_hand_go_on(sym_hand *hand) {
+    sym_run *r = hand->run;
+    int32_t status = SYM_RUNNING;
+    if (hand->status != SYM_RUNNING) return hand->status;
+    if (r->adaptive) r->t_end = sym_multiple(r->t0 + (double)hand->target * hand->dt, hand->dt);
+    while (status == SYM_RUNNING && !sym_hand_is_there(hand))
+        status = sym_run_advance(r, r->adaptive ? INT32_MAX : hand->target - r->steps);
+    if (status == SYM_FINISHED) status = SYM_RUNNING;
+    if (status == SYM_RECORDS_FULL) return status;
+    hand->status = status;
+    if (status != SYM_RUNNING) return status;
+    hand->mark = hand->target;
+    return hand->n >= hand->capacity || r->n_event_records > 0 ? SYM_RECORDS_FULL : SYM_RUNNING;
+}
+
+SYM_EXPORT int32_t sym_hand_step(sym_hand *hand, const double *u, int64_t steps) {
+    int32_t i;
+    if (hand->status != SYM_RUNNING) return SYM_CALLBACK_FAILED;
+    if (u != NULL) {
+        double zero = 0.0;
+        for (i = 0; i < hand->n_held; ++i) zero += 0.0 * u[i];
+        if (zero != 0.0) return SYM_CALLBACK_FAILED;
+        sym_hold(hand->run, hand->held, hand->n_held, u, hand->u);
+    }
+    if (!hand->started || hand->run->system->held_anew) sym_hand_note(hand);
+    if (!hand->started) {
+        hand->started = 1;
+        hand->status = sym_run_start(hand->run);
+    }
+    hand->target = hand->mark + steps;
+    return sym_hand_go_on(hand);
+}
+
+/* Active trajectories of a group hold other inputs. */
+static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const double *u) {
+    const int32_t nu = b->prototype->system->nu;
+    int32_t i;
+    for (i = 0; i < b->n_active; ++i) {
+        const int64_t k = b->trajectory_of_slot[i];
+        sym_system *s = b->systems + i;
+        sym_hold(b->runs + i, hand->held, hand->n_held, u + k * hand->n_held, hand->u + k * nu);
+        if (s->held_anew) memcpy(s->u, hand->u + k * nu, (size_t)nu * sizeof *s->u); /* evaluated once where they are constant */
+    }
+}
+
+/* A trajectory begins, or begins anew. */
+static void sym_hand_batch_begin(const sym_hand_batch *hand, sym_batch *b, int64_t k, const double *u) {
+    double *constant = hand->u + k * b->prototype->system->nu;
+    int32_t i;
+    for (i = 0; i < b->n_active && b->trajectory_of_slot[i] != k; ++i) {}
+    if (i < b->n_active) sym_batch_retire(b, i, 0);
+    for (i = 0; u != NULL && i < hand->n_held; ++i) constant[hand->held[i]] = u[k * hand->n_held + i];
+    b->next = k;
+    sym_batch_activate_next(b);
+}
+
+SYM_EXPORT void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
+    int64_t k = hand->first;
+    int32_t g, i;
+    for (g = 0; g < hand->n_groups; ++g) {
+        sym_batch *b = hand->groups + g;
+        if (u != NULL) sym_hand_batch_hold(hand, b, u);
+        for (; k < b->n; ++k) {
+            if (!hand->begins[k]) continue;
+            hand->begins[k] = 0;
+            sym_hand_batch_begin(hand, b, k, u);
+        }
+        b->next = b->n;
+        sym_batch_advance(b, steps);
+        for (i = 0; i < b->n_active; ++i) {
+            const sym_run *r = b->runs + i;
+            sym_batch_store_result(b, b->trajectory_of_slot[i], SYM_RUNNING, r->t, r->q, r->v);
+            b->steps[b->trajectory_of_slot[i]] = r->steps;
+        }
+    }
+}

@@ -1,0 +1,329 @@
+"""sf.Stepper: a model whose caller makes the steps, in a loop of its own."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from symofros.base.arguments import checked
+from symofros.base.arrays import Array, real_array
+from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.events import named_events
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.prescribed_motions import recorded_notes
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.trajectory import Found, Trajectory
+from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
+from symofros.simulation.simulate import prepare_run, run_to_its_end
+from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
+from symofros.simulation.stepping.fast_step import fast_step
+from symofros.simulation.stepping.status import Status
+
+_numbers = count()
+# Times of steps are known to the step up to here.
+MOST_STEPS = 1 << 53
+
+
+class Stepper:
+    """A model that is stepped by hand: for controllers, learning, sampling, hardware in the loop.
+
+    Steps are those of `simulate`, by the same C: with the same inputs held over the same fixed steps, q and v are the
+    same to the last bit. Adaptive methods choose their own steps from one multiple of `dt` to the next.
+
+        stepper = sf.Stepper(model, dt=1e-3)
+        stepper.reset(q0)
+        while stepper.t < 2.0 and stepper.step(-50.0 * stepper.q - 5.0 * stepper.v):
+            pass
+        print(stepper.outcome)
+
+    Args:
+        model: Compiled with backend "c".
+        u: Inputs that are not given by hand, as `simulate` takes them by name: numbers, formulas, Signals.
+        par: Run-time parameters (npar), or values by name; the model's own by default.
+        events: Name -> formula or Event. A terminal one ends the motion within a step; `reset` begins anew behind it.
+        options: Options of stepping and stabilisation; those of `SimulationOptions()` by default.
+        changes: Fields of SimulationOptions by name, which replace those of `options`: method="rk4", dt=1e-3, ...
+            `dt` is the time of one step, of adaptive methods too, 1e-3 s by default. What concerns recording, the end
+            of a run or its pace has no meaning here.
+
+    Attributes:
+        model: Model that is stepped.
+        dt: Time of one step [s].
+        inputs: Names of the inputs that `step` takes, in order.
+        q: Present configuration (nq), a view that steps change and that can't be written: copy it to keep it.
+        v: Present speeds (nv), as q.
+
+    Raises:
+        ShapeError: An array does not fit.
+        UnknownNameError: The name of an option, an input or in a formula is unknown.
+        SymofrosError: The options contradict each other or have no meaning here, or the method has no steps that can be
+            made by hand.
+    """
+
+    @checked
+    def __init__(
+        self,
+        model: Model,
+        *,
+        u: Mapping[str, Any] | None = None,
+        par: ArrayLike | None = None,
+        events: Mapping[str, Any] | None = None,
+        options: SimulationOptions | None = None,
+        **changes: Any,
+    ) -> None:
+        chosen = (options or SimulationOptions()).changed(changes)
+        self._given = {"u": u, "events": events, "options": chosen}
+        self.model = model = model.with_precision("double")
+        settings = settings_by_hand(model, chosen)
+        values = np.array(model.parameter_values)
+        if par is not None:
+            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
+        inputs = plan_inputs(model, u)
+        check_fit(model, settings, inputs)
+        prepare_run(model, settings)
+        self._kind = f"stepper {next(_numbers)} of '{model.record.name}'"
+        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
+        self._first = settings.t0
+        self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
+        self.inputs = tuple(model.names.u[i] for i in self._hand.held)
+        self.reset()
+        fast = fast_step(self._hand, self._made, self._plain_step)
+        if fast is not None:  # Found before the class's own, it costs a fifth of it.
+            vars(self)["step"] = fast
+
+    @checked
+    def reset(
+        self,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        t: float | None = None,
+        *,
+        par: ArrayLike | None = None,
+    ) -> None:
+        """Begin a motion at a state. Its inputs are those of the description until a step gives others.
+
+        Args:
+            q: Configuration (nq), or values by name, on the constraints (see `assemble`); the neutral one by default.
+            v: Speeds (nv), or values by name; rest by default.
+            t: Time [s]; that of the options, `t0`, by default.
+            par: Other run-time parameters (npar), or values by name; those before by default.
+
+        Raises:
+            ShapeError: An array does not fit, or a quaternion is no rotation.
+        """
+        model = self.model
+        configuration = first_configuration(model, q)
+        speeds = np.zeros(model.nv) if v is None else vector(model, "v", v, model.nv)
+        time = self._first if t is None else float(t)
+        values = None
+        if par is not None:
+            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
+        self._hand.reset(time, configuration, speeds, values)
+
+    def step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
+        """Make steps with inputs held over them.
+
+        Args:
+            u: Inputs (number of `inputs`), or values by name; those held before if not given.
+            steps: Number of steps.
+
+        Returns:
+            Whether the motion can go on. Where it can't, the state is the last good one, and `outcome` says why.
+
+        Raises:
+            ShapeError: The inputs do not fit or are not finite; no step is made then.
+            AssemblyError: The state of the reset does not meet the constraints.
+            SymofrosError: The motion has ended before, or the number of steps is none.
+        """
+        return self._plain_step(u, steps)
+
+    def _plain_step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
+        values = None if u is None else checked_inputs(self.model, self.inputs, u)
+        if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= MOST_STEPS:
+            rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
+            raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+        hand = self._hand
+        if not hand.started:
+            inputs = hand.begin(values)
+            start, settings = hand.start, replace(hand.settings, t0=hand.start.t)
+            try:
+                check_start(self.model, settings, start.q, start.v, inputs, self.par)
+            except SymofrosError:
+                hand.reset(start.t, start.q, start.v)
+                raise
+        elif hand.status != Status.RUNNING:
+            rule = "steps are made while step() returns True"
+            raise refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
+        return hand.step(values, int(steps)) == Status.RUNNING
+
+    def _made(self, status: int) -> bool:
+        """After a fast call that did not just make its steps."""
+        return self._hand.settled(status) == Status.RUNNING
+
+    @property
+    def par(self) -> Array:
+        """Run-time parameters (npar)."""
+        return self._hand.run.par
+
+    @property
+    def running(self) -> bool:
+        """Whether the motion can go on."""
+        return self._hand.status == Status.RUNNING
+
+    @property
+    def t(self) -> float:
+        """Present time [s]."""
+        return self._hand.t
+
+    @property
+    def u(self) -> Array:
+        """Present inputs (nu), as held; laws at the present state."""
+        return self._hand.inputs_now()
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (nv) at the present state and inputs, constraints kept, without stabilising terms."""
+        return self._dynamics()[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (nc), as the accelerations."""
+        return self._dynamics()[1]
+
+    def _dynamics(self) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
+
+    @property
+    def kinetic_energy(self) -> float:
+        """[J]."""
+        return float(self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par))
+
+    @property
+    def potential_energy(self) -> float:
+        """[J]."""
+        return float(self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t))
+
+    @property
+    def energy(self) -> float:
+        """Kinetic and potential energy together [J]."""
+        return self.kinetic_energy + self.potential_energy
+
+    @property
+    def events(self) -> tuple[Found, ...]:
+        """Events met since the reset, in the order of time."""
+        known = self._hand.run.events
+        return tuple(Found(known[which].name, t, q, v) for which, t, q, v in self._hand.events)
+
+    def trajectory(self) -> Trajectory:
+        """The motion since the reset as `simulate` gives it: it is made once more, with the inputs of its steps.
+
+        States are recorded at each step. Of a motion with more than 2^18 changes of inputs the first part is left out.
+        """
+        stepper, settings = self._hand.once_more()
+        start = self._hand.start
+        made = run_to_its_end(stepper, settings, start.q, start.v)
+        notes = [*made.outcome.notes, *recorded_notes(self.model.record, made.t, made.u)]
+        if start.forgotten:
+            notes.append(
+                f"what was before t = {start.t:.6g} s was not looked at: inputs are kept of {MOST_NOTED} changes"
+            )
+        return replace(made, outcome=replace(made.outcome, notes=tuple(notes)))
+
+    @property
+    def outcome(self) -> Outcome:
+        """Why the motion ended, or what is worth knowing of it: what `simulate` says of the same motion.
+
+        The motion is made once more for it, and examined, at each call: for the end of a loop, not within it.
+        """
+        return self.trajectory().outcome
+
+    def save(self) -> HandState:
+        """The present state, with all that later steps depend on, and what was noted of the motion so far."""
+        return self._hand.save(self._kind)
+
+    def restore(self, state: HandState) -> None:
+        """Go on from a saved state, bit by bit as from there.
+
+        Args:
+            state: What `save` gave, of this stepper or of a copy.
+
+        Raises:
+            SymofrosError: It is none, or of a stepper that was made otherwise.
+        """
+        if not isinstance(state, HandState) or state.owner != self._kind:
+            found = f"a state of {state.owner}" if isinstance(state, HandState) else repr(state)[:60]
+            rule = "a state goes back to the stepper that it was saved of, or to a copy"
+            raise refusal("restore: no state of this stepper", found, rule, "make other steppers by copy()")
+        self._hand.restore(state)
+
+    def copy(self) -> Stepper:
+        """Another stepper in the same state, which shares nothing that steps change."""
+        other = Stepper(self.model, par=self.par, **self._given)
+        other._kind = self._kind
+        other.restore(self.save())
+        return other
+
+
+def fixed_inputs(u: Mapping[str, Any] | None) -> set[str]:
+    """Names of the inputs that are numbers for good."""
+    return {name for name, value in (u or {}).items() if isinstance(value, (int, float, np.floating))}
+
+
+def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0) -> Array:
+    """Inputs that are given by hand, checked.
+
+    Args:
+        model: Model that is stepped.
+        names: Their names.
+        u: Inputs (number of names), or values by name.
+        n: Number of motions that may have a row each; 0: one motion.
+
+    Raises:
+        ShapeError: They do not fit, or are not finite.
+    """
+    if isinstance(u, Mapping) and len(names) < model.nu:
+        u = [u.get(name, 0.0) for name in names]
+    array, shape = real_array(model.by_name("u", u)), (len(names),)
+    fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
+    if array is not None and fits and np.isfinite(array).all():
+        return np.ascontiguousarray(array)
+    found = f"{type(u).__name__} {u!r:.60}"
+    if array is not None:
+        found = "a number that is not finite" if fits else str(array.shape)
+    listed = ", ".join(names[:8]) or "there are no inputs"
+    rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
+    raise ShapeError(
+        Problem(f"model '{model.record.name}': u does not fit", found, rule, "one number for each of `inputs`")
+    )
+
+
+def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
+    """Settings of a run without an end; options that speak of one, or of records, are refused."""
+    usual = SimulationOptions()
+    for name in ("output", "every", "max_steps", "realtime"):
+        value = getattr(options, name)
+        if value is not None and value != getattr(usual, name):
+            rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
+            raise refusal(f"stepper: an option of whole runs, '{name}'", repr(value)[:60], rule, "leave it out")
+    settings = Settings.of(model, options, options.t0)
+    if settings.method.family.multistep:
+        raise refusal(
+            f"stepper: '{options.method}' has no steps to be made by hand",
+            "a method of SUNDIALS, with a history of steps",
+            "inputs that change at each step would cut its history",
+            "method='rodas4' for stiff models, or a method of fixed steps",
+        )
+    return replace(settings, dt=options.dt or 1e-3, every=0, t_end=math.inf)
+
+
+def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
+    """What is not done, in four parts."""
+    return SymofrosError(Problem(what, found, rule, remedy))

@@ -1,0 +1,277 @@
+"""sf.Steppers: many motions of a model whose caller makes the steps, together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import count
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.base.arguments import checked
+from symofros.base.arrays import Array, real_array
+from symofros.errors import Problem, ShapeError
+from symofros.runtime.manifold import at_unit_length
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.trajectories import Trajectories
+from symofros.simulation.settings import check_fit
+from symofros.simulation.simulate import prepare_run
+from symofros.simulation.simulate_batch import starts_off
+from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, refusal, settings_by_hand
+from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
+from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.status import Status
+
+_numbers = count()
+
+
+class Steppers:
+    """Motions of one model that are stepped by hand together, several in the lanes of a vector, shared by threads.
+
+    Each takes the steps that `simulate_batch` would take, and does not depend on the others. One that ends stays at its
+    last good state, and the others go on.
+
+        steppers = sf.Steppers(model, 1024, dt=1e-3)
+        steppers.reset(q0)
+        for _ in range(100):
+            steppers.step(policy(steppers.q, steppers.v))
+
+    Args:
+        model: Compiled with backend "c".
+        n: Number of motions.
+        u: Inputs that are not given by hand, as `simulate` takes them by name: numbers, formulas, Signals.
+        par: Run-time parameters (npar), or of each motion (n, npar); the model's own by default.
+        threads: Number of threads; by default that of the model (`Model.with_threads`).
+        options: Options of stepping and stabilisation; those of `SimulationOptions()` by default.
+        changes: Fields of SimulationOptions by name, which replace those of `options`; methods are explicit, their
+            steps fixed.
+
+    Attributes:
+        model: Model that is stepped.
+        par: Run-time parameters, as given.
+        dt: Length of a step [s].
+        inputs: Names of the inputs that `step` takes, in order.
+        t: Present times (n) [s], a view that steps change: copy it to keep it.
+        q: Present configurations (n, nq), as t.
+        v: Present speeds (n, nv), as t.
+
+    Raises:
+        ShapeError: An array does not fit.
+        UnknownNameError: The name of an option, an input or in a formula is unknown.
+        SymofrosError: The options contradict each other or have no meaning here, or the method is none of batches.
+    """
+
+    @checked
+    def __init__(
+        self,
+        model: Model,
+        n: int,
+        *,
+        u: Mapping[str, Any] | None = None,
+        par: ArrayLike | None = None,
+        threads: int | None = None,
+        options: SimulationOptions | None = None,
+        **changes: Any,
+    ) -> None:
+        chosen = (options or SimulationOptions()).changed(changes)
+        settings = settings_by_hand(model, chosen)
+        if not settings.method.family.batched or settings.adaptive:
+            explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
+            what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
+            raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
+        threads = model.threads if threads is None else threads
+        for name, number in (("n", n), ("threads", threads)):
+            if not 1 <= number < _MOST:
+                raise refusal(f"steppers: {name} is no number of them", str(number), f"1 <= {name}", "give one or more")
+        self.model, self.n, self.dt = model, n, settings.dt
+        self.par = model.parameter_values if par is None else model.checked_parameters(par)
+        if self.par.shape not in ((model.npar,), (n, model.npar)):
+            raise self._misfit("par", self.par, model.npar, "parameters of each motion, or one set for all")
+        plan = plan_inputs(model, u)
+        check_fit(model, settings, plan)
+        prepare_run(model, settings)
+        self._settings, self._kind = settings, f"steppers {next(_numbers)} of '{model.record.name}'"
+        rows = np.atleast_2d(np.array(self.par))
+        self._hand = HandBatch(model, settings, plan, fixed_inputs(u), rows, n, threads)
+        self.inputs = tuple(model.names.u[i] for i in self._hand.held)
+        results = self._hand.results
+        self.t, self.q, self.v, self._status = (
+            _read_only(array) for array in (results.t, results.q, results.v, results.status)
+        )
+        self.reset()
+
+    @checked
+    def reset(
+        self,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
+        t: float | None = None,
+        *,
+        par: ArrayLike | None = None,
+        which: ArrayLike | None = None,
+    ) -> None:
+        """Begin motions at states, their inputs those of the description until a step gives others.
+
+        Args:
+            q: Configurations (n, nq), or (nq) for all, on the constraints; the neutral one by default.
+            v: Speeds (n, nv), or (nv) for all; rest by default.
+            t: Time [s]; that of the options, `t0`, by default.
+            par: Other run-time parameters (n, npar), of steppers that were made with one set each.
+            which: Motions that begin anew, of bool (n); all by default. The rows of the others count for nothing.
+
+        Raises:
+            ShapeError: An array does not fit, or a quaternion is no rotation.
+            SymofrosError: Parameters of each motion where all share one set.
+        """
+        model, chosen = self.model, self._chosen(which)
+        first = self._rows("q", model.neutral() if q is None else q, model.nq)[chosen]
+        speeds = self._rows("v", np.zeros(model.nv) if v is None else v, model.nv)[chosen]
+        first = at_unit_length(model.record, "q", first, "q")
+        values = None
+        if par is not None:
+            if self.par.ndim == 1:
+                rule = "steppers have one set of parameters for all, or one each"
+                raise refusal("reset: parameters", "one set for all", rule, "make them with par of shape (n, npar)")
+            values = np.asarray(model.checked_parameters(self._rows("par", par, model.npar)[chosen]))
+            self.par = np.array(self.par)
+            self.par[chosen] = values
+        time = np.full(len(chosen), self._settings.t0 if t is None else float(t))
+        self._hand.reset(chosen, time, first, speeds, values)
+
+    @checked
+    def step(self, u: ArrayLike | None = None, steps: int = 1) -> npt.NDArray[np.bool_]:
+        """Make steps with inputs held over them.
+
+        Args:
+            u: Inputs (n, number of `inputs`), or one row for all; those held before if not given.
+            steps: Number of steps.
+
+        Returns:
+            Which motions (n) can go on. Of others the state is the last good one; `outcome` says why.
+
+        Raises:
+            ShapeError: The inputs do not fit or are not finite; no step is made then.
+            SymofrosError: The number of steps is none.
+        """
+        hand, size = self._hand, len(self.inputs)
+        values = None
+        if u is not None:
+            values = checked_inputs(self.model, self.inputs, u, self.n)
+            values = np.ascontiguousarray(np.broadcast_to(values, (self.n, size)))
+        if not 1 <= steps <= MOST_STEPS:
+            rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
+            raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+        if self.model.nc and hand.begins.any():
+            self._check_starts(values)
+        hand.step(values, steps)
+        return self.running
+
+    def _check_starts(self, u: Array | None) -> None:
+        """Motions that would begin off the constraints end before."""
+        hand = self._hand
+        chosen = np.flatnonzero(hand.begins)
+        inputs, par = hand.inputs_at_start(chosen, u), self.par if self.par.ndim == 1 else self.par[chosen]
+        off = starts_off(self.model, self._settings, hand.q0[chosen], hand.v0[chosen], inputs, par, hand.t0[chosen])
+        hand.results.status[chosen[off]] = Status.PROJECTION_FAILED
+
+    @property
+    def running(self) -> npt.NDArray[np.bool_]:
+        """Which motions (n) can go on."""
+        return np.asarray(self._status == Status.RUNNING)
+
+    @property
+    def u(self) -> Array:
+        """Inputs that are held (n, nu)."""
+        return self._hand.constant.copy()
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (n, nv) at the present states and held inputs, constraints kept."""
+        return self._dynamics()[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (n, nc), as the accelerations."""
+        return self._dynamics()[1]
+
+    def _dynamics(self) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
+
+    @property
+    def energy(self) -> Array:
+        """Kinetic and potential energy together (n) [J]."""
+        kinetic = self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par)
+        return np.asarray(kinetic + self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t))
+
+    @checked
+    def outcome(self, i: int) -> Outcome:
+        """Why motion i ended, or what is worth knowing of its present state; its steps are not examined."""
+        results = self._hand.results
+        status = np.where(results.status == Status.RUNNING, Status.FINISHED, results.status)
+        samples = (np.zeros((self.n, 0, size)) for size in (self.model.nq, self.model.nv, self.model.nu))
+        reached = (results.t, results.q, results.v, status, results.steps, results.rejected)
+        beams = results.beam_errors, results.beam_times, results.beam_coordinates
+        method = self._settings.method.name
+        ends = Trajectories(self.model, np.zeros(0), *samples, self.par, *reached, *beams, method, 0.0, 0.0)
+        ended = ends.outcome(i)
+        note = "the steps of motions that are stepped together are not examined: an sf.Stepper says more of one"
+        return replace(ended, notes=(*ended.notes, note))
+
+    def save(self) -> BatchState:
+        """The present states, with all that later steps depend on."""
+        return self._hand.save(self._kind)
+
+    def restore(self, state: BatchState) -> None:
+        """Go on from saved states, bit by bit as from there.
+
+        Args:
+            state: What `save` gave, of these steppers.
+
+        Raises:
+            SymofrosError: It is none, or of others.
+        """
+        if not isinstance(state, BatchState) or state.owner != self._kind:
+            found = f"a state of {state.owner}" if isinstance(state, BatchState) else repr(state)[:60]
+            rule = "a state goes back to the steppers that it was saved of"
+            raise refusal("restore: no state of these steppers", found, rule, "reset others at its t, q, v")
+        self._hand.restore(state)
+
+    def _rows(self, name: str, values: ArrayLike, size: int) -> Array:
+        array = real_array(self.model.by_name(name, values))
+        if array is None or array.shape not in ((size,), (self.n, size)) or not np.isfinite(array).all():
+            raise self._misfit(name, values if array is None else array, size, "one row a motion, or one for all")
+        return np.broadcast_to(array, (self.n, size))
+
+    def _chosen(self, which: ArrayLike | None) -> npt.NDArray[np.intp]:
+        if which is None:
+            return np.arange(self.n)
+        mask = np.asarray(which)
+        if mask.dtype != bool or mask.shape != (self.n,):
+            found = f"{mask.dtype} of shape {mask.shape}"
+            raise refusal("reset: which does not fit", found, f"one bool for each of {self.n}", "leave it out for all")
+        return np.flatnonzero(mask)
+
+    def _misfit(self, name: str, found: Any, size: int, remedy: str) -> ShapeError:
+        what = f"model '{self.model.record.name}': {name} does not fit"
+        fault = f"{type(found).__name__} {found!r:.60}"
+        if isinstance(found, np.ndarray):
+            fits = found.shape in ((size,), (self.n, size))
+            fault = "a number that is not finite" if fits else str(found.shape)
+        rule = f"{name} is finite, of shape ({size},) or ({self.n}, {size})"
+        return ShapeError(Problem(what, fault, rule, remedy))
+
+
+# More than any memory holds.
+_MOST = 1 << 31
+
+
+def _read_only(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    view = array.view()
+    view.flags.writeable = False
+    return view

@@ -1,0 +1,150 @@
+"""Many motions whose caller makes the steps: native/stepping/by_hand.c on groups of the batch stepper's slots."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass, fields
+from functools import partial
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.base.arrays import Array
+from symofros.runtime.calls import together
+from symofros.runtime.model import Model
+from symofros.simulation.batch_inputs import BatchInputs
+from symofros.simulation.inputs import InputPlan
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates
+from symofros.simulation.stepping.status import Status
+
+
+@dataclass(frozen=True)
+class BatchState:
+    """All that the following steps of many motions depend on.
+
+    Attributes:
+        owner: What it is a state of: that takes it alone.
+        t: Times (n) [s].
+        q: Configurations (n, nq).
+        v: Speeds (n, nv).
+        arrays: The arrays that C writes.
+    """
+
+    owner: object
+    t: Array
+    q: Array
+    v: Array
+    arrays: tuple[npt.NDArray[Any], ...]
+
+
+class _Part(BatchStepper):
+    """The motions of one thread, in groups of as many slots."""
+
+    def __init__(
+        self, shared: HandBatch, model: Model, settings: Settings, initial: InitialStates, first: int, end: int
+    ) -> None:
+        self._shared, self._first, self._end = shared, first, end
+        super().__init__(model, settings, initial, shared.results, first, 1)
+
+    def _lay_out(self) -> None:
+        batch, shared, ffi = self._batch, self._shared, self.single.ffi
+        bounds = [*range(self._first, self._end, SLOTS), self._end]
+        batch.t0, batch.max_steps = self._memory.shared(shared.t0), 0
+        self.groups = groups = ffi.new("sym_batch[]", len(bounds) - 1)
+        self.memory = [self._memory.raw(groups, "sym_batch", len(groups))]
+        for i, (first, end) in enumerate(zip(bounds, bounds[1:], strict=False)):
+            groups[i] = batch[0]
+            group = groups[i]
+            group.next, group.stride, group.n, group.slots = end, 1, end, max(2, end - first)
+            self.memory.append(self._start(ffi.addressof(group)))
+        self.hand = hand = ffi.new("sym_hand_batch *")
+        hand.groups, hand.n_groups = groups, len(groups)
+        hand.n_held, hand.held = len(shared.held), self._memory.own("int32_t[]", list(shared.held))
+        hand.first, hand.n = self._first, self._end
+        hand.u, hand.begins = self._memory.shared(shared.constant), self._memory.shared(shared.begins)
+
+    def step(self, u: Any, steps: int) -> None:
+        """Make steps of each motion that can go on."""
+        self._native.sym_hand_batch_step(self.hand, u, steps)
+
+
+class HandBatch:
+    """Motions that are stepped by hand together.
+
+    Args:
+        model: Compiled to C.
+        settings: Settings of each; fixed steps, no end.
+        plan: Inputs; what neither signals nor formulas give is given by hand,
+        fixed: unless it is one of these, by name.
+        par: Run-time parameters (n, npar), or (1, npar) for all.
+        n: Number of motions.
+        threads: Number of threads that share them.
+
+    Attributes:
+        results: Where C writes times, states and statuses.
+        constant: Inputs that are held (n, nu).
+        t0: First times (n) [s].
+        q0: First configurations (n, nq), v0 speeds (n, nv), of those that begin at the next step.
+        begins: Which motions (n) do.
+    """
+
+    def __init__(
+        self, model: Model, settings: Settings, plan: InputPlan, fixed: Container[str], par: Array, n: int, threads: int
+    ) -> None:
+        given = {*plan.formulas, *(index for index, *_ in plan.signals)}
+        self.held = tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
+        self.results = BatchResults.empty(model, n, 0)
+        self.q0, self.v0, self.t0 = np.tile(model.neutral(), (n, 1)), np.zeros((n, model.nv)), np.zeros(n)
+        self.default, self.constant = plan.constant.copy(), np.tile(plan.constant, (n, 1))
+        self.begins = np.zeros(n, dtype=np.int32)
+        inputs = BatchInputs(plan, self.constant, (0,) * len(plan.signals))
+        initial = InitialStates(self.q0, self.v0, par, inputs, n, settings.t0)
+        groups = -(-n // SLOTS)
+        count = max(1, min(threads, groups))
+        bounds = [min(n, SLOTS * (groups * i // count)) for i in range(count)] + [n]
+        self._parts = [_Part(self, model, settings, initial, *of) for of in zip(bounds, bounds[1:], strict=False)]
+        self._written = [getattr(self.results, field.name) for field in fields(self.results)]
+        self._written += [self.constant, self.t0, self.q0, self.v0, self.begins]
+        self._written += [array for part in self._parts for array in part.memory]
+
+    def reset(self, chosen: npt.NDArray[np.intp], t: Array, q: Array, v: Array, par: Array | None) -> None:
+        """Motions of these numbers begin anew at the next step, their inputs those of the description."""
+        self.t0[chosen], self.q0[chosen], self.v0[chosen] = t, q, v
+        results = self.results
+        results.t[chosen], results.q[chosen], results.v[chosen] = t, q, v
+        results.status[chosen], results.steps[chosen], self.begins[chosen] = Status.RUNNING, 0, 1
+        self.constant[chosen] = self.default
+        for part in self._parts if par is not None else ():
+            part.set_parameters(chosen, par)
+
+    def inputs_at_start(self, chosen: npt.NDArray[np.intp], u: Array | None) -> Array:
+        """All inputs (m, nu) of motions of these numbers at their first states, given those that are held (n, ...)."""
+        single, constant = self._parts[0].single, self.constant[chosen]
+        if u is not None:
+            constant[:, list(self.held)] = u[chosen]
+        view = single.memory.view(single.system.u_constant, len(self.default))
+        inputs = np.empty_like(constant)
+        for row, k in enumerate(chosen):
+            view[:] = constant[row]
+            inputs[row] = single.inputs_at(self.t0[k], self.q0[k], self.v0[k])
+        view[:] = self.default
+        return inputs
+
+    def step(self, u: Array | None, steps: int) -> None:
+        """Make steps, each thread those of its motions."""
+        ffi = self._parts[0].single.ffi
+        pointer = ffi.NULL if u is None else ffi.from_buffer("double[]", u)
+        together([partial(part.step, pointer, steps) for part in self._parts])
+
+    def save(self, owner: object) -> BatchState:
+        """All that C has written."""
+        results = self.results
+        arrays = tuple(array.copy() for array in self._written)
+        return BatchState(owner, results.t.copy(), results.q.copy(), results.v.copy(), arrays)
+
+    def restore(self, state: BatchState) -> None:
+        """Go on from a state that `save` gave, bit by bit as from there."""
+        for to, array in zip(self._written, state.arrays, strict=True):
+            to[...] = array

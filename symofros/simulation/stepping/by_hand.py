@@ -1,0 +1,323 @@
+"""One run whose caller makes the steps: native/stepping/by_hand.c, its state kept and put back, its inputs noted."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from symofros.base.arrays import Array
+from symofros.native import native_number
+from symofros.runtime.calls import constants
+from symofros.runtime.model import Model
+from symofros.simulation.events import Event
+from symofros.simulation.inputs import InputPlan
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
+from symofros.simulation.stepping.time_slice import TimeSlice
+
+# Changes of inputs that C notes between two calls that take them, and those that are kept of one run.
+_NOTED, MOST_NOTED = 256, 1 << 18
+# Steps that adaptive methods look ahead for instants of formulas of time; of those of packages as well.
+_AHEAD = native_number("stepping/instance.c", "SYM_AHEAD")
+# Steps of one call between looks at Ctrl-C.
+_AT_ONCE = 4096
+
+
+class Noted(NamedTuple):
+    """Inputs by when they changed, a chain that later notes never alter.
+
+    Attributes:
+        before: Earlier notes.
+        t: Times (n) [s].
+        u: Inputs from then on (n, nu).
+        count: Number of all, the earlier ones included.
+    """
+
+    before: Noted | None
+    t: Array
+    u: Array
+    count: int
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a run that is made once more begins.
+
+    Attributes:
+        t: Time [s].
+        q: Configuration (nq).
+        v: Speeds (nv).
+        forgotten: Whether the run began before, and its inputs until then are not kept any more.
+    """
+
+    t: float
+    q: Array
+    v: Array
+    forgotten: bool = False
+
+
+Events = tuple[tuple[int, float, Array, Array], ...]
+
+
+@dataclass(frozen=True)
+class HandState:
+    """All that the following steps depend on, and what has been noted until then.
+
+    Attributes:
+        owner: What it is a state of: a stepper of the same takes it.
+        t: Time [s].
+        q: Configuration (nq).
+        v: Speeds (nv).
+        numbers: The numbers among the fields of the structs of C.
+        arrays: The arrays that C writes.
+        start: First state.
+        noted: Inputs since then.
+        events: Events met since then.
+        par: Run-time parameters (npar).
+    """
+
+    owner: object
+    t: float
+    q: Array
+    v: Array
+    numbers: tuple[npt.NDArray[np.uint8], ...]
+    arrays: tuple[npt.NDArray[Any], ...]
+    start: Start
+    noted: Noted | None
+    events: Events
+    par: Array
+
+
+class HandRun:
+    """One run that is stepped by hand.
+
+    Args:
+        model: Compiled to C.
+        settings: Settings of the run; its end counts for nothing.
+        inputs: Inputs; what neither signals nor formulas give is given by hand,
+        fixed: unless it is one of these, by name, which stay.
+        events: Zero crossings to locate.
+        par: Run-time parameters (npar).
+
+    Attributes:
+        run: The run.
+        hand: The sym_hand.
+        held: Indices of the inputs that are given by hand.
+        start: First state.
+        events: Events met: index, t, q, v.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        settings: Settings,
+        inputs: InputPlan,
+        fixed: Container[str],
+        events: Sequence[Event],
+        par: Array,
+    ) -> None:
+        self.settings = settings
+        self.run = run = Stepper(model, settings.method, inputs, events, par)
+        settings.apply(run)
+        run.reserve(1, 1)
+        given = {*inputs.formulas, *(index for index, *_ in inputs.signals)}
+        self.held = tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
+        memory = run.memory
+        self.hand = hand = run.ffi.new("sym_hand *")
+        hand.run, hand.u, hand.dt = run.run, run.system.u_constant, settings.dt
+        hand.n_held, hand.held = len(self.held), memory.own("int32_t[]", list(self.held))
+        hand.capacity = _NOTED
+        self._table = memory.table(hand, "noted_", _NOTED, t=1, u=model.nu)
+        self._constant = inputs.constant.copy()
+        self._numbers = [_Numbers(run, "sym_run", run.run), _Numbers(run, "sym_system", run.system)]
+        self._numbers.append(_Numbers(run, "sym_hand", hand))
+        self._arrays = list(self._written())
+        self.q, self.v = (memory.view(*of) for of in ((run.run.q, model.nq), (run.run.v, model.nv)))
+        self.q.flags.writeable = self.v.flags.writeable = False
+        self.events: list[tuple[int, float, Array, Array]] = []
+        self._known = self.settings.t_end
+        self.reset(0.0, model.neutral(), np.zeros(model.nv))
+
+    def _written(self) -> Iterator[npt.NDArray[Any]]:
+        """The arrays of C that steps write and read again."""
+        run, system, model, memory = self.run.run, self.run.system, self.run.model, self.run.memory
+        n_events, beams = len(self.run.events), self.run.beams
+        elastic = sum(beam.size for beam in beams)
+        sizes = {"q": model.nq, "v": model.nv, "work": self.run.native.sym_run_work_size(run)}
+        sizes |= {"event_values": constants()["SYM_EVENT_ROWS"] * n_events}
+        sizes |= {"beam_error": len(beams), "beam_t": len(beams), "beam_q": elastic}
+        sizes |= {"beam_reference": 2 * elastic, "beam_weight": model.nv}
+        for name, size in sizes.items():
+            yield memory.view(getattr(run, name), size)
+        yield memory.raw(run.beam_guard, "sym_beam_guard", len(beams))
+        for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
+            yield memory.view(getattr(system, name), size)
+
+    @property
+    def t(self) -> float:
+        """Present time [s]."""
+        return float(self.run.run.t)
+
+    @property
+    def status(self) -> int:
+        """RUNNING, or why no step is made any more."""
+        return int(self.hand.status) if self.hand.started else Status.RUNNING
+
+    @property
+    def started(self) -> bool:
+        """Whether a step was asked for since the last reset."""
+        return bool(self.hand.started)
+
+    def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
+        """Begin anew at a state, the inputs those of the description until a step gives others."""
+        if par is not None:
+            self.run.set_parameters(par)
+        run, hand, memory = self.run, self.hand, self.run.memory
+        run.set_state(q, v)
+        run.run.t = run.run.t0 = t
+        run.run.h = 0.0 if self.settings.adaptive else self.settings.dt
+        run.forget_bendings()
+        memory.view(hand.u, len(self._constant))[:] = self._constant
+        memory.view(run.system.u, len(self._constant))[:] = self._constant
+        run.system.in_step = run.system.held_anew = 0
+        # The first step is not made by the fast call: what comes before it is in Python.
+        hand.started, hand.status, hand.mark, hand.target, hand.n = 0, Status.RECORDS_FULL, 0, 0, 0
+        self.start, self._noted, self.events = Start(t, q.copy(), v.copy()), None, []
+        self._known = -np.inf
+
+    def begin(self, u: Array | None) -> Array:
+        """Before the first step: all inputs (nu) at the first state, given those that are held; steps are allowed."""
+        self.hand.status = Status.RUNNING
+        constant = self.run.memory.view(self.hand.u, len(self._constant))
+        kept, constant[list(self.held)] = constant.copy(), constant[list(self.held)] if u is None else u
+        with self.run.preserved():
+            inputs = self.run.inputs_at(self.t, self.start.q, self.start.v).copy()
+        constant[:] = kept
+        return inputs
+
+    def inputs_now(self) -> Array:
+        """All inputs at the present state (nu)."""
+        if len(self.held) == len(self._constant):
+            return self.run.memory.view(self.hand.u, len(self._constant)).copy()
+        t, q, v = self.run.state
+        with self.run.preserved():
+            return self.run.inputs_at(t, q, v).copy()
+
+    def step(self, u: Array | None, steps: int) -> int:
+        """Make steps, in portions that let Ctrl-C through; returns a Status."""
+        pointer = self.run.ffi.NULL if u is None else self.run.ffi.from_buffer("double[]", u)
+        time_slice = TimeSlice()
+        while True:
+            portion = min(steps, _AT_ONCE if self.settings.adaptive else time_slice.steps)
+            self._look_ahead(portion)
+            status = time_slice.measure(partial(self.run.native.sym_hand_step, self.hand, pointer), portion)
+            if status == Status.CALLBACK_FAILED:
+                return status
+            steps, pointer, status = steps - portion, self.run.ffi.NULL, self.settled(status)
+            if status != Status.RUNNING or steps <= 0:
+                return status
+
+    def settled(self, status: int) -> int:
+        """After steps with that status: events and notes are taken, what is left is made; returns a Status."""
+        while True:
+            if self.run.run.n_event_records:
+                self.events += self.run.take_events()
+            if self.hand.n >= _NOTED:
+                self._seal()
+            if status != Status.RECORDS_FULL:
+                return status
+            status = int(self.run.native.sym_hand_go_on(self.hand))
+
+    def _look_ahead(self, steps: int) -> None:
+        """Find the instants of formulas of time at which adaptive steps have to end."""
+        if not self.settings.adaptive:
+            return
+        t_end = self.start.t + (int(self.hand.mark) + steps) * self.settings.dt
+        if t_end > self._known:
+            self._known = max(t_end, self.t + _AHEAD * self.settings.dt)
+            self.run.set_stops(self.t, self._known)
+
+    def _seal(self) -> None:
+        """What C has noted joins the chain; of a run that changes its inputs too often the first part is forgotten."""
+        n = int(self.hand.n)
+        if not n:
+            return
+        t, u = (array[:n].copy() for array in self._table)
+        before = self._noted
+        self._noted, self.hand.n = Noted(before, t[:, 0], u, n + (before.count if before else 0)), 0
+        if self._noted.count > MOST_NOTED:
+            self.start = Start(self.t, self.q.copy(), self.v.copy(), forgotten=True)
+            self._noted = Noted(None, np.array([self.t]), u[-1:], 1)
+
+    def noted(self) -> tuple[Array, Array]:
+        """The inputs by when they changed: t (n) [s], u (n, nu)."""
+        self._seal()
+        parts, link = [], self._noted
+        while link is not None:
+            parts.append(link)
+            link = link.before
+        if not parts:
+            return np.array([self.start.t]), self.run.memory.view(self.hand.u, len(self._constant)).copy()[np.newaxis]
+        parts.reverse()
+        return np.concatenate([part.t for part in parts]), np.concatenate([part.u for part in parts])
+
+    def once_more(self) -> tuple[Stepper, Settings]:
+        """The same run as one of `simulate`, its inputs the noted ones: set up, and its settings."""
+        t, u = self.noted()
+        run, plan = self.run, self.run.inputs
+        signals = [(i, t, np.ascontiguousarray(u[:, i]), False) for i in self.held]
+        steps = int(self.hand.target) + (0 if self.status == Status.RUNNING else 1)
+        t_end = self.t if self.status == Status.RUNNING else self.start.t + steps * self.settings.dt
+        settings = replace(self.settings, t0=self.start.t, t_end=t_end, every=1)
+        if self.settings.adaptive:
+            settings = replace(settings, dt=0.0)
+        again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, run.par)
+        settings.apply(again)
+        return again, settings
+
+    def save(self, owner: object) -> HandState:
+        """The present state, and what has been noted."""
+        self._seal()
+        numbers = tuple(of.read() for of in self._numbers)
+        arrays = tuple(array.copy() for array in self._arrays)
+        q, v = arrays[0], arrays[1]
+        return HandState(
+            owner, self.t, q, v, numbers, arrays, self.start, self._noted, tuple(self.events), self.run.par
+        )
+
+    def restore(self, state: HandState) -> None:
+        """Go on from a state that `save` gave, bit by bit as from there."""
+        if state.par is not self.run.par:
+            self.run.set_parameters(state.par)
+        for of, numbers in zip(self._numbers, state.numbers, strict=True):
+            of.write(numbers)
+        for to, array in zip(self._arrays, state.arrays, strict=True):
+            to[...] = array
+        self.start, self._noted, self.events = state.start, state.noted, list(state.events)
+        self._known = -np.inf
+
+
+class _Numbers:
+    """The numbers among the fields of a struct of C: all but pointers and what is a struct itself."""
+
+    def __init__(self, run: Stepper, kind: str, struct: Any) -> None:
+        ffi = run.ffi
+        self._bytes = run.memory.raw(struct, kind, 1)
+        places = [
+            np.arange(field.offset, field.offset + ffi.sizeof(field.type))
+            for _, field in ffi.typeof(kind).fields
+            if field.type.kind in ("primitive", "enum")
+        ]
+        self._places = np.concatenate(places)
+
+    def read(self) -> npt.NDArray[np.uint8]:
+        return self._bytes[self._places]
+
+    def write(self, numbers: npt.NDArray[np.uint8]) -> None:
+        self._bytes[self._places] = numbers

@@ -1,0 +1,324 @@
+"""A model that is stepped by hand moves as `simulate` moves it, to the last bit, whatever is asked of it between."""
+
+from __future__ import annotations
+
+import copy
+import gc
+import weakref
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+import symofros.simulation.stepper as front
+import symofros.simulation.stepping.by_hand as by_hand
+from tests.models import GUESSES, compiled, sampled
+from tests.simulation.test_prescribed_motions import crane
+
+DT, STEPS = 5e-4, 12
+FIXED = ["rk4", "euler", "semi_implicit_euler", "implicit_euler", "generalized_alpha", "variational"]
+# Fixed steps by adaptive methods, whose last slope is the first of the next step (dopri5).
+BY_DT = ["dopri5", "dop853", "rodas4"]
+# A tree; ball and free joints; a free joint with beams on it; loops; beams; loops with a free joint.
+SCENES = ("cart_pole", "random_tree1", "slider_crank", "planar_robot", "space_arm", "free_boom", "delta")
+SAMPLE = ("cart_pole", "random_tree1", "slider_crank", "planar_robot")
+
+
+@cache
+def start(name: str) -> tuple[np.ndarray, np.ndarray]:
+    model, rng = compiled(name), np.random.default_rng(3)
+    if name in GUESSES:
+        posture = sf.assemble(model, GUESSES[name], 0.3 * rng.standard_normal(model.nv))
+        return posture.q, posture.v
+    q, v = model.random_state(rng)
+    return (model.neutral(), 1e-2 * v) if model.beams() else (q, v)
+
+
+def pushes(model: sf.Model, steps: int = STEPS) -> np.ndarray:
+    """Inputs of each step: some stay as they were, for which a method may go on with what it knows."""
+    u = np.random.default_rng(5).standard_normal((steps, model.nu))
+    u[3:5], u[8] = u[2], u[7]
+    return u
+
+
+def held(model: sf.Model, u: np.ndarray, t0: float = 0.0) -> sf.Signal:
+    return sf.Signal(t0 + DT * np.arange(len(u)), u, "hold")
+
+
+def assert_same_bits(stepper: sf.Stepper, run: sf.Trajectory, u: np.ndarray, first: int = 0) -> None:
+    for k in range(first, len(u)):
+        assert stepper.step(u[k])
+        np.testing.assert_array_equal(stepper.q, run.q[k + 1])
+        np.testing.assert_array_equal(stepper.v, run.v[k + 1])
+        assert stepper.t == run.t[k + 1]
+
+
+@pytest.mark.parametrize("name", sampled(SCENES, SAMPLE))
+@pytest.mark.parametrize("method", [*FIXED, *BY_DT])
+def test_each_step_has_the_bits_of_simulate(name: str, method: str) -> None:
+    model, (q, v) = compiled(name), start(name)
+    options: dict[str, Any] = {"method": method, "dt": DT} | ({"adaptive": False} if method in BY_DT else {})
+    if method == "variational" and model.nc:
+        with pytest.raises(sf.SymofrosError, match="trees of free motion only"):
+            sf.Stepper(model, **options)
+        return
+    u = pushes(model)
+    run = sf.simulate(model, q, v, DT * STEPS, u=held(model, u), **options)
+    assert run.outcome.ok, run.outcome
+    stepper = sf.Stepper(model, **options)
+    for t in (1.0, 0.0):  # Once more after a reset.
+        stepper.reset(q, v, t)
+        if t == 0.0:
+            assert_same_bits(stepper, run, u)
+        else:
+            assert stepper.step(u[0], 3)
+    assert stepper.trajectory().q.tobytes() == run.q.tobytes()
+    assert str(stepper.outcome) == str(run.outcome)
+
+
+@pytest.mark.parametrize("name", ["cart_pole", "random_tree1", "slider_crank"])
+@pytest.mark.parametrize("method", ["rk4", "generalized_alpha", "implicit_euler", "dopri5"])
+def test_a_saved_state_goes_on_to_the_same_bits(name: str, method: str) -> None:
+    model, u = compiled(name), pushes(compiled(name))
+    stepper = sf.Stepper(model, method=method, dt=DT, events={"turn": "sin(1000*t)"})
+    stepper.reset(*start(name))
+    for row in u[:5]:
+        assert stepper.step(row)
+    saved, ends = stepper.save(), []
+    other, again = stepper.copy(), copy.deepcopy(saved)
+    for one, state in ((stepper, None), (stepper, saved), (other, None), (other, again)):
+        if state is not None:
+            assert one.step(10.0 * u[0], 2)  # Somewhere else.
+            one.restore(state)
+            assert one.t == pytest.approx(5 * DT, abs=1e-15)
+        for row in u[5:]:
+            assert one.step(row)
+        met = [(event.t, *event.q, *event.v) for event in one.events]
+        ends.append((one.q.tobytes(), one.v.tobytes(), one.t, str(met), one.trajectory().u.tobytes()))
+    assert len(set(ends)) == 1 and stepper.events
+
+
+def test_copies_share_nothing_that_steps_change() -> None:
+    model = compiled("cart_pole")
+    stepper = sf.Stepper(model, dt=DT)
+    stepper.reset([0.1, 0.2], [0.3, 0.4])
+    assert stepper.step([1.0])
+    before = stepper.save()
+    other = stepper.copy()
+    assert other.step([5.0], 20)
+    assert stepper.t == DT and stepper.u == 1.0
+    np.testing.assert_array_equal(stepper.q, before.q)
+    with pytest.raises(ValueError, match="read-only"):
+        stepper.q[0] = 1.0
+    assert stepper.step([2.0], 7) and other.t == 21 * DT and stepper.trajectory().u[-1] == 2.0
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_events_are_found_at_the_same_instants(method: str) -> None:
+    model, u = compiled("cart_pole"), 20.0 * pushes(compiled("cart_pole"), 60)
+    events = {"cart": "x - 0.0305", "force": sf.Event("F - 3", "falling"), "end": sf.Event("q - 0.22", terminal=True)}
+    options: dict[str, Any] = {"dt": DT, "method": method, "events": events} | (
+        {"adaptive": False} if method != "rk4" else {}
+    )
+    run = sf.simulate(model, [0.03, 0.2], [0.1, 1.0], DT * 60, u=held(model, u), **options)
+    stepper = sf.Stepper(model, **options)
+    stepper.reset([0.03, 0.2], [0.1, 1.0])
+    on = [stepper.step(row) for row in u[: int(run.t[-1] / DT) + 1]]
+    assert run.outcome.kind == "event" and on[-1] is False and all(on[:-1]) and not stepper.running
+    assert [event.name for event in stepper.events] == [event.name for event in run.events]
+    assert [event.t for event in stepper.events] == [event.t for event in run.events]
+    np.testing.assert_array_equal(stepper.q, run.q[-1])
+    assert stepper.t == run.outcome.t and str(stepper.outcome) == str(run.outcome)
+    with pytest.raises(
+        sf.SymofrosError, match=r"the motion has ended[\s\S]*event 'end'[\s\S]*reset\(\) or restore\(\)"
+    ):
+        stepper.step(u[0])
+    stepper.reset(stepper.q, -stepper.v, stepper.t)  # A wall.
+    assert stepper.step(u[0]) and not stepper.events
+
+
+def test_more_events_in_a_call_than_are_kept_at_once() -> None:
+    model = compiled("cart_pole")
+    stepper = sf.Stepper(model, dt=DT, events={"beat": "sin(500*t)"})
+    stepper.step([0.0], 1200)
+    run = sf.simulate(model, t_end=stepper.t, dt=DT, events={"beat": "sin(500*t)"})
+    assert len(run.events) > 64
+    assert [event.t for event in stepper.events] == [event.t for event in run.events]
+
+
+def test_adaptive_methods_go_from_mark_to_mark() -> None:
+    model = compiled("double_pendulum")
+    q, v = start("double_pendulum")
+    stepper = sf.Stepper(model, method="dopri5", dt=0.05, rtol=1e-9, atol=1e-12)
+    stepper.reset(q, v, 1.0)
+    run = sf.simulate(model, q, v, 2.0, t0=1.0, method="dopri5", rtol=1e-9, atol=1e-12)
+    for k in range(1, 11):
+        assert stepper.step(steps=2) and stepper.t == pytest.approx(1.0 + 0.1 * k, abs=1e-12)
+    np.testing.assert_allclose(stepper.q, run.q[-1], atol=1e-7)
+    assert stepper.outcome.ok
+
+
+def test_laws_beside_inputs_by_hand() -> None:
+    model = crane()
+    law = {"th": "0.3*sin(2*t)"}
+    stepper = sf.Stepper(model, u=law, dt=DT)
+    run = sf.simulate(model, [0.2], [0.1], DT * STEPS, u=law, dt=DT)
+    stepper.reset([0.2], [0.1])
+    assert stepper.inputs == ()
+    assert_same_bits(stepper, run, np.zeros((STEPS, 0)))
+    np.testing.assert_array_equal(stepper.u, run.u[-1])
+    np.testing.assert_array_equal(stepper.a, run.a[-1])
+    arm = compiled("slider_crank")
+    free = sf.Stepper(arm, u={arm.names.u[0]: 3.0}, dt=DT)
+    free.reset(*start("slider_crank"))
+    assert free.inputs == () and free.step() and free.u[0] == 3.0
+
+
+@pytest.mark.parametrize("name", ["slider_crank", "planar_robot", "random_tree1"])
+def test_what_is_asked_on_demand_is_that_of_a_trajectory(name: str) -> None:
+    model, (q, v) = compiled(name), start(name)
+    u = pushes(model)[0]
+    stepper = sf.Stepper(model, dt=DT)
+    stepper.reset(q, v)
+    assert stepper.step(u, 4)
+    run = sf.simulate(model, q, v, 4 * DT, dt=DT, u=u)
+    np.testing.assert_array_equal(stepper.a, run.a[-1])
+    np.testing.assert_array_equal(stepper.lam, run.lam[-1])
+    assert (stepper.kinetic_energy, stepper.potential_energy) == (run.kinetic_energy[-1], run.potential_energy[-1])
+    assert stepper.energy == run.energy[-1]
+    before = stepper.q.copy(), stepper.v.copy()
+    assert stepper.step(u)  # Nothing that was asked has moved it.
+    run = sf.simulate(model, q, v, 5 * DT, dt=DT, u=u)
+    np.testing.assert_array_equal(stepper.q, run.q[-1])
+    assert not np.array_equal(before[0], stepper.q)
+
+
+def test_what_went_wrong_is_told_as_simulate_tells_it() -> None:
+    model = compiled("cart_pole")
+    stepper, push = sf.Stepper(model, dt=0.5, method="euler"), np.array([1e7])
+    while stepper.step(push):
+        push = 1e3 * push
+    run = stepper.trajectory()
+    assert run.outcome.kind == "diverged" and stepper.outcome == run.outcome
+    assert run.t[-1] == stepper.t and np.isfinite(stepper.q).all()
+
+
+def test_beams_beyond_their_theory_end_the_motion_and_a_reset_forgets_them() -> None:
+    model = compiled("flexible_pendulum")
+    stepper = sf.Stepper(model, dt=DT, beam_limit=0.002)
+    bent = np.zeros(model.nq)
+    bent[1] = 0.4
+    stepper.reset(bent)
+    assert not stepper.step() and stepper.outcome.kind == "beyond theory"
+    stepper.reset()
+    assert stepper.step(steps=3) and stepper.outcome.ok
+    assert max(bending.error for bending in stepper.trajectory().bendings) < 0.002
+
+
+def test_parameters_of_its_own() -> None:
+    model = compiled("double_pendulum")
+    par = 1.1 * np.asarray(model.parameter_values)
+    q, v = start("double_pendulum")
+    stepper = sf.Stepper(model, par=par, dt=DT)
+    stepper.reset(q, v)
+    assert stepper.step(steps=STEPS) and stepper.copy().par.tobytes() == par.tobytes()
+    run = sf.simulate(model, q, v, DT * STEPS, par=par, dt=DT)
+    np.testing.assert_array_equal(stepper.q, run.q[-1])
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "a method of SUNDIALS": ({"method": "cvode"}, r"no steps to be made by hand[\s\S]*found:[\s\S]*rule:[\s\S]*rodas4"),
+    "no method": ({"method": "rk5"}, r"no method 'rk5'[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"),
+    "no step": ({"dt": -1.0}, r"step is not positive[\s\S]*found:  -1.0[\s\S]*rule:[\s\S]*remedy:"),
+    "records": ({"output": 0.1}, r"'output'[\s\S]*found:  0.1[\s\S]*rule:[\s\S]*leave it out"),
+    "an end": ({"max_steps": 3}, r"'max_steps'[\s\S]*found:  3[\s\S]*rule:[\s\S]*leave it out"),
+    "a pace": ({"realtime": True}, r"'realtime'[\s\S]*found:  True[\s\S]*rule:[\s\S]*leave it out"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_options_without_a_meaning_are_refused(case: str) -> None:
+    options, said = REFUSED[case]
+    with pytest.raises(sf.SymofrosError, match=said):
+        sf.Stepper(compiled("cart_pole"), **options)
+
+
+WRONG_INPUTS = {
+    "shape": (np.zeros(2), r"found:  \(2,\)"),
+    "a number": (3.0, r"found:  \(\)"),
+    "not finite": (np.array([np.nan]), "found:  a number that is not finite"),
+    "infinite": (np.array([np.inf]), "found:  a number that is not finite"),
+    "words": ("abc", "found:  str"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_INPUTS)
+@pytest.mark.parametrize("first", [True, False])
+def test_inputs_that_do_not_fit_are_refused_and_no_step_is_made(case: str, first: bool) -> None:
+    u, found = WRONG_INPUTS[case]
+    stepper = sf.Stepper(compiled("cart_pole"), dt=DT)
+    if not first:
+        assert stepper.step([1.0])
+    before = stepper.save()
+    with pytest.raises(sf.ShapeError, match=rf"u does not fit[\s\S]*{found}[\s\S]*rule:[\s\S]*F[\s\S]*remedy:"):
+        stepper.step(u)
+    assert stepper.t == before.t and stepper.step([1.0])
+
+
+def test_other_misuse_is_refused() -> None:
+    stepper, other = (sf.Stepper(compiled("cart_pole"), dt=DT) for _ in range(2))
+    for steps in (0, -1, 1.0, True):
+        with pytest.raises(sf.SymofrosError, match=r"no number of steps[\s\S]*rule:[\s\S]*remedy:"):
+            stepper.step([0.0], steps)  # type: ignore[arg-type]
+    with pytest.raises(sf.SymofrosError, match=r"no state of this stepper[\s\S]*copy\(\)"):
+        stepper.restore(other.save())
+    with pytest.raises(sf.SymofrosError, match="no state of this stepper"):
+        stepper.restore(None)  # type: ignore[arg-type]
+    with pytest.raises(sf.SymofrosError, match="t is not a number"):
+        stepper.reset(t=np.nan)
+    with pytest.raises(sf.ShapeError, match="q0 does not fit"):
+        stepper.reset([0.0])
+    loop = sf.Stepper(compiled("slider_crank"), dt=DT)
+    loop.reset([0.5, 0.1, 0.4])
+    for _ in range(2):
+        with pytest.raises(sf.AssemblyError, match="first state does not keep"):
+            loop.step([0.0])
+
+
+@pytest.mark.parametrize("name", ["random_tree1", "slider_crank"])
+def test_without_the_extension_everything_is_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, u = compiled(name), pushes(compiled(name))
+    ends = []
+    for plain in (False, True):
+        if plain:
+            monkeypatch.setattr(front, "fast_step", lambda *_: None)
+        stepper = sf.Stepper(model, dt=DT)
+        assert ("step" in vars(stepper)) != plain
+        stepper.reset(*start(name))
+        for row in u:
+            assert stepper.step(row.astype(np.float64)) and stepper.step(list(row), steps=3) and stepper.step()
+        ends.append((stepper.q.tobytes(), stepper.v.tobytes(), stepper.t))
+    assert ends[0] == ends[1]
+
+
+def test_a_stepper_goes_when_nobody_has_it() -> None:
+    stepper = sf.Stepper(compiled("cart_pole"), dt=DT)
+    assert stepper.step([1.0])
+    gone = weakref.ref(stepper)
+    del stepper
+    gc.collect()
+    assert gone() is None
+
+
+def test_a_long_motion_keeps_its_last_inputs_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(by_hand, "MOST_NOTED", 600)
+    monkeypatch.setattr(front, "MOST_NOTED", 600)
+    model, u = compiled("cart_pole"), pushes(compiled("cart_pole"), 1000)
+    stepper = sf.Stepper(model, dt=DT)
+    for row in u:
+        assert stepper.step(row)
+    run = stepper.trajectory()
+    assert 0.0 < run.t[0] < stepper.t and any("was not looked at" in note for note in run.outcome.notes)
+    np.testing.assert_allclose(run.q[-1], stepper.q, rtol=1e-9, atol=1e-12)

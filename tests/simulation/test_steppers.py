@@ -1,0 +1,166 @@
+"""Many motions that are stepped by hand together move as `simulate_batch` moves them, to the last bit."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.models import compiled
+from tests.simulation.test_stepper import DT, start
+
+N = 70  # More than the slots of one group.
+
+
+def starts(name: str, n: int = N) -> tuple[np.ndarray, np.ndarray]:
+    q, v = start(name)
+    return np.tile(q, (n, 1)), np.linspace(0.5, 1.5, n)[:, np.newaxis] * v
+
+
+def pushes(model: sf.Model, steps: int, n: int = N) -> np.ndarray:
+    u = np.random.default_rng(5).standard_normal((n, steps, model.nu))
+    u[::2, 3] = u[::2, 2]
+    return u
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        ("cart_pole", "rk4"),
+        ("random_tree1", "dopri5"),
+        ("random_tree1", "semi_implicit_euler"),
+        ("slider_crank", "rk4"),
+        ("planar_robot", "rk4"),
+    ],
+)
+def test_each_step_has_the_bits_of_simulate_batch(name: str, method: str, threads: int) -> None:
+    model, (q, v) = compiled(name), starts(name)
+    u, options = pushes(model, 6), {"method": method, "dt": DT, "adaptive": False if method == "dopri5" else None}
+    runs = sf.simulate_batch(
+        model, q, v, 6 * DT, u=sf.Signal(DT * np.arange(6), u, "hold"), output=DT * np.arange(7), **options
+    )
+    assert runs.ok.all()
+    steppers = sf.Steppers(model, N, threads=threads, **options)
+    for _ in range(2):
+        steppers.reset(q, v)
+        np.testing.assert_array_equal(steppers.q, q)
+        for k in range(6):
+            assert steppers.step(u[:, k]).all()
+            np.testing.assert_array_equal(steppers.q, runs.q[:, k + 1])
+            np.testing.assert_array_equal(steppers.v, runs.v[:, k + 1])
+        np.testing.assert_array_equal(steppers.t, runs.t_last)
+
+
+def test_saved_states_go_on_to_the_same_bits() -> None:
+    model, (q, v) = compiled("random_tree1"), starts("random_tree1")
+    u = pushes(model, 6)
+    steppers = sf.Steppers(model, N, method="dopri5", adaptive=False, dt=DT)
+    steppers.reset(q, v)
+    for k in range(3):
+        steppers.step(u[:, k])
+    saved, ends = steppers.save(), []
+    for _ in range(2):
+        for k in range(3, 6):
+            steppers.step(u[:, k])
+        ends.append((steppers.q.tobytes(), steppers.v.tobytes(), steppers.t.tobytes()))
+        steppers.reset()
+        steppers.step()
+        steppers.restore(saved)
+        np.testing.assert_array_equal(steppers.q, saved.q)
+    assert ends[0] == ends[1]
+    with pytest.raises(sf.SymofrosError, match=r"no state of these steppers[\s\S]*remedy:"):
+        sf.Steppers(model, N, dt=DT).restore(saved)
+
+
+def test_some_begin_anew_with_parameters_of_their_own_and_the_others_go_on() -> None:
+    model, (q, v) = compiled("cart_pole"), starts("cart_pole")
+    par = np.tile(np.asarray(model.parameter_values), (N, 1)) * np.linspace(0.9, 1.1, N)[:, np.newaxis]
+    steppers = sf.Steppers(model, N, par=par, dt=DT)
+    steppers.reset(q, v)
+    u = np.ones((N, 1))
+    steppers.step(u, 4)
+    which = np.arange(N) % 3 == 0
+    steppers.reset(q, v, 1.0, par=1.2 * par, which=which)
+    np.testing.assert_array_equal(steppers.v[which], v[which])
+    steppers.step(u, 5)
+    new = sf.simulate_batch(model, q, v, 1.0 + 5 * DT, t0=1.0, u=u, par=1.2 * par, dt=DT)
+    old = sf.simulate_batch(model, q, v, 9 * DT, u=u, par=par, dt=DT)
+    for run, some in ((new, which), (old, ~which)):
+        np.testing.assert_array_equal(steppers.q[some], run.q_last[some])
+        np.testing.assert_array_equal(steppers.t[some], run.t_last[some])
+    np.testing.assert_array_equal(steppers.par[which], 1.2 * par[which])
+    np.testing.assert_allclose(
+        steppers.energy[which],
+        steppers.model.kinetic_energy(steppers.q, steppers.v, par=steppers.par)[which]
+        + steppers.model.potential_energy(steppers.q, par=steppers.par)[which],
+    )
+
+
+def test_one_that_ends_stays_and_begins_anew() -> None:
+    model, (q, v) = compiled("cart_pole"), starts("cart_pole")
+    steppers = sf.Steppers(model, N, dt=DT)
+    steppers.reset(q, v)
+    u = np.zeros((N, 1))
+    u[[2, 66]] = 1e120
+    on = steppers.step(u, 3)
+    assert np.flatnonzero(~on).tolist() == [2, 66] and steppers.outcome(2).kind == "diverged"
+    assert any("not examined" in note for note in steppers.outcome(0).notes) and steppers.outcome(0).ok
+    np.testing.assert_array_equal(steppers.q[2], q[2])
+    before = steppers.q[3].copy()
+    assert not steppers.step(0.0 * u)[2] and not np.array_equal(steppers.q[3], before)
+    steppers.reset(q, v, which=~on)
+    assert steppers.step(0.0 * u, 4).all()
+    np.testing.assert_array_equal(steppers.q[2], sf.simulate_batch(model, q, v, 4 * DT, dt=DT).q_last[2])
+
+
+def test_motions_off_their_constraints_do_not_begin() -> None:
+    model, (q, v) = compiled("slider_crank"), starts("slider_crank")
+    q[5, 0] += 0.1
+    steppers = sf.Steppers(model, N, dt=DT)
+    steppers.reset(q, v)
+    assert np.flatnonzero(~steppers.step()).tolist() == [5]
+    assert steppers.outcome(5).kind == "constraints lost"
+
+
+def test_a_beam_that_was_beyond_its_theory_is_judged_anew() -> None:
+    model = compiled("flexible_pendulum")
+    bent = np.zeros((3, model.nq))
+    bent[1, 1] = 0.4
+    steppers = sf.Steppers(model, 3, dt=1e-4, beam_limit=0.002)
+    steppers.reset(bent)
+    assert steppers.step().tolist() == [True, False, True] and steppers.outcome(1).kind == "beyond theory"
+    steppers.reset()
+    assert steppers.step(steps=2).all() and steppers.outcome(1).ok
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "implicit": ({"method": "rodas4"}, r"no fixed explicit steps[\s\S]*rule:[\s\S]*remedy:"),
+    "adaptive": ({"method": "dopri5"}, r"no fixed explicit steps[\s\S]*adaptive=False"),
+    "number": ({"n": 0}, r"n is no number of them[\s\S]*rule:[\s\S]*remedy:"),
+    "parameters": ({"par": np.ones((3, 5))}, r"par does not fit[\s\S]*\(3, 5\)[\s\S]*remedy:"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_batches_can_not_do_is_refused(case: str) -> None:
+    options, said = REFUSED[case]
+    with pytest.raises(sf.SymofrosError, match=said):
+        sf.Steppers(**({"model": compiled("cart_pole"), "n": 4} | options))
+
+
+def test_what_does_not_fit_is_refused_and_no_step_is_made() -> None:
+    steppers = sf.Steppers(compiled("cart_pole"), 4, dt=DT)
+    for u in (np.zeros((3, 1)), np.zeros((4, 2)), np.full((4, 1), np.nan)):
+        with pytest.raises(sf.ShapeError, match=r"u does not fit[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"):
+            steppers.step(u)
+    for wrong in ({"q": np.zeros((3, 2))}, {"v": np.full(2, np.inf)}):
+        with pytest.raises(sf.ShapeError, match=r"does not fit[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"):
+            steppers.reset(**wrong)
+    with pytest.raises(sf.SymofrosError, match="which does not fit"):
+        steppers.reset(which=[True, False])
+    with pytest.raises(sf.SymofrosError, match="one set for all"):
+        steppers.reset(par=steppers.par)
+    assert not steppers.t.any()
