@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import plan_inputs
@@ -79,7 +79,7 @@ class Stepper:
         **changes: Any,
     ) -> None:
         chosen = (options or SimulationOptions()).changed(changes)
-        self._given = {"u": u, "events": events, "options": chosen}
+        self._given: dict[str, Any] = {"u": u, "events": events, "options": chosen}
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
         values = np.array(model.parameter_values)
@@ -288,9 +288,13 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
 
     Raises:
         ShapeError: They do not fit, or are not finite.
+        UnknownNameError: A name is not among them.
     """
     if isinstance(u, Mapping) and len(names) < model.nu:
-        u = [u.get(name, 0.0) for name in names]
+        for name in u.keys() - set(names):
+            what, rule = f"step: no input '{name}' by hand", f"inputs by hand are {', '.join(names) or 'none'}"
+            raise UnknownNameError(Problem(what, str(name), rule, "laws and numbers of the stepper stay as they are"))
+        u = np.array([u.get(name, 0.0) for name in names])
     array, shape = real_array(model.by_name("u", u)), (len(names),)
     fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
     if array is not None and fits and np.isfinite(array).all():
@@ -307,12 +311,8 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
 
 def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
     """Settings of a run without an end; options that speak of one, or of records, are refused."""
-    usual = SimulationOptions()
-    for name in ("output", "every", "max_steps", "realtime"):
-        value = getattr(options, name)
-        if value is not None and value != getattr(usual, name):
-            rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
-            raise refusal(f"stepper: an option of whole runs, '{name}'", repr(value)[:60], rule, "leave it out")
+    rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
+    options.refuse(("output", "every", "max_steps", "realtime"), "stepper: an option of whole runs", rule)
     settings = Settings.of(model, options, options.t0)
     if settings.method.family.multistep:
         raise refusal(

@@ -101,7 +101,7 @@ class Steppers:
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         results = self._hand.results
         self.t, self.q, self.v, self._status = (
-            _read_only(array) for array in (results.t, results.q, results.v, results.status)
+            _read_only(array) for array in (results.t_last, results.q_last, results.v_last, results.status)
         )
         self.reset()
 
@@ -214,11 +214,17 @@ class Steppers:
         """Why motion i ended, or what is worth knowing of its present state; its steps are not examined."""
         results = self._hand.results
         status = np.where(results.status == Status.RUNNING, Status.FINISHED, results.status)
-        samples = (np.zeros((self.n, 0, size)) for size in (self.model.nq, self.model.nv, self.model.nu))
-        reached = (results.t, results.q, results.v, status, results.steps, results.rejected)
-        beams = results.beam_errors, results.beam_times, results.beam_coordinates
+        arrays: dict[str, Any] = {**results.shaped((self.n,)), "status": status}
         method = self._settings.method.name
-        ends = Trajectories(self.model, np.zeros(0), *samples, self.par, *reached, *beams, method, 0.0, 0.0)
+        ends = Trajectories(
+            **arrays,
+            model=self.model,
+            t=np.zeros(0),
+            par=self.par,
+            method=method,
+            seconds=0.0,
+            processor_seconds=0.0,
+        )
         ended = ends.outcome(i)
         note = "the steps of motions that are stepped together are not examined: an sf.Stepper says more of one"
         return replace(ended, notes=(*ended.notes, note))

@@ -228,6 +228,32 @@ def test_parameters_of_its_own() -> None:
     np.testing.assert_array_equal(stepper.q, run.q[-1])
 
 
+@pytest.mark.parametrize("name", ["cart_pole", "spatial_rod"])
+def test_a_reset_may_change_the_parameters_and_a_saved_state_has_its_own(name: str) -> None:
+    model = compiled(name)
+    par = np.array(model.parameter_values) * np.linspace(1.01, 1.05, model.npar)
+    q, v, events = (
+        *start(name),
+        {"level": f"{model.names.q[0]} - {model.names.q[0]}*{next(iter(model.parameters))} - 1e3"},
+    )
+    stepper = sf.Stepper(model, dt=1e-4, events=events)
+    stepper.reset(q, v)
+    assert stepper.step(steps=2)
+    saved = stepper.save()
+    assert stepper.step(steps=4)
+    ends = [stepper.q.tobytes()]
+    stepper.reset(q, v, par=par)
+    np.testing.assert_array_equal(stepper.par, par)
+    assert stepper.step(steps=6)
+    again = sf.simulate(model, q, v, 6 * 1e-4, dt=1e-4, par=par)
+    np.testing.assert_array_equal(stepper.q, again.q[-1])
+    assert [str(b) for b in stepper.trajectory().bendings] == [str(b) for b in again.bendings]
+    stepper.restore(saved)
+    np.testing.assert_array_equal(stepper.par, model.parameter_values)
+    assert stepper.step(steps=4)
+    assert stepper.q.tobytes() == ends[0] != again.q[-1].tobytes()
+
+
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a method of SUNDIALS": ({"method": "cvode"}, r"no steps to be made by hand[\s\S]*found:[\s\S]*rule:[\s\S]*rodas4"),
     "no method": ({"method": "rk5"}, r"no method 'rk5'[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"),
@@ -280,6 +306,8 @@ def test_other_misuse_is_refused() -> None:
         stepper.reset(t=np.nan)
     with pytest.raises(sf.ShapeError, match="q0 does not fit"):
         stepper.reset([0.0])
+    with pytest.raises(sf.UnknownNameError, match=r"no input 'F' by hand[\s\S]*remedy:"):
+        sf.Stepper(compiled("cart_pole"), u={"F": 1.0}).step({"F": 2.0})
     loop = sf.Stepper(compiled("slider_crank"), dt=DT)
     loop.reset([0.5, 0.1, 0.4])
     for _ in range(2):

@@ -1,17 +1,17 @@
 /* Many trajectories, whose accelerations are evaluated by one call: symofros_batch.h. */
 
 /* Outputs and inputs of a function for all slots. Returns 0 where an input is unknown. */
-static int32_t sym_batch_bind(sym_batch *b, sym_arena *arena, sym_batch_function *f) {
+static int32_t sym_batch_bind(sym_batch *b, sym_arena *own, sym_arena *scratch, sym_batch_function *f) {
     const sym_system *s = b->prototype->system;
     const sym_function *function = f->function;
     sym_point point = sym_system_point(s);
     size_t strides[5];
     int32_t i, k;
     if (function == NULL) return 1;
-    f->pre_active = sym_allocate(arena, (size_t)b->slots * (size_t)f->pre.stride);
-    f->work = sym_allocate(arena, function->work);
+    f->pre_active = sym_allocate(own, (size_t)b->slots * (size_t)f->pre.stride);
+    f->work = sym_allocate(scratch, function->work);
     for (i = 0; i < function->n_out; ++i)
-        f->out[i] = sym_allocate(arena, (size_t)b->slots * sym_array_size(&function->out[i]));
+        f->out[i] = sym_allocate(scratch, (size_t)b->slots * sym_array_size(&function->out[i]));
     point.n = 5; /* q, v, u, t, gains */
     point.arrays[0] = b->q, point.arrays[1] = b->v, point.arrays[2] = b->u, point.arrays[3] = b->t;
     strides[0] = (size_t)s->nq, strides[1] = (size_t)s->nv, strides[2] = (size_t)s->nu, strides[3] = 1, strides[4] = 0;
@@ -24,42 +24,45 @@ static int32_t sym_batch_bind(sym_batch *b, sym_arena *arena, sym_batch_function
     return 1;
 }
 
-/* Lay out every array of the slots. Returns 0 where a function asks for an unknown input. */
-static int32_t sym_batch_allocate(sym_batch *b, sym_arena *arena) {
+/* Lay out every array of the slots: what is kept between steps, and what a step under way needs. Where the last slope of a
+ * step is the first of the next, all is kept. Returns 0 where a function asks for an unknown input. */
+static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *shared) {
+    sym_arena *scratch = b->prototype->tableau.fsal_stage > 0 ? own : shared;
     const sym_system *s = b->prototype->system;
     const size_t slots = (size_t)b->slots, nq = (size_t)s->nq, nv = (size_t)s->nv, m = 2 * nv;
     const size_t slopes = b->prototype->tableau.dense_stages > 1 ? (size_t)b->prototype->tableau.dense_stages : 1;
-    b->systems = sym_allocate_bytes(arena, slots * sizeof *b->systems);
-    b->runs = sym_allocate_bytes(arena, slots * sizeof *b->runs);
-    b->signals = sym_allocate_bytes(arena, slots * (size_t)s->n_signals * sizeof *b->signals);
-    b->trajectory_of_slot = sym_allocate_bytes(arena, slots * sizeof *b->trajectory_of_slot);
-    b->status = sym_allocate_bytes(arena, slots * sizeof *b->status);
-    b->h = sym_allocate(arena, slots), b->t1 = sym_allocate(arena, slots);
-    b->q = sym_allocate(arena, slots * nq), b->v = sym_allocate(arena, slots * nv);
-    b->u = sym_allocate(arena, slots * (size_t)s->nu), b->t = sym_allocate(arena, slots);
-    b->states = sym_allocate(arena, slots * (nq + nv));
-    b->y1 = sym_allocate(arena, slots * m), b->stage = sym_allocate(arena, slots * m);
-    b->magnitude = sym_allocate(arena, slots * m), b->end_slope = sym_allocate(arena, slots * m);
-    b->k = sym_allocate(arena, slopes * slots * m);
-    b->end_state = sym_allocate(arena, nq + nv), b->unseen = sym_allocate(arena, 3 * nv);
-    b->defects = sym_allocate_defects(s, arena).impulse; /* the first of them */
-    b->y0 = sym_allocate(arena, slots * m), b->length = sym_allocate(arena, slots * m);
-    return sym_batch_bind(b, arena, &b->forward_dynamics) && sym_batch_bind(b, arena, &b->law);
+    b->systems = sym_allocate_bytes(scratch, slots * sizeof *b->systems);
+    b->runs = sym_allocate_bytes(own, slots * sizeof *b->runs);
+    b->signals = sym_allocate_bytes(scratch, slots * (size_t)s->n_signals * sizeof *b->signals);
+    b->trajectory_of_slot = sym_allocate_bytes(own, slots * sizeof *b->trajectory_of_slot);
+    b->status = sym_allocate_bytes(scratch, slots * sizeof *b->status);
+    b->h = sym_allocate(scratch, slots), b->t1 = sym_allocate(scratch, slots);
+    b->q = sym_allocate(scratch, slots * nq), b->v = sym_allocate(scratch, slots * nv);
+    b->u = sym_allocate(scratch, slots * (size_t)s->nu), b->t = sym_allocate(scratch, slots);
+    b->states = sym_allocate(own, slots * (nq + nv));
+    b->y1 = sym_allocate(scratch, slots * m), b->stage = sym_allocate(scratch, slots * m);
+    b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
+    b->k = sym_allocate(scratch, slopes * slots * m);
+    b->end_state = sym_allocate(scratch, nq + nv), b->unseen = sym_allocate(scratch, 3 * nv);
+    b->defects = sym_allocate_defects(s, scratch).impulse; /* the first of them */
+    b->y0 = sym_allocate(scratch, slots * m), b->length = sym_allocate(scratch, slots * m);
+    return sym_batch_bind(b, own, scratch, &b->forward_dynamics) && sym_batch_bind(b, own, scratch, &b->law);
 }
 
-SYM_EXPORT size_t sym_batch_size(const sym_batch *batch) {
+SYM_EXPORT size_t sym_batch_size(const sym_batch *batch, size_t *shared) {
     sym_batch draft = *batch;
-    sym_arena arena = {NULL, 0};
-    sym_batch_allocate(&draft, &arena);
-    return arena.used;
+    sym_arena own = {NULL, 0}, scratch = {NULL, 0};
+    sym_batch_allocate(&draft, &own, &scratch);
+    *shared = scratch.used;
+    return own.used;
 }
 
-SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
+SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared) {
     const sym_system *prototype = b->prototype->system;
-    sym_arena arena = {NULL, 0};
+    sym_arena own = {NULL, 0}, scratch = {NULL, 0};
     int32_t i;
-    arena.base = memory;
-    if (!sym_batch_allocate(b, &arena)) return 0;
+    own.base = memory, scratch.base = shared;
+    if (!sym_batch_allocate(b, &own, &scratch)) return 0;
     for (i = 0; i < b->slots; ++i) {
         sym_system *s = b->systems + i;
         sym_run *r = b->runs + i;
@@ -70,6 +73,9 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
         s->a = b->forward_dynamics.out[0] + (size_t)i * (size_t)s->nv;
         s->lam = b->forward_dynamics.out[1] + (size_t)i * (size_t)s->nc, s->rank = b->forward_dynamics.out[2] + i;
         s->forward_dynamics.out[0] = s->a, s->forward_dynamics.out[1] = s->lam, s->forward_dynamics.out[2] = s->rank;
+        if (s->law.function != NULL) sym_system_bind(s, &s->law);
+        if (s->project.function != NULL) sym_system_bind(s, &s->project);
+        sym_system_bind(s, &s->forward_dynamics);
         s->signals = b->signals + (size_t)i * (size_t)s->n_signals;
         memcpy(b->signals + (size_t)i * (size_t)s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
         r->system = s;
@@ -77,6 +83,11 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory) {
     }
     b->n_active = 0;
     return 1;
+}
+
+/* What one slot has of a table (slots, 2 nv). */
+static double *sym_batch_row(const sym_batch *b, double *table, int32_t slot) {
+    return table + (size_t)slot * 2 * (size_t)b->prototype->system->nv;
 }
 
 /* Working memory of one slot. */
@@ -94,11 +105,9 @@ static sym_workspace sym_batch_workspace(const sym_batch *b, int32_t slot) {
 }
 
 /* A function of one slot takes the parameters of a trajectory: for its own calls, and for those of all slots. */
-static void sym_batch_set_parameters(sym_batch_function *f, sym_system *system, sym_call *call, int32_t slot,
-                                     int64_t trajectory) {
+static void sym_batch_set_parameters(sym_batch_function *f, sym_call *call, int32_t slot, int64_t trajectory) {
     if (call->function == NULL) return;
-    call->pre = f->pre.at + trajectory * f->pre.stride;
-    sym_system_bind(system, call);
+    call->pre = call->in[0] = f->pre.at + trajectory * f->pre.stride;
     if (f->pre.stride != 0 && f->pre_active != NULL)
         memcpy(f->pre_active + slot * f->pre.stride, call->pre, (size_t)f->pre.stride * sizeof(double));
 }
@@ -113,9 +122,9 @@ static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
     for (k = 0; k < prototype->n_signals; ++k)
         signals[k].value = prototype->signals[k].value + trajectory * b->signal_stride[k];
-    sym_batch_set_parameters(&b->forward_dynamics, s, &s->forward_dynamics, slot, trajectory);
-    sym_batch_set_parameters(&b->law, s, &s->law, slot, trajectory);
-    sym_batch_set_parameters(&b->project, s, &s->project, slot, trajectory);
+    sym_batch_set_parameters(&b->forward_dynamics, &s->forward_dynamics, slot, trajectory);
+    sym_batch_set_parameters(&b->law, &s->law, slot, trajectory);
+    sym_batch_set_parameters(&b->project, &s->project, slot, trajectory);
 }
 
 static void sym_batch_store_result(sym_batch *b, int64_t trajectory, int32_t status, double t, const double *q,
@@ -231,13 +240,13 @@ static void sym_batch_first_slopes(sym_batch *b) {
     if (missing > 0) sym_batch_evaluate_acceleration(b);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        const sym_workspace w = sym_batch_workspace(b, i);
+        double *k = sym_batch_row(b, b->k, i);
         int32_t status = 0;
         if (!r->slope_valid) {
             status = sym_check_acceleration(r);
-            sym_store_first_slope(r, w.k);
+            sym_store_first_slope(r, k);
         }
-        b->status[i] = status != 0 ? status : sym_first_slope(r, w.k);
+        b->status[i] = status != 0 ? status : sym_first_slope(r, k);
     }
 }
 
@@ -264,19 +273,19 @@ static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const d
 /* One stage of all active trajectories. One that has failed is evaluated on, to no effect, until the step ends. */
 static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     const sym_tableau *method = &b->prototype->tableau;
+    double *k = sym_batch_row(b, b->k, stage * b->slots);
     int32_t i;
     sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        sym_load_chart_state(r, sym_stage_time(r->system, r->t + method->c[stage] * b->h[i]), sym_batch_workspace(b, i).stage);
+        sym_load_chart_state(r, sym_stage_time(r->system, r->t + method->c[stage] * b->h[i]), sym_batch_row(b, b->stage, i));
     }
     sym_batch_evaluate_acceleration(b);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        const sym_workspace w = sym_batch_workspace(b, i);
         const int32_t status = sym_check_acceleration(r);
         if (b->status[i] == 0) b->status[i] = status;
-        sym_slope_of_acceleration(r->system, w.stage, w.k + (size_t)stage * (size_t)w.stage_stride);
+        sym_slope_of_acceleration(r->system, sym_batch_row(b, b->stage, i), sym_batch_row(b, k, i));
     }
 }
 

@@ -57,15 +57,15 @@ SYM_EXPORT int32_t sym_hand_step(sym_hand *hand, const double *u, int64_t steps)
     return sym_hand_go_on(hand);
 }
 
-/* Active trajectories of a group hold other inputs. */
+/* Active trajectories of a group take the slots, which other groups had before, and hold inputs, others if they are given. */
 static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const double *u) {
     const int32_t nu = b->prototype->system->nu;
     int32_t i;
     for (i = 0; i < b->n_active; ++i) {
         const int64_t k = b->trajectory_of_slot[i];
-        sym_system *s = b->systems + i;
-        sym_hold(b->runs + i, hand->held, hand->n_held, u + k * hand->n_held, hand->u + k * nu);
-        if (s->held_anew) memcpy(s->u, hand->u + k * nu, (size_t)nu * sizeof *s->u); /* evaluated once where they are constant */
+        sym_batch_assign(b, i, k);
+        if (u != NULL) sym_hold(b->runs + i, hand->held, hand->n_held, u + k * hand->n_held, hand->u + k * nu);
+        memcpy(b->systems[i].u, hand->u + k * nu, (size_t)nu * sizeof *u);
     }
 }
 
@@ -85,7 +85,7 @@ SYM_EXPORT void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64
     int32_t g, i;
     for (g = 0; g < hand->n_groups; ++g) {
         sym_batch *b = hand->groups + g;
-        if (u != NULL) sym_hand_batch_hold(hand, b, u);
+        sym_hand_batch_hold(hand, b, u);
         for (; k < b->n; ++k) {
             if (!hand->begins[k]) continue;
             hand->begins[k] = 0;

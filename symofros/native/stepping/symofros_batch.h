@@ -53,7 +53,7 @@ typedef struct sym_batch {
     int64_t *trajectory_of_slot;  /* (slots) */
     int32_t *status;              /* (slots) of the present step */
     double *h, *t1;               /* (slots) length of the present step, time at its end */
-    double *q, *v, *u, *t;        /* (slots, ...) evaluation points */
+    double *q, *v, *u, *t;        /* (slots, ...) evaluation points; constant inputs are there from a trajectory's start on */
     double *states;               /* (slots, nq + nv) present states of the runs */
     /* Working memory as in a single run, with m = 2 nv entries of y: (slots, m), slopes k (dense_stages, slots, m).
      * Row by row: y0 = (0, v), and the step length m times, so that sums of stages are loops over all slots. */
@@ -62,10 +62,11 @@ typedef struct sym_batch {
     double *defects;   /* of the inputs while one slot proposes its step: input_moments.c */
 } sym_batch;
 
-/* Doubles of memory that the slots take. */
-size_t sym_batch_size(const sym_batch *batch);
+/* Doubles of memory that the slots take; *shared: those of them that hold nothing between two calls, so that batches of one
+ * thread may share them. */
+size_t sym_batch_size(const sym_batch *batch, size_t *shared);
 /* Lay the slots out in memory, none of them active. Returns 0 where a function asks for an unknown input. */
-int32_t sym_batch_start(sym_batch *batch, double *memory);
+int32_t sym_batch_start(sym_batch *batch, double *memory, double *shared);
 /* At most max_steps further steps of each active trajectory. Returns 0 when all trajectories have ended. */
 int32_t sym_batch_advance(sym_batch *batch, int64_t max_steps);
 /* End all active trajectories where they are, and the others at their initial states. */

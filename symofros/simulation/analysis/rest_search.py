@@ -15,6 +15,8 @@ from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 
+# Rounding of a force at a configuration, relative to the forces that moving by the reach brings.
+_ROUNDING = 8 * float(np.finfo(float).eps)
 # Imbalance, relative to the largest force, at which a relaxation leaves the rest of the way to Newton's method.
 _NEAR = 1e-6
 # Stiffness, of the largest, that is neutral: an axis of symmetry leaves rounding.
@@ -148,6 +150,12 @@ def _newton(balance: Balance, start: Search, reach: Array, tolerance: float, mos
         G = balance.jacobian(q)
         K = np.zeros((nv + nc, nv + nc))
         K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = balance.stiffness(q, lam), -G.T, G
+        brought = (np.abs(K[:nv, :nv]) @ reach)[balance.free]  # Forces that a motion of the reach brings.
+        if np.all(np.abs(R[balance.free]) <= _ROUNDING * brought):
+            # A guess at rest but for rounding, where all forces vanish: nothing on the way says what small is.
+            scale = max(scale, float(brought.max(initial=0.0)))
+            if balance.size(R, scale) <= tolerance:
+                break
         step = np.zeros(nv + nc)
         step[rows] = -np.linalg.lstsq(K[np.ix_(rows, rows)], R[rows], rcond=1e-13)[0]
         step[:nv] *= _bounded(step[:nv], reach)

@@ -49,21 +49,26 @@ class _Part(BatchStepper):
         super().__init__(model, settings, initial, shared.results, first, 1)
 
     def _lay_out(self) -> None:
-        batch, shared, ffi = self._batch, self._shared, self.single.ffi
+        batch, all_parts, ffi = self._batch, self._shared, self.single.ffi
         bounds = [*range(self._first, self._end, SLOTS), self._end]
-        batch.t0, batch.max_steps = self._memory.shared(shared.t0), 0
+        batch.t0, batch.max_steps = self._memory.shared(all_parts.t0), 0
         self.groups = groups = ffi.new("sym_batch[]", len(bounds) - 1)
-        self.memory = [self._memory.raw(groups, "sym_batch", len(groups))]
-        for i, (first, end) in enumerate(zip(bounds, bounds[1:], strict=False)):
+        self.memory: list[npt.NDArray[Any]] = [self._memory.raw(groups, "sym_batch", len(groups))]
+        # As many in each: they lie alike in the memory that groups share.
+        slots, shared = max(2, min(SLOTS, self._end - self._first)), None
+        for i, end in enumerate(bounds[1:]):
             groups[i] = batch[0]
             group = groups[i]
-            group.next, group.stride, group.n, group.slots = end, 1, end, max(2, end - first)
-            self.memory.append(self._start(ffi.addressof(group)))
+            group.next, group.stride, group.n, group.slots = end, 1, end, slots
+            own, size = self._sizes(ffi.addressof(group))
+            shared = self._memory.zeros(size) if shared is None else shared
+            self.memory.append(np.zeros(own))
+            self._start(ffi.addressof(group), self.memory[-1], shared)
         self.hand = hand = ffi.new("sym_hand_batch *")
         hand.groups, hand.n_groups = groups, len(groups)
-        hand.n_held, hand.held = len(shared.held), self._memory.own("int32_t[]", list(shared.held))
+        hand.n_held, hand.held = len(all_parts.held), self._memory.own("int32_t[]", list(all_parts.held))
         hand.first, hand.n = self._first, self._end
-        hand.u, hand.begins = self._memory.shared(shared.constant), self._memory.shared(shared.begins)
+        hand.u, hand.begins = self._memory.shared(all_parts.constant), self._memory.shared(all_parts.begins)
 
     def step(self, u: Any, steps: int) -> None:
         """Make steps of each motion that can go on."""
@@ -113,11 +118,12 @@ class HandBatch:
         """Motions of these numbers begin anew at the next step, their inputs those of the description."""
         self.t0[chosen], self.q0[chosen], self.v0[chosen] = t, q, v
         results = self.results
-        results.t[chosen], results.q[chosen], results.v[chosen] = t, q, v
+        results.t_last[chosen], results.q_last[chosen], results.v_last[chosen] = t, q, v
         results.status[chosen], results.steps[chosen], self.begins[chosen] = Status.RUNNING, 0, 1
         self.constant[chosen] = self.default
-        for part in self._parts if par is not None else ():
-            part.set_parameters(chosen, par)
+        if par is not None:
+            for part in self._parts:
+                part.set_parameters(chosen, par)
 
     def inputs_at_start(self, chosen: npt.NDArray[np.intp], u: Array | None) -> Array:
         """All inputs (m, nu) of motions of these numbers at their first states, given those that are held (n, ...)."""
@@ -142,7 +148,7 @@ class HandBatch:
         """All that C has written."""
         results = self.results
         arrays = tuple(array.copy() for array in self._written)
-        return BatchState(owner, results.t.copy(), results.q.copy(), results.v.copy(), arrays)
+        return BatchState(owner, results.t_last.copy(), results.q_last.copy(), results.v_last.copy(), arrays)
 
     def restore(self, state: BatchState) -> None:
         """Go on from a state that `save` gave, bit by bit as from there."""

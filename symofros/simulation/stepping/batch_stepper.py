@@ -89,7 +89,7 @@ class BatchResults:
         status = np.zeros(n, dtype=np.int32)
         return cls(q, v, u, np.zeros(n), q_last, v_last, status, steps, rejected, errors, times, elastic)
 
-    def shaped(self, shape: tuple[int, ...]) -> dict[str, npt.NDArray[Any]]:
+    def shaped(self, shape: tuple[int, ...]) -> dict[str, Any]:
         """The arrays by name, whose rows (n) are those of a batch of that shape."""
         return {name: array.reshape(shape + array.shape[1:]) for name, array in vars(self).items()}
 
@@ -130,13 +130,17 @@ class BatchStepper:
 
     def _lay_out(self) -> None:
         """Memory of the slots."""
-        self._start(self._batch)
+        own, shared = self._sizes(self._batch)
+        self._start(self._batch, np.zeros(own), self._memory.zeros(shared))
 
-    def _start(self, batch: Any) -> npt.NDArray[np.float64]:
-        memory = np.zeros(max(1, self._native.sym_batch_size(batch)))
-        if not self._native.sym_batch_start(batch, self._memory.shared(memory)):
+    def _sizes(self, batch: Any) -> tuple[int, int]:
+        """Doubles of its own memory, and of that which it may share."""
+        shared = self.single.ffi.new("size_t *")
+        return int(self._native.sym_batch_size(batch, shared)), int(shared[0])
+
+    def _start(self, batch: Any, own: Array, shared: Any) -> None:
+        if not self._native.sym_batch_start(batch, self._memory.shared(own), shared):
             raise CompileError("the integrator does not know every input of a batch function")
-        return memory
 
     def _fill_prototype(self) -> None:
         """The single run whose settings every slot copies, and in which first steps are evaluated."""

@@ -36,13 +36,13 @@ class Noted(NamedTuple):
         before: Earlier notes.
         t: Times (n) [s].
         u: Inputs from then on (n, nu).
-        count: Number of all, the earlier ones included.
+        total: Number of all, the earlier ones included.
     """
 
     before: Noted | None
     t: Array
     u: Array
-    count: int
+    total: int
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,8 @@ class HandRun:
         run.system.in_step = run.system.held_anew = 0
         # The first step is not made by the fast call: what comes before it is in Python.
         hand.started, hand.status, hand.mark, hand.target, hand.n = 0, Status.RECORDS_FULL, 0, 0, 0
-        self.start, self._noted, self.events = Start(t, q.copy(), v.copy()), None, []
+        self.start, self.events = Start(t, q.copy(), v.copy()), []
+        self._noted: Noted | None = None
         self._known = -np.inf
 
     def begin(self, u: Array | None) -> Array:
@@ -249,16 +250,17 @@ class HandRun:
         if not n:
             return
         t, u = (array[:n].copy() for array in self._table)
-        before = self._noted
-        self._noted, self.hand.n = Noted(before, t[:, 0], u, n + (before.count if before else 0)), 0
-        if self._noted.count > MOST_NOTED:
+        before, self.hand.n = self._noted, 0
+        self._noted = Noted(before, t[:, 0], u, n + (before.total if before else 0))
+        if self._noted.total > MOST_NOTED:
             self.start = Start(self.t, self.q.copy(), self.v.copy(), forgotten=True)
             self._noted = Noted(None, np.array([self.t]), u[-1:], 1)
 
     def noted(self) -> tuple[Array, Array]:
         """The inputs by when they changed: t (n) [s], u (n, nu)."""
         self._seal()
-        parts, link = [], self._noted
+        parts: list[Noted] = []
+        link = self._noted
         while link is not None:
             parts.append(link)
             link = link.before
@@ -317,7 +319,7 @@ class _Numbers:
         self._places = np.concatenate(places)
 
     def read(self) -> npt.NDArray[np.uint8]:
-        return self._bytes[self._places]
+        return np.asarray(self._bytes[self._places])
 
     def write(self, numbers: npt.NDArray[np.uint8]) -> None:
         self._bytes[self._places] = numbers

@@ -7,6 +7,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.analysis.rest_search import _downhill, _unit_mass
+from tests.models import model
 
 
 def geared(ratio: float) -> sf.Model:
@@ -43,6 +44,22 @@ def test_what_falls_for_ever_has_no_rest() -> None:
     ball = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     with pytest.raises(sf.EquilibriumError, match="after 100 steps"):
         sf.equilibrium(sf.compile(sf.System("ball", (ball,))))
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "flexible_pendulum", "heavy_top"])
+def test_a_rest_is_found_from_itself(name: str) -> None:
+    """Where all forces vanish, rounding is no imbalance."""
+    found = model(name)
+    rest = sf.equilibrium(found)
+    assert sf.equilibrium(found, rest.q).q == pytest.approx(rest.q, abs=1e-9)
+
+
+def test_a_stiff_joint_excuses_no_push_on_a_free_one() -> None:
+    held = sf.Joint("held", "prismatic", axis=(1, 0, 0), effort="-1e14*held")
+    free = sf.Joint("free", "prismatic", axis=(1, 0, 0), effort="0.05")
+    bodies = tuple(sf.RigidBody(joint.name, joint, sf.Inertia(1.0)) for joint in (held, free))
+    with pytest.raises(sf.EquilibriumError, match="imbalance of -0.05 at 'free'"):
+        sf.equilibrium(sf.compile(sf.System("two", bodies)))
 
 
 def test_negative_directions_are_turned_round(rng: np.random.Generator) -> None:
