@@ -111,19 +111,16 @@ class _Builder:
                 self.tree.remarks.add("inertia of the base dropped, it never moves", self.tree.noun, body.name)
             yield RigidBody(body.name, frames=frames)
             return
-        joint: Joint | None = None
+        joints = [replace(stated.joint, elements=tuple(self.elements(stated))) for stated in body.joints]
+        # A body that moves about a point that is not its origin, or with other axes, is fixed to a massless one.
+        own = joints.pop() if joints and body.placement is None else None
         parent = body.parent
-        for stated in body.joints:
-            if joint is not None:
-                parent = fresh_name(f"{body.name}_at_{joint.name}", self.body_names)
-                yield RigidBody(parent, joint)
-            joint = replace(stated.joint, parent=parent, elements=tuple(self.elements(stated)))
-        if joint is not None and body.placement is not None:
-            # A body that moves about a point that is not its origin, or with other axes.
-            parent = fresh_name(f"{body.name}_at_{joint.name}", self.body_names)
-            yield RigidBody(parent, joint)
-            joint = None
-        yield RigidBody(body.name, joint or self.held(body, parent), inertia, frames, loads=body.loads)
+        for joint in joints:
+            carrier = fresh_name(f"{body.name}_at_{joint.name}", self.body_names)
+            yield RigidBody(carrier, replace(joint, parent=parent))
+            parent = carrier
+        moving = replace(own, parent=parent) if own is not None else self.held(body, parent)
+        yield RigidBody(body.name, moving, inertia, frames, loads=body.loads)
 
     def held(self, body: ImportedBody, parent: str) -> Joint:
         """The joint of a body that the file states none for."""
