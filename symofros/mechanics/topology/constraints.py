@@ -113,10 +113,17 @@ def _slopes(value: Value, names: Collection[str] | None) -> bool:
     return any(partials(g, [edge], [inputs[name] for name in stated if name in names])[0])
 
 
+# What to do about a size that is not positive, by its name.
+_INSTEAD = {
+    "length": "for two points that coincide, use a closure",
+    "radius": "give the distance from the centre to the rim; for a point that does not slip sideways, use knife_edge",
+}
+
+
 def constraint_conditions(system: System) -> Iterator[Condition]:
     """Lengths and radii are positive."""
     for item in system.constraints:
-        for label in ("length", "radius"):
+        for label in _INSTEAD:
             value = getattr(item, label, None)
             if value is not None:
                 where = system.origin.get(("constraint", item.name), "")
@@ -128,6 +135,6 @@ def _not_positive(name: str, label: str, value: Value, where: str, numbers: Numb
         f"constraint '{name}': {label} {numbers.value(value):g}",
         f"'{value}'",
         f"the {label} is positive",
-        "for two points that coincide, use a closure",
+        _INSTEAD[label],
         where,
     )
