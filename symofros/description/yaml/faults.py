@@ -32,15 +32,26 @@ _TERMS_OF_OTHERS = {
 
 # Pydantic's error types -> what the value must be, and how to write it.
 _NUMBER = ("a number", "write a finite number, such as 0.5; formulas are not read here")
+_WHOLE = ("a whole number", "write a whole number, such as 2")
 _MAPPING = ("a mapping", "write it as {name: value}, or on lines of their own")
 _KINDS = {
     "float_type": _NUMBER,
     "finite_number": ("a finite number", _NUMBER[1]),
+    "int_type": _WHOLE,
+    "int_from_float": _WHOLE,
+    "int_parsing": _WHOLE,
     "string_type": ("a text", "put it in quotes"),
     "bool_type": ("true or false", "write true or false"),
     "list_type": ("a list", "write it as [x, y, z]"),
     "dict_type": _MAPPING,
     "model_type": _MAPPING,
+}
+# Pydantic's error type -> its bound in the error's context, and how a rule states it.
+_BOUNDS = {
+    "greater_than_equal": ("ge", "at least"),
+    "greater_than": ("gt", "above"),
+    "less_than_equal": ("le", "at most"),
+    "less_than": ("lt", "below"),
 }
 
 
@@ -102,6 +113,8 @@ def problem_of(error: ErrorDetails, where: str, data: Any) -> Problem:
         return _not_a_choice(path, error["input"], where)
     if kind in ("too_short", "too_long"):
         return _wrong_count(path, kind, context, where)
+    if kind in _BOUNDS:
+        return _out_of_range(path, kind, error, where)
     expected, remedy = _KINDS.get(kind, ("", ""))
     what = f"not {expected}" if expected else "not allowed"
     rule = f"this is {expected}" if expected else error["msg"].lower()
@@ -157,6 +170,15 @@ def _wrong_count(path: Path, kind: str, context: Mapping[str, Any], where: str) 
     if sizes == {(limit, limit)}:
         rule, remedy = f"{limit} entries, in order", f"give all {limit}, zeros included"
     return Problem(_about(path, "wrong number of entries"), f"{count} entries", rule, remedy, where)
+
+
+def _out_of_range(path: Path, kind: str, error: ErrorDetails, where: str) -> Problem:
+    name, words = _BOUNDS[kind]
+    bound = error.get("ctx", {})[name]
+    ranges = [(s["minimum"], s["maximum"]) for s in _schemas(path) if "minimum" in s and "maximum" in s]
+    rule = f"from {ranges[0][0]:g} to {ranges[0][1]:g}" if ranges else f"{words} {bound:g}"
+    remedy = f"write {bound:g}, the nearest that is allowed" if name in ("ge", "le") else f"write a number {rule}"
+    return Problem(_about(path, "out of range"), f"'{_short(error['input'])}'", f"a number {rule}", remedy, where)
 
 
 def _short(value: Any) -> str:
