@@ -76,6 +76,7 @@ def place_parts(
             )
         stepper = Stepper(model, settings.method, InputPlan(begin.u.copy(), list(layout.signals)), events, par)
         replace(settings, t0=begin.t).apply(stepper)
+        stepper.set_stops(begin.t, settings.t_end)  # Of fixed steps, too: the diagram's own loop ends them there.
         if layout.driven:
             stepper.run.loss_limit = math.inf
         stepper.run.record_every = 0  # Instants are recorded by the diagram's own loop.

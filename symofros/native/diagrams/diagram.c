@@ -149,12 +149,19 @@ static int32_t sym_execute_instant(sym_diagram *d, double t) {
     return 0;
 }
 
-/* Integrate one part to time t. Returns SYM_FINISHED or another status. */
+/* Integrate one part to time t; steps of fixed length end at instants, too, and begin anew there. Returns SYM_FINISHED or
+ * another status. */
 static int32_t sym_advance_part(sym_run *r, double t) {
-    int32_t status = SYM_RUNNING;
-    if (r->t >= t) return SYM_FINISHED;
-    r->steps = 0, r->t0 = r->t, r->t_end = t;
-    while (status == SYM_RUNNING) status = sym_run_advance(r, (int64_t)1 << 40);
+    int64_t steps = 0;
+    int32_t status = SYM_FINISHED;
+    while (status == SYM_FINISHED && r->t < t) {
+        r->steps = 0, r->t0 = r->t, r->t_end = r->adaptive ? t : sym_next_stop(r->system, r->t, t);
+        do {
+            status = sym_run_advance(r, (int64_t)1 << 40);
+        } while (status == SYM_RUNNING);
+        steps += r->steps;
+    }
+    r->steps = steps;
     return status;
 }
 

@@ -165,7 +165,7 @@ SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, con
     return instance;
 }
 
-/* Find the instants of formulas of time at which adaptive steps of the parts end. Returns up to when, at most t, they are
+/* Find the instants of formulas of time at which steps of the parts end. Returns up to when, at most t, they are
  * known of all. */
 static double sym_program_find_stops(sym_program_instance *instance, double t) {
     double known = t;
@@ -173,7 +173,6 @@ static double sym_program_find_stops(sym_program_instance *instance, double t) {
     for (i = 0; i < instance->program->n_parts; ++i) {
         sym_instance *part = instance->parts[i];
         double of_part;
-        if (!part->run.adaptive) continue;
         sym_instance_look(part, sym_instance_span(part, part->run.t, t));
         of_part = sym_instance_find_stops(part, part->run.t, t);
         if (of_part < known) known = of_part;

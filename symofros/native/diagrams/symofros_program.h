@@ -57,7 +57,7 @@ sym_program_instance *sym_program_init(void *memory, size_t size, const sym_prog
 /* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
  * model's description: nothing moves then (a part's check_parameters = 0 takes them as they come). */
 int32_t sym_program_prepare(sym_program_instance *instance);
-/* Integrate to time t, executing instants on the way; adaptive steps end where formulas of time bend, jump or change fast.
+/* Integrate to time t, executing instants on the way; steps end where formulas of time bend, jump or change fast.
  * Returns SYM_FINISHED or a status below zero. */
 int32_t sym_program_advance(sym_program_instance *instance, double t);
 
