@@ -14,13 +14,13 @@ from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.order import groups_in_motion, order_of
-from symofros.diagrams.program.fused_functions import Fuser
+from symofros.diagrams.program.fused_functions import Fuser, reads
 from symofros.diagrams.program.layout import Layout, Part, lay_out
 from symofros.diagrams.program.lowered_block import Piece, piece_of
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
-from symofros.expr import Program, needed_nodes
+from symofros.expr import Program
 from symofros.generator import InterpretedUnit, formula_instants, model_source, run_passes
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
@@ -186,11 +186,8 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
 
 def reads_accelerations(program: Program) -> bool:
     """Whether functions read accelerations or multipliers, which the loop then finds at each instant."""
-    graph = program.graph
     edges = [edge for function in program.functions for edge in function.edges()]
-    nodes = needed_nodes(graph, edges, program.pre)
-    read = {*map(abs, edges), *(abs(arg) for node in nodes for arg in graph.args[node])}
-    return any(slot.group in ("a", "lam") and node in read for node, slot in graph.slot.items())
+    return reads(program.graph, edges, ("a", "lam"), program.pre)
 
 
 def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options) -> tuple[Model, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import islice
 
 from symofros.diagrams.block import Values
@@ -12,11 +12,25 @@ from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into
+from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into, needed_nodes
 
 AT = ("q", "v", "u", "t")
 # What is known once the accelerations of an instant are.
 AFTER = (*AT, "a", "lam")
+
+
+def reads(graph: Graph, edges: Sequence[Edge], groups: Collection[str], given: Collection[int] = ()) -> bool:
+    """Whether edges depend on inputs of some groups.
+
+    Args:
+        graph: The graph.
+        edges: Edges that are computed.
+        groups: Groups of inputs.
+        given: Nodes whose values are available.
+    """
+    nodes = needed_nodes(graph, edges, given)
+    read = {*map(abs, edges), *(abs(arg) for node in nodes for arg in graph.args[node])}
+    return any(slot.group in groups and node in read for node, slot in graph.slot.items())
 
 
 class Point:
@@ -177,8 +191,8 @@ class Fuser:
     def motion(self, part: Part) -> Program:
         """A part's functions of its motion.
 
-        They are forward_dynamics, project where it has constraints, mass_matrix where it has elastic beams (and
-        constraint_jacobian with both), "formulas" where zeros are located.
+        They are forward_dynamics, project and constraint_jacobian where it has constraints, mass_matrix where it has
+        elastic beams, "formulas" where zeros are located.
         """
         g = Graph()
         at = self._at(g, part=part)
@@ -285,9 +299,9 @@ class Fuser:
         faces = (_vector("facing", facing),) if facing else ()
         outputs = (terms_of[0], terms_of[2], *residuals, _vector("rate", rate), *faces)
         project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))
-        judging = self._judging(at, part)
-        jacobian = [Function("constraint_jacobian", "", AT, (terms_of[2],))] if judging else []
-        return [forward, project, *judging, *jacobian]
+        posture = AT if reads(at.g, terms_of[2].edges, ("v",)) else ("q", "u", "t")
+        jacobian = Function("constraint_jacobian", "", posture, (terms_of[2],))
+        return [forward, project, *self._judging(at, part), jacobian]
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""

@@ -84,12 +84,13 @@ def run_compiled(
         ended = _drive(task, Start.of(resolved, options.t0), called, progress, observer)
         kept = called.kept()
     bendings = ended.bendings
-    outcome, modes = diagnose(ended, bendings)
+    again = _again(task, ended.states, called.given)
+    outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, called.given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
-    outcome = blamed(outcome, resolved, _end_again(task, ended.states, called.given))
+    outcome = blamed(outcome, resolved, again)
     t, q, v, u = ended.states
     records = Records(compiled, t, q, v, u, par)
     outcome = judge_prescribed(outcome, resolved, records.t, lambda source: records[".".join(source)])
@@ -149,8 +150,8 @@ def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
 
 
-def _end_again(task: _Run, states: Sequence[Array], given: Given) -> Again:
-    """Repeats the end of a run, with other records and steps."""
+def _again(task: _Run, states: Sequence[Array], given: Given) -> Again:
+    """Repeats a part of a run, with other records and steps."""
     wired = task.compiled.resolved.wired
 
     def again(end: End) -> Sequence[Array] | None:

@@ -27,7 +27,7 @@ GROWTH, CHANGES = 10.0, 6
 
 @dataclass(frozen=True)
 class End:
-    """The end of a run as it is repeated.
+    """The end of a run, or another part of it, as it is repeated.
 
     Attributes:
         start: Time of its start; it begins with the record before [s].
@@ -44,7 +44,7 @@ class End:
     hold: tuple[Place, ...] = ()
 
 
-# Repeats the end of the run -> t (n), q, v, u of its records.
+# Repeats the end of the run, or another part -> t (n), q, v, u of its records.
 Again = Callable[[End], Sequence[Array] | None]
 
 

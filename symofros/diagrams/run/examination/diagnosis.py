@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
-from symofros.diagrams.program.layout import Layout
+from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
+from symofros.diagrams.run.examination.controllers import Again, End
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
+from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
+from symofros.simulation.analysis.kinematics.postures import MOST_BETWEEN
 from symofros.simulation.events import event_notes
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
+from symofros.simulation.results.examination.constraint_faults import constraint_notes
+from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.results.outcome import Outcome
@@ -75,18 +81,20 @@ class Ended:
         return tuple(bendings)
 
 
-def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Resolution]:
+def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Again) -> tuple[Outcome, Resolution]:
     """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
     Args:
         ended: The run.
         bendings: Bending of its beams.
+        again: Repeats a part of the run.
     """
     loop, status, t = ended.loop, ended.recorded.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
     closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
-    notes = (*bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
+    postures = _posture_notes(ended, again)
+    notes = (*postures, *bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
     if status == Status.ENGAGED_APART:
         names, which = ended.layout.lock_names, int(loop.diagram.engaged)
         name = names[which] if which >= 0 else ", ".join(names)
@@ -114,7 +122,7 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending]) -> tuple[Outcome, Re
                 return Outcome("diverged", t, reason, remedy(mode, settings.method), notes), modes
     worst, limit = largest_bending(bendings), min((settings.beam_limit for settings in ended.settings), default=0.0)
     if worst is not None and (status == Status.BEYOND_THEORY or (status >= 0 and worst.error > limit)):
-        return beyond_theory(worst, limit, notes[len(bending_notes(bendings)) :]), modes
+        return beyond_theory(worst, limit, (*postures, *notes[len(postures) + len(bending_notes(bendings)) :])), modes
     if status == Status.FINISHED:
         t = float(loop.diagram.t_end)
     return ENDS[status].outcome(
@@ -127,16 +135,46 @@ def _stepped(ended: Ended, settings: Settings) -> Settings:
     return replace(settings, dt=min(settings.dt, ended.spacing))
 
 
+def _part_run(ended: Ended, part: int, settings: Settings, steps: float) -> ExaminedRun:
+    """A part of a run, as it is examined, with its number of steps."""
+    (t, q, v, u), place = ended.states, ended.layout.parts[part]
+    states = (t, q[:, place.q], v[:, place.v], u)
+    return ExaminedRun(ended.loop.parts[part], settings, (states[1][0], states[2][0]), states, max(1, round(steps)))
+
+
 def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
     """How well the fixed steps of a part resolve its modes, under the inputs held at each state."""
-    settings, place = _stepped(ended, ended.settings[part]), ended.layout.parts[part]
-    t, q, v, u = ended.states
-    if not len(t) or settings.adaptive:
+    settings = _stepped(ended, ended.settings[part])
+    if not len(ended.states[0]) or settings.adaptive:
         return Resolution()
-    states = (t, q[:, place.q], v[:, place.v], u)
     steps = ((settings.t_end if failed else ended.t) - settings.t0) / settings.dt
-    start, stepper = (states[1][0], states[2][0]), ended.loop.parts[part]
-    return examine_steps(ExaminedRun(stepper, settings, start, states, max(1, round(steps))))
+    return examine_steps(_part_run(ended, part, settings, steps))
+
+
+def _posture_notes(ended: Ended, again: Again) -> list[str]:
+    """Notes on singular postures that the parts passed, or nearly.
+
+    Where constraints engage or release on the way, their rank changes at any posture: nothing is said.
+    """
+    t, q, v, u = ended.states
+    locks = u[:, ended.layout.lock_inputs]
+    if not len(t) or (locks != locks[0]).any():
+        return []
+    notes: list[str] = []
+    for i, settings in enumerate(ended.settings):
+        place = ended.layout.parts[i]
+
+        def between(first: int, last: int, settings: Settings = settings, place: Part = place) -> States | None:
+            apart = float(t[last] - t[first]) / MOST_BETWEEN
+            dt = apart if settings.adaptive else min(apart, settings.dt)
+            along = None if settings.realtime else again(End(float(t[first]), float(t[last]), apart, dt))
+            if along is None or along[0][-1] < t[last] - apart:
+                return None
+            return [along[0], along[1][:, place.q], along[2][:, place.v], along[3]]
+
+        with suppress(SymofrosError):  # A block makes conditions depend on speeds: they have no strength by posture.
+            notes += constraint_notes(_part_run(ended, i, settings, int(ended.loop.diagram.steps)), between)
+    return notes
 
 
 def _signal_fault(ended: Ended) -> str:

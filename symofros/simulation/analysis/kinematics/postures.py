@@ -155,7 +155,7 @@ def nearest_to_singular(
     def weakest(at: Sequence[Array]) -> Array:
         """The singular value of the weakest condition of those that do not repeat others, at states t, q, u."""
         times, q, u = at
-        G = model.constraint_jacobian(q, u=u, par=par, t=times)
+        (G,) = model.evaluate("constraint_jacobian", q=q, u=u, par=par, t=times)
         squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
         return np.asarray(np.sqrt(np.maximum(squares[:, -rank], 0.0)))
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from symofros.errors import SymofrosError
@@ -29,6 +32,8 @@ _SINGULAR_ENDS = (
     Status.PROJECTION_FAILED,
     Status.RUNNING,
 )
+# The states of a motion between two records, by their numbers, in short steps; None where that is not known.
+Between = Callable[[int, int], States | None]
 # Share of its terms by which a condition is violated that is not kept.
 _VIOLATED = 0.1
 
@@ -61,15 +66,37 @@ def violation(run: ExaminedRun) -> Violation | None:
     return worst if worst is not None and worst.share > _VIOLATED else None
 
 
-def near_singular(run: ExaminedRun) -> tuple[float, float] | None:
-    """When a run came close to a singular posture, and to which share of the conditions' strength; None: it did not."""
+def constraint_notes(examined: ExaminedRun, between: Between | None = None) -> list[str]:
+    """A note on a singular posture that was passed, or nearly.
+
+    Args:
+        examined: The run.
+        between: The motion between two of its records, where the run can't be made once more by itself.
+    """
+    run = examined.stepper.run
+    if not examined.model.nc:
+        return []
+    if 0 <= run.rank_min < run.rank_max:
+        return [
+            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
+            f" {run.rank_max} to {run.rank_min}"
+        ]
+    motion = between or partial(_short_steps, examined)
+    close = nearest_to_singular(examined.model, examined.states, examined.stepper.par, int(run.rank_max), motion)
+    if not close:
+        return []
+    when, share = close
+    return [
+        f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of their strength:"
+        " compare with another step"
+    ]
+
+
+def _short_steps(run: ExaminedRun, first: int, last: int) -> States | None:
+    """The motion between two records in short steps; None where it can't be made again, empty where these fail."""
     t, q, v, _ = run.states
-
-    def motion(first: int, last: int) -> States | None:
-        if run.settings.realtime or not run.same_inputs_again:
-            return None
-        part = float(t[last] - t[first]) / MOST_BETWEEN
-        status, along = run.in_short_steps((t[first], q[first], v[first]), float(t[last]), part)
-        return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along
-
-    return nearest_to_singular(run.model, run.states, run.stepper.par, int(run.stepper.run.rank_max), motion)
+    if run.settings.realtime or not run.same_inputs_again:
+        return None
+    part = float(t[last] - t[first]) / MOST_BETWEEN
+    status, along = run.in_short_steps((t[first], q[first], v[first]), float(t[last]), part)
+    return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along

@@ -14,7 +14,7 @@ from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
-from symofros.simulation.results.examination.constraint_faults import jump, lost_energy, near_singular, violation
+from symofros.simulation.results.examination.constraint_faults import constraint_notes, jump, lost_energy, violation
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
 from symofros.simulation.results.examination.run import ExaminedRun
@@ -49,7 +49,7 @@ def diagnose(
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
     told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = (*_of_constraints(run), *_of_limits(run), *bending_notes(told), *_of_pace(run))
+    notes = (*constraint_notes(run), *_of_limits(run), *bending_notes(told), *_of_pace(run))
     fault = input_fault(stepper) if status < 0 else ""
     return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
@@ -259,26 +259,6 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
         return "there are no speeds"
     worst = int(np.argmax(np.where(np.isfinite(sizes), sizes, math.inf)))
     return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
-
-
-def _of_constraints(examined: ExaminedRun) -> list[str]:
-    """A note on a singular posture that was passed, or nearly."""
-    run = examined.stepper.run
-    if not examined.model.nc:
-        return []
-    if 0 <= run.rank_min < run.rank_max:
-        return [
-            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
-            f" {run.rank_max} to {run.rank_min}"
-        ]
-    close = near_singular(examined)
-    if not close:
-        return []
-    when, share = close
-    return [
-        f"the constraints came close to a singular posture at t = {when:.6g} s, to {share:.1%} of their strength:"
-        " compare with another step"
-    ]
 
 
 def _of_limits(run: ExaminedRun) -> tuple[str, ...]:

@@ -10,8 +10,9 @@ import pytest
 import symofros as sf
 from symofros.blocks import Formula, PythonBlock
 from tests.diagrams.parts import moving
-from tests.models import sampled
+from tests.models import GUESSES, compiled, sampled
 from tests.simulation.oscillator import oscillator_system
+from validation.references import MODELS
 
 
 def pushed(law: str, force: str, **start: float) -> sf.Simulation:
@@ -160,3 +161,16 @@ def test_steps_of_a_long_run_that_are_not_held_against_finer_ones_are_told(metho
     """An external block would have to answer again; where the steps are right nothing adds up."""
     notes = sampled_loop("python").run(15.0, method=method, dt=1e-3, record=0.1).outcome.notes
     assert [" are not held against " in note and "'law' is not called again" in note for note in notes] == [True] * said
+
+
+@pytest.mark.parametrize("record", [0.01, 0.1])
+def test_a_singular_posture_that_is_passed_is_told_as_of_the_model_alone(record: float) -> None:
+    """Between records that are far apart the motion is made once more; off such a posture nothing is said."""
+    model = compiled("parallelogram")
+    first = sf.assemble(model, GUESSES["parallelogram"], np.full(model.nv, 3.0))
+    start = {**dict(zip(model.names.q, first.q, strict=True)), "dq1": float(first.v[0])}
+    simulation = sf.Simulation(moving(MODELS["parallelogram"], start=start))
+    alone = sf.simulate(model, first.q, first.v, 0.6, method="rk4", dt=1e-3).outcome.notes
+    notes = simulation.run(0.6, method="rk4", dt=1e-3, record=record).outcome.notes
+    assert ["singular posture" in note for note in alone] == ["singular posture" in note for note in notes] == [True]
+    assert not simulation.run(0.1, method="rk4", dt=1e-3, record=record).outcome.notes
