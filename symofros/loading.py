@@ -12,7 +12,9 @@ from typing import Any
 from symofros.base.arguments import checked
 from symofros.base.atomic import write_atomically
 from symofros.base.sources import Source as Source
-from symofros.description.imported.options import SNAP_TOL, Dissipation, ImportOptions, LimitsAs
+from symofros.description.imported.options import SNAP_TOL, ImportOptions
+from symofros.description.imported.options import Dissipation as Dissipation
+from symofros.description.imported.options import LimitsAs as LimitsAs
 from symofros.description.packages import Folders, Packages
 from symofros.description.reading import MODEL_SUFFIXES, USD_SUFFIXES, YAML_SUFFIXES, Reading, in_order
 from symofros.description.remarks import note

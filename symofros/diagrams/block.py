@@ -288,12 +288,12 @@ class ModelFile:
     Attributes:
         path: The file.
         functions: Functions as of `Diagram.add_model`.
-        floating_base: Floating base as of `sf.load`.
+        reading: Arguments of `sf.load` that it was read by.
     """
 
     path: str
     functions: int | None = None
-    floating_base: bool = False
+    reading: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

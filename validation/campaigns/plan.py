@@ -33,7 +33,36 @@ class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class CheckPlan(_Strict):
+class _OfFiles(_Strict):
+    """How the files of models are read, as by `sf.load` (docs/importing.md).
+
+    Attributes:
+        floating_base: Whether the body of a file that stands on the ground goes onto a free joint.
+        waive: Checks that every body of a file may fail.
+        packages: Name -> further folder that files may be read from.
+        dissipation: What is kept of passive losses; "" for what the format keeps by default.
+        limits: What limits of coordinates are.
+    """
+
+    floating_base: bool = False
+    waive: tuple[str, ...] = ()
+    packages: dict[str, str] = Field(default_factory=dict)
+    dissipation: Literal["", "none", "viscous", "all"] = ""
+    limits: Literal["data", "stops"] = "data"
+
+    @property
+    def reading(self) -> ReadingOptions:
+        """Options for reading the model files."""
+        return ReadingOptions(
+            self.floating_base,
+            waive=self.waive,
+            packages=tuple(self.packages.items()),
+            dissipation=self.dissipation,
+            limits="" if self.limits == "data" else self.limits,
+        )
+
+
+class CheckPlan(_OfFiles):
     """Cross-check random states of many models.
 
     Attributes:
@@ -43,8 +72,6 @@ class CheckPlan(_Strict):
         batch: States a batch.
         seed: Seed of the states.
         engines: Engines to compare with; None: all.
-        floating_base: Whether URDF files get a free joint under their root.
-        waive: Checks that every body of a file may fail.
     """
 
     kind: Literal["check"] = "check"
@@ -53,13 +80,6 @@ class CheckPlan(_Strict):
     batch: Annotated[int, Field(ge=1, le=100_000)] = 500
     seed: Seed = 0
     engines: tuple[str, ...] | None = Field(default=None, min_length=1)
-    floating_base: bool = False
-    waive: tuple[str, ...] = ()
-
-    @property
-    def reading(self) -> ReadingOptions:
-        """Options for reading the model files."""
-        return ReadingOptions(self.floating_base, waive=self.waive)
 
     @model_validator(mode="after")
     def _sound(self) -> CheckPlan:
@@ -84,7 +104,7 @@ class Motion(_Strict):
     method: Literal["rk4", "semi_implicit_euler", "euler", "dopri5", "dop853"] = "rk4"
 
 
-class SweepPlan(_Strict):
+class SweepPlan(_OfFiles):
     """One model over many values of its parameters.
 
     Attributes:
@@ -186,7 +206,7 @@ def cases(plan: Plan) -> list[Case]:
     """
     names = [plan.model] if isinstance(plan, SweepPlan) else list(plan.models)
     try:
-        chosen = named(names, plan.reading if isinstance(plan, CheckPlan) else ReadingOptions())
+        chosen = named(names, plan.reading)
     except (LookupError, OSError) as error:
         rule = "a model is a name of the standard set, or a file below the folder that the command runs in"
         raise PlanError("models", str(error.args[0]), rule, "mend the name") from None

@@ -10,7 +10,9 @@ from symofros.errors import Problem, did_you_mean
 DIAGRAMS = (".yaml", ".yml")
 
 
-def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ()) -> Problem | None:
+def refused(
+    text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = (), is_folder: bool = False
+) -> Problem | None:
     """Why a file may not be read; None if it may.
 
     Args:
@@ -18,10 +20,11 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ())
         base: The folder of the file that refers to it.
         folder: The main diagram's, resolved; all lies in it or below.
         suffixes: Suffixes that such files have; any by default.
+        is_folder: Whether it is a folder, whose files may be read.
     """
     try:
         target = resolved(base / text)
-        exists = target.is_file()
+        exists = target.is_dir() if is_folder else target.is_file()
         is_inside = not Path(text).is_absolute() and target.is_relative_to(folder)
     except (OSError, ValueError, RuntimeError) as error:  # A NUL character, a loop of links, too long a name.
         return Problem(f"file '{text:.80}' is no path", str(error), "a relative path", "name a file of this folder")
@@ -39,6 +42,9 @@ def refused(text: str, base: Path, folder: Path, suffixes: tuple[str, ...] = ())
             f"it ends in one of {', '.join(suffixes)}",
             "name another",
         )
+    if not exists and is_folder:
+        rule = "a package is a folder inside the diagram's"
+        return Problem(f"'{text:.80}' is no folder", kind_of(target), rule, "check the path")
     if not exists:
         kind = kind_of(target)
         there = sorted(

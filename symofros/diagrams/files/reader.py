@@ -17,6 +17,7 @@ from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.files.fields import Misfit, read, required, types_of
 from symofros.diagrams.files.paths import DIAGRAMS, refused
+from symofros.diagrams.files.reading_options import READING, read_options
 from symofros.diagrams.files.registry import INPUTS, KIND, entry_of, kinds
 from symofros.diagrams.files.run_settings import read_settings
 from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
@@ -30,7 +31,7 @@ MAX_BLOCKS = 10_000
 
 HEAD = DIAGRAM
 SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
-MODEL = ("file", "functions", "floating_base", "start", "parameters")
+MODEL = ("file", "functions", *READING, "start", "parameters")
 PART = ("file", "diagram", "models", "inputs")
 COMMON = ("kind", "period", "offset", "inputs")
 
@@ -87,7 +88,7 @@ class _Shared:
     kinds: Mapping[str, type[Block]]
     network: bool
     problems: list[Problem] = field(default_factory=list)
-    systems: dict[tuple[Path, bool], System | None] = field(default_factory=dict)
+    systems: dict[tuple[Path, str], System | None] = field(default_factory=dict)
     files: int = 0
     bytes_left: int = MAX_BYTES
     unwritten: dict[Path, bytes] = field(default_factory=dict)
@@ -156,7 +157,7 @@ class _Reader(Entries):
         diagram.origin["model", name] = self.where(node, key=True)
         if self.missing(node, what, "file", entries, "a model is read from a file"):
             return
-        floating = "floating_base" in entries and self.one_of(entries["floating_base"], what, (True, False)) is True
+        options = read_options(self, entries, what, self.base, self.shared.folder)
         functions = None
         if "functions" in entries:
             value = entries["functions"].value
@@ -170,31 +171,31 @@ class _Reader(Entries):
                 )
                 return
             functions = value
-        system = self.system(entries["file"], what, floating)
+        system = self.system(entries["file"], what, options)
         start, parameters = (
             self.numbers(entries[key], f"{what}: {key}") if key in entries else {} for key in ("start", "parameters")
         )
         if system is None:
             return
-        path, floats = str(resolved(self.base / entries["file"].value)), floating
+        file = ModelFile(str(resolved(self.base / entries["file"].value)), functions, options)
         try:
-            diagram.add_model(name, system, start, parameters, functions, ModelFile(path, functions, floats))
+            diagram.add_model(name, system, start, parameters, functions, file)
         except DescriptionError as error:
             self.take(node, error.problems)
 
-    def system(self, node: Node, what: str, floating_base: bool) -> System | None:
-        """The description in a file; the same object for the same file."""
+    def system(self, node: Node, what: str, options: Mapping[str, Any]) -> System | None:
+        """The description in a file; the same object for the same file, read by the same options."""
         text = self.text(node, f"{what}: file", 1000)
         problem = refused(text, self.base, self.shared.folder, MODEL_SUFFIXES) if text else None
         if not text or problem:
             self.take(node, [problem] if problem else [])
             return None
         path = resolved(self.base / text)
-        key = path, floating_base
+        key = path, repr(options)
         if key not in self.shared.systems:
             try:
                 shown = Path(os.path.relpath(path)) if not Path(self.file).is_absolute() else path
-                self.shared.systems[key] = load(shown, floating_base=floating_base)
+                self.shared.systems[key] = load(shown, **options)
             except DescriptionError as error:
                 self.shared.systems[key] = None
                 self.take(node, error.problems)

@@ -15,6 +15,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 from symofros.diagrams.block import Block
 from symofros.diagrams.files.fields import MISSING, required, types_of, words_for, write
 from symofros.diagrams.files.reader import HEAD, VERSION
+from symofros.diagrams.files.reading_options import READING
 from symofros.diagrams.files.registry import entry_of, kinds
 from symofros.diagrams.files.run_settings import SETTINGS
 from symofros.simulation.stepping.methods import METHODS
@@ -63,7 +64,7 @@ def json_schema() -> Plain:
     model = {
         "file": {"type": "string"},
         "functions": {"type": "integer", "minimum": 0, "maximum": 100},
-        "floating_base": {"type": "boolean"},
+        **{name: of_type(kind) for name, kind in READING.items()},
         "start": _NUMBERS,
         "parameters": _NUMBERS,
     }

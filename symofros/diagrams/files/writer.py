@@ -19,6 +19,7 @@ from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.files.fields import MISSING, same, write
 from symofros.diagrams.files.paths import DIAGRAMS
 from symofros.diagrams.files.reader import HEAD, VERSION, load_diagram
+from symofros.diagrams.files.reading_options import reading_entries
 from symofros.diagrams.files.registry import entry_of, kind_of
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
@@ -117,8 +118,11 @@ class _Writer:
         origin = setup.file
         if origin is None or not Path(origin.path).is_relative_to(self.folder):
             return None
+        stated = reading_entries(origin.reading, self.folder)
+        if stated is None:
+            return None
         try:
-            system = load(origin.path, floating_base=origin.floating_base)
+            system = load(origin.path, **origin.reading)
         except DescriptionError:
             return None
         if origin.functions is not None:
@@ -128,7 +132,7 @@ class _Writer:
         entries: Plain = {"file": Path(origin.path).relative_to(self.folder).as_posix()}
         if origin.functions is not None:
             entries["functions"] = origin.functions
-        return entries | ({"floating_base": True} if origin.floating_base else {})
+        return entries | stated
 
     def part(self, name: str, part: Part) -> Plain:
         """A part by its file, or inline."""

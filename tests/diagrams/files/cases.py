@@ -23,3 +23,17 @@ def folder_with(path: Path, text: str = TEXT) -> Path:
 def line_of(text: str, words: str) -> int:
     """The line that some words are in."""
     return next(i for i, line in enumerate(text.splitlines(), 1) if words in line)
+
+
+# A joint with damping, friction and a limit, and a free one.
+RESISTED = """<robot name="resisted">
+  <link name="base"/>
+  <link name="arm"><inertial><mass value="1"/><origin xyz="0 0 -0.5"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="tip"><inertial><mass value="1"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="hinge" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="9" velocity="9"/><dynamics damping="0.3" friction="0.2"/></joint>
+  <joint name="end" type="continuous"><parent link="arm"/><child link="tip"/><axis xyz="0 1 0"/></joint>
+</robot>
+"""

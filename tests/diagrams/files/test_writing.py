@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.blocks import ForwardDynamics, JointPD
 from symofros.diagrams.block import Block
 from symofros.diagrams.settings import Plot, RunSettings
-from tests.diagrams.files.cases import ARM, folder_with
+from tests.diagrams.files.cases import ARM, RESISTED, folder_with
 
 
 def control() -> sf.Diagram:
@@ -64,6 +64,22 @@ def test_parts_of_files_stay_references(tmp_path: Path) -> None:
     text = (tmp_path / "d.yaml").read_text()
     assert "file: control.yaml" in text and "left/pd.q_desired: plant.q" in text and "joint_pd" not in text
     assert sf.load_diagram(tmp_path / "d.yaml").wires == d.wires
+
+
+def test_options_of_reading_are_those_of_load_and_are_written_again(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(RESISTED)
+    (tmp_path / "meshes").mkdir()
+    stated = "dissipation: all, limits: stops, waive: [massless_tip], packages: {meshes: meshes}"
+    text = f"symofros_diagram: 1\nmodels:\n  arm: {{file: arm.urdf, {stated}}}\n"
+    (tmp_path / "d.yaml").write_text(text)
+    d = sf.load_diagram(tmp_path / "d.yaml")
+    arm = d.models["arm"].system.body("arm")
+    assert arm.joint and {type(item) for item in arm.joint.elements} == {sf.Damper, sf.Friction, sf.Stop}
+    assert arm.waive == ("massless_tip",)
+    assert sf.save_diagram(d, tmp_path / "again.yaml") == [tmp_path / "again.yaml"]
+    assert sf.load_diagram(tmp_path / "again.yaml") == d
+    again = (tmp_path / "again.yaml").read_text()
+    assert all(words in again for words in ("dissipation: all", "limits: stops", "massless_tip", "meshes: meshes"))
 
 
 def test_a_model_that_was_changed_gets_a_file_of_its_own(tmp_path: Path) -> None:

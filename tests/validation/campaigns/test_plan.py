@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from ruamel.yaml import YAML
 
+from tests.diagrams.files.cases import RESISTED
 from validation.campaigns.errors import PlanError
 from validation.campaigns.plan import CheckPlan, cases, identities, make, plan_hash, read
 from validation.campaigns.tasks import CheckTask, tasks
@@ -91,3 +92,21 @@ def test_a_model_that_can_not_be_compared_is_a_row(tmp_path: Path) -> None:
     assert isinstance(plan, CheckPlan)
     (row,) = task.run().to_pylist()
     assert row["status"] == "failed" and row["agree"] is None and row["quantity"] == "load"
+
+
+@pytest.mark.parametrize(
+    "plan", [CHECK | {"models": ["arm.urdf"]}, SWEEP | {"model": "arm.urdf"}], ids=["check", "sweep"]
+)
+def test_files_are_read_by_the_options_of_a_plan(
+    plan: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "arm.urdf").write_text(RESISTED)
+    monkeypatch.chdir(tmp_path)
+    options: dict[str, Any] = {
+        "dissipation": "all",
+        "limits": "stops",
+        "floating_base": True,
+        "waive": ["massless_tip"],
+    }
+    (case,) = cases(make(plan | options | {"packages": {"meshes": "."}}, "plan"))
+    assert case.reading.keywords == options | {"waive": ("massless_tip",), "packages": {"meshes": "."}}
