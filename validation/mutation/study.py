@@ -11,6 +11,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import symofros as sf
+
 from .fault import SourceFault
 from .fresh import Fresh
 from .overlay import Overlay
@@ -38,8 +40,31 @@ _ARGUED = Path(__file__).with_name("argued.json")
 _CHECK_JUDGE, _TESTS_JUDGE = "validation.mutation.check_judge", "validation.mutation.tests_judge"
 _OUTPUTS = "validation.mutation.outputs"
 
+_ROOT = Path(__file__).parents[2]
+
 Report = Callable[[str], None]
 Answer = dict[str, Any]
+
+
+def argued_faults(file: Path = _ARGUED) -> dict[str, str]:
+    """Fault -> why it changes no result, as a person has argued.
+
+    Args:
+        file: JSON of them.
+
+    Raises:
+        SymofrosError: A fault is of a module that does not exist.
+    """
+    argued: dict[str, str] = json.loads(file.read_text(encoding="utf-8"))
+    gone = [fault for fault in argued if not (_ROOT / fault.partition(":")[0]).is_file()]
+    if gone:
+        rule = "an argued fault is one of a module that there is"
+        raise sf.SymofrosError(
+            sf.Problem(
+                f"{file.name}: no such module", "; ".join(gone), rule, "name the present one, or remove the fault"
+            )
+        )
+    return argued
 
 
 @dataclass
@@ -62,7 +87,7 @@ class Study:
     folder: Path
     report: Report
     failing: set[str] = field(default_factory=set)
-    argued: dict[str, str] = field(default_factory=lambda: json.loads(_ARGUED.read_text(encoding="utf-8")))
+    argued: dict[str, str] = field(default_factory=lambda: argued_faults())
 
     @classmethod
     def begun(

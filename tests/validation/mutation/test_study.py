@@ -8,13 +8,14 @@ from typing import Any
 
 import pytest
 
+import symofros as sf
 from validation.mutation import overlay as overlays
 from validation.mutation.fault import SIGN, SourceFault
 from validation.mutation.measure import as_data
 from validation.mutation.overlay import Overlay
 from validation.mutation.report import compose
 from validation.mutation.store import Store
-from validation.mutation.study import CHECK, LONGER, OUTPUTS, TESTS, Study
+from validation.mutation.study import CHECK, LONGER, OUTPUTS, TESTS, Study, argued_faults
 
 ROOT = Path(__file__).parents[3]
 IDENTITY = Path("symofros", "runtime", "build", "identity.py")
@@ -147,3 +148,12 @@ def test_what_ends_by_a_signal_or_not_at_all(tmp_path: Path, ends: dict[str, tup
     for stage, (fate, code) in ends.items():
         study.store.put(fault.id, stage, {"fate": fate, "code": code, "answer": None, "seconds": 1.0}, "m.py")
     assert study.fate(fault) == expected
+
+
+def test_faults_that_are_argued_are_of_modules_that_exist(tmp_path: Path) -> None:
+    assert argued_faults()
+    gone = "symofros/results/gone.py:36@1550:comparison:and->or"
+    (tmp_path / "argued.json").write_text(json.dumps({gone: "words"}))
+    with pytest.raises(sf.SymofrosError, match="no such module") as refused:
+        argued_faults(tmp_path / "argued.json")
+    assert refused.value.problems[0].found == gone
