@@ -26,6 +26,8 @@ from .provenance import Provenance, stamp
 from .record import Data, Report, Topic
 
 REPORTS = Path("reports")
+# Seconds between two lines of progress, of which work in short steps would write thousands into a file.
+_PAUSE = 10.0
 
 
 class Exit(IntEnum):
@@ -59,7 +61,7 @@ class Done:
 
 
 def progress_bar(console: Console) -> Progress:
-    """A bar for eyes, with names and what is left; a file or a pipe gets lines (`Run.advance`)."""
+    """A bar for eyes, with names and what is left; a file or a pipe gets a line each ten seconds (`Run.advance`)."""
     left = TextColumn("left"), TimeRemainingColumn()
     columns = (
         TextColumn("{task.description}"),
@@ -91,6 +93,7 @@ class Run:
         self._console = Console(stderr=True)
         self.bar = progress_bar(self._console)
         self._task = self.bar.add_task(topic.name, total=None)
+        self._told = -_PAUSE
 
     def expect(self, total: int, doing: str | None = None) -> None:
         """So many steps are to be done."""
@@ -102,15 +105,19 @@ class Run:
         """Steps are done; `doing` says what comes next, or came out."""
         self._done += steps
         self.bar.update(self._task, advance=steps, description=doing)
-        self._tell(doing and f"[{self._done}/{self._total}] {doing}")
+        is_last = steps > 0 and self._done == self._total
+        if is_last or self.seconds - self._told >= _PAUSE:
+            self._tell(doing and f"[{self._done}/{self._total}] {doing}")
 
     def _tell(self, text: str | None) -> None:
         """A line of progress where no bar can be drawn, with the time since the start."""
         if self.bar.disable and text:
+            self._told = self.seconds
             self._console.print(f"{self.seconds:7.1f} s  {text}", markup=False, highlight=False, soft_wrap=True)
 
     def reached(self, number: int) -> None:
         """So many steps are done in all."""
+        self._done = number
         self.bar.update(self._task, completed=number)
 
     def say(self, text: str, bad: bool = False) -> None:
