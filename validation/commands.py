@@ -22,7 +22,7 @@ COMMANDS = {
     "check": Command("cross_check.report", "Compare our C of each MODEL with every engine that can represent it."),
     "oracle": Command(
         "studies.reports.oracle",
-        "Compare with SymPy's derivations by Lagrange and by Kane, in extended precision.",
+        "Compare with SymPy's derivations by Kane's method, in extended precision.",
     ),
     "mutation": Command(
         "studies.reports.mutation",

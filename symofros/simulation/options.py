@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any, Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from symofros.base.arguments import CheckedCalls, check_fields
-from symofros.errors import Problem, UnknownNameError, did_you_mean, near_name
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
@@ -102,6 +103,23 @@ class SimulationOptions(metaclass=CheckedCalls):
                 remedy = _meant(name, names, arguments)
                 raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
         return replace(self, **chosen)
+
+    def refuse(self, names: Sequence[str], what: str, rule: str) -> None:
+        """Refuse options that are stated though they mean nothing to what runs.
+
+        Args:
+            names: Names of fields.
+            what: What kind of options they are, for the message.
+            rule: Why they mean nothing.
+
+        Raises:
+            SymofrosError: One of them is not as by default.
+        """
+        usual = SimulationOptions()
+        for name in names:
+            value = getattr(self, name)
+            if value is not None and (np.ndim(value) or value != getattr(usual, name)):
+                raise SymofrosError(Problem(f"{what}, '{name}'", repr(value)[:60], rule, "leave it out"))
 
 
 def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:

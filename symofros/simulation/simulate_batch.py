@@ -134,10 +134,8 @@ def _check_batch(settings: Settings, options: SimulationOptions) -> None:
         explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
         what, rule = f"simulate_batch: '{name}' is no explicit method", f"batches take {explicit}"
         raise SymofrosError(Problem(what, name, rule, "run sf.simulate for each state"))
-    if options.realtime or options.every != 1:
-        stated_options = f"realtime = {options.realtime}, every = {options.every}"
-        rule = "a batch records at `output`, and is not paced"
-        raise SymofrosError(Problem("simulate_batch: an option of single runs", stated_options, rule, "leave them out"))
+    rule = "a batch records at `output`, and is not paced"
+    options.refuse(("realtime", "every"), "simulate_batch: an option of single runs", rule)
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:

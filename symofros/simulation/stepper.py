@@ -311,12 +311,8 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
 
 def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
     """Settings of a run without an end; options that speak of one, or of records, are refused."""
-    usual = SimulationOptions()
-    for name in ("output", "every", "max_steps", "realtime"):
-        value = getattr(options, name)
-        if value is not None and value != getattr(usual, name):
-            rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
-            raise refusal(f"stepper: an option of whole runs, '{name}'", repr(value)[:60], rule, "leave it out")
+    rule = "a loop of the caller's decides when it ends, what it records and how fast it goes"
+    options.refuse(("output", "every", "max_steps", "realtime"), "stepper: an option of whole runs", rule)
     settings = Settings.of(model, options, options.t0)
     if settings.method.family.multistep:
         raise refusal(

@@ -208,14 +208,13 @@ def test_the_harness_starts_from_any_folder(
     assert not (tmp_path / "reports").exists()
 
 
-@pytest.mark.parametrize("arguments", [["validation", "accuracy", "--help"], ["validation", "timing"]])
 def test_without_its_packages_the_harness_says_what_to_install(
-    arguments: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """As after `pip install symofros` alone: a package that can't be imported stands for one that is not there."""
     (tmp_path / "sitecustomize.py").write_text("import sys\nsys.modules['scipy'] = sys.modules['matplotlib'] = None\n")
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")  # Of the process that runs the harness.
-    status, said = invoke(*arguments).exit_code, capfd.readouterr().err
+    status, said = invoke("validation", "accuracy", "--help").exit_code, capfd.readouterr().err
     assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said
 
 

@@ -173,9 +173,9 @@ def test_a_picture_says_what_it_leaves_out(tmp_path: Path) -> None:
     wrong = invoke(*asked, "--signals", "q99")
     assert wrong.exit_code == 2 and "no coordinate, speed or input 'q99'" in wrong.output
     run = sf.simulate(sf.compile(sf.System("chain", chain)), t_end=1e-3)
-    titles = [axis.get_title() for axis in run.plot().axes]
+    titles = [axis.get_title(loc="left") for axis in run.plot().axes]
     assert "the first 12 of 14; others by their names" in titles
-    assert [axis.get_title() for axis in run.plot("q13").axes][0] == ""
+    assert [axis.get_title(loc="left") for axis in run.plot("q13").axes][0] == ""
 
 
 _STATED: dict[type, Any] = {bool: True, str: "all", tuple: (("a", "b"),)}

@@ -22,7 +22,7 @@ import symofros as sf
 from symofros.description.parser import ExpressionError, parse
 from symofros.expr.expression import evaluate
 from tests.description import mjcf_models, sdf_models, urdf_models, usd_models
-from tests.late import needs_extra
+from tests.late import require
 from tests.models import interpreted
 from tests.program_text import Case, assert_golden, golden_cases
 
@@ -175,23 +175,32 @@ def read(stated: str, name: str, folder: Path) -> str:
     )
 
 
-def needs(name: str) -> None:
-    if name.startswith("usd"):
-        pytest.importorskip("pxr", reason=needs_extra("usd", "pxr"))
+def said_of_each(lines: str, name: str, folder: Path) -> str:
+    return "\n".join(said(line, name, folder) for line in lines.split("\n"))
 
 
-READ = [case for name in FORMATS if name != "mimic" for case in golden_cases(__file__, f"{name}_read")]
+READ = [case for name in ("mjcf", "sdf", "urdf") for case in golden_cases(__file__, f"{name}_read")]
+SAID = [case for name in ("mjcf", "sdf", "urdf", "mimic") for case in golden_cases(__file__, name)]
 
 
 @pytest.mark.parametrize("case", READ)
 def test_foreign_files_are_read_as_stated(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
-    name = case.path.stem.removesuffix("_read")
-    needs(name)
-    assert_golden(case, lambda stated: read(stated, name, tmp_path), request)
+    assert_golden(case, lambda stated: read(stated, case.path.stem.removesuffix("_read"), tmp_path), request)
 
 
-@pytest.mark.parametrize("case", [case for name in FORMATS for case in golden_cases(__file__, name)])
+@pytest.mark.parametrize("case", SAID)
 def test_what_is_said_of_foreign_files(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
-    name = case.path.stem
-    needs(name)
-    assert_golden(case, lambda lines: "\n".join(said(line, name, tmp_path) for line in lines.split("\n")), request)
+    assert_golden(case, lambda lines: said_of_each(lines, case.path.stem, tmp_path), request)
+
+
+# Stages are read in a process of their own, which takes a second.
+@pytest.mark.parametrize("case", golden_cases(__file__, "usd_read"))
+def test_stages_are_read_as_stated(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    require("pxr", "usd")
+    assert_golden(case, lambda stated: read(stated, "usd", tmp_path), request)
+
+
+@pytest.mark.parametrize("case", golden_cases(__file__, "usd"))
+def test_what_is_said_of_stages(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    require("pxr", "usd")
+    assert_golden(case, lambda lines: said_of_each(lines, "usd", tmp_path), request)

@@ -10,20 +10,6 @@ import symofros as sf
 from symofros import blocks
 from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
-from symofros.simulation.inputs import Signal
-
-
-@dataclass(frozen=True, kw_only=True)
-class After(Block):
-    """1 from a time on, one entry."""
-
-    time: float
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((), (Port("y", (1,)),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": (context.t - self.time).apply("step").reshape(1)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,6 +111,11 @@ class Ball(Block):
         return {"w": -self.restitution * context.states["w"], "h": context.numbers(0.0), "n": context.memory["n"] + 1.0}
 
 
+def ramp() -> blocks.Ramp:
+    """Time, and twice of it."""
+    return blocks.Ramp(name="ramp", slope=[1.0, 2.0], unit="s")
+
+
 def moving(
     model: sf.System, start: Mapping[str, float] | None = None, title: str = "moving", **wires: str
 ) -> sf.Diagram:
@@ -146,30 +137,3 @@ def arm(model: sf.System, period: float | None = 1e-3, **start: float) -> sf.Dia
         q_desired="goal",
     )
     return diagram
-
-
-def table() -> Signal:
-    """Samples of two signals."""
-    return Signal([0.0, 0.5, 1.0], [[0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])
-
-
-@dataclass(frozen=True, kw_only=True)
-class Given(Block):
-    """Two signals by samples."""
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((), (Port("y", (2,)),))
-
-    def samples(self) -> Mapping[str, Any]:
-        return {"y": table()}
-
-
-@dataclass(frozen=True, kw_only=True)
-class First(Block):
-    """The first entry."""
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((Port("x", (2,)),), (Port("y"),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": context.inputs["x"][0]}

@@ -79,21 +79,10 @@ class Liar(Block):
 def test_accelerations_under_constraints_are_for_samples() -> None:
     system = sf.load(Path(__file__).parents[2] / "reference_models" / "closed" / "slider_crank.yaml")
     diagram = moving(system)
-    diagram.add(Norm(name="norm"), x="plant.lam")
+    diagram.add(blocks.Formula(name="norm", formulas="abs(x[0])"), x="plant.lam")
     diagram.add(Lag(name="lag"), x="norm")
     with pytest.raises(sf.DescriptionError, match="needed between samples"):
         sf.Simulation(diagram).run(0.1)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Norm(Block):
-    """The size of a signal."""
-
-    def ports(self, environment: Environment) -> Ports:
-        return Ports((Port("x", environment.inputs.get("x")),), (Port("y"),))
-
-    def compute(self, context: EvaluationContext) -> Values:
-        return {"y": context.inputs["x"].norm()}
 
 
 def part() -> sf.Diagram:

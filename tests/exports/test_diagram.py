@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.settings import RunSettings
-from tests.diagrams.parts import After, Ball, Counter, First, Given, Lag, Spoken, arm
+from tests.diagrams.parts import Ball, Counter, Lag, Spoken, arm
 from tests.exports.cases import build, run
 from tests.models import sampled
 from tests.pulses import SHAPES, cart
@@ -34,7 +34,7 @@ def crank() -> sf.Diagram:
     stated = dict(zip(model.names.q, closed.q, strict=True))
     diagram.add_model("plant", system, start=stated)
     diagram.add(blocks.ForwardDynamics(name="plant", model="plant", engaged=True), engaged="after")
-    diagram.add(After(name="after", time=0.03, period=0.01))
+    diagram.add(blocks.Step(name="after", time=0.03, before=[0.0], after=[1.0], period=0.01))
     diagram.add(blocks.Hold(name="felt", period=0.01), u="plant.lam")
     return diagram
 
@@ -53,8 +53,9 @@ def loop() -> sf.Diagram:
 
 def table() -> sf.Diagram:
     diagram = sf.Diagram("1 table")
-    diagram.add(Given(name="given"))
-    diagram.add(First(name="first"), x="given")
+    values = [[0.0, 1.0], [1.0, 0.0], [0.5, 0.5]]
+    diagram.add(blocks.Sequence(name="given", t=[0.0, 0.5, 1.0], values=values))
+    diagram.add(blocks.Pick(name="first", entries=[0]), u="given")
     diagram.add(Lag(name="lag"), x="first")
     diagram.add(blocks.Hold(name="held", period=0.25), u="given")
     return diagram

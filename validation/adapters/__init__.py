@@ -1,7 +1,8 @@
-"""The engines: one folder each, the only one that imports the engine's package; here, what needs none.
+"""How a check asks engines: one folder each, the only one that imports the engine's package; here, what needs none.
 
-A new engine is one folder and one row of ROUTES. The folder's `__init__` imports without the engine's package, and its
-DIFFERENCES state where the engine's conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
+Rigid trees and loops are stated to the engine's plug-in of the matrix (`charted`, `validation/engines`). A new engine
+is a plug-in, one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package, and
+its DIFFERENCES state where conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
 with methods named as the quantities it offers (`contract/quantities.py`). The steps: docs/architecture.md, "To add".
 """
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..contract.conventions import Chart, Slot
+from ..contract.conventions import IN_PARENT, IN_WORLD, Chart, Slot
 from ..contract.interface import States, Subject, Unsupported
 from ..contract.quantities import QUANTITIES
 from ..engines.interface import ORIGIN, Joint, Link, State, Tree, rows, vector
@@ -132,12 +132,15 @@ def _joints(subject: Subject, mover: Mover, whole: bool) -> tuple[Joint, ...]:
 def chart_of(model: SourceModel, described: Stated) -> Chart:
     """Where, and in which charts, an engine keeps our joints."""
     slots = []
-    for movers, link in zip(described.movers, model.slots, strict=False):
-        own = list(link)
+    for movers, link, statement in zip(described.movers, model.slots, described.tree.links, strict=False):
+        own, first = list(link), statement.joints[0]
         for mover in movers:
             several = len(own) - len(movers) + 1 if mover.kind == "free" else 1
             parts, own = own[:several], own[several:]
-            slots.append(Slot(mover, parts[0].q[0], parts[0].v[0], " + ".join(part.chart for part in parts)))
+            chart = " + ".join(part.chart for part in parts)
+            if chart == IN_WORLD and (first.R, first.p) == (rows(mover.X_AP.R), vector(mover.X_AP.p)):
+                chart = IN_PARENT  # It stands where ours does.
+            slots.append(Slot(mover, parts[0].q[0], parts[0].v[0], chart))
     return Chart(tuple(slots), model.nq, model.nv)
 
 

@@ -7,7 +7,6 @@ from collections.abc import Collection
 import symofros as sf
 
 from ..contract.interface import Unsupported
-from ..contract.quantities import offered_by
 from ..mechanics.assembly import Assembly, Mover
 from ..mechanics.joint_kinds import PartKind
 
@@ -39,16 +38,6 @@ def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[Part
 def armature(system: sf.System, mover: Mover) -> float:
     """The inertia added to each speed of a joint."""
     return float(sf.evaluate(mover.joint.armature, system.parameter_values()))
-
-
-def offered(engine: type, system: sf.System) -> frozenset[str]:
-    """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs.
-
-    Args:
-        engine: The engine's class.
-        system: The description.
-    """
-    return offered_by(engine) - ({"potential_energy"} if stores_energy(system) else set())
 
 
 def bears_its_weight_alone(system: sf.System) -> bool:

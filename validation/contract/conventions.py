@@ -191,11 +191,6 @@ class Chart:
         return J_e_rate @ self.transform(q)[:, None] + J_e @ self.transform_rate(q, v)[:, None]
 
 
-def angular_first_to_linear_first(spatial: Array) -> Array:
-    """(angular; linear) -> (linear; angular) (..., 6)."""
-    return np.roll(spatial, 3, axis=-1)
-
-
 def times(A: Array, x: Array) -> Array:
     """Matrix times vector over the batch: (N, m, n), (N, n) -> (N, m)."""
     return np.asarray((A @ x[..., None])[..., 0])

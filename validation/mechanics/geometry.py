@@ -36,10 +36,6 @@ class Placement:
         """A to B, then B to C."""
         return Placement(self.R @ other.R, self.p + self.R @ other.p)
 
-    def inverse(self) -> Placement:
-        """A placed in B."""
-        return Placement(self.R.T, -self.R.T @ self.p)
-
 
 def skew(p: Array) -> Array:
     """[p]x, the matrix of the cross product with p (..., 3, 3)."""
@@ -53,13 +49,6 @@ def about_axis(axis: Array, angle: float) -> Array:
     """The rotation by `angle` [rad] about a unit axis, by Rodrigues' formula (3, 3)."""
     K = skew(axis)
     return np.asarray(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * (K @ K))
-
-
-def along_z(axis: Array) -> Array:
-    """A rotation that takes z to a unit axis (3, 3)."""
-    Q, _ = np.linalg.qr(np.column_stack([axis, np.eye(3)[np.argsort(np.abs(axis))[:2]].T]))
-    z = Q[:, 0] * np.sign(Q[:, 0] @ axis)
-    return np.column_stack([Q[:, 1], np.cross(z, Q[:, 1]), z])
 
 
 def rotation_matrix(kind: str, values: Array) -> Array:

@@ -148,8 +148,5 @@ def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par:
 
 def _projected(model: Model, part: Part, begin: Start, par: Array) -> tuple[Array, Array, float]:
     """The nearest state of a part on its constraints, and the largest |phi| that is left."""
-    kernel = model.kernel("project")
-    given = {"q": begin.q[part.q], "v": begin.v[part.v], "u": begin.u, "t": np.array([begin.t])}
-    inputs = [np.ascontiguousarray(given[group]).reshape(1, -1) for group, _ in kernel.signature.inputs]
-    q_on, v_on, residual, *_ = kernel.run(1, kernel.prepare(par.reshape(1, -1)), inputs)
-    return q_on[0], v_on[0], float(residual[0])
+    q, v, residual = model.project(begin.q[part.q], begin.v[part.v], u=begin.u, par=par, t=begin.t)
+    return q, v, float(residual)

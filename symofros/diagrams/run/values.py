@@ -30,10 +30,8 @@ def diagram_options(options: SimulationOptions | None, changes: Mapping[str, Any
     """
     chosen = (options or SimulationOptions()).changed(changes, DIAGRAM_CALL)
     check_pace(chosen.realtime)
-    if chosen.every != 1 or chosen.max_steps is not None:
-        stated = f"every = {chosen.every}, max_steps = {chosen.max_steps}"
-        rule = "a run of a diagram records at an interval, and ends at t_end"
-        raise SymofrosError(Problem("diagram: an option of runs of a single model", stated, rule, "leave them out"))
+    rule = "a run of a diagram records at an interval, and ends at t_end"
+    chosen.refuse(("every", "max_steps"), "diagram: an option of runs of a single model", rule)
     return chosen
 
 

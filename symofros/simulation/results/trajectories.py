@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.runtime.beams import NOTED_ERROR, BeamBending, largest_bending, worst_bendings
+from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
+from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Outcome
@@ -72,9 +73,14 @@ class Trajectories(BatchResults):
     def outcome(self, index: Index) -> Outcome:
         """Outcome of one run; its steps and inputs are examined at this call."""
         status, states, steps = int(self.status[index]), self._states(index), int(self.steps[index])
-        if self.examination is None:
-            return ENDS[status].outcome(float(self.t_last[index]))
-        return self.examination.outcome(self._number(index), status, states, steps, self.bendings(index))
+        bendings = self.bendings(index)
+        if self.examination is not None:
+            return self.examination.outcome(self._number(index), status, states, steps, bendings)
+        record, t, worst = self.model.record, float(self.t_last[index]), largest_bending(bendings)
+        if status == Status.BEYOND_THEORY and worst is not None:
+            return ENDS[status].outcome(t, reason=str(worst))
+        left = limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
+        return ENDS[status].outcome(t, (*left, *bending_notes(bendings)))
 
     def _number(self, index: Index) -> int:
         """Number of a run among all."""

@@ -89,7 +89,7 @@ class BatchResults:
         status = np.zeros(n, dtype=np.int32)
         return cls(q, v, u, np.zeros(n), q_last, v_last, status, steps, rejected, errors, times, elastic)
 
-    def shaped(self, shape: tuple[int, ...]) -> dict[str, npt.NDArray[Any]]:
+    def shaped(self, shape: tuple[int, ...]) -> dict[str, Any]:
         """The arrays by name, whose rows (n) are those of a batch of that shape."""
         return {name: array.reshape(shape + array.shape[1:]) for name, array in vars(self).items()}
 

@@ -16,13 +16,13 @@ import symofros as sf
 from symofros.blocks import LivePlot
 from symofros.blocks.graphics.live_page import AT_ONCE, ROWS, Feed
 from symofros.blocks.network.packets import pack
-from tests.blocks.sources import Ramp
+from tests.diagrams.parts import ramp
 
 
 @pytest.fixture(scope="module")
 def shown() -> Iterator[LivePlot]:
     d = sf.Diagram("live")
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     live = LivePlot(name="live", signals=("a", "b"), title="A <b>run</b>", period=0.01, open_browser=False)
     d.add(live, a="ramp.y", b="ramp.y")
     run = sf.Simulation(d).run(0.5, dt=1e-2, realtime=True)

@@ -13,15 +13,15 @@ from symofros.blocks import ExtremityPlot, ForwardDynamics, Scope, StatePlot, St
 from symofros.diagrams.block import Block
 from symofros.diagrams.run.plots import plots_of
 from symofros.diagrams.settings import Plot, RunSettings
-from tests.blocks.sources import Ramp
 from tests.diagrams.files.cases import ARM
+from tests.diagrams.parts import ramp
 
 
 def arm(*blocks: tuple[Block, dict[str, str]]) -> sf.Simulation:
     d = sf.Diagram("arm")
     d.add_model("arm", sf.load(ARM), {"q1": 0.4})
     d.add(ForwardDynamics(name="plant", model="arm"))
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     for block, inputs in blocks:
         d.add(block, **inputs)
     return sf.Simulation(d)

@@ -15,12 +15,12 @@ import symofros as sf
 from symofros.blocks import PythonBlock, UdpReceiver, UdpTransmitter, ZenohPublisher, ZenohSubscriber
 from symofros.diagrams.block import Block
 from tests.blocks.sockets import free_port
-from tests.blocks.sources import Ramp
+from tests.diagrams.parts import ramp
 
 # So few that a socket's buffer holds them all: however slow the machine, only the relay loses any.
 PACKETS, PERIOD = 100, 2e-3
 # A sender counts as silent after this; between two packets a busy machine can take a while [s].
-TIMEOUT = 0.5
+TIMEOUT = 5.0
 
 
 class Relay(threading.Thread):
@@ -52,7 +52,7 @@ class Relay(threading.Thread):
 
 def loop_of(*blocks: Block, **inputs: str) -> sf.Simulation:
     d = sf.Diagram("loop")
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     for block in blocks:
         d.add(
             block,
@@ -91,7 +91,7 @@ def test_zenoh_takes_what_is_published() -> None:
     way: dict[str, Any] = {"key": "arm/state", "address": address, "period": PERIOD}
     heard = {"size": 2, "timeout": TIMEOUT, "on_silence": "value", "fallback": -1.0}
     simulation = loop_of(ZenohSubscriber(name="rx", **way, **heard), ZenohPublisher(name="tx", **way), signal="ramp.y")
-    run = simulation.run(0.5, dt=1e-3, record=1e-3, realtime=True)
+    run = simulation.run(1.0, dt=1e-3, record=1e-3, realtime=True)
     assert run.outcome.ok
     counts = {name: int(value) for name, value in run.kept["rx"].items()}
     # At most the connection's first moments are missing.
@@ -171,7 +171,7 @@ def test_a_key_that_is_none_is_told_before_the_run() -> None:
 def test_zenoh_missing_is_told_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zenoh", None)
     d = sf.Diagram("d")
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     d.add(ZenohPublisher(name="tx", key="k", period=0.1), signal="ramp.y")
     with pytest.raises(sf.SymofrosError, match=r"pip install 'symofros\[network\]'"):
         sf.Simulation(d).run(0.1, dt=1e-2)

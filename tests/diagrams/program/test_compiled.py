@@ -11,12 +11,12 @@ import symofros as sf
 from symofros.base.options import Options
 from symofros.diagrams.program import compiled
 from symofros.runtime.build.toolchain import Toolchain
-from tests.blocks.sources import Ramp
+from tests.diagrams.parts import ramp
 
 
-def ramp() -> sf.Diagram:
+def rising() -> sf.Diagram:
     d = sf.Diagram("ramp")
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     return d
 
 
@@ -30,14 +30,14 @@ def test_signals_are_compiled_as_the_diagram_is(monkeypatch: pytest.MonkeyPatch)
 
     monkeypatch.setattr(compiled, "build_library", build_library)
     flags = ("-O1", "-ffp-contract=off")
-    run = sf.Simulation(ramp(), Options(flags=flags)).run(0.02, dt=0.01)
+    run = sf.Simulation(rising(), Options(flags=flags)).run(0.02, dt=0.01)
     before = len(used)
     assert run["ramp.y"].shape[1:] == (2,)
     assert len(used) == before + 1 and set(used) == {flags}
 
 
 def test_another_backend_is_refused_at_once() -> None:
-    simulation = sf.Simulation(ramp(), Options(backend="interpreter"))
+    simulation = sf.Simulation(rising(), Options(backend="interpreter"))
     with pytest.raises(sf.CompileError, match=r"backend 'interpreter'\n(.*\n)*  remedy: interpret it"):
         _ = simulation.compiled
     assert simulation.interpret(0.02, dt=0.01, compiled=False)["ramp.y"][-1, 1] == pytest.approx(0.04)

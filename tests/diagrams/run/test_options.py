@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.blocks import ForwardDynamics
 from tests.diagrams.parts import Ball
+from tests.simulation.oscillator import oscillator_system
 
 
 def bouncing() -> sf.Simulation:
@@ -32,3 +34,15 @@ def test_options_of_single_models_are_refused() -> None:
     for option in ({"every": 2}, {"max_steps": 10}, {"output": [0.1, 0.2]}):
         with pytest.raises(sf.SymofrosError, match="diagram: "):
             bouncing().run(1.0, **option)
+
+
+def test_bounds_of_adaptive_steps_are_those_of_single_models() -> None:
+    diagram = sf.Diagram("oscillator")
+    diagram.add_model("plant", oscillator_system(k=100.0), start={"x": 1.0})
+    diagram.add(ForwardDynamics(name="plant", model="plant"))
+    simulation = sf.Simulation(diagram)
+    free, bounded, fixed = (
+        simulation.run(0.2, method="dopri5", record=0.1, **bounds).cost
+        for bounds in ({}, {"max_step": 1e-3}, {"adaptive": False, "dt": 1e-3})
+    )
+    assert free.steps < 50 and 200 <= bounded.steps < 210 and fixed.steps == 200 and fixed.method == "dopri5"

@@ -14,8 +14,7 @@ from symofros.blocks import LivePlot, PythonBlock, Store, UdpReceiver
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from tests.blocks.sockets import free_port
-from tests.blocks.sources import Ramp
-from tests.diagrams.parts import Counter
+from tests.diagrams.parts import Counter, ramp
 
 PERIOD = 0.01
 
@@ -38,7 +37,7 @@ def nested(block: Block, **inputs: str) -> tuple[sf.DiagramRun, Inside]:
     """A run, and the other that went on meanwhile."""
     inside = Inside()
     d = sf.Diagram("twice")
-    d.add(Ramp(name="ramp"))
+    d.add(ramp())
     d.add(block, **inputs)
     d.add(PythonBlock(name="starts", function=inside, outputs={"y": ()}, period=PERIOD))
     inside.simulation = simulation = sf.Simulation(d)
@@ -68,7 +67,7 @@ def test_a_page_shows_one_run_at_a_time() -> None:
         run, _ = nested(live, y="ramp.y")
         assert "block 'live': its page shows another run" in run.outcome.reason
         d = sf.Diagram("after")
-        d.add(Ramp(name="ramp"))
+        d.add(ramp())
         d.add(live, y="ramp.y")
         assert sf.Simulation(d).run(2 * PERIOD, dt=PERIOD).kept["live"]["sent"] == 3
     finally:

@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
-from tests.diagrams.parts import After, Ball, Counter, Lag, Spoken, arm, moving
+from tests.diagrams.parts import Ball, Counter, Lag, Spoken, arm, moving
 from tests.models import sampled
 
 MODELS = Path(__file__).parents[3] / "reference_models"
@@ -237,7 +237,7 @@ def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
     stated |= {f"d{name}": x for name, x in zip(model.names.v, closed.v, strict=True)}
     when = 0.004
     diagram = moving(system, start=stated, engaged="after")
-    diagram.add(After(name="after", time=when, period=0.001))
+    diagram.add(blocks.Step(name="after", time=when, before=[0.0], after=[1.0], period=0.001))
     run = agree(diagram, 0.05, ["plant.q", "plant.v"], 1e4, dt=1e-3)
     simulation = sf.Simulation(diagram)
     run = simulation.run(0.05, dt=1e-3, record=1e-3)
@@ -258,7 +258,7 @@ def test_a_constraint_that_engages_is_a_plastic_impact() -> None:
 def test_constraints_engage_at_samples_only() -> None:
     system = sf.load(MODELS / "closed" / "four_bar.yaml")
     diagram = moving(system, engaged="after")
-    diagram.add(After(name="after", time=0.1))
+    diagram.add(blocks.Step(name="after", time=0.1, before=[0.0], after=[1.0]))
     with pytest.raises(sf.DescriptionError, match="put a hold with a period"):
         sf.Simulation(diagram)
 

@@ -123,8 +123,8 @@ def with_tip_body(joint: sf.Joint, motion: Any, **more: Any) -> Case:
     return Case(system(beam, body), (node, Node(0, SOLID, *motion)))
 
 
-def tapered() -> Case:
-    """Sections by formula, of the station and of parameters."""
+def tapered(rotary: bool = False) -> Case:
+    """Sections by formula, of the station and of parameters; with rotary inertia, that changes along the beam, too."""
     stated = {
         "rhoA": "rho*(1 - 0.4*x/L)",
         "EI_z": "EI*(1 - 0.5*x/L)^3",
@@ -140,9 +140,13 @@ def tapered() -> Case:
         "GJ": lambda x: EI * np.exp(-x),
         "rhoJ": lambda x: 0.02 * rho * (1 + x),
     }
-    beam = sf.Beam("beam", HUB, "L", bend_y=2, bend_z=2, twist=2, retain="all", damping="c", **stated)
+    if rotary:
+        stated |= {"rhoI_y": "0.03*exp(-x)", "rhoI_z": "0.02 + 0.01*x^2"}
+        known |= {"rhoI_y": lambda x: 0.03 * np.exp(-x), "rhoI_z": lambda x: 0.02 + 0.01 * x**2}
+    functions_of = {"bend_y": 2, "bend_z": 2, "twist": 2, "retain": "all", "rotary_inertia": rotary}
+    beam = sf.Beam("beam", HUB, "L", damping="c", **functions_of, **stated)
     parameters = [sf.Parameter(*p) for p in (("rho", rho), ("EI", EI), ("L", L), ("c", 0.02))]
-    flexible = Flexible(L, damping=0.02, **known, **functions("spline", 2, 2, 2))
+    flexible = Flexible(L, damping=0.02, rotary_inertia=rotary, **known, **functions("spline", 2, 2, 2))
     return Case(system(beam, parameters=parameters), (Node(-1, flexible, *hub()),))
 
 
@@ -170,12 +174,9 @@ def planar(family: str) -> Case:
                 L,
             ),
         )
-    elif family == "samples":
+    else:
         more = {"family": "user", "shapes": {"bend_y": (sf.Samples(XI, SAMPLES),)}}
         known, breaks = (shapes.through(XI, SAMPLES, L),), tuple(L * x for x in XI)
-    else:
-        made = functions(family, 4, 0, 0)
-        known, breaks = made["v"], made.get("breaks", ())
     beam = sf.Beam("beam", HUB, L, bend_y=len(known), retain="all", **given, **more)
     return Case(system(beam), (Node(-1, Flexible(L, v=known, breaks=breaks, **given), *hub()),))
 
@@ -240,13 +241,11 @@ CASES: dict[str, Case] = {
         sf.Joint("wrist", "revolute", "beam", "tip", (0.2, 0.1, -0.15), axis=AXIS), hub(AXIS, (0.2, 0.1, -0.15))
     ),
     "tapered": tapered(),
+    "tapered, rotary inertia": tapered(rotary=True),
     "user's own": users_own(),
     "driven base": on_a_driven_base(),
     "clamped to the world": one(
         sf.Joint("clamp", "fixed", position=(0, 0, 1)), -1, (0, lambda q: (vector(0, 0, 1), ca.SX.eye(3))), (2, 2, 1)
     ),
-    **{
-        f"planar {family}": planar(family)
-        for family in ("spline", "polynomial", "legendre", "clamped_free", "hermite", "formulas", "samples")
-    },
+    **{f"planar {family}": planar(family) for family in ("clamped_free", "hermite", "formulas", "samples")},
 }

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -15,9 +14,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.blocks import ForwardDynamics
-from symofros.blocks.graphics.view import with_view
-from tests.studio.pictures import differing, settled, shot
+from tests.studio.pictures import shot
 from tests.studio.waiting import PATIENCE, until
 
 pytestmark = pytest.mark.browser
@@ -72,28 +69,6 @@ def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
         other.goto(viewer.url)
         until(page, lambda: not bar.is_visible())
         context.close()
-
-
-@pytest.mark.slow
-def test_a_run_of_a_diagram_is_seen_as_it_goes(open_page: Open) -> None:
-    diagram = sf.Diagram("arm")
-    diagram.add_model("arm", MODELS["double_pendulum"], {"q1": 1.5})
-    diagram.add(ForwardDynamics(name="plant", model="arm"))
-    shown, block = with_view(diagram, open_browser=False, paced=True)
-    simulation = sf.Simulation(shown)
-    simulation.run(0.04, dt=0.01)
-    assert block.viewer is not None
-    page = open_page(block.viewer.url)
-    first, painted = settled(page), block.viewer.painted
-    runs: list[sf.DiagramRun] = []
-    worker = threading.Thread(target=lambda: runs.append(simulation.run(10.0, dt=0.01)))
-    worker.start()
-    until(page, lambda: differing(first, shot(page)) > 200)
-    assert worker.is_alive()  # It moved before the end.
-    worker.join()
-    until(page, lambda: np.array_equal(block.viewer.state.q, runs[0]["plant.q"][-1]))
-    assert runs[0].kept["view3d"]["shown"] == 251 and block.viewer.painted - painted > 251 / 2
-    block.close()
 
 
 @pytest.mark.tools

@@ -9,7 +9,7 @@ from tests.validation.subjects import every_kind, moved, states_of
 from validation.adapters.charted import ChartedEngine
 from validation.adapters.mujoco import tree as mujoco_adapter
 from validation.adapters.pinocchio import tree as pinocchio_adapter
-from validation.contract.conventions import angular_first_to_linear_first, times, xyzw_to_wxyz
+from validation.contract.conventions import times, xyzw_to_wxyz
 from validation.contract.interface import States
 from validation.mechanics.assembly import assemble
 
@@ -39,7 +39,6 @@ def rate(of: object) -> np.ndarray:
 
 def test_quaternion_orders() -> None:
     assert xyzw_to_wxyz(np.array([1.0, 2.0, 3.0, 4.0])).tolist() == [4.0, 1.0, 2.0, 3.0]
-    assert angular_first_to_linear_first(np.arange(6.0)).tolist() == [3, 4, 5, 0, 1, 2]
 
 
 @pytest.mark.parametrize("name", ["mujoco", "pinocchio"])

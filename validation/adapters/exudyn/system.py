@@ -60,20 +60,6 @@ class ExudynSystem:
         self.solver.ComputeJacobianODE2RHS(self.system, scalarFactor_ODE2=-1.0, scalarFactor_ODE2_t=0.0)
         return np.array(self.solver.GetSystemJacobian())[: len(q), : len(q)]
 
-    def conditions(self, q: Array) -> Array:
-        """Residuals of the algebraic equations (m,); zero rows where a joint leaves a direction free."""
-        self._set(q, np.zeros_like(q))
-        self.solver.ComputeAlgebraicEquations(self.system)
-        return np.array(self.solver.GetSystemResidual())[len(q) :]
-
-    def jacobian(self, q: Array) -> Array:
-        """Their derivatives (m, n)."""
-        self._set(q, np.zeros_like(q))
-        # The next one adds to what is there, and what is there before is not a number.
-        self.solver.ComputeJacobianODE2RHS(self.system, scalarFactor_ODE2=0.0, scalarFactor_ODE2_t=0.0)
-        self.solver.ComputeJacobianAE(self.system)
-        return np.array(self.solver.GetSystemJacobian())[len(q) :, : len(q)]
-
     def _set(self, q: Array, v: Array) -> None:
         data, current = self.system.systemData, exudyn.ConfigurationType.Current
         data.SetODE2Coordinates(q, configuration=current)

@@ -1,12 +1,11 @@
 """Pinocchio's own constrained dynamics: rigid constraints between frames, solved by its proximal method.
 
 A closure of ours is made of Pinocchio's constraints of a point (3D) and of a frame (6D), which hold at closed postures
-alone: their rates and ours differ by what a gap adds. Baumgarte's terms are zero.
+alone: their rates and ours differ by what a gap adds. Baumgarte's terms are zero. The matrix's plug-in states them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -16,9 +15,12 @@ import pinocchio as pin
 import symofros as sf
 
 from ...contract.interface import States, Subject, Unsupported
+from ...engines.interface import Constraint, End, Tree, rows, vector
+from ...engines.plugins.pinocchio import WAYS, write
+from ...engines.plugins.writing.source import SourceModel, Way
 from ...mechanics.assembly import BASE, Assembly, anchor_name
 from ...mechanics.geometry import Array
-from ..charted import ChartedEngine
+from ..charted import ChartedEngine, stated
 from ..closed import AXES
 from . import tree as trees
 
@@ -30,150 +32,112 @@ CAPABILITIES = frozenset({"forward_dynamics", "multipliers", "constraint_force",
 MU, ACCURACY, MOST = 1e-8, 1e-13, 200
 # A direction that a closure leaves free may be blocked if the tree has no way to move in it: a Jacobian of rounding.
 _FLAT, _TRIALS = 1e-10, 3
+_SOLVED = f"""cd = pin.StdVec_RigidConstraintData([one.createData() for one in cm])
+ps = pin.ProximalSettings({ACCURACY}, {MU}, {MOST})
+pin.initConstraintDynamics(m, d, cm, cd)
+a = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)
+"""
+_WAYS = WAYS | {
+    "forward_dynamics": Way("constraintDynamics", f"{_SOLVED}value = a"),
+    # With its own Jacobian.
+    "constraint_force": Way(
+        "getConstraintsJacobian",
+        f"{_SOLVED}f = np.array(d.lambda_c)\n"
+        "value = np.reshape(pin.getConstraintsJacobian(m, d, cm, cd), (-1, m.nv)).T @ f",
+    ),
+    "wrenches": Way("contact_force", f"{_SOLVED}value = [one.contact_force.vector for one in cd]"),
+    # Of a point the last is none: only a frame's constraint holds its rotation.
+    "gaps": Way(
+        "c1Mc2",
+        f"{_SOLVED}value = [[*one.c1Mc2.translation, np.linalg.norm(pin.log3(one.c1Mc2.rotation))] for one in cd]",
+    ),
+    "derivatives": Way(
+        "computeConstraintDynamicsDerivatives",
+        f"{_SOLVED}value = [np.array(x) for x in pin.computeConstraintDynamicsDerivatives(m, d, cm, cd, ps)[:3]]",
+    ),
+}
 
 
 class Tie(NamedTuple):
-    """One constraint of Pinocchio's, in the place of (a part of) a closure of ours.
+    """One of Pinocchio's constraints.
 
     Attributes:
-        model: Pinocchio's.
-        closure: Index of the closure.
+        closure: Index of the closure that it is a part of.
         offset: Offset of its point from the origin of the first frame, along that frame's axes (3,).
+        stated: The constraint.
     """
 
-    model: Any
     closure: int
     offset: Array
+    stated: Constraint
 
 
 @dataclass(frozen=True)
-class LoopEngine:
+class LoopEngine(ChartedEngine):
     """A `pinocchio.Model` with rigid constraints.
 
     Attributes:
-        tree: Pinocchio's model without constraints.
         closures: Closures of the description.
-        ties: Pinocchio's, in order.
+        ties: Pinocchio's constraints, in order.
     """
 
-    tree: ChartedEngine
-    closures: tuple[sf.Closure, ...]
-    ties: tuple[Tie, ...]
-    name: str = NAME
-    version: str = pin.__version__
-    capabilities: frozenset[str] = CAPABILITIES
+    closures: tuple[sf.Closure, ...] = ()
+    ties: tuple[Tie, ...] = ()
 
     def ties_as_numbers(self) -> list[str]:
         """Its constraints for programs in C++: 3 or 6, then twice joint, R row by row and p of the place on it."""
         lines = []
-        for tie in self.ties:
-            m = tie.model
+        for m in self.answers.names["cm"]:
             ends = (m.joint1_id, m.joint1_placement), (m.joint2_id, m.joint2_placement)
-            size = "6" if m.type == pin.ContactType.CONTACT_6D else "3"
             numbers = [
-                [str(joint), *(repr(float(x)) for x in (*X.rotation.ravel(), *X.translation))] for joint, X in ends
+                " ".join([str(joint), *(repr(float(x)) for x in (*X.rotation.ravel(), *X.translation))])
+                for joint, X in ends
             ]
-            lines.append(" ".join([size, *numbers[0], *numbers[1]]))
+            lines.append(" ".join(["6" if m.type == pin.ContactType.CONTACT_6D else "3", *numbers]))
         return lines
 
-    def forward_dynamics(self, states: States) -> Array:
-        """Accelerations v' by `constraintDynamics`."""
-        a = self._each(states, lambda solved: solved.a)
-        return self.tree.chart.our_accelerations(states.q, states.v, a)
-
     def multipliers(self, states: States) -> Array:
-        """Components of the wrenches between the frames, along the blocked directions."""
-        return self._each(states, self._wrenches)
+        """Components of the wrenches between the frames, along the blocked directions; the signs are opposite."""
+        wrenches = -self.asked("wrenches", states)
+        force, torque = np.zeros((2, len(states), len(self.closures), 3))
+        for k, tie in enumerate(self.ties):
+            force[:, tie.closure] += wrenches[:, k, :3]
+            torque[:, tie.closure] += wrenches[:, k, 3:] + np.cross(tie.offset, wrenches[:, k, :3])
+        columns = []
+        for i, closure in enumerate(self.closures):
+            columns += [force[:, i, AXES.index(axis)] for axis in closure.translations]
+            columns += [torque[:, i, AXES.index(axis)] for axis in closure.rotations]
+        return np.stack(columns, axis=1)
 
     def constraint_force(self, states: States) -> Array:
-        """J^T of its forces, with its own Jacobian; of both, the signs are opposite to ours."""
-        forces = self._each(states, lambda solved: solved.jacobian.T @ solved.forces)
-        return self.tree.chart.our_forces(states.q, forces)
+        """J^T of its forces; of both, the signs are opposite to ours."""
+        return self.chart.our_forces(states.q, self.asked("constraint_force", states))
 
     def closure_gap(self, states: States) -> Array:
-        """The largest distance between points that are to coincide, and angle between axes that are to be parallel."""
-        return self._each(states, self._gap)
+        """The largest distance between points that are to coincide, and angle between frames that are to."""
+        gaps = np.abs(self.asked("gaps", states))
+        held = np.zeros(gaps.shape[1:], dtype=bool)
+        for row, tie in zip(held, self.ties, strict=True):
+            row[[AXES.index(axis) for axis in self.closures[tie.closure].translations]] = True
+            row[3] = tie.stated.kind == "weld"
+        return np.asarray(np.max(gaps, axis=(1, 2), where=held, initial=0.0))
 
     def frame_response(self, states: States) -> Array:
         """Accelerations of frames, from forward kinematics."""
-        return self.tree.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
+        return self.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
 
     def derivatives(self, states: States) -> tuple[Array, Array, Array]:
         """Derivatives of v' by q, v and the forces, on the constraints (N, nv, nv) each."""
-
-        def result(solved: _Solved) -> Any:
-            derivatives = pin.computeConstraintDynamicsDerivatives(
-                self.tree.model, solved.data, solved.models, solved.datas, solved.settings
-            )
-            return [np.array(part) for part in derivatives[:3]]
-
-        parts = self._each(states, result)
+        parts = self.asked("derivatives", states)
         return parts[:, 0], parts[:, 1], parts[:, 2]
-
-    def _each(self, states: States, result: Callable[[_Solved], Any]) -> Array:
-        chart = self.tree.chart
-        q, v, f = chart.coordinates(states.q), chart.speeds(states.q, states.v), chart.forces(states.q, states.applied)
-        solver = _Solver(self.tree.model, [tie.model for tie in self.ties])
-        return np.array([np.array(result(solver.at(*state))) for state in zip(q, v, f, strict=True)])
-
-    def _wrenches(self, solved: _Solved) -> Array:
-        force, torque = np.zeros((len(self.closures), 3)), np.zeros((len(self.closures), 3))
-        for tie, data in zip(self.ties, solved.datas, strict=True):
-            wrench = -np.array(data.contact_force.vector)
-            force[tie.closure] += wrench[:3]
-            torque[tie.closure] += wrench[3:] + np.cross(tie.offset, wrench[:3])
-        rows: list[float] = []
-        for i, closure in enumerate(self.closures):
-            rows += [force[i, AXES.index(axis)] for axis in closure.translations]
-            rows += [torque[i, AXES.index(axis)] for axis in closure.rotations]
-        return np.array(rows)
-
-    def _gap(self, solved: _Solved) -> float:
-        gaps = [0.0]
-        for tie, data in zip(self.ties, solved.datas, strict=True):
-            blocked = self.closures[tie.closure].translations
-            gaps += [abs(data.c1Mc2.translation[AXES.index(axis)]) for axis in blocked]
-            if tie.model.type == pin.ContactType.CONTACT_6D:
-                gaps.append(float(np.linalg.norm(pin.log3(data.c1Mc2.rotation))))
-        return max(gaps)
-
-
-class _Solved(NamedTuple):
-    """One state after `constraintDynamics`; forces (m,) go with its Jacobian (m, nv)."""
-
-    a: Array
-    forces: Array
-    jacobian: Array
-    data: Any
-    models: Any
-    datas: Any
-    settings: Any
-
-
-class _Solver:
-    def __init__(self, model: Any, ties: Sequence[Any]) -> None:
-        self.model, self.data = model, model.createData()
-        self.models, self.datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
-        for tie in ties:
-            self.models.append(tie)
-            self.datas.append(tie.createData())
-        pin.initConstraintDynamics(model, self.data, self.models, self.datas)
-
-    def at(self, q: Array, v: Array, f: Array) -> _Solved:
-        settings = pin.ProximalSettings(ACCURACY, MU, MOST)
-        a = pin.constraintDynamics(self.model, self.data, q, v, f, self.models, self.datas, settings)
-        # Copies: the binding hands out views of what the next state overwrites.
-        a, forces = np.array(a), np.array(self.data.lambda_c)
-        J = np.array(pin.getConstraintsJacobian(self.model, self.data, self.models, self.datas))
-        return _Solved(a, forces, J.reshape(-1, self.model.nv), self.data, self.models, self.datas, settings)
 
 
 def build(subject: Subject) -> LoopEngine | Unsupported:
     """Pinocchio's model of a description with closures."""
-    tree = trees.build(subject)
-    if isinstance(tree, Unsupported):
-        return tree
-    model, assembly = tree.model, subject.assembly
+    plain = trees.build(subject)
+    if isinstance(plain, Unsupported):
+        return plain
+    tree = stated(subject, whole=False, merged=False).tree
     closures, ties = [], []
     for i, item in enumerate(subject.system.constraints):
         if not isinstance(item, sf.Closure):
@@ -184,12 +148,17 @@ def build(subject: Subject) -> LoopEngine | Unsupported:
         if not offsets:
             return Unsupported(f"closure '{item.name}': neither a point, a hinge nor a weld")
         closures.append(item)
-        ends = [_site(assembly, anchor) for anchor in (item.first, item.second)]
-        made = [Tie(_rigid(model, item, ends, offset), i, offset) for offset in offsets]
-        if any(not _only_blocks(model, tie, item) for tie in made):
-            return Unsupported(f"closure '{item.name}': it leaves a direction free in which the bodies do move")
-        ties += made
-    return LoopEngine(tree, tuple(closures), tuple(ties))
+        ties += [Tie(i, offset, _rigid(subject.assembly, tree, item, offset)) for offset in offsets]
+    source = write(replace(tree, constraints=tuple(tie.stated for tie in ties)))
+    if isinstance(source, Unsupported):
+        return source
+    model = SourceModel(source, _WAYS)
+    for tie, one in zip(ties, model.names["cm"], strict=True):
+        if not _only_blocks(model.names["m"], one, closures[tie.closure]):
+            name = closures[tie.closure].name
+            return Unsupported(f"closure '{name}': it leaves a direction free in which the bodies do move")
+    given = vars(plain) | {"name": NAME, "answers": model, "capabilities": CAPABILITIES}
+    return LoopEngine(**given, closures=tuple(closures), ties=tuple(ties))
 
 
 def _points(item: sf.Closure) -> list[Array]:
@@ -201,31 +170,30 @@ def _points(item: sf.Closure) -> list[Array]:
     return [here] if whole and item.translations else []
 
 
-def _site(assembly: Assembly, anchor: tuple[str, str | None]) -> tuple[int, Any]:
-    """Pinocchio's joint that carries an anchor, and the anchor's place on it."""
-    name = anchor_name(assembly, anchor)
-    if not name:
-        return 0, pin.SE3.Identity()
-    frame = assembly.frames[name]
-    return frame.mover - BASE, pin.SE3(frame.X_BF.R, frame.X_BF.p)
+def _rigid(assembly: Assembly, tree: Tree, item: sf.Closure, offset: Array) -> Constraint:
+    """A constraint of the matrix between points, or frames, at an offset along the first one's axes."""
+    ends = []
+    for anchor in (item.first, item.second):
+        name = anchor_name(assembly, anchor)
+        if not name:
+            ends.append(End("", p=vector(offset)))
+            continue
+        site = assembly.frames[name]
+        link = tree.links[site.mover].name if site.mover != BASE else ""
+        ends.append(End(link, rows(site.X_BF.R), vector(site.X_BF.p + site.X_BF.R @ offset)))
+    return Constraint("weld" if len(item.rotations) == 3 else "point", tuple(ends))
 
 
-def _rigid(model: Any, item: sf.Closure, ends: list[tuple[int, Any]], offset: Array) -> Any:
-    kind = pin.ContactType.CONTACT_6D if len(item.rotations) == 3 else pin.ContactType.CONTACT_3D
-    shift = pin.SE3(np.eye(3), offset)
-    (first, X1), (second, X2) = ends
-    return pin.RigidConstraintModel(kind, model, first, X1 * shift, second, X2 * shift, pin.ReferenceFrame.LOCAL)
-
-
-def _only_blocks(model: Any, tie: Tie, item: sf.Closure) -> bool:
+def _only_blocks(model: Any, one: Any, item: sf.Closure) -> bool:
     """Whether what it blocks beyond the closure does not move anyway, as across the plane of a planar mechanism."""
     free = [k for k in range(3) if AXES[k] not in item.translations]
-    solver, rng = _Solver(model, [tie.model]), np.random.default_rng(0)
-    still = np.zeros(model.nv)
+    data, rng = model.createData(), np.random.default_rng(0)
+    models = pin.StdVec_RigidConstraintModel([one])
+    datas = pin.StdVec_RigidConstraintData([one.createData()])
     for _ in range(_TRIALS if free else 0):
         q = pin.integrate(model, pin.neutral(model), rng.uniform(-1, 1, model.nv))
-        pin.computeAllTerms(model, solver.data, q, still)
-        J = np.array(pin.getConstraintsJacobian(model, solver.data, solver.models, solver.datas))
+        pin.computeAllTerms(model, data, q, np.zeros(model.nv))
+        J = np.array(pin.getConstraintsJacobian(model, data, models, datas))
         if np.abs(J.reshape(-1, model.nv)[free]).max() > _FLAT:
             return False
     return True

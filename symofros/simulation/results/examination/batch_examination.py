@@ -58,20 +58,15 @@ class BatchExamination:
         # Steps come as near to a pole as they like, and beyond it there is no number.
         fault = self._input_fault(i, *last) if status < 0 and status != Status.STEP_TOO_SMALL else ""
         run = self._run(i, states, steps)
-        if status >= 0 and len(states[0]) < steps <= _MADE_AGAIN:
-            run = self._with_ends_of_steps(run)
+        run = self._with_ends_of_steps(run) if status >= 0 else run
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
         return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which came to its end; arguments as of `outcome`."""
-        run = self._run(i, states, steps)
-        return examine_run(
-            self._with_ends_of_steps(run) if len(states[0]) < steps <= _MADE_AGAIN else run,
-            ended_well=True,
-            failed=False,
-        )[1]
+        run = self._with_ends_of_steps(self._run(i, states, steps))
+        return examine_run(run, ended_well=True, failed=False)[1]
 
     def _run(self, i: int, states: tuple[Array, ...], steps: int) -> ExaminedRun:
         """A single run in the place of run i."""
@@ -84,7 +79,7 @@ class BatchExamination:
         What steps pass over does not depend on what is recorded of them.
         """
         begin, every, t = (self.settings.t0, *run.start), -(-run.steps // _KEPT), run.states[0]
-        if not run.repeatable:
+        if not (len(t) < run.steps <= _MADE_AGAIN and run.repeatable):
             return run
         status, ends = run.repeated(begin, float(t[-1]), self.settings.dt, every=every)
         return replace(run, states=ends) if status == Status.FINISHED and len(ends[0]) > len(t) else run

@@ -15,7 +15,7 @@ from symofros.studio.editor.editing import yaml_spans
 from symofros.studio.editor.editing.data_edits import Edit
 from symofros.studio.editor.editing.formulas import formulas
 from symofros.studio.editor.editing.yaml_edits import apply
-from tests.studio.editor.texts import DATA, FILES, TEXTS
+from tests.studio.editor.texts import DATA, FILES, ODD, TEXTS
 
 # A change of the four-bar, the path of the problem that follows, its block.
 FAULTS = (
@@ -156,6 +156,11 @@ def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None
     kept = next(item for item in found.parameters if item["name"] == "L")
     assert kept["value"] == value and kept["number"] is None and kept["unit"] == "m"
     assert found.problems[0]["path"] == ["parameters", "L", "value"]
+
+
+def test_numbers_that_json_lacks_become_texts() -> None:
+    found = analyse(FILES["four_bar"], ODD.replace("value: 1,", "value: .inf,"))
+    assert found.data["parameters"]["L1"]["value"] == ".inf"
 
 
 @pytest.mark.parametrize(("unit", "is_one"), [("kg m^2", True), ("N m/rad", True), ("", True), ("bananas", False)])

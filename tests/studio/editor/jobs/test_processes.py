@@ -24,28 +24,6 @@ from symofros.studio.editor.jobs.worker import error_of
 from tests.studio.editor.conftest import finished
 from tests.studio.editor.texts import FILES
 
-SLIDER = """\
-symofros: 1
-system: {gravity: [0, 0, 0]}
-inputs: {f: {unit: N}}
-bodies:
-  a:
-    joint: {name: x, kind: prismatic, effort: [f]}
-    inertia: {mass: 2}
-"""
-
-
-@pytest.mark.slow
-def test_compile(client: TestClient) -> None:
-    job = finished(client, "compile")
-    assert job["state"] == "done" and job["error"] is None and job["revision"] == 1
-    found = job["result"]
-    assert (found["nq"], found["nv"], found["nu"], found["npar"], found["nc"]) == (3, 3, 0, 2, 2)
-    assert found["q_names"] == ["q1", "q2", "q3"] and found["par_names"] == ["m", "L"]
-    cost = found["operations"]["mass_matrix"]
-    assert cost["total"] >= cost["mul"] + cost["add"] > 0 and "constraint_jacobian" in found["operations"]
-    assert found["generate_s"] > 0 and found["compile_s"] > 0
-
 
 def test_simulate(client: TestClient) -> None:
     """The loop is closed first; its energy stays."""
@@ -83,14 +61,6 @@ def test_a_loop_that_was_just_drawn_is_simulated(client: TestClient) -> None:
     text = client.get("/api/document").json()["text"].replace("[L, 0, 0], axis", "[0.7*L, 0, 0], axis")
     found = simulated(text, t_end=0.1)
     assert found["outcome"]["ok"], found["outcome"]
-
-
-@pytest.mark.slow
-def test_simulate_with_inputs_on_prismatic_and_revolute_joints(client: TestClient, folder: Path) -> None:
-    client.post("/api/text", json={"revision": 1, "text": SLIDER})
-    job = finished(client, "simulate", t_end=1, v0={"dx": 1.0}, inputs={"f": "4*t"}, points=10)
-    x = job["result"]["series"][0]
-    assert x["unit"] == "m" and x["values"][-1] == pytest.approx(1 + 2 / 6)  # x = t + (4/2) t^3/6.
 
 
 def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:

@@ -54,6 +54,7 @@ def test_an_edit_without_sense_or_of_a_text_that_is_not_yaml_is_refused(client: 
     answer = client.post("/api/edit", json={"revision": 1, "edits": [edit]})
     assert answer.status_code == 422 and answer.json()["error"]["found"] == "no 'nobody'"
     broken = client.post("/api/text", json={"revision": 1, "text": "a: ]"}).json()
+    assert broken["text"] == "a: ]" and len(broken["graph"]["nodes"]) == 4  # The last diagram stays.
     edit = {"op": "set", "path": ["a"], "value": 1}
     answer = client.post("/api/edit", json={"revision": broken["revision"], "edits": [edit]})
     assert answer.status_code == 422 and "not YAML" in answer.json()["error"]["object"]

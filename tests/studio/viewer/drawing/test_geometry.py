@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -107,6 +108,10 @@ def test_a_beam_that_is_stiffer_one_way_is_drawn_wider_that_way() -> None:
 
     wide = outline()
     assert wide[0] / wide[1] == pytest.approx(2.0)
+    # Also without a frame at its tip.
+    bare = replace(sf.Beam("b", sf.Joint("clamp"), 1.0, 1.0, EI_z=1.0, bend_y=2), frames=())
+    it = Mechanism(sf.System("s", [bare]))
+    assert beam_sweep(it.drawing().beams[0], it.posture([0.1, 0.2])).points[-1, 1] != 0.0
     # A round bar of radius 0.02 m: A = rhoA for unit density, I = A r^2/4.
     assert np.allclose(outline(rhoI_y=1e-4, rhoI_z=1e-4), 0.04)
 

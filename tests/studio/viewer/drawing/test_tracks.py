@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import symofros as sf
 from reference_models import MODELS
 from symofros.errors import ShapeError
 from symofros.studio.viewer.drawing.layers import LAYERS
@@ -86,3 +87,13 @@ def test_a_picture_has_them_in_their_colors_and_within() -> None:
         image = picture(drawing, posture, layers, Camera.of(drawing), 320, 240).astype(int)
         blue = (image[..., 2] > 100) & (image[..., :2].max(axis=2) < image[..., 2] / 3)
         assert (blue.sum() > 30) == seen
+
+
+def test_the_viewer_keeps_them_with_another_system() -> None:
+    with sf.Viewer(MODELS["planar_robot"], port=0, paths=[("square", SQUARE)]) as viewer:
+        for system in (MODELS["planar_robot"], MODELS["pendulum"]):
+            viewer.set_system(system)
+            path = viewer._server.scene.get_handle_by_name("/mechanism/world/paths.square")
+            assert path is not None
+        viewer.set_layer("paths", False)
+        assert not path.visible

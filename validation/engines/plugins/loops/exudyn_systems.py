@@ -104,9 +104,12 @@ SYSTEM = """class System:
             drift += weight / h * (self.jacobian(x + k * h * rate) - self.jacobian(x - k * h * rate)) @ rate
         f = f + D @ np.linalg.solve(D.T @ D, tau)
         # Units that make every mass 1 and every condition of length 1: masses of 1e8 would hide those of 1e-8.
-        S = 1 / np.sqrt(np.where(np.diag(M) > 0, np.diag(M), 1.0))
-        lengths = np.linalg.norm(C * S, axis=1)
-        rows = 1 / np.where(lengths > 0, lengths, 1.0)
+        # What of a body's inertia is rounding, as about a slender rod's axis, gives no unit.
+        own = np.diag(M).reshape(len(links), -1)
+        S = 1 / np.sqrt(np.where(own > 1e-12 * own.max(axis=1, keepdims=True), own, 1.0).ravel())
+        # Conditions of rounding alone, of what a joint leaves free, are none.
+        lengths, real = np.linalg.norm(C * S, axis=1), np.linalg.norm(C, axis=1)
+        rows = np.where(real > 1e-12 * np.max(real, initial=0.0), 1 / np.where(lengths > 0, lengths, 1.0), 0.0)
         M, C, f, drift = S[:, None] * M * S, rows[:, None] * C * S, S * f, rows * drift
         U, sigma, Vt = np.linalg.svd(C)
         rank = int(np.sum(sigma > 1e-10 * sigma[0])) if len(sigma) else 0

@@ -22,16 +22,13 @@ def test_a_part_holds_what_its_bodies_use_and_what_is_between_them() -> None:
     assert list(part["bodies"]) == ["coupler", "rocker"]  # In the document's order.
     assert "parent" not in part["bodies"]["coupler"]["joint"] and "frame" not in part["bodies"]["coupler"]["joint"]
     assert "closures" not in extracted(DATA["four_bar"], ["rocker"])
+    for bodies, says in (([], "no bodies"), (["nobody"], "no such body")):
+        with pytest.raises(EditError) as caught:
+            extracted(DATA["four_bar"], bodies)
+        assert says in caught.value.problem.found
     wrist = extracted(DATA["planar_robot"], ["motor3", "housing3"])
     assert list(wrist["parameters"]) == ["n3", "J3"]
     assert wrist["bodies"]["motor3"]["joint"]["parent"] == "housing3"
-
-
-@pytest.mark.parametrize(("bodies", "says"), [([], "no bodies"), (["nobody"], "no such body")])
-def test_what_is_no_part_is_refused(bodies: list[str], says: str) -> None:
-    with pytest.raises(EditError) as caught:
-        extracted(DATA["four_bar"], bodies)
-    assert says in caught.value.problem.found
 
 
 @pytest.mark.parametrize("name", ["planar_robot", "joint_zoo"])
