@@ -13,6 +13,7 @@ static const char *fmi_message(int found) {
     case FMU_STOP_BEFORE_START: return "the start time is no finite number, or the stop time is before it or no number";
     case FMU_NO_ROTATION: return "start values of a quaternion are no rotation: they are of unit length";
     case FMU_INPUT_NO_ROTATION: return "inputs that prescribe a motion hold a quaternion that is no rotation: they are of unit length";
+    case FMU_WRONG_SIZE: return "an array has another length than the call needs";
     case FMU_NULL: return "an array or a result that the call needs is NULL";
     case FMU_NO_MEMORY: return "no memory";
     case FMU_OTHER_MODEL: return "the state is of another model or kind";
@@ -142,10 +143,17 @@ static int fmi_set_time(fmu *f, double t) {
 
 static size_t fmi_states(const fmu *f) { return (size_t)f->instance->model->nq + (size_t)f->instance->model->nv; }
 
+/* Whether the call is allowed, and its array has a number for each state. */
+static int fmi_check_states(const fmu *f, int allowed, const double *array, size_t n) {
+    if (f->cosim || !allowed) return FMU_WRONG_MODE;
+    if (n != fmi_states(f)) return FMU_WRONG_SIZE;
+    return fmi_missing(array, n) ? FMU_NULL : FMU_OK;
+}
+
 static int fmi_set_states(fmu *f, const double *x, size_t n) {
     const size_t nq = (size_t)f->instance->model->nq;
-    if (f->cosim || f->phase != FMU_CONTINUOUS || n != fmi_states(f)) return FMU_WRONG_MODE;
-    if (n == 0 || x == NULL) return n == 0 ? FMU_OK : FMU_NULL;
+    const int found = fmi_check_states(f, f->phase == FMU_CONTINUOUS, x, n);
+    if (found != FMU_OK || n == 0) return found;
     memcpy(f->instance->q, x, nq * sizeof *x), memcpy(f->instance->v, x + nq, (n - nq) * sizeof *x);
     f->rates_valid = 0;
     return FMU_OK;
@@ -153,25 +161,23 @@ static int fmi_set_states(fmu *f, const double *x, size_t n) {
 
 static int fmi_get_states(const fmu *f, double *x, size_t n) {
     const size_t nq = (size_t)f->instance->model->nq;
-    if (f->cosim || f->phase < FMU_INITIALISING || n != fmi_states(f)) return FMU_WRONG_MODE;
-    if (n == 0 || x == NULL) return n == 0 ? FMU_OK : FMU_NULL;
+    const int found = fmi_check_states(f, f->phase >= FMU_INITIALISING, x, n);
+    if (found != FMU_OK || n == 0) return found;
     memcpy(x, f->instance->q, nq * sizeof *x), memcpy(x + nq, f->instance->v, (n - nq) * sizeof *x);
     return FMU_OK;
 }
 
 static int fmi_get_rates(fmu *f, double *rates, size_t n) {
-    int found;
-    if (f->cosim || f->phase < FMU_INITIALISING || n != fmi_states(f)) return FMU_WRONG_MODE;
-    if (fmi_missing(rates, n)) return FMU_NULL;
+    int found = fmi_check_states(f, f->phase >= FMU_INITIALISING, rates, n);
+    if (found != FMU_OK || n == 0) return found;
     found = fmu_refresh(f);
-    if (found == FMU_OK && n > 0) memcpy(rates, f->rates, n * sizeof *rates);
+    if (found == FMU_OK) memcpy(rates, f->rates, n * sizeof *rates);
     return found;
 }
 
 static int fmi_nominals(const fmu *f, double *nominals, size_t n) {
+    const int found = fmi_check_states(f, 1, nominals, n);
     size_t i;
-    if (f->cosim || n != fmi_states(f)) return FMU_WRONG_MODE;
-    if (fmi_missing(nominals, n)) return FMU_NULL;
-    for (i = 0; i < n; ++i) nominals[i] = 1.0;
-    return FMU_OK;
+    for (i = 0; i < n && found == FMU_OK; ++i) nominals[i] = 1.0;
+    return found;
 }

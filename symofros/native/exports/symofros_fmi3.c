@@ -87,19 +87,19 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 value[], size_t nv) {
-    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_get(f, vr, n, value));
+    ANSWER(n != nv ? FMU_WRONG_SIZE : fmi_get(f, vr, n, value));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Float64 value[],
                           size_t nv) {
-    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_set(f, vr, n, value));
+    ANSWER(n != nv ? FMU_WRONG_SIZE : fmi_set(f, vr, n, value));
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
                                         const fmi3ValueReference known[], size_t n_known, const fmi3Float64 seed[],
                                         size_t n_seed, fmi3Float64 sensitivity[], size_t n_sensitivity) {
     ANSWER(n_seed != n_known || n_sensitivity != n_unknown
-               ? FMU_WRONG_MODE
+               ? FMU_WRONG_SIZE
                : fmi_differentiate(f, unknown, n_unknown, known, n_known, seed, sensitivity));
 }
 

@@ -10,7 +10,7 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NULL,
+    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NULL, FMU_WRONG_SIZE,
     FMU_NOT_DIFFERENTIATED, FMU_STEP_REFUSED, /* said in f->message */
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
@@ -339,6 +339,7 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
     memset(f->du, 0, (size_t)m->nu * sizeof(double)), memset(f->dpar, 0, (size_t)m->npar * sizeof(double));
     for (k = 0; k < n_known; ++k) {
         const int what = fmu_find_variable(f, known[k], &i);
+        if (!(seed[k] - seed[k] == 0.0)) return fmu_not_differentiated(f, known[k], "seeds are finite numbers");
         if (what == FMU_Q) f->dq[i] += seed[k];
         else if (what == FMU_V) f->dv[i] += seed[k];
         else if (what == FMU_U) f->du[i] += seed[k];

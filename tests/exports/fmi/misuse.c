@@ -179,6 +179,7 @@ static void model_exchange_without_arrays(void) {
     FMI_INSTANCE c = NEW(0);
     FMI(Boolean) flag;
     const size_t n = fmi_states(c);
+    const double no_number = HUGE_VAL - HUGE_VAL;
     double *x = calloc(n, sizeof *x);
     REFUSED(FMI(EnterContinuousTimeMode)(c));
     REFUSED(FMI(GetNominalsOfContinuousStates)(c, NULL, n));
@@ -200,6 +201,7 @@ static void model_exchange_without_arrays(void) {
     REFUSED(RATES(c, NULL, n));
     REFUSED(SLOPE(c, &state, 1, &state, 1, NULL, x));
     REFUSED(SLOPE(c, NULL, 1, &state, 1, x, x));
+    REFUSED(SLOPE(c, &state, 1, &state, 1, &no_number, x));
     REFUSED(FMI(CompletedIntegratorStep)(c, FMI(True), NULL, &flag));
     OKAY(FMI(GetContinuousStates)(c, x, n));
     OKAY(FMI(SetTime)(c, -1.0)); /* integrators go back to try a shorter step */
