@@ -14,7 +14,7 @@ def test_a_file_gets_a_line_of_progress_each_ten_seconds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """However short the steps are; what is in all, and the last step, are always told."""
-    run = Run(Topic("work", "Correctness", "Is it done?", lambda _: Report("Work", "Done.", True)))
+    run = Run(Topic("work", "Correctness", "Is it done?", lambda _: Report("Work", "Done.", True, blocks=())))
     now = [0.0]
     monkeypatch.setattr(Run, "seconds", property(lambda _: now[0]))
     run.expect(STEPS)
