@@ -332,7 +332,10 @@ def cart_pole(largest: float = 10.0) -> Task:
     def start(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
         return rng.uniform(-0.05, 0.05, (n, 2)), rng.uniform(-0.05, 0.05, (n, 2))
 
+    largest_q = np.array([2.4, np.radians(12.0)])
+
     def fails(q: Array, v: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        return np.asarray((np.abs(q[:, 0]) > 2.4) | (np.abs(q[:, 1]) > np.radians(12.0)))
+        outside = np.abs(q) > largest_q
+        return np.asarray(outside[:, 0] | outside[:, 1])
 
     return Task(model, np.array([largest]), start, lambda q, v, u: np.ones(len(q)), fails)

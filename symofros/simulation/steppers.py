@@ -84,10 +84,11 @@ class Steppers:
             explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
             what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
             raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
-        threads = model.threads if threads is None else threads
+        n, threads = int(n), int(model.threads if threads is None else threads)
         for name, number in (("n", n), ("threads", threads)):
             if not 1 <= number < _MOST:
-                raise refusal(f"steppers: {name} is no number of them", str(number), f"1 <= {name}", "give one or more")
+                what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
+                raise refusal(what, str(number), rule, "give a whole number of that range")
         self.model, self.n, self.dt = model, n, settings.dt
         self.par = model.parameter_values if par is None else model.checked_parameters(par)
         if self.par.shape not in ((model.npar,), (n, model.npar)):

@@ -177,12 +177,12 @@ class HandRun:
     def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
         """Begin anew at a state, the inputs those of the description until a step gives others."""
         if par is not None:
-            self.run.set_parameters(par)
+            self._set_parameters(par)
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
         run.run.t = run.run.t0 = t
         run.run.h = 0.0 if self.settings.adaptive else self.settings.dt
-        run.forget_bendings()
+        self._forget_bendings()
         memory.view(hand.u, len(self._constant))[:] = self._constant
         memory.view(run.system.u, len(self._constant))[:] = self._constant
         run.system.in_step = run.system.held_anew = 0
@@ -191,6 +191,30 @@ class HandRun:
         self.start, self.events = Start(t, q.copy(), v.copy()), []
         self._noted: Noted | None = None
         self._known = -np.inf
+
+    def _set_parameters(self, par: Array) -> None:
+        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
+        stepper, view = self.run, self.run.memory.view
+        run, system = stepper.run, stepper.system
+        stepper.par, stepper.beams = par, stepper.model.beams(par)
+        for slot, kernel in stepper.kernels.items():
+            prepared = kernel.prepare(par.reshape(1, -1))
+            view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
+        for i, beam in enumerate(stepper.beams):
+            of = system.beams[i]
+            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
+            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
+            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
+        run.slope_valid = run.jacobian_valid = 0
+
+    def _forget_bendings(self) -> None:
+        """Nothing is known of how far beams bend, as at the start of a run."""
+        run, memory, beams = self.run.run, self.run.memory, self.run.beams
+        for array in self.run.beam_record:
+            array[:] = 0.0
+        memory.view(run.beam_reference, 2 * sum(beam.size for beam in beams))[:] = 0.0
+        memory.view(run.beam_weight, self.run.model.nv)[:] = 0.0
+        memory.raw(run.beam_guard, "sym_beam_guard", len(beams))[:] = 0
 
     def begin(self, u: Array | None) -> Array:
         """Before the first step: all inputs (nu) at the first state, given those that are held; steps are allowed."""
@@ -296,7 +320,7 @@ class HandRun:
     def restore(self, state: HandState) -> None:
         """Go on from a state that `save` gave, bit by bit as from there."""
         if state.par is not self.run.par:
-            self.run.set_parameters(state.par)
+            self._set_parameters(state.par)
         for of, numbers in zip(self._numbers, state.numbers, strict=True):
             of.write(numbers)
         for to, array in zip(self._arrays, state.arrays, strict=True):

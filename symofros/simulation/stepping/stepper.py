@@ -50,6 +50,7 @@ class Stepper:
         same_inputs_again: Whether an input function gives the run's inputs once more; None: not asked yet.
         kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
         beams: Elastic beams at the parameters.
+        beam_record: Largest error of each beam, when that was, and the elastic coordinates of all, each then.
         failure: Exception that an input function raised; it ended the run.
 
     Raises:
@@ -123,9 +124,9 @@ class Stepper:
         run.beam_guard = memory.own("sym_beam_guard[]", len(self.beams))
         run.beam_weight = memory.zeros(self.model.nv)
         run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
-        self._beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
+        self.beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
         run.beam_error, run.beam_t, run.beam_q = (
-            memory.shared(array if array.size else np.zeros(1)) for array in self._beam_record
+            memory.shared(array if array.size else np.zeros(1)) for array in self.beam_record
         )
 
     @property
@@ -136,33 +137,8 @@ class Stepper:
     def amplified_bendings(self, amplifications: Sequence[float]) -> tuple[BeamBending, ...]:
         """Bending of each beam at that step, its error amplified by axial loads."""
         self.native.sym_run_settle_beams(self.run)
-        _, t, q = self._beam_record
+        _, t, q = self.beam_record
         return worst_bendings(self.beams, t, q, amplifications)
-
-    def forget_bendings(self) -> None:
-        """Nothing is known of how far beams bend, as at the start of a run."""
-        run, model = self.run, self.model
-        for array in self._beam_record:
-            array[:] = 0.0
-        elastic = sum(beam.size for beam in self.beams)
-        self.memory.view(run.beam_reference, 2 * elastic)[:] = 0.0
-        self.memory.view(run.beam_weight, model.nv)[:] = 0.0
-        self.memory.raw(run.beam_guard, "sym_beam_guard", len(self.beams))[:] = 0
-
-    def set_parameters(self, par: Array) -> None:
-        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
-        run, view = self.run, self.memory.view
-        self.par, self.beams = par, self.model.beams(par)
-        for slot, kernel in self.kernels.items():
-            prepared = kernel.prepare(par.reshape(1, -1))
-            view(getattr(self.system, slot).pre, prepared.size)[:] = prepared[0]
-        for i, beam in enumerate(self.beams):
-            of = self.system.beams[i]
-            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
-            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
-            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
-        self.forget_bendings()
-        run.slope_valid = run.jacobian_valid = 0
 
     def judge_beams(self) -> int:
         """Judge the present state's beams, for integrators of others; returns a Status."""
