@@ -100,7 +100,7 @@ def test_no_step_leads_beyond_the_stop_time(made: Any) -> None:
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_a_beam_is_judged_anew_after_a_reset(made: Any, kind: str) -> None:
+def test_a_beam_is_judged_again_after_a_reset(made: Any, kind: str) -> None:
     """A run with a remark, after a reset one without, after another one again with it."""
     path = str(made(LIMP, True, method="dopri5").path)
     about, told = fmpy.read_model_description(path), []
