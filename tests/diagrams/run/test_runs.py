@@ -295,3 +295,14 @@ def test_a_push_by_lines_is_not_stepped_over() -> None:
     run = sf.Simulation(diagram).run(5.0, method="dopri5")
     assert abs(fine["lag"][-1]).max() > 0.05
     assert np.abs(run["lag"][-1] - fine["lag"][-1]).max() < 1e-5
+
+
+def test_fixed_steps_end_at_samples_of_a_held_sequence() -> None:
+    """A pulse of 1000 N for 1.8 ms on 1 kg, between two ends of steps of 10 ms."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0))
+    body = sf.RigidBody("b", joint, sf.Inertia(1.0, moments=(1, 1, 1)), loads=(sf.Load(force=("f", 0, 0)),))
+    diagram = moving(sf.System("pushed", (body,), inputs=(sf.Input("f"),), gravity=(0, 0, 0)), u="pulse")
+    values = [[0.0], [1000.0], [0.0]]
+    diagram.add(blocks.Sequence(name="pulse", kind="hold", t=[0.0, 0.5031, 0.5049], values=values))
+    run = sf.Simulation(diagram).run(1.0, method="rk4", dt=0.01, record=0.5)
+    assert run["plant.v"][-1, 0] == pytest.approx(1.8, rel=1e-9)
