@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from secrets import token_hex
+from threading import Lock
 from typing import Any, NoReturn
 
 from symofros.errors import Problem, SymofrosError
@@ -28,12 +29,25 @@ _ELSEWHERE = {
 class Stepped:
     """Refuses what would silently do nothing, or share the memory that C steps in."""
 
+    _stepping: Lock
+
     def __setattr__(self, name: str, value: object) -> None:
         """Refuse to replace what only looks like the state or the settings."""
         if name in _CHANGED_BY and (name in vars(self) or hasattr(type(self), name)):
             what, rule = f"{type(self).__name__}: {name} is not assigned", "attributes tell what C steps with"
             raise refusal(what, repr(value)[:60], rule, _CHANGED_BY[name])
         super().__setattr__(name, value)
+
+    def _begin_alone(self) -> None:
+        """Before steps, after which `_stepping` is released; another thread that calls meanwhile is refused."""
+        if not self._stepping.acquire(blocking=False):
+            raise self._occupied()
+
+    def _occupied(self) -> SymofrosError:
+        what, found = f"{type(self).__name__}: step", "another thread is within a step of the same one"
+        return refusal(
+            what, found, "one thread at a time makes steps", "one for each thread, or a lock around the calls"
+        )
 
     def __copy__(self) -> Any:
         """As copy() does: two never share the memory that is stepped in."""

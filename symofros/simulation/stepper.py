@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -81,6 +82,7 @@ class Stepper(Stepped):
     ) -> None:
         chosen = options_by_hand(options, changes, ("u", "par", "events"))
         self._given: dict[str, Any] = {"u": u, "events": events, "options": chosen}
+        self._stepping = Lock()
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
         values = np.array(model.parameter_values)
@@ -130,7 +132,6 @@ class Stepper(Stepped):
             values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
         self._hand.reset(time, configuration, speeds, values)
 
-    @checked
     def step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
         """Make steps with inputs held over them.
 
@@ -144,12 +145,19 @@ class Stepper(Stepped):
         Raises:
             ShapeError: The inputs do not fit or are not finite; no step is made then.
             AssemblyError: The state of the reset does not meet the constraints.
-            SymofrosError: The motion has ended before, or the number of steps is none.
+            SymofrosError: The motion has ended before, the number of steps is none, or another thread makes steps.
         """
         values = None if u is None else checked_inputs(self.model, self.inputs, u)
         if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
             raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+        self._begin_alone()
+        try:
+            return self._step(values, int(steps))
+        finally:
+            self._stepping.release()
+
+    def _step(self, values: Array | None, steps: int) -> bool:
         hand = self._hand
         if not hand.started:
             inputs = hand.begin(values)
@@ -162,10 +170,12 @@ class Stepper(Stepped):
         elif hand.status != Status.RUNNING:
             rule = "steps are made while step() returns True"
             raise refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
-        return hand.step(values, int(steps)) == Status.RUNNING
+        return hand.step(values, steps) == Status.RUNNING
 
-    def _made(self, status: int) -> bool:
-        """After a fast call that did not just make its steps."""
+    def _made(self, status: int | None) -> bool:
+        """After a fast call that did not just make its steps; None: another thread was within one."""
+        if status is None:
+            raise self._occupied()
         return self._hand.settled(status) == Status.RUNNING
 
     def __repr__(self) -> str:

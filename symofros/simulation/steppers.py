@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -87,6 +88,7 @@ class Steppers(Stepped):
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
                 raise refusal(what, str(number), rule, "give a whole number of that range")
+        self._stepping = Lock()
         self.model, self.n, self.dt = model, n, settings.dt
         self._par = np.array(model.parameter_values if par is None else model.checked_parameters(par))
         if self._par.shape not in ((model.npar,), (n, model.npar)):
@@ -154,7 +156,7 @@ class Steppers(Stepped):
 
         Raises:
             ShapeError: The inputs do not fit or are not finite; no step is made then.
-            SymofrosError: The number of steps is none.
+            SymofrosError: The number of steps is none, or another thread makes steps.
         """
         hand, size = self._hand, len(self.inputs)
         values = None
@@ -164,10 +166,14 @@ class Steppers(Stepped):
         if not 1 <= steps <= MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
             raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
-        if self.model.nc and hand.begins.any():
-            self._check_starts(values)
-        hand.step(values, steps)
-        return self.running
+        self._begin_alone()
+        try:
+            if self.model.nc and hand.begins.any():
+                self._check_starts(values)
+            hand.step(values, steps)
+            return self.running
+        finally:
+            self._stepping.release()
 
     def _check_starts(self, u: Array | None) -> None:
         """Motions that would begin off the constraints end before."""

@@ -6,6 +6,7 @@ import copy
 import pickle
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +132,6 @@ MESSAGES = {
     "first": (lambda: one(q0=[0.0, 0.0]), r"q0[\s\S]*remedy: reset\(q, v, t\)"),
     "events": (lambda: many(events={"up": "q"}), r"events[\s\S]*an sf.Stepper for each"),
     "option": (lambda: one(timestep=1e-3), r"arguments u, par, events[\s\S]*did you mean 'dt'"),
-    "step": (lambda: one().step([1.0], dt=1e-2), r"Stepper.step: the arguments do not fit[\s\S]*dt"),  # type: ignore[call-arg]
     "row": (lambda: many().step([[0.0], [np.nan], [0.0]]), "nan for 'F' of motion 1"),
     "motion": (lambda: many().outcome(3), "no such motion" + FOUR_PARTS),
     "mask": (lambda: many().reset(which=[0, 1]), r"which does not fit[\s\S]*np.isin"),
@@ -143,3 +143,33 @@ def test_messages_name_what_is_meant(case: str) -> None:
     call, said = MESSAGES[case]
     with pytest.raises(sf.SymofrosError, match=said):
         call()
+
+
+@pytest.mark.parametrize(("method", "steps"), [("rk4", 60), ("rk4", 500), ("dopri5", 60)])
+def test_two_threads_lose_no_step_in_silence(method: str, steps: int) -> None:
+    stepper = one(method=method)
+    stepper.reset({"q": 0.1})
+    stepper.step([0.0])
+    made, refused = [1], []
+
+    def loop() -> None:
+        for _ in range(200):
+            try:
+                stepper.step(None, steps)
+                made.append(steps)
+            except sf.SymofrosError as error:
+                refused.append(str(error))
+
+    threads = [threading.Thread(target=loop) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert stepper.t == pytest.approx(sum(made) * DT, rel=1e-12)
+    assert all("another thread" in error and "remedy:" in error for error in refused)
+
+
+def test_an_argument_that_step_has_not_is_not_told_by_a_private_name() -> None:
+    stepper = one()
+    with pytest.raises(TypeError, match=r"Stepper\.step\(\) got an unexpected keyword argument 'dt'"):
+        stepper.step([1.0], dt=1e-2)  # type: ignore[call-arg]

@@ -296,9 +296,7 @@ def test_inputs_that_do_not_fit_are_refused_and_no_step_is_made(case: str, first
 def test_other_misuse_is_refused() -> None:
     stepper, other = (sf.Stepper(compiled("cart_pole"), dt=DT) for _ in range(2))
     for steps in (0, -1, 1.0, True):
-        with pytest.raises(
-            sf.SymofrosError, match=r"(no number of steps|not a whole number)[\s\S]*rule:[\s\S]*remedy:"
-        ):
+        with pytest.raises(sf.SymofrosError, match=r"no number of steps[\s\S]*rule:[\s\S]*remedy:"):
             stepper.step([0.0], steps)  # type: ignore[arg-type]
     with pytest.raises(sf.SymofrosError, match=r"no state of this stepper[\s\S]*copy\(\)"):
         stepper.restore(other.save())
