@@ -322,7 +322,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
             *row, i = np.argwhere(~np.isfinite(array))[0]
             found = f"a number that is not finite: {array[*row, i]} for '{names[i]}'"
             found += f" of motion {row[0]}" if row else ""
-    listed = ", ".join(names[:8]) or "there are no inputs"
+    listed = ", ".join(names[:8]) or ("all inputs are laws and numbers" if model.nu else "there are no inputs")
     listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
     raise ShapeError(

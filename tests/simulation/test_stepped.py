@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -127,11 +128,12 @@ def test_a_class_of_the_callers_has_its_own_step() -> None:
     assert stepper.step([1.0]) and stepper.step([1.0]) and stepper.count == 2
 
 
-MESSAGES = {
+MESSAGES: dict[str, tuple[Callable[[], object], str]] = {
     "end": (lambda: one(t_end=2.0), "t_end[\\s\\S]*loop that makes the steps[\\s\\S]*remedy: leave it out"),
     "first": (lambda: one(q0=[0.0, 0.0]), r"q0[\s\S]*remedy: reset\(q, v, t\)"),
     "events": (lambda: many(events={"up": "q"}), r"events[\s\S]*an sf.Stepper for each"),
     "option": (lambda: one(timestep=1e-3), r"arguments u, par, events[\s\S]*did you mean 'dt'"),
+    "law": (lambda: one(u={"F": "t"}).step([1.0]), "all inputs are laws and numbers"),
     "row": (lambda: many().step([[0.0], [np.nan], [0.0]]), "nan for 'F' of motion 1"),
     "motion": (lambda: many().outcome(3), "no such motion" + FOUR_PARTS),
     "mask": (lambda: many().reset(which=[0, 1]), r"which does not fit[\s\S]*np.isin"),
