@@ -148,12 +148,12 @@ class Compilation:
 
     @cached_property
     def record(self) -> ModelRecord:
-        """What the model is besides its functions."""
+        """The record of the model: everything except its functions."""
         return model_record(self.tree, self.options)
 
     @cached_property
     def programs(self) -> ProgramBuilder:
-        """What forms programs of the tree."""
+        """The former of programs for the tree."""
         return ProgramBuilder(self.tree, self.options)
 
     @property
@@ -170,7 +170,7 @@ class Compilation:
         return beams_at(self.tree)
 
     def parameter_problems(self, par: Array) -> list[Problem]:
-        """What the description does not allow of sets of run-time parameters (m, npar)."""
+        """Problems of sets of run-time parameters (m, npar) that the description does not allow."""
         return self._parameter_check.problems(par)
 
     @cached_property
@@ -262,7 +262,7 @@ class Compilation:
 
 
 def inconsistencies(system: System) -> Iterator[str]:
-    """What is warned of: beams that soften when they spin, as they lack what would stiffen them; unused inertia."""
+    """Warnings about a system: beams that soften when they spin for lack of stiffening terms, and unused inertia."""
     beams = system.beams
     if not beams:
         return

@@ -141,7 +141,7 @@ class _OtherName(MetaPathFinder, Loader):
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """What stands for a module of the other name."""
+        """Spec of a module under its other name."""
         return spec_from_loader(fullname, self) if self._is_ours(fullname) else None
 
     def _is_ours(self, fullname: str) -> bool:
@@ -159,5 +159,5 @@ class _OtherName(MetaPathFinder, Loader):
         return module
 
     def exec_module(self, module: ModuleType) -> None:
-        """Nothing is executed again."""
+        """Do nothing, as the module has been executed."""
         module.__spec__ = module.__spec__ and module.__spec__.loader_state

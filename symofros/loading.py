@@ -111,7 +111,7 @@ def load_with_sources(
 
 
 def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
-    """What was read, if it is a mechanism.
+    """The system that was read; diagrams are refused.
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism.

@@ -13,7 +13,7 @@ from tests.docs.pages import ROOT
 from tests.late import late, needs_extra, require
 
 
-def test_what_was_left_out_is_counted_by_what_it_takes() -> None:
+def test_skipped_tests_are_counted_by_requirement() -> None:
     slow, browser = "left out for its time; run with --slow", "needs Chromium; run with --browser"
     skipped = [("a", slow), ("b", slow), ("c", browser), ("d", needs_extra("jax", "jax")), ("e", "no /proc here")]
     needs = by_need(skipped)
@@ -26,19 +26,19 @@ def test_files_that_are_skipped_by_each_worker_count_once() -> None:
     assert summary({"extra usd": ["tests/description/test_usd.py"] * 2}) == "left out: 1 for extra usd"
 
 
-def test_a_package_that_is_not_there_skips_by_its_extra() -> None:
+def test_a_missing_package_skips_with_its_extra() -> None:
     with pytest.raises(pytest.skip.Exception, match="needs the extra 'network': the package no_such is not installed"):
         require("no_such", "network")
 
 
-def test_extras_that_tests_name_are_those_of_the_distribution() -> None:
+def test_extras_named_in_tests_match_those_of_the_distribution() -> None:
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     asks = re.compile(r'(?<![\w.])(?:require|late)\("[\w.]+", "([\w-]+)"\)')
     named = {extra for path in (ROOT / "tests").rglob("*.py") for extra in asks.findall(path.read_text())}
     assert len(named) > 10 and named <= set(extras)
 
 
-def test_what_pytest_asks_of_every_name_imports_nothing() -> None:
+def test_attribute_queries_of_pytest_import_nothing() -> None:
     sys.modules.pop("nturl2path", None)
     module = late("nturl2path")
     assert not any(hasattr(module, name) for name in ("__test__", "__bases__", "__wrapped__", "_mock_name"))

@@ -103,7 +103,7 @@ def test_from_a_file_to_the_energy_of_a_closed_loop(work: Counter[str], tmp_path
     assert work["compilations"] == 5
 
 
-def test_results_do_not_depend_on_what_was_asked_before(work: Counter[str], rng: np.random.Generator) -> None:
+def test_results_do_not_depend_on_earlier_requests(work: Counter[str], rng: np.random.Generator) -> None:
     """To the bit: each unit is formed on kinematics alone, whatever else the model has formed."""
     options = sf.Options(backend="interpreter")
     fresh, used = (sf.compile(MODELS["slider_crank"], options) for _ in range(2))
@@ -113,7 +113,7 @@ def test_results_do_not_depend_on_what_was_asked_before(work: Counter[str], rng:
     np.testing.assert_array_equal(used.mass_matrix(q), fresh.mass_matrix(q))
 
 
-def test_a_changed_system_is_checked_anew() -> None:
+def test_a_changed_system_is_checked_again() -> None:
     sound = MODELS["puma560"]
     assert graph.find_problems(sound) == []
     assert graph.find_problems(replace(sound, inputs=(sf.Input("q1"),)))

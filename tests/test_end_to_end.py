@@ -54,7 +54,9 @@ def test_compile_writes_the_source(model: Path, tmp_path: Path) -> None:
     assert (tmp_path / "out" / "symofros_model.h").exists()
 
 
-def test_what_compile_makes_is_what_models_call(model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compile_prepares_the_functions_that_models_call(
+    model: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Whatever Python then calls is in the cache, and so is all that a second `compile` asks for."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
     of_three_dozen = ("mass_matrix", "inverse_dynamics_derivatives")

@@ -46,12 +46,12 @@ def test_every_problem_has_its_four_parts() -> None:
         ("zz", [f"name{i}" for i in range(20)], "use one of: " + ", ".join(f"name{i}" for i in range(12)) + ", …"),
     ],
 )
-def test_suggestions(name: str, known: list[str], remedy: str) -> None:
+def test_suggestions_for_misspelt_names(name: str, known: list[str], remedy: str) -> None:
     assert did_you_mean(name, known) == remedy
     assert near_name(name, known) == (remedy if remedy.startswith("did") else "")
 
 
-def test_no_more_problems_are_made_than_are_listed() -> None:
+def test_problems_beyond_the_limit_are_not_formed() -> None:
     made = count()
     listed = first_of(sf.Problem(f"fault {next(made)}", "f", "r", "m", f"a.yaml:{i}") for i in range(10**9))
     assert len(listed) == MAX_PROBLEMS + 1 and "more faults" in listed[-1].what

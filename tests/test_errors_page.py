@@ -79,7 +79,7 @@ def test_the_message_is_the_one_raised(
 
 
 @pytest.mark.parametrize("example", examples(), ids=lambda example: example.title)
-def test_each_entry_says_what_was_found_the_rule_and_the_remedy(example: Example) -> None:
+def test_examples_of_errors_have_found_rule_and_remedy(example: Example) -> None:
     assert example.remedy.strip().endswith(".")
     if "  rule:" in example.message:
         problems = re.split(r"\n(?! )", example.message.strip())
@@ -90,7 +90,7 @@ def test_each_entry_says_what_was_found_the_rule_and_the_remedy(example: Example
         assert "print(" in example.snippet  # Not an error: the page shows what comes out instead.
 
 
-def test_the_page_has_nothing_that_is_not_tested(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_example_of_the_page_is_tested(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     page = PAGE.read_text(encoding="utf-8")
     assert len(examples()) == page.count("\n## ") >= 12
     assert page.count("```") == 2 + 4 * len(examples())  # One block at the head, two an entry.

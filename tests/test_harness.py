@@ -168,7 +168,7 @@ def test_a_users_validation_is_not_taken_for_the_harness(tmp_path: Path) -> None
         run(EDITABLE + code.format(before, "symofros.validation.adapters", after), tmp_path)
 
 
-def test_a_checkout_hidden_by_a_users_validation_is_refused_in_words(tmp_path: Path) -> None:
+def test_a_checkout_hidden_by_a_users_validation_is_refused(tmp_path: Path) -> None:
     (tmp_path / "validation.py").write_text("MINE = True\n")
     code = "import symofros as sf\nfrom symofros.harness import package_name\ntry:\n    package_name()\n"
     # Nothing is installed: the finders of this environment are left out.
@@ -195,7 +195,7 @@ def test_processes_of_the_harness_find_it_whatever_is_in_the_folder(
         assert done.returncode == 0 and "Cross-check the generated code" in done.stdout, done.stderr
 
 
-def test_without_a_harness_that_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_harness_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(harness, "_PACKAGE", tmp_path / "symofros")
     with pytest.raises(harness.SymofrosError, match="no package 'validation'"):
         harness.package_name()

@@ -199,7 +199,7 @@ def test_imports_run_one_way() -> None:
     check_all(SOURCES, faults)
 
 
-def test_wings_import_of_the_core_what_the_waist_offers() -> None:
+def test_wings_import_only_the_waist_from_the_core() -> None:
     waist = listed("The waist")
     taken = {item.module.removeprefix("symofros."): item for item in over_the_waist()}
     beside = sorted(taken[module] for module in taken.keys() - waist.keys())
@@ -226,7 +226,7 @@ def test_an_import_beside_the_waist_is_seen(tmp_path: Path) -> None:
     ]
 
 
-def test_folders_of_the_waist_offer_what_wings_take() -> None:
+def test_folders_of_the_waist_export_only_used_names() -> None:
     """A face is no store: what no wing imports of a folder's `__init__` leaves it."""
     packages = {f"symofros.{name}" for name in listed("The waist")}
     taken = {(item.module, item.name) for item in over_the_waist()}
@@ -264,7 +264,7 @@ def test_modules_with_two_names_are_named_in_one_place() -> None:
     check_all([path for path in sources if path.relative_to(ROOT).as_posix() not in _MAY_NAME], faults)
 
 
-def test_the_package_imports_absolutely_and_what_is_installed_within_it_relatively() -> None:
+def test_imports_are_absolute_in_symofros_and_relative_in_the_harness() -> None:
     """The reference models are stated by their name for type checkers alone, who see a checkout."""
 
     def faults(path: Path) -> Iterator[str]:

@@ -154,16 +154,16 @@ def test_a_file_is_remarked_upon_where_something_of_it_is_left_out(tmp_path: Pat
 
 
 @pytest.mark.parametrize("name", ["pendulum", "double_pendulum", "four_bar", "flexible_pendulum", "car", "heavy_top"])
-def test_native_files_bear_no_note(name: str) -> None:
+def test_native_files_get_no_note(name: str) -> None:
     assert not MODELS[name].notes
 
 
 @pytest.mark.parametrize("target", ["urdf", "mjcf", "c"])
-def test_an_export_that_lacks_nothing_bears_no_note(tmp_path: Path, target: str) -> None:
+def test_complete_exports_get_no_note(tmp_path: Path, target: str) -> None:
     assert not sf.export(ARM, target, tmp_path).notes
 
 
-def test_steps_that_begin_late_are_said_to() -> None:
+def test_late_steps_are_reported() -> None:
     """A function of inputs that sleeps for longer than a step of real time lasts; without a clock nothing is late."""
 
     def slow(t: float, q: object, v: object) -> list[float]:

@@ -47,9 +47,7 @@ def sound() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_nonsense_is_refused_in_words(
-    name: str, sound: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nonsense_is_refused(name: str, sound: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     function = getattr(sf, name)
     try:
@@ -104,7 +102,7 @@ def test_functions_of_one_state_refuse_batches(call: str, name: str, sound: dict
             function(sound["model"], **stated)
 
 
-def test_masked_values_are_no_numbers(sound: dict[str, Any]) -> None:
+def test_masked_values_are_refused(sound: dict[str, Any]) -> None:
     model = sound["model"]
     masked = np.ma.masked_array([0.1], [True])
     for values in (masked, [masked]):

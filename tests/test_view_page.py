@@ -32,7 +32,7 @@ def test_the_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     assert {path.name for path in tmp_path.iterdir()} == {"arm.yaml", *written}
 
 
-def test_its_pictures_are_there_and_small() -> None:
+def test_pictures_of_the_page_exist_and_are_small() -> None:
     named = re.findall(r"!\[[^]]+\]\((images/[^)]+)\)", PAGE.read_text())
     assert len(named) == 6
     assert all(10_000 < (PAGE.parent / name).stat().st_size < 120_000 for name in named)

@@ -149,7 +149,7 @@ def failed(label: str, stage: str, reason: str) -> ModelResult:
 
 
 def broken(label: str, error: BaseException) -> ModelResult:
-    """The result of a model whose check raised what nothing accounts for."""
+    """The result of a model whose check raised an unexpected exception."""
     return failed(label, "check", words(error))
 
 
@@ -221,7 +221,7 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
 
 
 def _procedures(bench: _Bench) -> Iterator[Comparison]:
-    """What is done with the equations of a reference model: other models have no procedures."""
+    """Procedures on the equations of a reference model; other models have none."""
     start = time.perf_counter()
     # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
     try:
@@ -235,7 +235,7 @@ def _procedures(bench: _Bench) -> Iterator[Comparison]:
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
-    """What keeps a system with a prescribed motion from being compared; that is not agreement."""
+    """The reason why a system with a prescribed motion is not compared; that is not agreement."""
     driven = assembly.driven_joints
     if driven and not has_beams(system):
         return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"

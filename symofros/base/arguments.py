@@ -41,7 +41,7 @@ _MAKERS = {
 
 @dataclass(frozen=True)
 class _Kind:
-    """What values an annotation allows.
+    """The values that an annotation allows.
 
     Attributes:
         noun: The allowed values as a noun phrase: "a number".
@@ -114,7 +114,7 @@ class CheckedCalls(ABCMeta):
 
         @property
         def __signature__(cls) -> inspect.Signature:
-            """That of __init__, which `inspect` would not look at beside the method above."""
+            """Signature of __init__, which `inspect` does not find past the method above."""
             initialise = inspect.signature(cls.__init__)
             return initialise.replace(parameters=[*initialise.parameters.values()][1:])
 
@@ -134,7 +134,7 @@ def bound(
 
 
 def checker_of(annotation: Any) -> Callable[[str, object], None] | None:
-    """What refuses values that an annotation does not allow, given what they are; None of one that is not judged.
+    """A function that refuses values which an annotation does not allow; None where the annotation is not checked.
 
     The function raises ArgumentError.
     """
@@ -169,7 +169,7 @@ def shown(value: object) -> str:
 
 
 def entries_of(value: Any) -> list[Any] | None:
-    """The entries of a list; None of a text, of what has no order, and of what has no entries."""
+    """The entries of a list; None for text, unordered collections and values without entries."""
     if isinstance(value, str | bytes | Mapping | Set) or not isinstance(value, Iterable):
         return None
     try:
@@ -197,12 +197,12 @@ def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[
 
 @cache
 def _kinds(annotated: Hashable) -> dict[str, _Kind | None]:
-    """What each parameter of a function, or field of a class, allows; None for anything."""
+    """The values that each parameter of a function or field of a class allows; None where any value is allowed."""
     return {name: _kind(annotation) for name, annotation in get_type_hints(annotated).items()}
 
 
 def _kind(annotation: Any) -> _Kind | None:
-    """What an annotation allows; None for what is not judged: arrays, protocols, and what says nothing."""
+    """The values that an annotation allows; None for annotations that are not checked, such as arrays and protocols."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
@@ -347,7 +347,7 @@ def _is_whole(value: object) -> bool:
 
 
 def _number_of(value: object) -> str:
-    """What to write in place of a text that reads as a number."""
+    """The remedy for text that reads as a number: the number to write instead."""
     try:
         return f"write {float(value):g}, without quotes" if isinstance(value, str) else "give one number"
     except ValueError:

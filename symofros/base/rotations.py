@@ -173,7 +173,7 @@ _choose_terms = np.frompyfunc(lambda sign, at_least_zero, below: sign.choose(at_
 
 
 def common_type(*arrays: Array) -> np.dtype[Any]:
-    """The type of what is made of these arrays: objects where one of them holds objects, or else doubles."""
+    """Common type of arrays: objects if one of them holds objects, otherwise doubles."""
     return np.dtype(object if any(array.dtype == object for array in arrays) else np.float64)
 
 

@@ -59,7 +59,7 @@ class Choice:
 
     @property
     def quantity(self) -> str:
-        """What is computed."""
+        """Name of the computed quantity."""
         return self.route.quantity
 
     @property

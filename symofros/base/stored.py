@@ -23,7 +23,7 @@ _DAMAGE = (OSError, ValueError, TypeError, LookupError, AttributeError, Arithmet
 
 
 def stored_text(path: Path, make: Callable[[str], T], errors: str = "strict") -> T | None:
-    """What a file of text holds.
+    """Contents of a text file.
 
     Args:
         path: The file.
@@ -45,12 +45,12 @@ def stored_text(path: Path, make: Callable[[str], T], errors: str = "strict") ->
 
 
 def stored_json(path: Path, make: Callable[[Any], T]) -> T | None:
-    """What a file of JSON holds: as `stored_text`, `make` is given the parsed value."""
+    """Contents of a JSON file; as in `stored_text`, `make` receives the parsed value."""
     return stored_text(path, lambda text: make(json.loads(text)))
 
 
 def stored_lines(path: Path, make: Callable[[Any], T]) -> list[T]:
-    """What the sound lines of a file hold, a value of JSON each.
+    """Values of the valid lines of a file with one JSON value per line.
 
     Args:
         path: The file.

@@ -65,7 +65,7 @@ def passed_units(environment: Environment, stated: str, names: Sequence[str]) ->
 
 
 def passing(environment: Environment, shape: Shape | None, stated: str) -> Ports:
-    """An input u and an output y of one shape and one unit: the stated one, or else that of what is connected."""
+    """An input u and an output y of one shape and one unit: the stated unit, or that of the connected signal."""
     units = passed_units(environment, stated, ("u",))
     return Ports((of_units(Port("u", shape), units),), (of_units(Port("y", shape), units),))
 

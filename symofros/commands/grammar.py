@@ -26,7 +26,7 @@ _SUMMARY = 300
 
 
 class Group(TyperGroup):
-    """A group of commands that refuses in four parts what it and its commands are not given as they want it."""
+    """A group of commands that reports invalid arguments in four parts."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options before the command."""
@@ -49,7 +49,7 @@ class Group(TyperGroup):
             formatter.write_dl(rows)
 
     def invoke(self, ctx: Any) -> Any:
-        """A command; what it does not refuse itself is refused here."""
+        """Invoke a command and report the errors that it does not report itself."""
         try:
             with _refusing():
                 return super().invoke(ctx)
@@ -109,7 +109,7 @@ def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:
 
 
 class _AsWritten:
-    """What Typer asks to convert a parameter's value: flags and texts stay as they are, paths are made of texts."""
+    """Parameter type that leaves flags and texts as written and makes paths of texts."""
 
     def __init__(self, kind: type) -> None:
         self._kind = kind
@@ -149,7 +149,7 @@ def _refusing() -> Iterator[None]:
 
 
 def _nearest(given: str, options: Iterable[str]) -> list[str]:
-    """Options alike to what was given; that all begin with dashes makes them no more so."""
+    """Options similar to the given one; the common leading dashes are ignored in the comparison."""
     names = {option.strip("-"): option for option in options}
     return sorted(names[name] for name in difflib.get_close_matches(given.strip("-"), names))
 

@@ -174,7 +174,7 @@ def _simulated(
 
 
 def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
-    """Write a picture of a run, and say what it leaves out."""
+    """Write a picture of a run and report the signals that it leaves out."""
     run.plot(*names).savefig(picture, dpi=120)
     count = len(names or run.model.names.q)
     if count > MOST_CURVES:

@@ -77,13 +77,13 @@ class ReadingOptions:
 
     @property
     def keywords(self) -> dict[str, Any]:
-        """What is stated, as keywords of `sf.load`."""
+        """The stated options as keywords of `sf.load`."""
         stated = {option.name: value for option in OPTIONS if (value := getattr(self, option.name))}
         mappings = {name: dict(stated[name]) for name in ("packages", "arguments") if name in stated}
         return stated | mappings
 
     def fit_for(self, path: Path) -> ReadingOptions:
-        """The same for one of several files of different formats: without what its format has not."""
+        """A copy for one of several files of different formats, without the options that its format lacks."""
         suffix = path.suffix.lower()
         formats = {option.name: option.metadata["formats"] for option in OPTIONS}
         return self.without([name for name, suffixes in formats.items() if suffixes and suffix not in suffixes])

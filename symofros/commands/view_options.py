@@ -37,7 +37,7 @@ class ViewOptions:
     interactive: bool = False
 
     def check(self) -> None:
-        """Raise before the run what would fail only after it.
+        """Raise errors before the run that would otherwise occur only after it.
 
         Raises:
             SymofrosError: The file has another suffix, or viser is not installed; or no page is to simulate on.

@@ -18,7 +18,7 @@ BLOCKED: dict[str, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
 
 
 def closing_remedy(name: str, kind: str, parent: str, child: str) -> str:
-    """What to do with a joint that would give its child a second parent.
+    """Remedy for a joint that would give its child a second parent.
 
     Args:
         name: Name of the joint.

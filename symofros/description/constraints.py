@@ -42,7 +42,7 @@ class _OnCoordinates:
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """Those that bind speeds only: none."""
+        """Conditions that bind speeds only: none."""
         return ()
 
 
@@ -222,7 +222,7 @@ class Rolling(_OnSpeeds):
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """Those that bind speeds only."""
+        """Conditions that bind speeds only."""
         return self.conditions[:2]
 
 

@@ -87,7 +87,7 @@ def _mapping(what: str, value: Any) -> Any:
 
 
 def _conversion(entry: str, annotation: Any) -> _Convert | None:
-    """What converts or refuses a value of an entry; None where the class itself does so, of numbers and formulas."""
+    """Converter of an entry's value; None where the class itself converts numbers and formulas."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if annotation is Rotation:
         return as_rotation
@@ -104,7 +104,7 @@ def _conversion(entry: str, annotation: Any) -> _Convert | None:
 
 
 def _check_of(annotation: Any) -> Callable[[str, object], None] | None:
-    """What refuses other values than an annotation's; of a choice the class says what there is."""
+    """A function that refuses values outside an annotation; for choices the class lists the alternatives."""
     return checker_of(str if get_origin(annotation) is Literal else annotation)
 
 
@@ -125,7 +125,7 @@ def _holds_values(annotation: Any) -> bool:
 
 @cache
 def _conversions(cls: type) -> dict[str, _Convert]:
-    """Entry -> what converts its value, or refuses it."""
+    """Entry -> function that converts or refuses its value."""
     hints = get_type_hints(cls)
     stated = ((field.name, _conversion(field.name, hints[field.name])) for field in fields(cls) if field.init)
     return {name: convert for name, convert in stated if convert is not None}

@@ -75,7 +75,7 @@ class Packages:
 
     @cached_property
     def at_once(self) -> Mapping[str, Path]:
-        """Packages for which no neighbour is looked at: the file's own by its names, and those stated."""
+        """Packages that need no search of neighbours: the file's own by its names, and stated ones."""
         names = {name: self.own for name in (self.own.name, self._name_of(self.own)) if name}
         return names | self.stated
 
@@ -90,7 +90,7 @@ class Packages:
 
     @property
     def named(self) -> Mapping[str, Path]:
-        """Packages by name, but for those of whose name there are several."""
+        """Packages by name, without names that several packages share."""
         names = dict.fromkeys([*self.at_once, *self.neighbours])
         return {name: folders[0] for name in names if len(folders := self.of(name)) == 1}
 

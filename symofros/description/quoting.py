@@ -73,7 +73,7 @@ def text_among(formula: Expression, symbols: Collection[str], both: Collection[s
 
 
 def without_quotes(formula: Expression, names: Collection[str]) -> list[str]:
-    """Those of some names that a formula as it was written has without quotes."""
+    """The names that a formula, as written, has without quotes."""
     if not names or not formula.written:
         return []
     return sorted({text for kind, text, _ in tokenize(formula.written) if kind == "name"} & {*names})
@@ -94,7 +94,7 @@ def two_meanings(formula: Expression, symbols: Collection[str]) -> tuple[str, st
 
 
 def unknown_symbol_remedy(name: str, written: str, symbols: Collection[str]) -> str:
-    """What to write instead of a formula with an unknown symbol; "" where nothing is near.
+    """Remedy for an unknown symbol in a formula; "" where no name is similar.
 
     Args:
         name: Unknown symbol.

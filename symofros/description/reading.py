@@ -81,7 +81,7 @@ def resolved(path: Path) -> Path:
 
 
 def kind_of(path: Path) -> str:
-    """What a path leads to that is no regular file."""
+    """Kind of a path that is not a regular file."""
     if path.is_symlink() and not os.path.exists(path):
         return "a link that leads nowhere"
     kinds = (
@@ -95,7 +95,7 @@ def kind_of(path: Path) -> str:
 
 
 def refuse_size(path: Path, data: bytes, limit: int) -> None:
-    """Refuse what is too long.
+    """Refuse data that is too long.
 
     Raises:
         DescriptionError: More bytes than the limit.

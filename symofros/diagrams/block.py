@@ -232,7 +232,7 @@ class Block(metaclass=CheckedCalls):
         return {}
 
     def memory(self, environment: Environment) -> Mapping[str, Any]:
-        """What is kept from sample to sample -> its first values."""
+        """Stored quantity -> its initial value."""
         return {}
 
     def samples(self) -> Mapping[str, Signal]:
@@ -240,7 +240,7 @@ class Block(metaclass=CheckedCalls):
         return {}
 
     def compute(self, context: EvaluationContext) -> Values:
-        """Output port -> its signal; those of `samples` left out."""
+        """Output port -> its signal, except those of `samples`."""
         return {}
 
     def rates(self, context: EvaluationContext) -> Values:
@@ -248,7 +248,7 @@ class Block(metaclass=CheckedCalls):
         return {}
 
     def update(self, context: EvaluationContext) -> Values:
-        """Memory -> what it is after a sample."""
+        """Stored quantity -> its value after a sample."""
         return {}
 
     def motion(self, context: EvaluationContext) -> Terms:

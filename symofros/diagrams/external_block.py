@@ -24,7 +24,7 @@ class Running(ABC):
         """
 
     def kept(self) -> Mapping[str, Array]:
-        """What it kept of the run that comes to its end, by name; `DiagramRun.kept` of the run holds it."""
+        """Results of the finished run by name; `DiagramRun.kept` holds them."""
         return {}
 
     def end(self) -> None:  # noqa: B027 - most have nothing to close.
@@ -37,4 +37,4 @@ class ExternalBlock(Block, ABC):
 
     @abstractmethod
     def begin(self, environment: Environment) -> Running:
-        """Before a run: open what is needed. Several runs of one block may go on at once."""
+        """Prepare a run, for example open connections. Several runs of one block may overlap."""

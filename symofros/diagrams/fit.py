@@ -17,7 +17,7 @@ def check_fit(
     sources: Mapping[tuple[str, str], tuple[str, str]],
     problems: list[Problem],
 ) -> None:
-    """Add what does not fit of what is connected: units that are none, shapes and units that differ.
+    """Add mismatches of connections: invalid units, and shapes or units that differ.
 
     Args:
         diagram: Diagram that the faults are of.
@@ -88,7 +88,7 @@ def fits(given: Shape | None, taken: Shape | None) -> bool:
 
 
 def _differing(given: Port, taken: Port, odd: set[str]) -> tuple[str, str, str] | None:
-    """Of the first entry whose units differ: which it is, where there are several, its unit, and the one taken."""
+    """The first entry whose units differ: its index if there are several, its unit, and the expected one."""
     own, other = given.entry_units, taken.entry_units
     count = max(len(own), len(other))
     if {len(own), len(other)} - {1, count}:

@@ -22,7 +22,7 @@ class Observer(Protocol):
         ...
 
     def see(self, t: float, times: Array, values: Mapping[str, Array]) -> None:
-        """Take what was recorded since the last call; the run waits until it returns.
+        """Receive the records since the last call; the run waits until it returns.
 
         Args:
             t: Time that the run has reached [s].
@@ -41,8 +41,8 @@ class NoObserver:
     signals: Sequence[str] = ()
 
     def stop(self) -> float:
-        """Nowhere."""
+        """Never stop."""
         return math.inf
 
     def see(self, t: float, times: Array, values: Mapping[str, Array]) -> None:
-        """Nothing."""
+        """Ignore the records."""

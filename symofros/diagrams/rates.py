@@ -40,7 +40,7 @@ class Schedule:
 
     @staticmethod
     def empty() -> Schedule:
-        """Nothing is ever due."""
+        """A schedule without instants."""
         return Schedule(Fraction(1), 0, (), ())
 
 

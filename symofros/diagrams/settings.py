@@ -54,10 +54,10 @@ class RunSettings:
     plots: tuple[Plot, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse what is of another type."""
+        """Refuse values of other types."""
         check_fields(self)
 
     def keywords(self) -> dict[str, Any]:
-        """Those that are stated, as a run takes them; without t_end."""
+        """The stated settings as keywords of a run, without t_end."""
         names = [item.name for item in fields(self) if item.name not in ("t_end", "plots")]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}

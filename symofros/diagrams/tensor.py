@@ -51,7 +51,7 @@ class Tensor:
 
     @staticmethod
     def of_terms(g: Graph, array: Terms) -> Tensor:
-        """What a formula over terms gave."""
+        """Tensor of the result of a formula over terms."""
         return Tensor.of(g, edges_of(g, array), array.shape)
 
     @property
@@ -152,7 +152,7 @@ class Tensor:
         return self._with(others[0], lambda x, y: self.g.call(function, x, y))
 
     def clipped(self, low: Any, high: Any) -> Tensor:
-        """Within bounds."""
+        """The tensor limited by bounds."""
         return self.apply("max", low).apply("min", high)
 
     def sum(self) -> Tensor:

@@ -74,7 +74,7 @@ def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping)
 
 
 def _of_models(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[str]:
-    """What is noted of the mechanisms: their descriptions, limits that nothing keeps, singular first postures."""
+    """Notes on the mechanisms: their descriptions, unenforced limits, singular first postures."""
     layout, models = resolved.layout, resolved.wired.models
     for part, at in zip(layout.parts, placed, strict=True):
         for block in part.blocks:

@@ -178,7 +178,7 @@ def _export_diagram(
 
 
 def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None) -> Stepping:
-    """How an export steps: as is given, else as the model states, else by default."""
+    """Stepping settings of an export: given ones, otherwise those of the model, otherwise defaults."""
     chosen = {**_STEPPING, **(stated or {}), **{name: item for name, item in given.items() if item is not None}}
     method = chosen["method"]
     known = [item.name for item in METHODS.values() if not item.family.multistep]
@@ -213,7 +213,7 @@ def _material(
     stepping: Stepping,
     target: Target,
 ) -> Material:
-    """What an export is made of: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
+    """Contents of an export: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
     chosen = target == "c" and bool(further)
     reactions = _reactions(system) if target == "c" and not chosen else ()
@@ -302,7 +302,7 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
 
 
 def _start(model: Model, given: Mapping[str, float]) -> ClosedStart:
-    """The first state, on the constraints; what was given keeps its values."""
+    """The first state on the constraints; given coordinates keep their values."""
     q, v = model.neutral(), np.zeros(model.nv)
     for label, value in given.items():
         coordinate, speed = coordinate_of(label, model.names.q), speed_of(label, model.names.v)

@@ -23,7 +23,7 @@ _KEPT = 8
 
 
 def beams_at(tree: SpanningTree) -> Callable[[Array], tuple[ElasticBeam, ...]]:
-    """What gives a tree's elastic beams from its run-time parameters (npar)."""
+    """A function that gives a tree's elastic beams from its run-time parameters (npar)."""
     names, constants = tree.coordinates.par, tree.coordinates.constants
     tips = [(link.tip_of, link.q[0], link.v[0]) for link in tree.links if link.tip_of is not None and link.tip_of.modes]
 

@@ -45,7 +45,7 @@ _OPERATIONS = Operations(
 
 @dataclass(frozen=True)
 class _Differentiable:
-    """A function with what gives its derivatives.
+    """A function with access to its derivatives.
 
     Attributes:
         value: Function of the model and the array that it gives.

@@ -138,7 +138,7 @@ class Sources:
 
 
 def _nonzero(function: Function, index: int) -> list[bool]:
-    """Which entries of an array may differ from zero; of what a solver finishes, by what it is made of."""
+    """Entries of an array that may differ from zero; for solver outputs from their operands."""
     solver = function.solver
     if solver is None:
         return [edge != ZERO for edge in function.outputs[index].edges]

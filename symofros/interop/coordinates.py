@@ -15,7 +15,7 @@ Components = Sequence[Any]
 
 
 class Operations(NamedTuple):
-    """What the formulas need of a framework.
+    """Framework operations that the formulas need.
 
     Attributes:
         entries: The entries of an array (..., n), each an array (...).
@@ -84,7 +84,7 @@ class Coordinates:
         return self._f.joined(result)
 
     def integrate(self, q: Any, dq: Any) -> Any:
-        """Where q (..., nq) comes in unit time with constant speeds dq (..., nv): `Model.integrate`."""
+        """Configuration q (..., nq) after unit time with constant speeds dq (..., nv): `Model.integrate`."""
         if not self.curved:
             return q + dq
         given, steps, result = self._f.entries(q), self._f.entries(dq), list[Any]()

@@ -93,7 +93,7 @@ class Task:
 
     @property
     def _steps(self) -> dict[str, Any]:
-        """How steps between actions are made."""
+        """Settings of the steps between actions."""
         return {"method": "rk4", "dt": self.dt / self.substeps}
 
     @property

@@ -52,7 +52,7 @@ class InteropError(SymofrosError):
 
 
 def second_derivatives(model: Model, function: str) -> InteropError:
-    """What is said where a framework differentiates a derivative once more."""
+    """Message for second derivatives that a framework requests."""
     product = " or model.inverse_dynamics_hvp(...)" if function == "inverse_dynamics" else ""
     return InteropError(
         Problem(

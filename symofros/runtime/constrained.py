@@ -62,7 +62,7 @@ def residual_weights(G: Array, measures: Measures) -> Array:
 
 
 def residual_rounding(G: Array, measures: Measures) -> Array:
-    """What rounding leaves of phi (nc), and of G v at unit speeds (docs/theory/constraints.md, (22a))."""
+    """Rounding errors of phi (nc), and of G v at unit speeds (docs/theory/constraints.md, (22a))."""
     return np.asarray(RESIDUAL_ROUNDING * natural_sizes(G, measures).max(axis=1, initial=0.0), dtype=np.float64)
 
 
@@ -268,7 +268,7 @@ def constrained(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> l
 
 
 def deviation(G: Array, measures: Measures, phi: Array) -> float:
-    """How far a state is from phi = 0, in rad or shares of what turns (docs/theory/constraints.md, (11a))."""
+    """Distance of a state from phi = 0, in rad or fractions of the reach (docs/theory/constraints.md, (11a))."""
     speeds, unit = np.array(measures.speed, dtype=np.intp), np.array(measures.unit, dtype=np.intp)
     reach = np.where(speeds == TRANSLATION, 0.0, natural_sizes(G, measures)).max(axis=1, initial=0.0)
     scaled = (unit != ANGLE) & (reach > LEAST_SIZE)

@@ -34,7 +34,7 @@ class BatchInputs:
 
 @dataclass(frozen=True)
 class GivenInputs:
-    """What a user gave, sorted by whether it is one for all.
+    """Inputs of a user, sorted by whether all trajectories share them.
 
     Attributes:
         first: Inputs of the first trajectory, as `simulate` takes them.
@@ -53,7 +53,7 @@ class GivenInputs:
         return [*whole, *(values.shape[:-1] for values in self.samples.values())]
 
     def spread(self, model: Model, shape: Shape) -> BatchInputs:
-        """For trajectories of that shape.
+        """The inputs of a batch of that shape.
 
         Raises:
             ShapeError: An array does not fit.
@@ -75,7 +75,7 @@ class GivenInputs:
 
 
 def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
-    """What varies over a batch, and what does not.
+    """Split inputs into those that vary over a batch and those that do not.
 
     Args:
         model: Names the inputs.

@@ -38,7 +38,7 @@ class Event(metaclass=CheckedCalls):
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
-    """What a run leaves undecided about its events: the first of each kind.
+    """Notes on undecided events of a run: the first of each kind.
 
     Args:
         run: The sym_run.

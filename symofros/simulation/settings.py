@@ -111,7 +111,7 @@ class Settings:
 
     @property
     def judged(self) -> bool:
-        """Whether its steps can be judged by what they make of a mode: fixed ones, of most families."""
+        """Whether its steps can be judged by their effect on a mode: fixed ones, of most families."""
         return not self.adaptive and self.method.family.judged
 
     @classmethod
@@ -189,7 +189,7 @@ def _check(options: SimulationOptions, t_end: float) -> None:
 
 
 def check_pace(realtime: float | bool) -> None:
-    """Refuse what is no pace against the clock.
+    """Refuse invalid ratios to real time.
 
     Raises:
         SymofrosError: It is negative or infinite.
@@ -200,7 +200,7 @@ def check_pace(realtime: float | bool) -> None:
 
 
 def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
-    """Refuse what a method can't do for a model.
+    """Refuse models that a method can't integrate.
 
     Raises:
         SymofrosError: The model, its inputs or how constraints are kept do not suit the method.

@@ -118,7 +118,7 @@ def run_to_its_end(
 
 
 def prepare_run(model: Model, settings: Settings | None = None) -> None:
-    """Compile what a run and its diagnosis call, all at the same time; the integrator is compiled once a machine.
+    """Compile the functions of a run and its diagnosis in parallel; the integrator is compiled once a machine.
 
     Args:
         model: Model.

@@ -55,7 +55,7 @@ TAKERS: dict[str, Callable[[Any], Any]] = {
 
 @pytest.mark.parametrize("taker", TAKERS)
 @pytest.mark.parametrize("values", NO_NUMBERS)
-def test_what_is_no_number_is_refused_in_words(taker: str, values: str) -> None:
+def test_values_that_are_not_numbers_are_refused(taker: str, values: str) -> None:
     with pytest.raises(sf.ShapeError) as raised:
         TAKERS[taker](NO_NUMBERS[values])
     problem = raised.value.problem

@@ -78,14 +78,14 @@ def test_any_function_is_evaluated_by_its_name(rng: np.random.Generator) -> None
         ("frame_pose", {"q": [0.0, 0.0]}, "no function 'frame_pose'"),
     ],
 )
-def test_what_can_not_be_evaluated_is_refused(name: str, inputs: dict[str, list[float]], words: str) -> None:
+def test_functions_that_cannot_be_evaluated_are_refused(name: str, inputs: dict[str, list[float]], words: str) -> None:
     m = sf.compile(MODELS["double_pendulum"], sf.Options(backend="interpreter"))
     with pytest.raises((sf.UnknownNameError, sf.ShapeError), match=words):
         m.evaluate(name, **inputs)
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_what_defines_an_output_exists(function: str) -> None:
+def test_every_output_has_a_source_in_the_equations(function: str) -> None:
     row = FUNCTIONS[function]
     if not row.by_solver:
         assert all(hasattr(FrameEquations if row.of_frame else Equations, array.source) for array in row.outputs)
@@ -102,7 +102,7 @@ def test_methods_take_the_inputs_of_the_table(function: str) -> None:
     assert set(parameters) - set(inputs) <= FURTHER
 
 
-def test_what_is_generated_together() -> None:
+def test_functions_compiled_into_one_unit() -> None:
     assert generated_with("mass_matrix", True) == ("mass_matrix",)
     assert generated_with("forward_dynamics", True) == ("forward_dynamics", "project")
     assert generated_with("forward_dynamics", False) == ("forward_dynamics",)
@@ -111,7 +111,7 @@ def test_what_is_generated_together() -> None:
     assert generated_with("constraint", True) == ("constraint", "constraint_rate", "constraint_jacobian")
 
 
-def test_what_says_nothing_of_a_tree_is_generated_together() -> None:
+def test_functions_that_are_zero_for_a_tree_share_one_unit() -> None:
     """A compiler starts once for all of it."""
     empty = generated_with("constraint", False)
     stated = {name for name, row in FUNCTIONS.items() if row.constrained_only and not row.transposes}

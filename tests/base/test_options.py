@@ -17,7 +17,7 @@ def test_an_option_without_effect_warns_where_it_is_asked_for(name: str, value: 
     assert caught[0].filename == __file__
 
 
-def test_other_options_say_nothing() -> None:
+def test_options_that_change_nothing_do_not_warn() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sf.Options(tune=False, processors="native", packs=False)

@@ -33,7 +33,7 @@ def test_damage_counts_as_absent_with_a_warning(tmp_path: Path, damage: bytes) -
 
 
 @pytest.mark.parametrize("kind", ["folder", "pipe", "link", "loop"])
-def test_what_is_no_file_counts_as_absent(tmp_path: Path, kind: str) -> None:
+def test_a_path_that_is_not_a_file_counts_as_absent(tmp_path: Path, kind: str) -> None:
     place = tmp_path / "state.json"
     if kind == "folder":
         place.mkdir()
@@ -45,7 +45,7 @@ def test_what_is_no_file_counts_as_absent(tmp_path: Path, kind: str) -> None:
         assert stored_text(place, str) is None
 
 
-def test_absence_is_no_damage(tmp_path: Path) -> None:
+def test_absent_files_are_not_reported_as_damaged(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert stored_json(tmp_path / "gone", row) is None
@@ -67,7 +67,7 @@ def test_sound_lines_are_read_whatever_lies_between(tmp_path_factory: pytest.Tem
     assert values == [part for part in parts if isinstance(part, int)]
 
 
-def test_what_is_not_kept_is_said(tmp_path: Path) -> None:
+def test_a_failure_to_store_is_reported(tmp_path: Path) -> None:
     (tmp_path / "hint").mkdir()
     with pytest.warns(StoredStateWarning, match=r"hint: .*it is not kept"):
         keep(tmp_path / "hint", "text")

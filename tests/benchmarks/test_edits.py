@@ -41,7 +41,7 @@ def system(name: str) -> sf.System:
 @pytest.mark.parametrize(
     "name", ["mss", *(pytest.param(name, marks=pytest.mark.slow) for name in ("chain52", "talos", "chain300"))]
 )
-def test_edit(benchmark: BenchmarkFixture, tmp_path: Path, name: str, kind: str) -> None:
+def test_time_of_an_edit_in_a_large_document(benchmark: BenchmarkFixture, tmp_path: Path, name: str, kind: str) -> None:
     sf.save(system(name), tmp_path / "big.yaml")
     session = Session(Workspace(tmp_path), tmp_path / "big.yaml")
     bodies = list(session.as_json()["data"]["bodies"])

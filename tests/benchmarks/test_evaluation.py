@@ -16,7 +16,7 @@ BATCH = 1000
 
 @pytest.mark.parametrize("states", [1, BATCH])
 @pytest.mark.parametrize("model", sampled(("double_pendulum", "rx90", "mss"), ("double_pendulum",)))
-def test_dynamics(benchmark: BenchmarkFixture, model: str, states: int) -> None:
+def test_time_of_dynamics(benchmark: BenchmarkFixture, model: str, states: int) -> None:
     compiled = sf.compile(MODELS[model], sf.Options(functions=("dynamics",)))
     rng = np.random.default_rng(0)
     q, v = (rng.standard_normal((states, n)) for n in (compiled.nq, compiled.nv))

@@ -33,7 +33,7 @@ def _text(system: sf.System) -> str:
 
 
 @pytest.mark.parametrize("model", sampled(("chain7", "chain22", "mss", "flexible_arm"), ["chain7"]))
-def test_c_compilation(
+def test_time_of_generation_and_compilation_without_cache(
     benchmark: BenchmarkFixture, model: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """From description to loaded library, nothing cached."""

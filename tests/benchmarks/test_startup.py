@@ -44,7 +44,7 @@ def file(panda: sf.System, tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.param("import symofros; symofros.compile", id="to_compile"),
     ],
 )
-def test_import(benchmark: BenchmarkFixture, code: str) -> None:
+def test_time_of_import(benchmark: BenchmarkFixture, code: str) -> None:
     benchmark.pedantic(subprocess.run, args=([sys.executable, "-c", code],), rounds=5)
 
 
@@ -68,12 +68,12 @@ def test_generation_and_compilation(
     assert benchmark.pedantic(compile_anew, rounds=5).nq == 9
 
 
-def test_reading(benchmark: BenchmarkFixture, file: Path) -> None:
+def test_time_of_reading(benchmark: BenchmarkFixture, file: Path) -> None:
     benchmark.extra_info["bytes"] = file.stat().st_size
     assert len(benchmark(sf.load, file).bodies) > 7
 
 
-def test_loading_what_is_known(benchmark: BenchmarkFixture, panda: sf.System) -> None:
+def test_time_of_loading_a_cached_model(benchmark: BenchmarkFixture, panda: sf.System) -> None:
     options = sf.Options(("mass_matrix", "bias"))
     sf.compile(panda, options)
     assert benchmark(sf.compile, panda, options).nq == 9

@@ -61,7 +61,7 @@ def test_every_block_is_there_with_its_ports(name: str) -> None:
     assert not missing, f"{name}: ports not named"
 
 
-def test_every_block_says_what_its_fields_are() -> None:
+def test_docstrings_of_blocks_describe_every_field() -> None:
     for name, block in BLOCKS.items():
         stated = block.__doc__ or ""
         for field in block.form():

@@ -18,7 +18,7 @@ ROWS = YAML(typ="safe").load(Path(__file__).with_name("refused.yaml"))
 
 
 @pytest.mark.parametrize("kind", ROWS)
-def test_what_is_wrong_is_said(kind: str) -> None:
+def test_invalid_fields_of_every_block_are_refused(kind: str) -> None:
     for fields, *says in ROWS[kind]:
         refused(lambda fields=fields: kinds()[kind](name="b", **fields), *says)
 
@@ -35,5 +35,5 @@ def test_what_is_wrong_is_said(kind: str) -> None:
         (lambda: PythonBlock(name="p", function=print, outputs={"y": ()}), ("period None",)),
     ],
 )
-def test_what_does_not_fit_its_inputs_or_a_file_is_said(make: Callable[[], object], says: tuple[str, ...]) -> None:
+def test_fields_that_contradict_inputs_or_files_are_refused(make: Callable[[], object], says: tuple[str, ...]) -> None:
     refused(make, *says)

@@ -119,7 +119,7 @@ UNITS = ("rad", "deg", "m", "rad/s", "m/s", "N m", "N", "s", "rad/s^2")
 
 @pytest.mark.parametrize("make", CONTROLLERS)
 @pytest.mark.parametrize("right", RIGHT)
-def test_a_controller_of_joints_takes_what_fits(make: Callable[[], Block], right: str) -> None:
+def test_controllers_accept_ports_of_matching_units(make: Callable[[], Block], right: str) -> None:
     assert not wired(make(), RIGHT[right])
 
 
@@ -166,7 +166,7 @@ def test_entries_of_mixed_vectors_are_compared_one_by_one() -> None:
 
 
 @pytest.mark.parametrize(("given", "taken"), [(1.5, [2.0]), ([1.5], 2.0)])
-def test_one_number_is_one_alone_or_as_a_vector(given: object, taken: object) -> None:
+def test_a_scalar_and_a_vector_of_one_have_the_same_size(given: object, taken: object) -> None:
     diagram = sf.Diagram("one")
     diagram.add(lib.Constant(name="a", value=taken))
     diagram.add(lib.Constant(name="b", value=given))

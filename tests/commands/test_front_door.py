@@ -146,7 +146,7 @@ def test_run_time_parameters_are_set_from_the_shell() -> None:
     assert abs(heavy["x"]) < 0.1 * abs(light["x"])
 
 
-def test_an_equilibrium_is_told_with_what_holds_it() -> None:
+def test_equilibrium_reports_the_inputs_that_hold_it() -> None:
     common = "equilibrium", CART_POLE, "--set", "m_cart=3", "--set", "q=3.0"
     data = json.loads(invoke(*common, "--hold", "x", "--json").output)
     assert data["ok"] and data["coordinates"]["q"] == pytest.approx(math.pi) and data["inputs"] == {"F": 0.0}
@@ -174,7 +174,7 @@ def test_commands_refuse_wrong_input_in_four_parts(line: str, tmp_path: Path, mo
     assert REFUSED[line] in result.output and all(part in result.output for part in _PARTS), result.output
 
 
-def test_without_its_packages_the_editor_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_editor_names_the_extra_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "uvicorn", None)
     monkeypatch.delitem(sys.modules, "symofros.studio.editor.command", raising=False)
     result = invoke("edit", CART_POLE)
@@ -208,7 +208,7 @@ def test_the_harness_starts_from_any_folder(
     assert not (tmp_path / "reports").exists()
 
 
-def test_without_its_packages_the_harness_says_what_to_install(
+def test_the_harness_names_the_extra_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """As after `pip install symofros` alone: a package that can't be imported stands for one that is not there."""
@@ -218,7 +218,7 @@ def test_without_its_packages_the_harness_says_what_to_install(
     assert status == 2 and "Traceback" not in said and "pip install 'symofros[validation]'" in said
 
 
-def test_the_list_of_the_harness_needs_none_of_its_packages(
+def test_the_list_of_harness_commands_needs_no_optional_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """Neither engines, nor what is computed and drawn with; one line, or two, for each command."""
@@ -276,7 +276,7 @@ def test_an_interrupt_leaves_the_harness_time_to_report(monkeypatch: pytest.Monk
     assert invoke("check", "pendulum").exit_code == 130 and not list(said)
 
 
-def test_a_reader_that_has_seen_enough_is_told_nothing() -> None:
+def test_a_closed_pipe_ends_the_command_silently() -> None:
     """`symofros info arm.yaml | head -1`."""
     reading, writing = os.pipe()
     os.close(reading)

@@ -45,7 +45,7 @@ def test_every_command_that_loads_a_model_takes_the_options(command: str) -> Non
         assert option in told
 
 
-def test_a_check_is_waived_where_the_remedy_says_so(tmp_path: Path) -> None:
+def test_the_waiver_named_in_the_remedy_is_accepted(tmp_path: Path) -> None:
     path = kinematic(tmp_path, 2)
     told = invoke("info", path)
     assert told.exit_code == 2 and "or --waive massless_tip" in told.output and "load(" not in told.output
@@ -85,7 +85,7 @@ def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) ->
     assert told.exit_code == 2 and "opened as it stands" in told.output
 
 
-def test_pairs_are_names_and_texts_and_backquotes_hold_a_name_together_and_are_no_part_of_it() -> None:
+def test_reading_options_parse_pairs_and_backquoted_names() -> None:
     """But in formulas, where they are; an empty text is one for arguments of xacro alone."""
     assert reading_of(packages=["a=b", "c = d "]).keywords == {"packages": {"a": "b", "c": "d"}}
     assert ReadingOptions().keywords == {}
@@ -114,7 +114,7 @@ def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
     assert invoke("info", tmp_path / "k.urdf").output.rstrip().endswith("k.urdf: 24 problems")
 
 
-def test_problems_that_differ_are_told_each() -> None:
+def test_problems_that_differ_are_listed_separately() -> None:
     """In what was found, in the rule, in the remedy; and a pair is told with both lines."""
     stated = [Problem(f"body '{name}' is odd", found, "r", "m", f"a:{i}") for i, (name, found) in enumerate(PAIRS)]
     assert len(str(SymofrosError(stated)).splitlines()) == 4 * 4
@@ -160,7 +160,7 @@ def test_tables_in_a_pipe_keep_their_lines(tmp_path: Path) -> None:
     assert "mass [kg]" in told  # Brackets are no styles.
 
 
-def test_a_picture_says_what_it_leaves_out(tmp_path: Path) -> None:
+def test_pictures_name_omitted_items(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     chain = [
         sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "revolute", f"b{i - 1}" if i else "world"), sf.Inertia(1.0, (1, 0, 0)))

@@ -58,7 +58,7 @@ def test_a_diagram_in_real_time_is_shown_as_it_goes(seen: list[sf.Viewer], tmp_p
     assert viewer._player is not None and viewer._player.motion.end == pytest.approx(0.2)  # Then it is played.
 
 
-def test_one_of_several_mechanisms_is_chosen(seen: list[sf.Viewer], tmp_path: Path) -> None:
+def test_view_selects_one_of_several_mechanisms(seen: list[sf.Viewer], tmp_path: Path) -> None:
     file = folder_with(tmp_path, TEXT.replace("blocks:\n", "blocks:\n" + SECOND))
     refused = run(file, "--view")
     assert refused.exit_code == 2 and "blocks that move one: second, plant" in refused.output and not seen
@@ -79,7 +79,7 @@ def test_one_of_several_mechanisms_is_chosen(seen: list[sf.Viewer], tmp_path: Pa
         (["--interactive", "--record-view", "r.gif"], "--interactive: "),
     ],
 )
-def test_what_can_not_be_shown_is_not_run(
+def test_a_run_that_cannot_be_displayed_is_not_started(
     of: str, arguments: list[str], expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "viser", None)
@@ -88,9 +88,7 @@ def test_what_can_not_be_shown_is_not_run(
     assert found.exit_code == 2 and expected in found.output and not (tmp_path / "r.npz").exists()
 
 
-def test_what_does_not_move_is_seen_in_a_picture_and_a_motion_until_it_is_interrupted(
-    seen: list[sf.Viewer], tmp_path: Path
-) -> None:
+def test_static_mechanisms_are_drawn_and_interrupted_recordings_are_kept(seen: list[sf.Viewer], tmp_path: Path) -> None:
     assert run(FOUR_BAR, "--record", tmp_path / "bar.png", command="view").exit_code == 0
     assert (tmp_path / "bar.png").read_bytes().startswith(b"\x89PNG")
     motion = sf.simulate(sf.compile(sf.load(ARM)), [1.0, 0.0], None, 0.1, dt=0.01).save(tmp_path / "run.npz")

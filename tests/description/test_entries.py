@@ -22,7 +22,7 @@ def test_an_unknown_entry_is_named_with_the_nearest(cls: Any) -> None:
 
 
 @pytest.mark.parametrize("entry", ["GA", "kGA"])
-def test_a_beam_says_under_which_names_it_has_shear(entry: str) -> None:
+def test_unknown_shear_entries_name_the_accepted_ones(entry: str) -> None:
     with pytest.raises(sf.DescriptionError, match=rf"Beam 'b': no entry '{entry}'(.|\n)*GA_y"):
         sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 1.0, **{entry: 1e6})
 

@@ -29,12 +29,12 @@ def test_yaml_1_2_numbers(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["symofros: 1\nbodies: [", "- 1\n- 2\n", "a: " + "[" * 80 + "]" * 80])
-def test_what_is_no_mapping_is_refused(text: str, tmp_path: Path) -> None:
+def test_a_document_that_is_not_a_mapping_is_refused(text: str, tmp_path: Path) -> None:
     """All other faults of a text are in faults.txt."""
     assert "arm.yaml:" in (message := faults(tmp_path, text)) and "rule:" in message
 
 
-def test_all_faults_of_a_file_come_together(tmp_path: Path) -> None:
+def test_all_faults_of_a_file_are_reported_together(tmp_path: Path) -> None:
     """Of form, of formulas, of the tree and of physics, each with its line, in order."""
     text = (
         HEAD.replace("}", ", gravit: [0, 0, -1]}")
@@ -74,7 +74,7 @@ class TestInclude:
         assert arm.parameter_values() == {"m_hand": 2.0}
 
     @pytest.mark.parametrize("target", ["../secret.yaml", "/etc/passwd.yaml", "parts/../../secret.yaml", "link.yaml"])
-    def test_nothing_outside_the_folder(self, target: str, tmp_path: Path) -> None:
+    def test_includes_outside_the_folder_are_refused(self, target: str, tmp_path: Path) -> None:
         inside = tmp_path / "inside"
         inside.mkdir()
         (tmp_path / "secret.yaml").write_text("symofros: 1\nparameters: {secret: 1}\n")
@@ -93,7 +93,7 @@ class TestInclude:
         assert "'link'" in message
 
 
-def test_reading_keeps_what_it_can(tmp_path: Path) -> None:
+def test_reading_keeps_the_valid_elements(tmp_path: Path) -> None:
     (tmp_path / "arm.yaml").write_text(ARM + "  bad: {joint: 3}\n")
     found = read_yaml(tmp_path / "arm.yaml")
     assert found.system is not None and [body.name for body in found.system.bodies] == ["link"]
@@ -111,7 +111,7 @@ def test_every_joint_kind_round_trips(seed: int, tmp_path: Path) -> None:
 EVERYTHING = Path(__file__).with_name("all_forces.yaml").read_text()
 
 
-def test_all_forces_in_one_file(tmp_path: Path) -> None:
+def test_all_kinds_of_forces_are_written_and_read(tmp_path: Path) -> None:
     system = load(tmp_path, EVERYTHING)
     sf.save(system, tmp_path / "again.yaml")
     assert sf.load(tmp_path / "again.yaml") == system
@@ -120,7 +120,7 @@ def test_all_forces_in_one_file(tmp_path: Path) -> None:
     assert model.forward_dynamics([0.1, 0.2, 0.3], [1, 2, 3], [1, 0, 0, 0], t=2.0).shape == (3,)
 
 
-def test_a_text_that_is_not_written_yet_is_read_as_if_it_were(tmp_path: Path) -> None:
+def test_unsaved_text_is_read_as_if_it_were_saved(tmp_path: Path) -> None:
     (tmp_path / "parts.yaml").write_text("symofros: 1\nparameters: {m: 2}\n")
     file = tmp_path / "arm.yaml"
     text = "symofros: 1\ninclude: [parts.yaml]\nbodies: {a: {joint: {kind: revolute}, inertia: {mass: m}}}\n"

@@ -64,7 +64,7 @@ def hinge(system: sf.System) -> sf.Joint:
 
 @pytest.mark.parametrize("dissipation", [None, "none", "viscous", "all"])
 @pytest.mark.parametrize("suffix", FILES)
-def test_dissipation_is_what_is_asked_for_and_what_is_dropped_is_noted(
+def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
     tmp_path: Path, suffix: str, dissipation: Any
 ) -> None:
     system = sf.load(written(tmp_path, suffix), dissipation=dissipation)
@@ -105,7 +105,7 @@ def test_limits_become_stops_by_the_inertia_that_they_meet(tmp_path: Path, suffi
 
 
 @pytest.mark.parametrize("suffix", FILES)
-def test_what_stands_on_the_ground_floats_where_that_is_asked_for(tmp_path: Path, suffix: str) -> None:
+def test_a_grounded_base_floats_if_asked(tmp_path: Path, suffix: str) -> None:
     path = written(tmp_path, suffix)
     base = sf.load(path).body("base")
     assert base.joint is None or base.joint.kind == "fixed"
@@ -124,7 +124,7 @@ FLOATS = {
 
 
 @pytest.mark.parametrize("suffix", FLOATS)
-def test_what_floats_already_stays_as_it_is(tmp_path: Path, suffix: str) -> None:
+def test_a_floating_base_is_not_doubled(tmp_path: Path, suffix: str) -> None:
     path = written(tmp_path, suffix, FLOATS[suffix])
     assert sf.load(path, floating_base=True) == sf.load(path)
 
@@ -140,7 +140,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("found", REFUSED)
-def test_a_root_that_can_not_float_is_refused(tmp_path: Path, found: str) -> None:
+def test_a_root_that_cannot_float_is_refused(tmp_path: Path, found: str) -> None:
     path = written(tmp_path, *REFUSED[found])
     with pytest.raises(sf.DescriptionError, match=f"that could float[\\s\\S]*{found}"):
         sf.load(path, floating_base=True)
@@ -176,7 +176,7 @@ def test_passive_forces_are_mujocos(tmp_path: Path) -> None:
 KINDS = ("revolute", "prismatic", "screw", "universal", "cylindrical", "planar", "ball", "free", "continuous")
 
 
-def test_apparent_inertias_are_those_of_the_mass_matrix() -> None:
+def test_apparent_inertias_match_the_mass_matrix() -> None:
     rng = np.random.default_rng(3)
     bodies, parent = list[sf.RigidBody](), "world"
     for kind in KINDS:
@@ -229,7 +229,7 @@ def test_damping_of_a_floating_joint_is_noted_whatever_is_asked_for(tmp_path: Pa
 
 
 @pytest.mark.parametrize(("suffix", "old", "new"), [(".urdf", '"0.5"', '"high"'), (".sdf", ">0.2<", ">-0.2<")])
-def test_a_coefficient_that_is_none_is_refused_where_it_is_asked_for(
+def test_invalid_coefficients_are_refused_if_dissipation_is_read(
     tmp_path: Path, suffix: str, old: str, new: str
 ) -> None:
     path = written(tmp_path, suffix, FILES[suffix].replace(old, new))

@@ -183,7 +183,7 @@ def test_an_include_that_is_missing(tmp_path: Path) -> None:
         (world('\n<body quat="0 0 0 0"/>'), "MuJoCo refuses"),
     ],
 )
-def test_what_mujoco_refuses_is_said_with_its_line(tmp_path: Path, text: str, said: str) -> None:
+def test_mujoco_errors_are_reported_with_their_line(tmp_path: Path, text: str, said: str) -> None:
     message = faults(write(tmp_path, text))
     assert said in message and "model.xml:2" in message, message
 
@@ -199,7 +199,7 @@ def test_a_line_of_an_included_file(tmp_path: Path) -> None:
     assert "part.xml:3" in faults(write(tmp_path, world('<include file="part.xml"/>')))
 
 
-def test_without_mujoco_the_remedy_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_mujoco_the_remedy_names_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     assert "pip install 'symofros[mjcf]'" in faults(write(tmp_path, world(PENDULUM)))
 

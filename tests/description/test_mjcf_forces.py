@@ -117,7 +117,7 @@ def test_equalities_bind_the_speeds_that_mujoco_s_bind(tmp_path: Path, name: str
         np.testing.assert_allclose(row_space(G), row_space(G_mujoco @ T), atol=1e-9)
 
 
-def test_a_coupling_measures_what_mujoco_s_measures(tmp_path: Path) -> None:
+def test_couplings_match_those_of_mujoco(tmp_path: Path) -> None:
     path = write(tmp_path, ARM.format(q1="") + f"<equality>{EQUALITIES['joint'][0]}</equality>")
     model = sf.compile(sf.load(path), sf.Options(backend="interpreter"))
     reference = Reference(path)
@@ -138,13 +138,13 @@ HINGE = '<worldbody><body name="a"><joint name="q" axis="0 1 0" {}/><geom size="
         ('springyield="0.5"', False),  # There is no spring to yield.
     ],
 )
-def test_springs_that_yield_are_said_to_be_kept_from_it(tmp_path: Path, attributes: str, said: bool) -> None:
+def test_the_ignored_yield_of_springs_is_noted(tmp_path: Path, attributes: str, said: bool) -> None:
     notes = sf.load(write(tmp_path, HINGE.format(attributes))).notes
     assert notes == ("yield of springs ignored: 1 joint (q)",) * said
 
 
 @pytest.mark.parametrize(("compiler", "said"), [('<compiler settotalmass="5"/>', True), ("", False)])
-def test_what_mujoco_warns_of_is_a_note(tmp_path: Path, compiler: str, said: bool) -> None:
+def test_mujoco_warnings_become_notes(tmp_path: Path, compiler: str, said: bool) -> None:
     (*notes,) = sf.load(write(tmp_path, compiler + HINGE.format(""))).notes
     assert [note.startswith("MuJoCo warns: 1 remark (compiler attribute") for note in notes] == [True] * said, notes
 
@@ -152,5 +152,5 @@ def test_what_mujoco_warns_of_is_a_note(tmp_path: Path, compiler: str, said: boo
 @pytest.mark.parametrize(
     "text", ["", '<default><geom contype="0"/></default>' + FLOOR, '<option><flag contact="disable"/></option>' + FLOOR]
 )
-def test_shapes_that_touch_nothing_bear_no_note(tmp_path: Path, text: str) -> None:
+def test_shapes_without_contacts_get_no_note(tmp_path: Path, text: str) -> None:
     assert not sf.load(write(tmp_path, text + HINGE.format(""))).notes

@@ -48,7 +48,7 @@ def required(noun: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("noun", "entry"), entries(), ids=lambda value: getattr(value, "__name__", value))
-def test_nonsense_is_refused_in_words_or_taken_whole(noun: Any, entry: str) -> None:
+def test_nonsense_is_refused_or_taken_whole(noun: Any, entry: str) -> None:
     noun(**required(noun))
     for value in NONSENSE:
         try:
@@ -92,12 +92,12 @@ def test_a_rotation_is_given_by_the_rows_of_its_matrix(rows: Any) -> None:
 
 
 @pytest.mark.parametrize("value", [(0, 0, 0, 1), (0.1, 0.2, 0.3), [[1, 0], [0, 1]], "rpy", 1.0])
-def test_what_is_no_matrix_is_refused_with_what_states_a_rotation(value: Any) -> None:
+def test_a_rotation_that_is_not_a_matrix_is_refused_with_the_remedy(value: Any) -> None:
     with pytest.raises(sf.DescriptionError, match=r"sf.Rotation.rpy\(roll, pitch, yaw\)"):
         sf.Joint("j", "revolute", rotation=value)
 
 
-def test_elements_of_joints_are_no_rotors() -> None:
+def test_rotors_among_joint_elements_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match=r"Joint 'j': elements\[0\] is not a Spring or a Damper"):
         sf.Joint("j", "revolute", elements=[sf.Rotor(1.0)])  # type: ignore[list-item]
 

@@ -72,7 +72,7 @@ def test_no_package_is_found_outside_of_the_workspace(tmp_path: Path, how: str) 
     assert said in str(refused(main))
 
 
-def test_a_package_that_is_not_found_is_not_opened(tmp_path: Path) -> None:
+def test_packages_that_find_does_not_name_are_not_opened(tmp_path: Path) -> None:
     """Neighbours open when `$(find)` names them, and not before."""
     pytest.importorskip("xacro")
     plain = '<xacro:include filename="../hand/hand.xacro"/>'
@@ -93,7 +93,7 @@ def test_relative_includes_of_xacro_open_folders_that_are_named(tmp_path: Path) 
     assert sf.load(main, packages={"any": tmp_path / "parts"}).body("finger")
 
 
-def test_a_fault_is_said_once_with_its_place(tmp_path: Path) -> None:
+def test_a_fault_is_reported_once_with_its_place(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     text = str(refused(package(tmp_path / "arm", "arm", arm='<link name="${unknown * 2}"/>')))
     assert text.count("'unknown' is not defined") == 1 and "<class" not in text
@@ -140,7 +140,7 @@ def test_mjcf_leaves_no_folder(tmp_path: Path, file: str) -> None:
     assert len(refused(tmp_path / "arm.xml", packages={"here": tmp_path}).problems) == 1
 
 
-def test_a_folder_that_is_no_model_has_no_neighbours(tmp_path: Path) -> None:
+def test_a_folder_without_a_model_has_no_neighbours(tmp_path: Path) -> None:
     """Beside a file of some folder all others would be open."""
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
@@ -181,7 +181,7 @@ def test_manifests_are_read_when_a_name_needs_them_and_no_further_than_bounded(t
     assert packages.of("other") == () and 3 << 20 < packages._bytes <= 4 << 20
 
 
-def test_two_neighbours_of_one_name_are_refused_unless_a_folder_has_it(tmp_path: Path) -> None:
+def test_two_neighbours_of_one_name_are_refused_unless_a_folder_decides(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     main = package(tmp_path / "src/arm", "arm_description", arm=INCLUDE)
     for folder in ("one", "two"):
@@ -228,7 +228,7 @@ def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("folder", ["a\0b", "x" * 5000])
-def test_folders_that_can_not_be_are_refused_in_few_words(tmp_path: Path, folder: str) -> None:
+def test_folders_that_cannot_be_are_refused_in_few_words(tmp_path: Path, folder: str) -> None:
     (tmp_path / "a.urdf").write_text(ROBOT.format(FINGER))
     text = str(refused(tmp_path / "a.urdf", packages={"n" * 5000: folder}))
     assert "is not there" in text and "\0" not in text and len(text) < 1000

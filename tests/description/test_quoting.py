@@ -32,7 +32,7 @@ def formulas(draw: st.DrawFn, depth: int = 3) -> Expression:
 
 
 @given(formulas())
-def test_what_is_printed_is_read_as_the_same_formula(formula: Expression) -> None:
+def test_printed_formulas_parse_to_the_same_formula(formula: Expression) -> None:
     assert parse(str(formula)) == formula
     assert parse(formula.text(always_quoted)) == formula or formula.symbols() & {"t"}
 
@@ -56,11 +56,11 @@ def test_names_are_looked_up_with_quotes_and_without(name: str, other: str) -> N
         assert speed_of(f"d{quoted}", known) == name
 
 
-def test_reserved_names_are_those_of_formulas() -> None:
+def test_reserved_names_are_time_and_the_constants() -> None:
     assert RESERVED == {"t", *CONSTANTS}
 
 
-def test_other_readings() -> None:
+def test_alternative_readings_of_quoted_names() -> None:
     known = ["a", "b", "a-b", "left-hip", "dleft-hip", "1", "c d"]
     assert readings("2*a-b + 1", known) == [("a-b", "2*`a-b` + 1")]
     assert not readings("2*a - b", known) and not readings("`a`-`b`", known) and not readings("sin(1)", known)

@@ -50,13 +50,13 @@ def _results(model: sf.Model, name: str, given: dict[str, np.ndarray]) -> list[n
 
 
 @pytest.mark.parametrize("seed", [s if s % 25 == 0 else pytest.param(s, marks=pytest.mark.slow) for s in SEEDS])
-def test_hostile_names(seed: int, tmp_path: Path) -> None:
+def test_hostile_names_survive_saving(seed: int, tmp_path: Path) -> None:
     system = hostile_system(seed)
     assert same_meaning(system, tmp_path) == system
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_reference_models(name: str, tmp_path: Path) -> None:
+def test_reference_models_survive_saving(name: str, tmp_path: Path) -> None:
     sf.save(MODELS[name], tmp_path / "again.yaml")
     again = sf.load(tmp_path / "again.yaml")
     assert again == MODELS[name]
@@ -114,7 +114,7 @@ IN_FILES = [name for name in PRINTABLE if name.strip() == name and name]
 
 
 @pytest.mark.parametrize("names", chunks(IN_FILES), ids=repr)
-def test_urdf_joints_bear_any_name(names: list[str], tmp_path: Path) -> None:
+def test_urdf_joints_may_have_any_name(names: list[str], tmp_path: Path) -> None:
     file = tmp_path / "r.urdf"
     file.write_text(urdf(names), encoding="utf-8")
     system = sf.load(file, mimic=True)
@@ -128,7 +128,7 @@ def test_urdf_joints_bear_any_name(names: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("names", chunks(IN_FILES), ids=repr)
-def test_mjcf_joints_and_actuators_bear_any_name(names: list[str], tmp_path: Path) -> None:
+def test_mjcf_joints_and_actuators_may_have_any_name(names: list[str], tmp_path: Path) -> None:
     file = tmp_path / "m.xml"
     joints = [f"{name}_j" for name in names]
     file.write_text(mjcf(joints, names), encoding="utf-8")
@@ -143,7 +143,7 @@ def test_mjcf_joints_and_actuators_bear_any_name(names: list[str], tmp_path: Pat
 
 
 @pytest.mark.parametrize("names", chunks([n for n in IN_FILES if "::" not in n and not n.startswith("__")]), ids=repr)
-def test_sdf_joints_bear_any_name(names: list[str], tmp_path: Path) -> None:
+def test_sdf_joints_may_have_any_name(names: list[str], tmp_path: Path) -> None:
     parents = ["world", *(f"l{k}" for k in range(len(names)))]
     joints = (
         f'<joint name={quoteattr(name)} type="revolute"><parent>{parents[k]}</parent><child>l{k}</child>'
@@ -158,7 +158,7 @@ def test_sdf_joints_bear_any_name(names: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("names", [["t", "pi"], ["sin", "x"], ["door", "oor"], ["null", "e"]], ids=repr)
-def test_usd_joints_bear_names_that_formulas_reserve(names: list[str], tmp_path: Path) -> None:
+def test_usd_joints_may_have_names_reserved_in_formulas(names: list[str], tmp_path: Path) -> None:
     pytest.importorskip("pxr")
     bodies = [usd_models.body(f"b{k}", mass=1.0, diagonalInertia=(1, 1, 1)) for k in range(2)]
     joints = [usd_models.joint("Revolute", name, "b0" if k else "", f"b{k}", axis="Y") for k, name in enumerate(names)]

@@ -54,7 +54,7 @@ def test_look_ups_grow_as_the_number_of_frames(tmp_path: Path, monkeypatch: pyte
     assert asked[1] < 5 * asked[0]
 
 
-def test_a_circle_is_told_once_of_each_kind(tmp_path: Path) -> None:
+def test_circular_frame_references_are_reported_once(tmp_path: Path) -> None:
     file = tmp_path / "circle.sdf"
     file.write_text(chain(50, "f49"))
     with pytest.raises(sf.DescriptionError, match="its frame refers to itself") as raised:

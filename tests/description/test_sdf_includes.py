@@ -98,14 +98,14 @@ def test_a_merged_model_refers_to_the_frame_that_stands_for_its_own(tmp_path: Pa
         ("<name>left</name><pose>0 0 1 0 0 0</pose><static>false</static>", ""),
     ],
 )
-def test_what_an_include_states_in_vain_is_said(tmp_path: Path, inside: str, said: str) -> None:
+def test_ignored_entries_of_an_include_are_reported(tmp_path: Path, inside: str, said: str) -> None:
     held = '<joint name="j" type="ball"><parent>world</parent><child>w</child></joint>'
     write(tmp_path / "wheel", WHEEL.format(link("w", "", 1) + held))
     notes = sf.load(write(tmp_path / "cart", including(f"<uri>model://wheel</uri>{inside}"))).notes
     assert notes == (said,) * bool(said)
 
 
-def test_models_are_found_below_beside_and_where_it_is_said(tmp_path: Path) -> None:
+def test_included_models_are_found_below_beside_and_in_given_folders(tmp_path: Path) -> None:
     wheel = WHEEL.format(link("w", "", 1))
     below = write(tmp_path / "below", including("<uri>parts/wheel</uri>"))
     write(tmp_path / "below/parts/wheel", wheel)
@@ -164,7 +164,7 @@ def test_no_uri_leaves_the_folders(tmp_path: Path, uri: str) -> None:
         ("<uri>model://outer</uri>", {}, "nested too deep"),
     ],
 )
-def test_a_fault_is_told_without_what_follows_from_it(
+def test_consequences_of_a_fault_are_not_reported(
     tmp_path: Path, inside: str, attributes: dict[str, str], said: str
 ) -> None:
     wheel = link("w", "", 1)
@@ -209,9 +209,7 @@ def test_refused_includes_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         ("link.sdf", None),
     ],
 )
-def test_what_is_proposed_serves_and_opens_no_more_than_a_folder(
-    tmp_path: Path, uri: str, proposed: str | None
-) -> None:
+def test_proposed_folders_work_and_open_nothing_else(tmp_path: Path, uri: str, proposed: str | None) -> None:
     folder = tmp_path.resolve() / "a/b"
     for place in ("plain", "../top", "../../up"):
         write(folder / place, WHEEL.format(link("w", "", 1)), "plain.sdf")

@@ -141,7 +141,7 @@ def test_formulas_follow_parameters() -> None:
         (lambda: solids.sphere(1.0, 0.1, hole=-0.1), "no such hole"),
     ],
 )
-def test_impossible_solids_are_refused_in_words(make: Callable[[], Inertia], message: str) -> None:
+def test_impossible_solids_are_refused(make: Callable[[], Inertia], message: str) -> None:
     with pytest.raises(sf.DescriptionError, match=message):
         make()
 

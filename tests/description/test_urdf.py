@@ -65,7 +65,7 @@ REFUSED = {
 
 
 @pytest.mark.slow
-def test_every_robot_of_the_package_loads_or_says_why() -> None:
+def test_every_robot_of_the_package_loads_or_is_refused_with_a_reason() -> None:
     files = sorted(robots_folder().rglob("*.urdf"))
     assert len(files) >= 60
     for file in files:

@@ -50,7 +50,7 @@ def hinge(**changes: Any) -> str:
     return joint("Revolute", "hinge", "", "arm", **stated)
 
 
-def test_a_link_on_a_hinge_is_what_it_states(load: Load) -> None:
+def test_a_hinged_link_has_the_stated_inertia_and_limits(load: Load) -> None:
     system = load(stage(body("arm", at=(0.5, 0, 1), **ARM), hinge(lowerLimit=-90.0, upperLimit=45.0)))
     (link,) = system.bodies
     assert link.joint is not None and link.joint.kind == "revolute" and link.joint.actuated
@@ -155,7 +155,7 @@ def test_a_joint_outside_of_the_articulation_closes_the_loop(load: Load) -> None
         ("Cylinder", {"radius": 0.2, "height": 0.7, "axis": "X"}, sf.solids.cylinder(1000.0, 0.2, 0.7, axis="x")),
     ],
 )
-def test_what_a_body_leaves_out_follows_from_its_collision_shapes(
+def test_omitted_mass_properties_follow_from_collision_shapes(
     load: Load, kind: str, sizes: dict[str, Any], solid: sf.Inertia
 ) -> None:
     (made,) = load(stage(body("arm", shape(kind, "c", **sizes)))).bodies
@@ -233,7 +233,7 @@ def test_names_are_the_shortest_that_tell_prims_apart() -> None:
 
 
 @pytest.mark.parametrize("stated", [0.089159, 0.1, 1.3877788e-17, 0.70710677, 3.0, -12.5])
-def test_numbers_of_single_precision_are_those_of_the_text(stated: float) -> None:
+def test_single_precision_numbers_read_as_their_text(stated: float) -> None:
     single = float(np.float32(stated))
     assert shortest(single, True) == pytest.approx(stated, rel=0.0, abs=0.0)
     assert shortest(single, False) == single
@@ -255,14 +255,14 @@ def test_layers_of_other_folders_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "data", [b"", b"#usda 1.0\n(", b"PXR-USDC" + bytes(200), b"PK\x03\x04" + bytes(50), b"\x00" * 99]
 )
-def test_damaged_files_are_refused_in_words(tmp_path: Path, data: bytes) -> None:
+def test_damaged_files_are_refused(tmp_path: Path, data: bytes) -> None:
     file = tmp_path / "robot.usd"
     file.write_bytes(data)
     with pytest.raises(sf.DescriptionError, match="OpenUSD can't read|no rigid body"):
         sf.load(file)
 
 
-def test_a_reader_that_dies_or_is_absent_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_crashed_or_missing_usd_reader_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))
     monkeypatch.setattr(usd_stage, "_answer", lambda _: {"absent": "usd-core"})

@@ -55,7 +55,7 @@ def test_a_part_that_is_missing_is_refused(folder: Path, arc: str, part: str) ->
     assert named.strip("@").partition("@")[0].rpartition("/")[2] in str(raised.value)
 
 
-def test_each_missing_part_is_told(folder: Path) -> None:
+def test_each_missing_part_is_reported(folder: Path) -> None:
     file = folder / "robot.usda"
     extra = "".join(f'def Xform "m{k}" (prepend references = @gone{k}.usda@) {{\n}}\n' for k in range(3))
     file.write_text(stage(body("base", **ARM)) + "\n" + extra)
@@ -87,7 +87,7 @@ def test_folders_have_any_name(folder: Path, name: str) -> None:
         assert [body.name for body in sf.load(inside / file).bodies] == ["arm"]
 
 
-def test_members_of_a_package_lie_in_it(folder: Path) -> None:
+def test_members_of_a_usdz_package_are_found(folder: Path) -> None:
     from pxr import UsdUtils
 
     inside = folder / "[robots]"
@@ -97,7 +97,7 @@ def test_members_of_a_package_lie_in_it(folder: Path) -> None:
     assert sf.load(package).bodies[0].name == "arm"
 
 
-def test_what_openusd_warns_of_is_a_note(folder: Path) -> None:
+def test_openusd_warnings_become_notes(folder: Path) -> None:
     file = folder / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))
     assert not any("OpenUSD" in note for note in sf.load(file).notes)

@@ -83,7 +83,7 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
     assert not system.visuals and any("visual shapes that can't be drawn ignored" in note for note in system.notes)
 
 
-def test_no_more_are_kept_than_can_be_shown(tmp_path: Path) -> None:
+def test_visuals_beyond_the_limit_are_dropped(tmp_path: Path) -> None:
     assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
 
 
@@ -94,7 +94,7 @@ def test_looks_change_nothing_that_is_computed(tmp_path: Path) -> None:
     assert models[0].record.hash == models[1].record.hash
 
 
-def test_they_stay_with_a_system(tmp_path: Path) -> None:
+def test_visuals_stay_with_copies_of_a_system(tmp_path: Path) -> None:
     system = load(tmp_path, visual(BOX))
     assert pickle.loads(pickle.dumps(system)).visuals == system.visuals
     assert system.with_bodies(replace(system.body("upper"), waive=())).visuals == system.visuals

@@ -123,7 +123,7 @@ def test_problems_of_the_urdf_name_lines_of_the_expanded_text(tmp_path: Path) ->
     assert "arm.urdf.xacro (expanded):" in message and "did you mean 'revolute'" in message
 
 
-def test_without_xacro_the_remedy_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_xacro_the_remedy_names_the_extra(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(xacro_files, "_answer", lambda task: {"absent": "xacro"})
     assert "pip install 'symofros[xacro]'" in faults(write(tmp_path, ""))
 

@@ -53,7 +53,7 @@ def both(watch: Stops, compiled: bool) -> Mapping[str, Array]:
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-def test_what_is_told_is_what_is_recorded_and_looking_changes_no_bit(compiled: bool) -> None:
+def test_observers_see_the_recorded_values_and_change_no_bit(compiled: bool) -> None:
     watch, ending = Stops([0.3, 0.32, 0.9]), Stops([0.5], ends=True)
     run, ended, alone = both(watch, compiled), both(ending, compiled), both(Stops([]), compiled)
     assert_array_equal(run["x.y"], alone["x.y"])

@@ -53,7 +53,7 @@ def test_an_algebraic_loop_is_named_by_its_path() -> None:
     assert "first.y -> second.y -> first.y" in message or "second.y -> first.y -> second.y" in message
 
 
-def test_names() -> None:
+def test_invalid_names_and_connections_are_refused() -> None:
     diagram = arm(PENDULUM)
     for add in (
         lambda: diagram.add(blocks.Constant(name="pd", value=1.0)),
@@ -94,7 +94,7 @@ def part() -> sf.Diagram:
     return inner
 
 
-def test_a_part_is_what_its_blocks_are() -> None:
+def test_a_part_equals_its_blocks() -> None:
     whole = arm(PENDULUM, q1=0.3)
     diagram = sf.Diagram("arm", dict(whole.models))
     for name in ("plant", "goal"):
@@ -128,7 +128,7 @@ class Odd(Counter):
         ([Odd(name="odd", period=0.1)], "block 'odd': memory 'm'"),
     ],
 )
-def test_what_a_block_may_not(stated: list[Block], words: str) -> None:
+def test_invalid_blocks_are_refused(stated: list[Block], words: str) -> None:
     diagram = sf.Diagram("wrong")
     diagram.add(blocks.Constant(name="one", value=1.0))
     for block in stated:

@@ -19,7 +19,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> Any:
     return import_module("site_extensions.environments")
 
 
-def test_the_page_is_what_the_lists_say(made: Any) -> None:
+def test_the_environments_page_matches_its_source_lists(made: Any) -> None:
     page = made.PAGE.read_text(encoding="utf-8")
     assert made.rendered(page) == page, "run: python -m docs.site_extensions.environments"
 
@@ -30,7 +30,7 @@ def test_environments_have_functions_of_the_table_and_tests_that_are_there(made:
         assert all((ROOT / test).exists() for test in environment.tests), environment.name
 
 
-def test_what_shows_an_environment_is_there() -> None:
+def test_cited_evidence_of_environments_exists() -> None:
     _, _, shown = (ROOT / "docs/environments.md").read_text(encoding="utf-8").partition("## How each is shown")
     files = {name.replace(".", "/") + ".py" for name in re.findall(r"-m (validation\.[\w.]+)", shown)}
     files |= set(re.findall(r"(?:validation|examples)/[\w/]+\.(?:py|mjs)", shown))

@@ -51,7 +51,7 @@ def test_an_example_runs(script: Path, capsys: pytest.CaptureFixture[str]) -> No
     assert re.search(PRINTED[script.stem], capsys.readouterr().out)
 
 
-def test_they_are_short_and_the_lists_name_them() -> None:
+def test_examples_are_short_and_listed_in_the_readme() -> None:
     assert all(len(script.read_text().splitlines()) < 60 for script in SCRIPTS)
     listed = re.findall(r"\]\((\w+\.py)\)", (EXAMPLES / "README.md").read_text())
     assert sorted(listed) == [script.name for script in SCRIPTS]

@@ -171,7 +171,7 @@ def test_a_block_that_would_be_left_out_is_caught(text: str, tmp_path: Path, mon
     assert unseen("page.md")
 
 
-def test_what_does_not_run_says_why() -> None:
+def test_code_blocks_that_do_not_run_give_a_reason() -> None:
     unmarked = [block for page in pages() for block in blocks(page) if block.mark]
     assert all(re.match(r"(not run: .{12,}|file: [\w./]+|part of \w+|needs \w+)$", block.mark) for block in unmarked)
     left_out = [block for block in unmarked if not block.runs]

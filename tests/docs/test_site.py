@@ -42,7 +42,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_every_step_of_the_tutorial_shows_what_it_printed(site: Path) -> None:
+def test_tutorial_pages_show_printed_output(site: Path) -> None:
     steps = sorted((ROOT / "docs/tutorial").glob("*.md"))
     assert len(steps) == 7  # Six, and the index.
     for step in steps:

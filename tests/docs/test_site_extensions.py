@@ -75,7 +75,7 @@ def test_figures_have_colours_for_light_and_dark(extension: Any) -> None:
     assert colors.count("--ink:") == 3 and "body[data-theme=dark]" in colors
 
 
-def test_stars_and_bars_of_formulas_are_no_markup(extension: Any) -> None:
+def test_stars_and_bars_in_formulas_are_escaped(extension: Any) -> None:
     escaped = extension("docstrings").escaped
     assert escaped("|phi| < `a*b` * c") == r"\|phi\| < `a*b` \* c"
     assert escaped('"file:line" of objects') == r'"\file:line" of objects'

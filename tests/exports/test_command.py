@@ -13,7 +13,7 @@ from symofros.__main__ import app
 FOUR_BAR = "reference_models/closed/four_bar.yaml"
 
 
-def test_it_writes_a_package(tmp_path: Path) -> None:
+def test_export_writes_a_package(tmp_path: Path) -> None:
     done = CliRunner().invoke(
         app,
         [
@@ -45,7 +45,7 @@ def test_it_writes_a_package(tmp_path: Path) -> None:
         (["--target", "c", "--frames", "nowhere"], "no frame 'nowhere'"),
     ],
 )
-def test_bad_words(tmp_path: Path, words: list[str], says: str) -> None:
+def test_invalid_export_arguments_are_refused(tmp_path: Path, words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["export", FOUR_BAR, *words, "-o", str(tmp_path / "out")])
     assert done.exit_code == 2
     assert says in done.output

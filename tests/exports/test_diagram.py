@@ -90,7 +90,7 @@ SAMPLED = sampled(tuple(CASES), ("pendulum", "loop", "table", "ball"))
 
 
 @pytest.mark.parametrize("case", SAMPLED)
-def test_the_program_tells_what_python_tells(case: str, tmp_path: Path) -> None:
+def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> None:
     make, outputs = CASES[case]
     diagram = make()
     exported = sf.export(diagram, "c", tmp_path / "c", outputs=outputs)
@@ -139,7 +139,7 @@ NONSENSE = (
 )
 
 
-def test_arguments_that_say_nothing_are_refused_and_the_readme_tells_which_do(tmp_path: Path) -> None:
+def test_invalid_arguments_are_refused_and_the_readme_lists_valid_ones(tmp_path: Path) -> None:
     exported = sf.export(pendulum(), "c", tmp_path / "c")
     program = build(exported.folder, "program")
     for arguments in NONSENSE:
@@ -154,7 +154,7 @@ def test_arguments_that_say_nothing_are_refused_and_the_readme_tells_which_do(tm
     assert "--realtime" in readme
 
 
-def test_a_program_steps_as_its_diagram_states_or_as_is_said(tmp_path: Path) -> None:
+def test_a_program_uses_the_stated_step_settings_or_notes_others(tmp_path: Path) -> None:
     stated = pendulum()
     stated.simulation = RunSettings(method="euler", dt=0.004, rtol=1e-3, atol=1e-4, beam_limit=0.03)
     written = {
@@ -181,7 +181,7 @@ def test_the_check_of_a_program_can_fail(tmp_path: Path) -> None:
     assert subprocess.run([build(exported.folder, "program"), "--check"], capture_output=True).returncode == 1
 
 
-def test_what_is_no_program() -> None:
+def test_diagrams_that_cannot_become_programs_are_refused() -> None:
     diagram = pendulum()
     diagram.add(Spoken(name="spoken", period=0.01, heard=[]), x="pd.effort")
     with pytest.raises(sf.ExportError, match="block 'spoken' calls Python"):

@@ -15,7 +15,7 @@ from symofros.exports.folder import MANIFEST, check_same, write_folder
 PENDULUM = MODELS["pendulum"]
 
 
-def test_a_folder_of_others_is_left_alone(tmp_path: Path) -> None:
+def test_a_folder_with_foreign_files_is_not_overwritten(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(sf.ExportError, match=r"not overwritten[\s\S]*thesis.tex[\s\S]*choose another folder"):
         sf.export(PENDULUM, "c", tmp_path)
@@ -23,7 +23,7 @@ def test_a_folder_of_others_is_left_alone(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[]", '{"files": 3}', "\0"])
-def test_a_manifest_of_others(tmp_path: Path, text: str) -> None:
+def test_a_foreign_manifest_is_refused(tmp_path: Path, text: str) -> None:
     (tmp_path / MANIFEST).write_text(text)
     with pytest.raises(sf.ExportError, match="that we did not write"):
         sf.export(PENDULUM, "urdf", tmp_path)
@@ -72,7 +72,7 @@ def test_names_that_are_taken(name: str) -> None:
     assert called.isidentifier()
 
 
-def test_what_does_not_exist(tmp_path: Path) -> None:
+def test_unknown_targets_and_outputs_are_refused(tmp_path: Path) -> None:
     with pytest.raises(sf.ArgumentError, match="did you mean 'fmu"):
         sf.export(PENDULUM, "fmu1", tmp_path)  # type: ignore[arg-type]
     with pytest.raises(sf.UnknownNameError, match="no coordinate or speed 'q7'"):

@@ -36,7 +36,7 @@ def exported(folder: Path, target: str) -> tuple[str, ...]:
 
 @pytest.mark.tools
 @pytest.mark.parametrize("target", FORMATS)
-def test_it_compiles_for_other_machines(tmp_path: Path, target: str) -> None:
+def test_the_package_compiles_for_other_machines(tmp_path: Path, target: str) -> None:
     """With their headers; zig compiles their C libraries only where a program is linked, which takes a minute."""
     command = exported(tmp_path, target)
     for source in sources(tmp_path):

@@ -16,7 +16,7 @@ from tests.expr.test_derivative import FORMULAS
 
 
 @pytest.mark.parametrize("formula", FORMULAS)
-def test_one_sweep_gives_what_forward_mode_gives(formula: str) -> None:
+def test_reverse_mode_equals_forward_mode(formula: str) -> None:
     g = Graph()
     x, y, w = g.input("q", 0), g.input("q", 1), g.input("v", 0)
     edge = lower(parse(formula), g, {"x": x, "y": y})

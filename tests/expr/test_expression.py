@@ -43,7 +43,7 @@ def test_frozen_sympy_evaluates_alike(expression: sympy.Expr) -> None:
 
 
 @pytest.mark.parametrize("expression", [sympy.I * a, sympy.Integral(a, a), sympy.gamma(a), sympy.oo])
-def test_what_c_cannot_say_is_refused(expression: sympy.Expr) -> None:
+def test_expressions_without_c_form_are_refused(expression: sympy.Expr) -> None:
     with pytest.raises(ValueError):
         freeze(expression)
 

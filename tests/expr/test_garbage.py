@@ -18,7 +18,7 @@ def as_before() -> Iterator[None]:
     gc.set_threshold(*thresholds)
 
 
-def test_what_is_there_stays_and_what_is_new_is_looked_at_less_often() -> None:
+def test_existing_objects_are_frozen_and_collections_become_rare() -> None:
     gc.set_threshold(700, 10, 10)
     collect_rarely()
     assert gc.get_freeze_count() > 1000

@@ -60,7 +60,7 @@ def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:
     assert len(cart.formula_instants([law], np.array([7.0]), 0.0, 5.0)) == 0
 
 
-def test_kinds_are_those_of_the_header() -> None:
+def test_instant_kinds_match_the_header() -> None:
     assert {kind.name: kind.value for kind in InstantKind} == {
         kind.name: constants()[f"SYM_INSTANT_{kind.name}"] for kind in InstantKind
     }
@@ -79,14 +79,14 @@ def test_operands_of_a_description_are_a_function_of_its_model() -> None:
         np.testing.assert_array_equal(kinds, [InstantKind.KINK, InstantKind.KINK, InstantKind.NARROW, InstantKind.END])
 
 
-def test_memory_of_a_search_grows_with_what_it_finds() -> None:
+def test_search_memory_grows_with_the_number_of_instants() -> None:
     """More instants than a package's memory holds."""
     teeth = find_instants([0, 0, 0], lambda i, t: np.sin((300 + 7 * i) * np.pi * t + 0.1), 0.0, 3.0)
     assert len(teeth) > constants()["SYM_INSTANT_CAPACITY"]
     np.testing.assert_array_equal(np.unique(teeth), teeth)
 
 
-def test_what_an_operand_raises_is_raised() -> None:
+def test_exceptions_of_operands_propagate() -> None:
     def fail(operand: int, t: np.ndarray) -> np.ndarray:
         raise ArithmeticError(f"operand {operand}")
 

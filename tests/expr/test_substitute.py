@@ -73,7 +73,7 @@ def lanes(graph: Graph, function: Function) -> int:
     return sum(sum(abs(pack.lanes[lane]) in wanted for lane in pack.new_lanes) for pack in graph.packs)
 
 
-def test_what_is_not_replaced_is_a_fault() -> None:
+def test_copying_with_unreplaced_inputs_raises() -> None:
     g = Graph()
     with pytest.raises(KeyError):
         copy_into(Graph(), g, [g.add(g.input("q", 0), g.input("q", 1))], {g.input("q", 0): 1})

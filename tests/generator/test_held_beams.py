@@ -53,7 +53,7 @@ def said(system: sf.System) -> list[str]:
 
 
 @pytest.mark.parametrize("how", HELD)
-def test_it_is_named_with_the_remedy(how: str) -> None:
+def test_beams_held_at_both_ends_are_named_with_the_remedy(how: str) -> None:
     """By the closure, the condition and the beam."""
     (text,) = said(HELD[how])
     assert "closure 'end': 'end.x' holds both ends of beam 'strip" in text
@@ -61,13 +61,13 @@ def test_it_is_named_with_the_remedy(how: str) -> None:
 
 
 @pytest.mark.parametrize("how", FREE)
-def test_what_is_free_bears_no_warning(how: str) -> None:
+def test_beams_free_to_shorten_get_no_warning(how: str) -> None:
     """Nor does what never bends."""
     assert not said(FREE[how])
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.4])
-def test_a_mechanism_with_an_elastic_coupler_bears_none(angle: float) -> None:
+def test_mechanisms_with_an_elastic_coupler_get_no_warning(angle: float) -> None:
     """Not even where its links lie in one line."""
     crank = sf.RigidBody(
         "crank", sf.Joint("a", "revolute", axis=(0, 0, 1)), sf.Inertia(1.0), (sf.Frame("end", (0.3, 0, 0)),)

@@ -63,7 +63,7 @@ def test_a_model_takes_the_route_and_another_does_not(row: tuple[str, str], monk
     assert choice.route not in choice.others
 
 
-def test_the_last_row_of_each_quantity_serves_always() -> None:
+def test_the_last_route_of_each_quantity_applies_always() -> None:
     for quantity, methods in ROUTES.items():
         unconditional = [row.method for row in methods.values() if row.applies == "always"]
         assert unconditional, quantity
@@ -139,7 +139,7 @@ def asked_for(options: sf.Options) -> sf.Options:
 
 @settings(max_examples=2)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 6))
-def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
+def test_reported_routes_of_random_trees_match_the_text(seed: int, n: int) -> None:
     """The method of the acceleration by text: that of "auto" is the one of the method told, to the character."""
     tree = random_tree(seed, n)
     for function in (FORWARD, SLOPES):
@@ -163,7 +163,7 @@ def test_what_random_trees_tell_is_in_their_text(seed: int, n: int) -> None:
         ("double_pendulum", HESSIAN, {}),
     ],
 )
-def test_what_is_told_is_in_the_text(name: str, function: str, asked: dict[str, object]) -> None:
+def test_reported_routes_match_the_text(name: str, function: str, asked: dict[str, object]) -> None:
     check_markers(system(name), function, asked)
 
 

@@ -69,7 +69,7 @@ def test_forward_undoes_inverse(case: str, rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("case", sampled(CASES))
-def test_the_fused_function_returns_what_the_single_ones_do(case: str, rng: np.random.Generator) -> None:
+def test_fused_functions_equal_single_ones(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     u = rng.standard_normal((STATES, m.nu))
     alone = m.mass_matrix(q), m.bias(q, v), m.generalized_force(q, v, u)

@@ -74,7 +74,7 @@ def assert_same(found: np.ndarray, expected: np.ndarray, scale: float = 0.0) -> 
 
 
 @pytest.mark.parametrize("case", sampled(CASES, SOME))
-def test_the_mass_matrix_is_that_of_inverse_dynamics_and_of_energy(case: str) -> None:
+def test_the_mass_matrix_matches_that_of_inverse_dynamics_and_of_energy(case: str) -> None:
     m, (q, v) = model(case), state(case)
     M = m.mass_matrix(q)
     forces = m.inverse_dynamics(q, v, np.vstack([np.zeros(m.nv), np.eye(m.nv)]))
@@ -165,7 +165,7 @@ def test_a_file_keeps_every_bit(case: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("case", sampled(CASES, SOME))
-def test_noise_moves_numbers_by_no_more_than_itself(case: str) -> None:
+def test_relative_noise_moves_results_in_proportion(case: str) -> None:
     """Noise of 1e-9 in all that is stated: M and constraints by some thousand times that, not by shares of it."""
     name, _, seed = case.partition(":")
     plain = MODELS[name] if seed else random_tree(int(name.removeprefix("tree")), n=4, kinds=MORE_KINDS)

@@ -67,7 +67,7 @@ def test_functions_and_derivatives_by_the_c_interface(dynamics: Any, tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["cart_pole", "hopper"])
-def test_what_acados_generates_of_the_dynamics(name: str, tmp_path: Path) -> None:
+def test_acados_functions_match_the_dynamics(name: str, tmp_path: Path) -> None:
     """x' = f(x, u, p), its sensitivities and its Hessian, as acados states them for explicit integrators."""
     system = MODELS[name] if name in MODELS else SYSTEMS[name]()
     model, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)

@@ -98,7 +98,7 @@ def test_many_are_single_ones_side_by_side(task: Any, seed: Any, masses: bool) -
         assert len(np.unique(ours.par)) == 3
 
 
-def test_parameters_of_an_episode_move_it(task: Any) -> None:
+def test_episode_parameters_affect_the_motion(task: Any) -> None:
     """By the option or by drawing, for one and for many: the states are those of simulate_batch with them."""
     made = with_masses(task)
     envs, env = sf.interop.gymnasium.MechanismVectorEnv(made, 2), sf.interop.gymnasium.MechanismEnv(made)

@@ -119,7 +119,7 @@ def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any]
     check_grads(every, (q[0], dq[0], ends[0]), order=1, modes=["fwd", "rev"])
 
 
-def test_second_derivatives_are_refused_in_words(dynamics: Any, model: sf.Model) -> None:
+def test_second_derivatives_are_refused(dynamics: Any, model: sf.Model) -> None:
     """When they are traced, not by XLA."""
     q, v, u, _ = (x[0] for x in arrays(model, 1, model.nu))
     for transform in (jax.hessian, lambda f: jax.jit(jax.hessian(f)), lambda f: jax.jacrev(jax.jacrev(f))):
@@ -127,7 +127,7 @@ def test_second_derivatives_are_refused_in_words(dynamics: Any, model: sf.Model)
             transform(lambda q: dynamics.forward_dynamics(q, v, u)[1])(q)
 
 
-def test_parameters_that_are_not_traced_are_judged(dynamics: Any, model: sf.Model) -> None:
+def test_untraced_parameters_are_checked(dynamics: Any, model: sf.Model) -> None:
     q, v, u, par = arrays(model, 1, model.nu)
     with pytest.raises(sf.ParameterError, match="run-time parameters"):
         dynamics.forward_dynamics(q, v, u, jax.numpy.asarray(-par))
@@ -142,7 +142,7 @@ def test_arrays_of_single_precision_are_refused(dynamics: Any, model: sf.Model, 
         dynamics.forward_dynamics(**given)
 
 
-def test_single_precision_and_wrong_shapes_are_refused_in_words(dynamics: Any, model: sf.Model) -> None:
+def test_single_precision_and_wrong_shapes_are_refused(dynamics: Any, model: sf.Model) -> None:
     with pytest.raises(sf.SymofrosError, match=r"\(\.\.\., 2\)"):
         dynamics.forward_dynamics(np.zeros(3), np.zeros(2), np.zeros(1))
     jax.config.update("jax_enable_x64", False)

@@ -21,7 +21,7 @@ def test_importing_interop_loads_no_framework() -> None:
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "\n"
 
 
-def test_an_absent_framework_is_said_in_words() -> None:
+def test_a_missing_framework_is_reported_with_the_remedy() -> None:
     with pytest.raises(sf.SymofrosError, match=r"pip install 'symofros\[torch\]'"):
         rules.framework("a_package_that_nobody_has", "torch")
 
@@ -47,7 +47,7 @@ def test_prescribed_motions_are_refused() -> None:
 
 
 @pytest.mark.parametrize("function", rules.RULES)
-def test_what_second_derivatives_are_referred_to_is_there_and_of_the_same_function(function: str) -> None:
+def test_suggested_second_derivatives_exist_for_the_same_function(function: str) -> None:
     """The methods and functions that the remedy names are the model's."""
     m = model("double_pendulum")
     remedy = str(rules.second_derivatives(m, function))

@@ -49,7 +49,7 @@ def test_functional_transforms_give_the_models_derivatives(dynamics: Any, model:
             np.testing.assert_allclose(slope.numpy(), right, rtol=1e-12, atol=1e-12)
 
 
-def test_second_derivatives_are_refused_in_words(dynamics: Any, model: sf.Model) -> None:
+def test_second_derivatives_are_refused(dynamics: Any, model: sf.Model) -> None:
     q, v, u, _ = tensors(model, 1, model.nu)
     (slope,) = torch.autograd.grad(dynamics.forward_dynamics(q, v, u).sum(), q, create_graph=True)
     with pytest.raises(sf.SymofrosError, match="second derivatives"):
@@ -65,7 +65,7 @@ def test_second_derivatives_are_refused_in_words(dynamics: Any, model: sf.Model)
         *(({name: lambda x: None}, f"'{name}' can't be taken(.|\n)*NoneType") for name in "qvu"),
     ],
 )
-def test_what_is_no_tensor_of_doubles_is_refused_in_words(
+def test_arguments_that_are_not_double_tensors_are_refused(
     dynamics: Any, model: sf.Model, changed: dict[str, Any], words: str
 ) -> None:
     given = dict(zip(("q", "v", "u", "par"), tensors(model, 1, model.nu), strict=True))
@@ -139,7 +139,7 @@ def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any]
     assert torch.autograd.gradcheck(wrapped.difference, leaves(q, ends))
 
 
-def test_wrong_shapes_are_refused_in_words(dynamics: Any) -> None:
+def test_wrong_shapes_are_refused(dynamics: Any) -> None:
     zeros = torch.zeros(3, dtype=torch.float64)
     with pytest.raises(sf.SymofrosError, match=r"\(\.\.\., 2\)"):
         dynamics.forward_dynamics(zeros, zeros, zeros)

@@ -118,7 +118,7 @@ def source(where: str) -> str:
     return (PACKAGE / where).read_text(encoding="utf-8")
 
 
-def test_every_term_of_the_glossary_says_where_it_is_defined() -> None:
+def test_glossary_terms_cite_existing_files() -> None:
     rows = glossary()
     assert len(rows) > 30 and all(len(row) == 5 for row in rows)
     paths = [path for row in rows for path in re.findall(r"`([^`]+)`", row[4])]

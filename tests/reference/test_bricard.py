@@ -33,7 +33,7 @@ def posture(odd: float, even: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("row", MOTION, ids=lambda row: f"t={row[0]}")
-def test_postures(row: np.ndarray) -> None:
+def test_postures_match_the_reference(row: np.ndarray) -> None:
     corner, (odd, even) = row[1:4], row[4:]
     m, q = model(), posture(odd, even)
     # The integration of the figures kept the conditions to some 1e-12.

@@ -16,7 +16,7 @@ def rate(q: Array, v: Array) -> Array:
     return np.concatenate([free(q[:7], v[:6]), v[6:]])
 
 
-def test_damped_bounce() -> None:
+def test_damped_bounce_matches_the_formula() -> None:
     """Springs let go together in flight; both sides alike, so that the car heaves and pitches but does not roll.
 
     A front corner pushes the chassis with f = k s + c s', a rear one with r, and itself the other way:

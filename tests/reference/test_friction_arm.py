@@ -14,7 +14,7 @@ PEAK = 15.0 / 8.0 * SLOW
 ROUNDING = 1e-14
 
 
-def test_the_law(rng: np.random.Generator) -> None:
+def test_the_friction_law_follows_stribeck(rng: np.random.Generator) -> None:
     """Up to the peak a polynomial with the value, slope and curvature of Stribeck's curve, which goes on from there."""
     arm = reference("friction_arm")
     v = rng.choice([-1, 1], (200, 3)) * 10.0 ** rng.uniform(-5, 1, (200, 3))

@@ -12,7 +12,7 @@ ROUNDING = 1e-12
 MOTION = 1e-9
 
 
-def test_the_rotors_moments_are_those_of_its_momentum(rng: np.random.Generator) -> None:
+def test_rotor_moments_equal_momentum_rates(rng: np.random.Generator) -> None:
     """Momentum H e_y turning with the inner gimbal, H = I n s; e_y . z = sin(pitch).
 
     On the yaw d(H sin(pitch))/dt, on the pitch -H cos(pitch) yaw', on the shaft I n d(yaw' sin(pitch))/dt.

@@ -61,7 +61,7 @@ def quaternion(angles: Array) -> Array:
 
 @pytest.mark.parametrize("theta", [0.4, 1.2, 2.0])
 @pytest.mark.parametrize("which", [0, 1], ids=["slow", "fast"])
-def test_steady_precession(theta: float, which: int) -> None:
+def test_steady_precession_is_kept(theta: float, which: int) -> None:
     """A cos(theta) p^2 - C w_z p + m g l = 0 has two roots p; with either, theta, p and the spin stay."""
     top, by_angles = reference("heavy_top"), by_euler_angles()
     A, C, m, g, length = (top.parameters[name] for name in ("A", "C", "m", "g", "l"))

@@ -40,7 +40,7 @@ def ritz(functions: int) -> float:
 @pytest.mark.parametrize(
     ("functions", "error"), [(3, "2.3e-03"), (4, "3.5e-05"), (5, "1.8e-05"), (6, "3.6e-06"), (7, "5.7e-07")]
 )
-def test_bounds_of_the_elastica_are_what_a_ritz_solution_with_exact_integrals_errs(functions: int, error: str) -> None:
+def test_error_bounds_of_the_elastica_match_a_ritz_solution(functions: int, error: str) -> None:
     assert f"{ritz(functions):.1e}" == error
 
 

@@ -114,7 +114,7 @@ MOTION = {
 ENERGY = 21.496850958322195
 
 
-def test_a_motion() -> None:
+def test_the_disc_rolls_as_published() -> None:
     q, v = rolling(0.3, np.array([0.0, 4.0, 1.0]))
     assert model().kinetic_energy(q, v) + model().potential_energy(q) == pytest.approx(ENERGY, rel=1e-14)
     motion = move(model(), q, v, np.array(list(MOTION)), rate=free)

@@ -29,7 +29,7 @@ def state(angle: float, u: float, w: float) -> tuple[Array, Array]:
     return np.array([0.4, -0.3, angle]), np.array([u * np.cos(angle), u * np.sin(angle), w])
 
 
-def test_accelerations(rng: np.random.Generator) -> None:
+def test_accelerations_match_the_formula(rng: np.random.Generator) -> None:
     for angle, u, w in rng.uniform(-3, 3, (20, 3)):
         q, v = state(angle, u, w)
         assert np.abs(model().constraint_rate(q, v)).max() < 1e-14
@@ -42,7 +42,7 @@ def test_accelerations(rng: np.random.Generator) -> None:
         assert abs(v @ (model().mass_matrix(q) @ rate + model().bias(q, v))) < 1e-11
 
 
-def test_closed_form() -> None:
+def test_motion_matches_the_closed_form() -> None:
     """From a spin on the spot it ends up gliding straight ahead."""
     W = 2.0
     c = W * np.sqrt(ROLL / m)

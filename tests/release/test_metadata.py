@@ -69,7 +69,7 @@ def test_the_licence_is_the_same_everywhere() -> None:
     assert (ROOT / "LICENSE").read_text().startswith("MIT License")
 
 
-def test_the_conda_recipe_needs_what_the_package_needs() -> None:
+def test_the_conda_recipe_lists_the_package_dependencies() -> None:
     stated = {requirement.replace(" ", "") for requirement in RECIPE["requirements"]["run"]}
     python = f"python{PROJECT['project']['requires-python']}"
     assert stated == {python, *PROJECT["project"]["dependencies"]}
@@ -92,7 +92,7 @@ def test_pages_that_newcomers_read_take_nothing_from_an_index_that_has_it_not(pa
     assert not re.findall(r"^pip install symofros\b", text, re.MULTILINE)
 
 
-def test_all_extras_are_named_where_one_looks_for_them() -> None:
+def test_readme_and_installation_page_name_all_extras() -> None:
     readme, page = (ROOT / "README.md").read_text(), (ROOT / "docs/installation.md").read_text()
     for extra in PROJECT["project"]["optional-dependencies"]:
         if extra not in ("all", "engines") and not extra.startswith("engine-"):
@@ -122,7 +122,7 @@ def test_a_package_has_one_range_in_all_extras() -> None:
     assert {name: stated for name, stated in ranges.items() if len(stated) > 1} == {}
 
 
-def test_the_extra_all_brings_what_it_says() -> None:
+def test_the_extra_all_includes_the_documented_extras() -> None:
     left_out = {"all", "torch", "engines", "test", "dev", "docs", "release"}
     wanted = {extra for extra in EXTRAS if extra not in left_out and not extra.startswith("engine-")}
     assert {extra for extra in wanted if not packages(extra) <= packages("all")} == set()

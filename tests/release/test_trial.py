@@ -118,7 +118,7 @@ def test_a_wheel_has_one_package_and_the_sources_build_the_same(
     assert sorted(zipfile.ZipFile(tmp_path / wheel.name).namelist()) == sorted(names)
 
 
-def test_the_sources_hold_what_building_and_reading_them_takes(distributions: Path) -> None:
+def test_the_source_distribution_is_complete(distributions: Path) -> None:
     (path,) = distributions.glob("*.tar.gz")
     names = {name.partition("/")[2] for name in tarfile.open(path).getnames()}
     assert {"LICENSE", "README.md", "pyproject.toml", "symofros/native/model/symofros_model.h"} <= names
@@ -159,9 +159,7 @@ def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
         ("symofros simulate arm.yaml 0.1 --picture run.png", "plots", 2),
     ],
 )
-def test_the_base_installation_says_which_extra_is_missing(
-    base: Environment, command: str, extra: str, code: int
-) -> None:
+def test_the_base_installation_names_the_missing_extra(base: Environment, command: str, extra: str, code: int) -> None:
     corpus = ROOT / "reference_models/arm.urdf", ROOT / "reference_models/rigid/cart_pole.yaml"
     for source, name in zip(corpus, ("robot.urdf", "arm.yaml"), strict=True):
         (base.folder / name).write_text(source.read_text())

@@ -24,7 +24,7 @@ PLANAR_LOOP = Measures((0, 0, 0), (LENGTH, LENGTH, LENGTH), (ROTATION, ROTATION,
 
 
 @pytest.mark.parametrize("L", [1e-7, 1e-3, 1.0, 1e6])
-def test_what_a_planar_loop_says_across_its_plane_is_no_condition(L: float) -> None:
+def test_rounding_noise_across_the_plane_is_not_a_constraint(L: float) -> None:
     """Rounding in a row of G was brought to the size of the others: the inverse had entries of 1e16."""
     rng = np.random.default_rng(0)
     G = L * rng.normal(size=(3, 3))

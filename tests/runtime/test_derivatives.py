@@ -135,7 +135,7 @@ def test_a_massless_speed_is_refused() -> None:
 
 
 @pytest.mark.parametrize("name", sampled(("puma560", "random_tree4", "random_tree1", "mss"), ("random_tree4",)))
-def test_the_routine_gives_what_generated_elimination_gives(
+def test_the_blocked_solver_matches_generated_elimination(
     name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """Large trees are solved by a routine, in blocks: here with speeds that fill none, and zeros between branches."""

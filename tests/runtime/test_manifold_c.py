@@ -40,7 +40,7 @@ void displacements(int32_t n, const int32_t *segments, double *theta);
 _WRAPPER = Path(__file__).with_name("manifold_wrapper.c").read_text()
 
 
-def test_the_file_is_what_the_formulas_give() -> None:
+def test_the_rotation_file_is_current() -> None:
     """Written anew by python -m symofros.generator.codegen.manifold."""
     assert native_text("stepping/rotations.c") == rotations_text()
 
@@ -98,7 +98,7 @@ def test_the_loop_has_the_coordinates_of_charts_that_numpy_has(seed: int, first:
 
 @given(SEEDS)
 @settings(max_examples=40)
-def test_the_rates_of_coordinates_are_those_of_the_graph(seed: int) -> None:
+def test_coordinate_rates_match_the_graph(seed: int) -> None:
     rng = np.random.default_rng(seed)
     q, v, rate = configuration(rng), rng.uniform(-1.0, 1.0, NV), np.empty(NQ)
     call("rates", q, v, rate)

@@ -42,7 +42,7 @@ def test_parameters_override_and_batch(m: sf.Model, rng: np.random.Generator) ->
     assert grid.shape == (3, 2, m.nv, m.nv) and np.array_equal(grid[2], both)
 
 
-def test_wrong_shapes_say_what_was_expected(m: sf.Model) -> None:
+def test_wrong_shapes_report_the_expected_shape(m: sf.Model) -> None:
     with pytest.raises(sf.ShapeError, match=rf"q has the wrong shape\n  found:  \(2,\)\n  rule:   .*\.\.\., {m.nq}\)"):
         m.mass_matrix([0.0, 1.0])
     with pytest.raises(sf.ShapeError, match="wrong shape"):
@@ -71,7 +71,7 @@ def test_unknown_frame_is_refused_with_a_suggestion(m: sf.Model) -> None:
         m.frame_pose("moun", m.neutral())
 
 
-def test_only_what_was_asked_for_is_there() -> None:
+def test_only_requested_functions_exist() -> None:
     m = sf.compile(system("tree0"), sf.Options(functions=("mass_matrix", "frame_pose"), frames=("mount",)))
     assert m.mass_matrix(m.neutral()).shape == (m.nv, m.nv)
     m.frame_pose("mount", m.neutral())

@@ -121,7 +121,7 @@ def compiled() -> sf.Model:
     return pendulum("c")
 
 
-def test_one_bad_set_of_a_batch_is_named() -> None:
+def test_an_invalid_parameter_set_of_a_batch_is_named() -> None:
     par = np.ones((100, 2))
     par[37, 0] = -2.0
     with pytest.raises(sf.ParameterError, match=r"of set 37 \(m = -2\)"):

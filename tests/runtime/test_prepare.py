@@ -42,7 +42,7 @@ def test_each_unit_is_made_once_by_a_thread_of_its_own(made: list[tuple[Sequence
 
 
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_results_are_those_of_functions_made_one_by_one(backend: Any, rng: np.random.Generator) -> None:
+def test_results_equal_those_of_functions_compiled_one_by_one(backend: Any, rng: np.random.Generator) -> None:
     """To the bit: the graphs of units are formed in turn."""
     options = sf.Options(backend=backend)
     together, apart = (sf.compile(MODELS["planar_robot"], options) for _ in range(2))

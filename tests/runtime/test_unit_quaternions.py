@@ -103,7 +103,7 @@ def flat(results: Any) -> Array:
 
 
 @pytest.mark.parametrize("entry", ENTRIES)
-def test_functions_are_those_of_the_rotation_whatever_its_digits(m: sf.Model, entry: str) -> None:
+def test_functions_depend_on_the_direction_of_quaternions_only(m: sf.Model, entry: str) -> None:
     call = ENTRIES[entry]
     for shaped in BATCHES.values():
         q, v = (shaped(x) for x in states(m))
@@ -121,7 +121,7 @@ def test_functions_are_those_of_the_rotation_whatever_its_digits(m: sf.Model, en
                 call(m, with_length(m, q, length), v)
 
 
-def test_the_error_says_which_and_what_to_do(m: sf.Model) -> None:
+def test_the_error_names_the_quaternion_and_the_remedy(m: sf.Model) -> None:
     q, v = states(m)
     off = with_length(m, q, 1.1)
     q[3] = off[3]
@@ -136,7 +136,7 @@ def test_the_error_says_which_and_what_to_do(m: sf.Model) -> None:
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_what_is_not_finite_spoils_its_own_state_alone(m: sf.Model, value: float) -> None:
+def test_a_non_finite_state_affects_no_other_state(m: sf.Model, value: float) -> None:
     q, v = states(m)
     given = with_length(m, q, 1.0 + 1e-6)
     clean = m.bias(given, v)
@@ -152,7 +152,7 @@ def test_what_is_not_finite_spoils_its_own_state_alone(m: sf.Model, value: float
 
 @pytest.mark.parametrize("n", [2, 512, 1025])
 @pytest.mark.parametrize("place", [0, -1])
-def test_one_state_of_many_is_found(m: sf.Model, n: int, place: int) -> None:
+def test_one_invalid_quaternion_among_many_is_found(m: sf.Model, n: int, place: int) -> None:
     firsts, q = m.record.quaternions["q"], np.tile(states(m, 1)[0], (n, 1))
     for layout in (np.ascontiguousarray, np.asfortranarray, lambda x: np.repeat(x, 2, axis=0)[::2]):
         assert are_unit(layout(q), firsts)
@@ -177,7 +177,7 @@ def test_numbers_of_single_precision_are_rotations(m: sf.Model) -> None:
         single.bias(with_length(m, q, 1.1), v)
 
 
-def test_differences_across_the_manifold_are_those_of_the_rotations(m: sf.Model) -> None:
+def test_derivatives_by_quaternion_components_are_tangential(m: sf.Model) -> None:
     """So that quotients of differences by coordinates are tangential, as in frameworks: nothing depends on lengths."""
     q, v = states(m, 1)
     turn, h = turns(m)[0], 1e-5

@@ -62,7 +62,7 @@ def test_analyses_take_names(arm: sf.Model, loop: sf.Model) -> None:
     assert np.array_equal(arm.linearize(q, rest, {})[0], arm.linearize(hanging.q, [0.0, 0.0], [0.0])[0])
 
 
-def test_a_name_that_is_not_there_is_refused_with_the_nearest(arm: sf.Model) -> None:
+def test_an_unknown_parameter_is_refused_with_the_nearest_name(arm: sf.Model) -> None:
     with pytest.raises(UnknownNameError, match="did you mean 'm_cart'"):
         arm.mass_matrix([0.0, 0.0], par={"m_cat": 1.0})
     with pytest.raises(UnknownNameError, match="q0: no 'nothing'"):

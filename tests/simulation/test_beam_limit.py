@@ -103,5 +103,5 @@ def test_a_column_near_its_critical_load_is_noted_though_its_slope_is_small() ->
 
 
 @pytest.mark.parametrize(("error", "percent"), [(0.012, "1.2"), (0.5, "50"), (12.345, "1234"), (3.2e75, "3.2e+77")])
-def test_estimated_errors_are_told_in_few_digits(error: float, percent: str) -> None:
+def test_estimated_errors_are_printed_with_few_digits(error: float, percent: str) -> None:
     assert f"errs by about {percent} % of" in str(BeamBending("strip", 1.0, 2.0, 0.0, 0.1, error))

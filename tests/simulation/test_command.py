@@ -20,7 +20,7 @@ def run(*arguments: str):
     return CliRunner().invoke(app, ["simulate", *arguments])
 
 
-def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
+def test_simulate_reports_the_outcome_and_writes_files(tmp_path: Path) -> None:
     options = "--set q1=1 --method dop853 --every 0.1 --json".split()
     found = run(PENDULUM, "0.5", *options, "-o", str(tmp_path / "r.csv"), "--picture", str(tmp_path / "r.png"))
     assert found.exit_code == 0
@@ -30,7 +30,7 @@ def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
     assert (tmp_path / "r.png").stat().st_size > 10_000
 
 
-def test_for_people() -> None:
+def test_output_without_json_is_readable_text() -> None:
     found = run(PENDULUM, "0.1", "--input", "q1=3*sin(t)")
     assert found.exit_code == 0
     assert "finished at t = 0.1 s" in found.stdout and "times real time" in found.stdout
@@ -41,7 +41,7 @@ def test_loops_are_closed_first() -> None:
     assert found.exit_code == 0 and json.loads(found.stdout)["ok"]
 
 
-def test_what_is_set_of_a_loop_is_held_or_refused() -> None:
+def test_stated_loop_coordinates_are_kept_or_refused() -> None:
     found = run(FOUR_BAR, "0.01", "--set", "q1=1", "--set", "dq1=1", "--every", "0.01", "--json")
     assert found.exit_code == 0 and not json.loads(found.stdout)["outcome"]["notes"]
     assert json.loads(found.stdout)["last"]["q1"] == pytest.approx(1.01, abs=1e-3)
@@ -66,6 +66,6 @@ def test_a_run_that_fails_ends_with_1() -> None:
         (["--plot", "window"], "of diagrams only"),
     ],
 )
-def test_what_does_not_fit(arguments: list[str], words: str) -> None:
+def test_invalid_arguments_are_refused(arguments: list[str], words: str) -> None:
     found = run(PENDULUM, "0.01", *arguments)
     assert found.exit_code == 2 and words in found.output

@@ -42,7 +42,7 @@ def held(model: sf.Model, t: np.ndarray, **options: object) -> sf.Trajectory:
 @pytest.mark.parametrize("steps", [1, 2])
 @pytest.mark.parametrize("instants", INSTANTS)
 @pytest.mark.parametrize("method", FIXED)
-def test_steps_that_end_at_samples_are_those_of_constant_inputs(
+def test_steps_that_end_at_samples_match_constant_inputs(
     cart: sf.Model, method: str, instants: str, steps: int
 ) -> None:
     options = {"method": method, "dt": PERIOD / steps}

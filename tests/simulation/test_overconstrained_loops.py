@@ -92,7 +92,7 @@ def test_accelerations_beside_the_constraints_are_those_on_them(constraints: str
 
 
 @pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
-def test_conditions_on_speeds_beside_such_a_loop_are_none_of_its_way_back(constraints: str) -> None:
+def test_speed_conditions_beside_a_redundant_loop_do_not_affect_its_projection(constraints: str) -> None:
     """The rank is that of the posture on the constraints: a knife edge has none, and still binds the sleigh."""
     bennett = linkage(1)[0]
     sleigh = sf.RigidBody("sleigh", sf.Joint("s", "planar"), sf.Inertia(2.0, (0.3, 0, 0), (0.1, 0.1, 0.15)))
@@ -112,7 +112,7 @@ def test_conditions_on_speeds_beside_such_a_loop_are_none_of_its_way_back(constr
         np.testing.assert_allclose(a, expected, rtol=0, atol=1e-9 * (1.0 + np.abs(expected).max()))
 
 
-def test_bricards_linkage_bears_no_note() -> None:
+def test_bricards_linkage_gets_no_note() -> None:
     """Five conditions of rank four; right, and so nothing is said of modes or singular postures."""
     model = compiled("bricard")
     fine = sf.simulate(model, t_end=2.0, method="dop853", rtol=1e-11, atol=1e-12)

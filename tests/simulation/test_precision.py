@@ -45,7 +45,7 @@ def recorded(run: sf.Trajectory) -> tuple[np.ndarray, ...]:
 
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar"])
 @pytest.mark.parametrize("way", WAYS)
-def test_what_solves_keeps_its_bits(name: str, way: str) -> None:
+def test_functions_that_solve_stay_in_double_precision(name: str, way: str) -> None:
     exact = compiled(name)
     for ours, theirs in zip(WAYS[way](exact.with_precision("single"), name), WAYS[way](exact, name), strict=True):
         assert ours.dtype == np.float64 and np.array_equal(ours, theirs)

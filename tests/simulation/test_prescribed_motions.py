@@ -65,7 +65,7 @@ BAD: dict[str, Any] = {
 
 
 @pytest.mark.parametrize("how", GOOD)
-def test_what_is_one_motion_runs(how: str) -> None:
+def test_consistent_prescribed_motions_run(how: str) -> None:
     """And bears no note."""
     run = sf.simulate(crane(), t_end=2.0, u=GOOD[how])
     assert run.outcome.kind == "finished"
@@ -74,7 +74,7 @@ def test_what_is_one_motion_runs(how: str) -> None:
 
 
 @pytest.mark.parametrize("how", BAD)
-def test_what_is_not_is_refused(how: str) -> None:
+def test_inconsistent_prescribed_motions_are_refused(how: str) -> None:
     """By single runs and batches, with both rates and a remedy."""
     for simulate, q0 in ((sf.simulate, np.zeros(1)), (sf.simulate_batch, np.zeros((2, 1)))):
         with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
@@ -106,7 +106,7 @@ def test_angular_velocities_belong_to_their_quaternions(seed: int) -> None:
             sf.simulate(carried(), t_end=1.0, u=law | wrong)
 
 
-def test_a_function_in_python_is_judged_by_what_it_gave() -> None:
+def test_prescribed_motions_of_python_functions_are_judged_by_their_values() -> None:
     """It may have a state, so that it is not called beforehand: a note."""
     wrong = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.1, 0.0], dt=1e-2)
     right = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.3, 0.0], dt=1e-2)
@@ -115,7 +115,7 @@ def test_a_function_in_python_is_judged_by_what_it_gave() -> None:
 
 
 @pytest.mark.parametrize(("rate", "noted"), [(0.3, False), (0.1, True)])
-def test_wires_of_a_diagram_are_judged_by_what_they_gave(rate: float, noted: bool) -> None:
+def test_prescribed_motions_of_wires_are_judged_by_their_values(rate: float, noted: bool) -> None:
     """Compiled and interpreted."""
     hoist = sf.RigidBody("hoist", sf.Joint("th", "revolute", axis=(0, 1, 0), prescribed=True), sf.Inertia(1.0))
     bob = sf.RigidBody(

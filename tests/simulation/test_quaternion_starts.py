@@ -50,7 +50,7 @@ def recorded(run: sf.Trajectory, first: bool = False) -> Array:
 
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("entry", MOTIONS)
-def test_motions_and_analyses_are_those_of_the_rotation(name: str, entry: str) -> None:
+def test_motions_and_analyses_depend_on_the_direction_of_quaternions_only(name: str, entry: str) -> None:
     m, call = model(name), MOTIONS[entry]
     q, v = m.random_state(np.random.default_rng(3))
     expected = call(m, q, v)

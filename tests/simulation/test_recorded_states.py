@@ -46,7 +46,7 @@ def quaternion_lengths(model: sf.Model, q: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("method", OWN)
 @pytest.mark.parametrize("name", [*CLOSED_MODELS, *TREES])
-def test_states_at_given_times_are_those_of_the_run_recorded_at_every_step(name: str, method: str) -> None:
+def test_states_at_given_times_match_a_run_recorded_at_every_step(name: str, method: str) -> None:
     model, q, v = scene(name)
     every = sf.simulate(model, q, v, T_END, method=method, dt=DT)
     given = sf.simulate(model, q, v, T_END, method=method, dt=DT, output=TIMES)

@@ -15,7 +15,7 @@ def top() -> sf.Model:
 
 
 @pytest.mark.parametrize("length", [0.0, 0.998, 1.002])
-def test_quaternions_that_are_no_rotations_are_refused(top: sf.Model, length: float) -> None:
+def test_invalid_quaternions_are_refused(top: sf.Model, length: float) -> None:
     q = top.neutral()
     q[3:] *= length
     with pytest.raises(sf.ShapeError, match=f"length {length:g}"):
@@ -31,7 +31,7 @@ def test_quaternions_that_are_no_rotations_are_refused(top: sf.Model, length: fl
         *(("step", "dt"), ("solver", "method"), ("x0", "q0"), ("params", "par"), ("inputs", "u"), ("metod", "method")),
     ],
 )
-def test_names_that_other_tools_have_lead_to_ours(top: sf.Model, written: str, meant: str) -> None:
+def test_option_names_of_other_tools_are_answered_with_ours(top: sf.Model, written: str, meant: str) -> None:
     for simulate in (sf.simulate, sf.simulate_batch):
         with pytest.raises(sf.UnknownNameError, match=f"no option '{written}'(.|\n)*did you mean '{meant}'"):
             simulate(top, **{written: 1.0})

@@ -68,7 +68,7 @@ def test_period_of_the_pendulum(pendulum: sf.Model) -> None:
 
 
 class TestInputs:
-    def test_a_law_is_what_scipy_gets(self, cart_pole: sf.Model) -> None:
+    def test_a_formula_input_matches_scipy(self, cart_pole: sf.Model) -> None:
         names = cart_pole.names
         law = {names.u[0]: f"3*sin(2*t) - 2*{names.q[0]} - 0.5*d{names.q[0]}"}
         run = sf.simulate(cart_pole, [0.1, 0.2], [0.0, 0.3], 1.0, u=law, method="dop853", rtol=1e-11, atol=1e-11)
@@ -177,7 +177,7 @@ class TestEnds:
         run = sf.simulate(sf.compile(sf.System("given", (arm,))), t_end=0.1, u={"q": "t"}, method=method, output=0.05)
         assert run.outcome.ok and run.t[-1] == pytest.approx(0.1) and run["q"][-1] == pytest.approx(0.1)
 
-    def test_a_speed_without_mass_is_named_as_such(self) -> None:
+    def test_a_massless_speed_is_named(self) -> None:
         """Massless by a parameter, which compilation can't know; and light, which is no fault.
 
         By articulated bodies the mass of a point cancels, and what is found is the limit of less and less of it.
@@ -207,11 +207,11 @@ class TestEnds:
         assert run.outcome.kind in ("step too small", "diverged")
         assert run.t[-1] == pytest.approx(0.5, abs=1e-2)
 
-    def test_max_steps(self, pendulum: sf.Model) -> None:
+    def test_max_steps_ends_the_run(self, pendulum: sf.Model) -> None:
         run = sf.simulate(pendulum, t_end=100.0, max_steps=100)
         assert run.outcome.kind == "interrupted" and run.statistics.steps == 100
 
-    def test_pace(self, pendulum: sf.Model) -> None:
+    def test_real_time_pace_is_kept(self, pendulum: sf.Model) -> None:
         run = sf.simulate(pendulum, [0.1], t_end=0.2, dt=0.01, realtime=True)
         assert run.statistics.seconds > 0.18
         # It sleeps between steps.
@@ -256,7 +256,7 @@ def test_a_real_ctrl_c() -> None:
 
 
 class TestStructure:
-    def test_variational_keeps_energy_where_rk4_loses_it(self) -> None:
+    def test_variational_keeps_energy_and_rk4_does_not(self) -> None:
         """Over 2000 periods: bounded against drifting."""
         model = compiled("double_pendulum")
         spans = {}
@@ -283,7 +283,7 @@ def test_a_passage_within_a_step_is_dated_to_a_sixteenth_of_it(t0: float) -> Non
     assert not sf.simulate(model, np.pi / 2 * upright, -upright, t0 + 0.3, t0=t0, dt=2e-3).outcome.notes
 
 
-def test_progress_is_told_to_a_function(pendulum: sf.Model) -> None:
+def test_progress_is_passed_to_a_function(pendulum: sf.Model) -> None:
     told: list[float] = []
     sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=told.append)
     assert told == sorted(told) and told[-1] == pytest.approx(2.0)

@@ -41,7 +41,7 @@ def assert_same(one: sf.Trajectory, other: sf.Trajectory) -> None:
 # Linear coordinates, a ball, a free base, closed loops, a nonholonomic condition.
 @pytest.mark.parametrize("name", ["cart_pole", "gyroscope", "space_arm", "four_bar", "sleigh"])
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "dopri5", "dop853"])
-def test_as_simulate(name: str, method: str) -> None:
+def test_batches_match_simulate(name: str, method: str) -> None:
     m = model(name)
     q, v = starts(m, 37)  # More than are in hand at once, and no multiple of a vector's lanes.
     many = sf.simulate_batch(m, q, v, 0.3, method=method, dt=7e-3, output=GRID)
@@ -93,7 +93,7 @@ KINDS = ("rows", "one for all", "mapping", "signal", "signals", "named signals",
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
-def test_inputs(kind: str, method: str) -> None:
+def test_inputs_of_batches_match_simulate(kind: str, method: str) -> None:
     m, n = model("cart_pole"), 35
     q, v = starts(m, n)
     u, alone = inputs(m, kind, n)
@@ -158,7 +158,7 @@ def test_off_the_constraints() -> None:
     assert np.array_equal(found.q_last[[0, 1, 3]], good.q_last[[0, 1, 3]]) and np.array_equal(found.q_last[2], q_off[2])
 
 
-def test_interrupted() -> None:
+def test_an_interrupt_keeps_the_finished_part() -> None:
     m = model("space_arm")
     q, v = starts(m, 200)
 
@@ -177,7 +177,7 @@ def test_interrupted() -> None:
     assert np.array_equal(run.q_last[run.t_last == 0.0], q[run.t_last == 0.0])
 
 
-def test_shapes() -> None:
+def test_results_have_batch_shapes() -> None:
     m = model("cart_pole")
     run = sf.simulate_batch(m, np.zeros((2, 1, m.nq)), np.ones((3, m.nv)), 0.1, u=np.zeros((2, 3, m.nu)), output=0.05)
     assert run.shape == (2, 3) and len(run) == 6 and run.q.shape == (2, 3, 3, m.nq) and run.v_last.shape == (2, 3, m.nv)
@@ -197,7 +197,7 @@ def test_shapes() -> None:
         ({"threads": 0}, "no thread to work"),
     ],
 )
-def test_refused(given: dict[str, Any], message: str) -> None:
+def test_invalid_arguments_of_batches_are_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(sf.SymofrosError, match=message):
         sf.simulate_batch(model("cart_pole"), **given)
 
@@ -205,9 +205,7 @@ def test_refused(given: dict[str, Any], message: str) -> None:
 @pytest.mark.parametrize(
     ("method", "dt"), [("euler", 0.05), ("semi_implicit_euler", 0.1), ("rk4", 0.1), ("rk4", 0.01), ("dopri5", None)]
 )
-def test_a_run_of_a_batch_that_records_its_end_alone_bears_the_notes_of_a_single_one(
-    method: str, dt: float | None
-) -> None:
+def test_notes_of_a_batch_that_records_only_its_end_match_a_single_run(method: str, dt: float | None) -> None:
     """A hill turns a cart back, if steps see it: what they pass over does not depend on the samples."""
     hill = sf.Potential("hill", "max(0, 1 - ((x - 5)/0.03)^2)^2")
     model, options = sf.compile(slide(potentials=(hill,))), {} if dt is None else {"dt": dt}

@@ -43,7 +43,7 @@ def test_a_disc_that_falls_flat_ends_with_its_contact_named(method: str, options
     assert 0.3 < run.outcome.t < 0.5, str(run.outcome)
 
 
-def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
+def test_a_disc_falling_flat_in_a_batch_is_not_ok() -> None:
     q, v = disc(0.5, 0.0, 0.0)
     runs = sf.simulate_batch(model("rolling_disc"), np.array([q, q]), v, t_end=1.0, dt=1e-3)
     assert not runs.ok.any() and runs.outcome(0).kind == "singular"
@@ -58,7 +58,7 @@ def test_a_disc_that_falls_flat_in_a_batch_is_no_good_run() -> None:
 @given(
     tilt=st.floats(0.15, 1.4), spin=st.floats(-3.0, 3.0), turn=st.floats(-2.0, 2.0), way=st.integers(0, len(WAYS) - 1)
 )
-def test_a_rolling_disc_keeps_its_energy_or_says_why_not(tilt: float, spin: float, turn: float, way: int) -> None:
+def test_a_rolling_disc_keeps_its_energy_or_gets_a_note(tilt: float, spin: float, turn: float, way: int) -> None:
     q, v = disc(tilt, spin, turn)
     method, options = WAYS[way]
     run = sf.simulate(model("rolling_disc"), q, v, t_end=1.0, method=method, max_steps=5000, **options)  # type: ignore[arg-type]
@@ -86,7 +86,7 @@ def test_a_condition_on_speeds_that_vanishes_in_one_posture_takes_no_energy_in_s
     assert not run.outcome.ok and run.outcome.kind == "constraints lost"
 
 
-def test_speeds_that_a_prescribed_motion_makes_jump_are_no_fault_of_the_run() -> None:
+def test_speed_jumps_from_prescribed_motion_are_not_faults_of_the_run() -> None:
     slide = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0))
     lead = sf.RigidBody("lead", sf.Joint("s", "prismatic", axis=(1, 0, 0), prescribed=True), sf.Inertia(1.0))
     tied = sf.Closure("tied", ("lead", None), ("cart", None), ("x",))

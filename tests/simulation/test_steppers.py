@@ -75,7 +75,7 @@ def test_saved_states_go_on_to_the_same_bits() -> None:
         sf.Steppers(model, N, dt=DT).restore(saved)
 
 
-def test_some_begin_anew_with_parameters_of_their_own_and_the_others_go_on() -> None:
+def test_some_begin_again_with_parameters_of_their_own_and_the_others_go_on() -> None:
     model, (q, v) = compiled("cart_pole"), starts("cart_pole")
     par = np.tile(np.asarray(model.parameter_values), (N, 1)) * np.linspace(0.9, 1.1, N)[:, np.newaxis]
     steppers = sf.Steppers(model, N, par=par, dt=DT)
@@ -99,7 +99,7 @@ def test_some_begin_anew_with_parameters_of_their_own_and_the_others_go_on() -> 
     )
 
 
-def test_one_that_ends_stays_and_begins_anew() -> None:
+def test_a_finished_member_stays_until_it_is_reset() -> None:
     model, (q, v) = compiled("cart_pole"), starts("cart_pole")
     steppers = sf.Steppers(model, N, dt=DT)
     steppers.reset(q, v)
@@ -131,7 +131,7 @@ def test_motions_off_their_constraints_do_not_begin(gap: float, went_before: boo
     assert steppers.t[5] == 0.0 and np.array_equal(steppers.q[5], q[5])
 
 
-def test_a_beam_that_was_beyond_its_theory_is_judged_anew() -> None:
+def test_a_beam_that_was_beyond_its_theory_is_judged_again() -> None:
     model = compiled("flexible_pendulum")
     bent = np.zeros((3, model.nq))
     bent[1, 1] = 0.4
@@ -151,7 +151,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_batches_can_not_do_is_refused(case: str) -> None:
+def test_what_batches_cannot_do_is_refused(case: str) -> None:
     options, said = REFUSED[case]
     with pytest.raises(sf.SymofrosError, match=said):
         sf.Steppers(**({"model": compiled("cart_pole"), "n": 4} | options))

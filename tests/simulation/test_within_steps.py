@@ -107,7 +107,9 @@ def test_a_push_and_a_pull_leave_a_way(cart: sf.Model, method: str) -> None:
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 @pytest.mark.parametrize(("share", "begin"), [(0.05, 6.1), (0.3, 2.3)])
-def test_what_no_formula_of_time_says_is_met(cart: sf.Model, method: str, share: float, begin: float) -> None:
+def test_forces_skipped_by_steps_are_found_without_a_formula_of_time(
+    cart: sf.Model, method: str, share: float, begin: float
+) -> None:
     """A force on part of the way, and one by a function of the caller's: of one twentieth of the run, or more."""
     w = share * END
     law = f"2*max(0, 1 - abs(x - {begin + w / 2})/{w / 2})"
@@ -126,7 +128,7 @@ def test_what_no_formula_of_time_says_is_met(cart: sf.Model, method: str, share:
 
 @pytest.mark.parametrize("method", OWN)
 @pytest.mark.parametrize("name", ["cart_pole", "gyroscope"])
-def test_what_is_smooth_costs_no_steps(name: str, method: str) -> None:
+def test_smooth_inputs_cost_no_extra_steps(name: str, method: str) -> None:
     """Neither corners that no step can tell from a curve, nor looks within steps, nor kinks of formulas."""
     model = compiled(name)
     q, v = model.random_state(np.random.default_rng(3))

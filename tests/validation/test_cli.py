@@ -30,7 +30,7 @@ def run(tmp_path: Path) -> Any:
     return invoke
 
 
-def test_agreement(run: Any, arm: Path, tmp_path: Path) -> None:
+def test_an_agreeing_model_exits_with_zero(run: Any, arm: Path, tmp_path: Path) -> None:
     result = run(arm)
     assert result.exit_code == 0, result.output
     assert "pinocchio-urdf" in result.stdout and "agree" in result.stdout and "not asked in full" not in result.stdout
@@ -48,7 +48,7 @@ def test_json_is_all_there_is_on_stdout(run: Any, arm: Path) -> None:
     assert {row["states"] for row in content["comparisons"] if row["engine"] == "mujoco-urdf"} >= {10}
 
 
-def test_what_is_not_there_is_said_in_four_parts_and_disagrees_with_nothing(tmp_path: Path) -> None:
+def test_missing_files_and_unknown_words_are_errors_in_four_parts(tmp_path: Path) -> None:
     for arguments, words in (
         (["check", str(tmp_path / "nosuch.urdf")], "does not exist"),
         (["stabiltiy"], "did you mean 'stability'?"),
@@ -72,7 +72,7 @@ def test_a_file_that_does_not_load(run: Any, arm: Path, tmp_path: Path) -> None:
     assert any(row["model"] == "arm" and row["ok"] for row in content["comparisons"])
 
 
-def test_disagreement(run: Any, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_disagreeing_model_exits_with_one(run: Any, arm: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A gravity that is one part in a billion off."""
     right = pinocchio.build
 
@@ -87,7 +87,7 @@ def test_disagreement(run: Any, arm: Path, monkeypatch: pytest.MonkeyPatch) -> N
     assert "arm, pinocchio: gravity: error 1.0e-09" in result.stdout and "disagree" in result.stdout
 
 
-def test_interrupted(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupted_check_keeps_its_rows(arm: Path, run: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupt(cases: Any, settings: Any, workers: Any, done: Any) -> None:
         done(failed(cases[0].label, "load", "x"))
         raise KeyboardInterrupt

@@ -58,7 +58,7 @@ def test_the_right_engine_passes() -> None:
     assert checked(pinocchio.build).ok
 
 
-def test_one_entry_off_by_ten_tolerances_is_found() -> None:
+def test_an_entry_off_by_ten_tolerances_is_found() -> None:
     """In every quantity at the same time, at its state."""
     asked = TREE_QUANTITIES - {"gravity", "forward_dynamics"}
     result = checked(lambda subject: Faulty(pinocchio.build(subject), asked, one_entry), WITHOUT_MOTION)
@@ -77,7 +77,7 @@ def test_one_entry_off_by_ten_tolerances_is_found() -> None:
         ("kinetic_energy", lambda T: np.full_like(T, np.nan), {"kinetic_energy", "motion_energy"}),
     ],
 )
-def test_planted_faults(method: str, fault: Callable[[np.ndarray], np.ndarray], found: set[str]) -> None:
+def test_planted_faults_are_found(method: str, fault: Callable[[np.ndarray], np.ndarray], found: set[str]) -> None:
     settings = SETTINGS if "motion_energy" in found else WITHOUT_MOTION
     assert disagreeing(checked(lambda subject: Faulty(pinocchio.build(subject), {method}, fault), settings)) == found
 
@@ -117,7 +117,7 @@ def test_another_mechanism_is_found() -> None:
 
 
 @pytest.mark.parametrize(("light", "expected"), [(1.0, "disagree"), (1e-12, "agree")])
-def test_solving_is_asked_for_no_more_than_doubles_allow(light: float, expected: str) -> None:
+def test_forward_dynamics_is_judged_to_double_precision(light: float, expected: str) -> None:
     """An error of 2e-9 in forward dynamics: too much, unless M is so ill-conditioned that rounding explains it."""
     arm, hand = (sf.Joint("a", "prismatic"), sf.Joint("b", "prismatic", "arm", axis=(1.0, 0.0, 0.0)))
     bodies = [sf.RigidBody("arm", arm, sf.Inertia(1.0)), sf.RigidBody("hand", hand, sf.Inertia(light))]
@@ -141,7 +141,7 @@ class NotANumberWhere(SymofrosEngine):
         return np.where(states.q[:, :1, None] < 0.0, np.nan, right)
 
 
-def test_a_jacobian_of_ours_that_is_not_a_number_disagrees(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_nan_in_our_jacobian_disagrees(monkeypatch: pytest.MonkeyPatch) -> None:
     """States where G has no clear rank are left out; those where ours alone does not exist are no such states."""
     build = compiled.build
     monkeypatch.setattr(compiled, "build", lambda subject: NotANumberWhere(**vars(build(subject))))

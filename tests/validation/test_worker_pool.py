@@ -38,7 +38,7 @@ def test_a_model_that_does_not_load_is_a_failed_row(tmp_path: Path) -> None:
     assert str(tmp_path) not in row.note
 
 
-def test_a_fault_of_ours_is_a_failed_row_with_its_place() -> None:
+def test_an_internal_fault_is_a_failed_row_with_its_place() -> None:
     (row,) = run_case(Faulty("bad"), FEW).comparisons
     assert row.status == "failed" and row.quantity == "check"
     assert row.note.startswith("ZeroDivisionError: a fault of ours (test_worker_pool.py:")
@@ -55,7 +55,7 @@ def test_a_bad_model_does_not_stop_the_others(tmp_path: Path, workers: int) -> N
         assert "ended with code 9" in results["dead"].comparisons[0].note
 
 
-def test_an_interrupt_keeps_what_is_finished(tmp_path: Path) -> None:
+def test_an_interrupt_keeps_finished_results(tmp_path: Path) -> None:
     results: list[ModelResult] = []
 
     def done(result: ModelResult) -> None:

@@ -45,7 +45,7 @@ class Verdict:
 
 
 def refused(said: object) -> Verdict:
-    """We said ourselves that there is no good answer."""
+    """The verdict on a scene that our own code refuses."""
     return Verdict("refused", " ".join(str(said).split()))
 
 

@@ -83,7 +83,7 @@ def _attack(
 
 
 def _logged(data: Any) -> tuple[dict[str, Tally], list[Find]]:
-    """What log.json holds, of attacks that there are."""
+    """Contents of log.json, for attacks that exist."""
     tallies = {name: Tally(**one) for name, one in data["attacks"].items() if name in ATTACKS}
     return tallies, [Find(**one) for one in data["finds"] if one["attack"] in ATTACKS]
 

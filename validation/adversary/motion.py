@@ -34,7 +34,7 @@ def claimed_good(run: sf.Trajectory) -> bool:
 
 
 def of_claim(outcome: Any, quantity: str, error: float, bound: float) -> Verdict:
-    """An outcome against the error of what it stands for, relative: silent ones are to be right, right ones silent.
+    """An outcome against its relative error: runs without notes must be accurate, accurate runs without notes.
 
     Args:
         outcome: Outcome of the run.

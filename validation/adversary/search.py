@@ -164,7 +164,7 @@ def _settings(folder: Path, count: int) -> settings:
 
 
 def quantity_of(scene: Scene, verdict: Verdict) -> str:
-    """What tells finds of one attack apart: what is contradicted, and the choices in words that the scene makes."""
+    """Key that distinguishes finds of one attack: the contradicted quantity and the scene's choices in words."""
     words = sorted(value for value in scene.values() if isinstance(value, str))
     return ", ".join((verdict.quantity, *words))
 

@@ -202,7 +202,7 @@ def cases(plan: Plan) -> list[Case]:
 
 
 def identities(models: Sequence[Case]) -> dict[str, str]:
-    """Label -> what tells this model from an edited one: a hash of its file, or of its description."""
+    """Label -> hash of a model's file or description, which changes when it is edited."""
     return {case.label: _identity(case) for case in models}
 
 

@@ -45,7 +45,7 @@ def begin(plan: Plan, folder: Path, pool: Pool) -> dict[str, Any]:
 
 
 def go_on(folder: Path, pool: Pool) -> dict[str, Any]:
-    """Do what is left of a campaign; returns and raises as `begin`."""
+    """Continue an unfinished campaign; returns and raises as `begin`."""
     plan = make(manifest_of(folder)["plan"], str(folder / "plan.json"))
     return _carry_out(Store.agreeing(folder, _manifest(plan)), plan, pool)
 

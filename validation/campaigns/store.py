@@ -66,7 +66,7 @@ class Store:
 
     @classmethod
     def agreeing(cls, folder: Path, manifest: dict[str, Any]) -> Store:
-        """The folder's store, if what it was begun with is what is there now.
+        """The folder's store, if its manifest matches the present one.
 
         Raises:
             StoreError: Plan, models or versions have changed since, so that old and new rows would not belong together.
@@ -188,7 +188,7 @@ def _noted(line: Any) -> dict[str, Any]:
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
-    """What a campaign was begun with.
+    """The manifest with which a campaign began.
 
     Raises:
         StoreError: The folder holds no campaign.
@@ -206,7 +206,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
 
 
 def provenance_of(path: Path) -> dict[str, Any]:
-    """What a part or the results say of where they come from.
+    """Provenance of a part or of the results.
 
     Raises:
         KeyError: It is no file of a campaign.

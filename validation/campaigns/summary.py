@@ -19,7 +19,7 @@ _NULLS = pc.ScalarAggregateOptions(skip_nulls=False)
 
 
 def effort(journal: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """What it took: sessions, seconds on the clock in all of them, executions, batches begun more than once."""
+    """Effort of a campaign: sessions, total wall time, executions, repeated batches."""
     begun: Counter[int] = Counter()
     sessions: list[list[float]] = []
     for line in journal:
@@ -79,7 +79,7 @@ def checked(rows: pa.Table) -> dict[str, Any]:
 
 
 def swept(rows: pa.Table) -> dict[str, Any]:
-    """Of a sweep: the range of each result, and how many points failed, by reason."""
+    """Range of each result of a sweep, and how many points failed, by reason."""
     failed = Counter(rows["outcome"].to_pylist())
     done = failed.pop(DONE, 0)
     first = rows.column_names.index("outcome")

@@ -56,7 +56,7 @@ class Task(Protocol):
         ...
 
     def run(self) -> pa.Table:
-        """Do it."""
+        """Run the batch."""
         ...
 
 
@@ -70,7 +70,7 @@ class CheckTask:
 
     @property
     def size(self) -> int:
-        """States."""
+        """Number of states."""
         return self.settings.states
 
     @property
@@ -80,7 +80,7 @@ class CheckTask:
         return f"{self.case.label} {first}…{first + self.size - 1}"
 
     def run(self) -> pa.Table:
-        """What goes wrong with it becomes a row."""
+        """Check a model; an exception becomes a row."""
         rows = self._rows(run_case(self.case, self.settings))
         return pa.Table.from_pylist(list(rows), CHECKED)
 

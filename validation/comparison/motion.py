@@ -172,7 +172,7 @@ def smoothness_obstacle(joints: Sequence[sf.Joint]) -> str:
 
 
 def _corner(element: object) -> str:
-    """What bends a joint element's force: a corner or, in dry friction, one that is rounded within a step."""
+    """The corner of a joint element's force, or the rounded corner of dry friction within a step."""
     if isinstance(element, sf.Damper):
         return "a quadratic damper" if element.quadratic != 0.0 else ""
     return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")

@@ -59,7 +59,7 @@ class Slot:
 
     @property
     def turns(self) -> bool:
-        """Whether its linear speeds are along the axes that its place is stated in; they turn against ours."""
+        """Whether its linear speeds are along the axes of its position, and so turn against ours."""
         return self.chart in (IN_WORLD, IN_PARENT)
 
 
@@ -107,7 +107,7 @@ class Chart:
     nv: int
 
     def __post_init__(self) -> None:
-        """No chart may be taken for ours that is another."""
+        """Refuse charts that are equal to ours only in name."""
         for slot in self.slots:
             assert slot.chart in _OURS or slot.chart in _ENCODE, slot.chart
 

@@ -28,7 +28,7 @@ class Raised:
 
 
 def attempted(function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T | Raised:
-    """What a function returns, or what it raises; KeyboardInterrupt goes through, and that an extra is missing."""
+    """Result or exception of a function; KeyboardInterrupt and missing extras propagate."""
     try:
         return function(*arguments, **named)
     except ANY as error:
@@ -38,7 +38,7 @@ def attempted(function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -
 
 
 def not_installed(error: BaseException) -> str:
-    """What is missing and how to get it, where an exception says that an extra is not installed; else ""."""
+    """The missing package and its remedy, where an exception reports a missing extra; "" otherwise."""
     if not isinstance(error, sf.SymofrosError) or not error.extra:
         return ""
     return f"{error.problem.what}; {error.problem.remedy}"

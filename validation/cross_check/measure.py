@@ -95,7 +95,7 @@ def measure(
 
 
 def _held_to(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
-    """A run's data with what it was held to, and where it is worse than the stored one."""
+    """A run's data with its baseline and regressions."""
     regressions, notes = stored.judge(Record.of(data), machine_of(data))
     origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
     baseline = origin | {"regressions": [asdict(worse) for worse in regressions]}

@@ -81,7 +81,7 @@ def _of(model: ModelResult, engine: str) -> list[Comparison]:
 
 
 def opinion(record: Record, engine: str) -> tuple[str, ...]:
-    """What an engine says of our C, as a row under `OPINION`.
+    """Result of an engine about our C, as a row under `OPINION`.
 
     One that disagrees is suspect itself where it is alone in that, in most cases, against other independent engines.
     """
@@ -144,12 +144,12 @@ def worst(rows: Iterable[Comparison]) -> Comparison | None:
 
 
 def failures(record: Record) -> list[tuple[str, str, str]]:
-    """Model, engine and what disagrees or failed, with its numbers."""
+    """Model, engine and disagreement or failure, with its numbers."""
     return [(row.model, row.engine, failure(row)) for row in record.rows("disagree", "failed")]
 
 
 def failure(row: Comparison) -> str:
-    """What disagrees or failed, with its numbers."""
+    """Text of a disagreement or failure, with its numbers."""
     if row.unconfirmed:
         return row.note
     if row.status == "failed":
@@ -160,7 +160,7 @@ def failure(row: Comparison) -> str:
 
 
 def unsupported(record: Record, unjudged: bool = False) -> list[tuple[str, str, str]]:
-    """Models, engine, and what it could not represent and why; one line for each reason.
+    """Models, engine, unsupported features and reason; one line for each reason.
 
     `unjudged`: only of models that no independent engine could be asked about.
     """
@@ -188,7 +188,7 @@ def left_out(record: Record) -> str:
 
 
 def not_installed(record: Record) -> str:
-    """What would bring the packages that were missing, in a sentence; "" where all that was asked for was there."""
+    """A sentence on how to install missing packages; "" where none is missing."""
     remedies: dict[str, set[str]] = {}
     for row in record.rows("unsupported"):
         for remedy in _INSTALL.findall(row.note):

@@ -39,7 +39,7 @@ _MODEL = f"Only this model; repeatable. {', '.join(MODELS)}."
 
 
 def run_model(label: str, functions: tuple[str, ...], record: Record, run: Run) -> None:
-    """Add what our kernels make of a model to a record."""
+    """Add results of our kernels for a model to a record."""
     device = present()
     subject = Subject.of(label, _STATES)
     kernels = kernels_of(subject, functions)
@@ -57,7 +57,7 @@ def run_model(label: str, functions: tuple[str, ...], record: Record, run: Run) 
 
 
 def run_peer(label: str, record: Record, run: Run) -> None:
-    """Add what MuJoCo Warp makes of a model to a record."""
+    """Add results of MuJoCo Warp for a model to a record."""
     run.expect(len(warp.FUNCTIONS), f"{label}: {PEER} compiles its kernels")
     for peer in warp.rows(Subject.of(label, _STATES)):
         record.peers.append(peer)

@@ -35,7 +35,7 @@ def missing() -> str:
 
 
 def rows(subject: Subject, worlds: tuple[int, ...] = WORLDS) -> Iterator[PeerRow]:
-    """What it makes of a model.
+    """Results of MuJoCo Warp for a model.
 
     Args:
         subject: Model and states.

@@ -45,7 +45,7 @@ class Entry:
 
     @property
     def said(self) -> str:
-        """What it found, in a sentence."""
+        """The verdict of the report in a sentence."""
         return self.report.summary if self.report else "; ".join(self.remarks)
 
 
@@ -86,7 +86,7 @@ def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], digest: Cal
 
 
 def doubts(origin: Provenance, installed: Mapping[str, str]) -> list[str]:
-    """Why a report may say nothing of the code as it is, or can't say; what it was made with that has changed."""
+    """Reasons why a report may not describe the present code, such as changed packages."""
     asked = "when it was made", "on which machine", "with which versions"
     stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
     said = [said_of(origin.standing)] if origin.standing else []

@@ -57,7 +57,7 @@ def deflection(run: sf.DiagramRun) -> Array:
 
 
 def study(quick: bool) -> Study:
-    """Answer."""
+    """Run the study: its findings and figures."""
     simulation = sf.Simulation(square())
     flexible, rigid = simulation.run(T_END, dt=DT, record=RECORD), traced(square(functions=0))
     counts = (1, 2, 3) if quick else tuple(range(1, MOST + 1))

@@ -34,7 +34,7 @@ def copies(period: float, count: int = 2) -> sf.Diagram:
 
 
 def study(quick: bool) -> Study:
-    """Answer."""
+    """Run the study: its findings and figures."""
     t_end = 0.5 if quick else 4.0
     gains, same = [], True
     for period in PERIODS[:2] if quick else PERIODS:

@@ -80,7 +80,7 @@ class Mover:
 
     @property
     def kind(self) -> PartKind:
-        """What it is to an engine."""
+        """Kind of a joint as engines distinguish them."""
         return self.part.kind
 
     @property
@@ -148,7 +148,7 @@ class Assembly:
 
     @property
     def free_joints(self) -> list[Described]:
-        """Those whose motion is not prescribed."""
+        """Joints whose motion is not prescribed."""
         return [described for described in self.joints if not described.joint.prescribed]
 
     @property

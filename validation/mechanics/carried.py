@@ -80,7 +80,7 @@ def all_speeds(assembly: Assembly, q: Array, v: Array, a: Array, motions: Array)
 
 
 def slots(assembly: Assembly) -> list[tuple[slice, slice]]:
-    """Where each mover finds its coordinates and speeds among all."""
+    """Indices of the coordinates and speeds of each mover."""
     ends = {}
     q, v = assembly.nq, assembly.nv
     for joint in assembly.driven_joints:

@@ -111,7 +111,7 @@ def judge(module: str) -> dict[str, Any]:
 
 
 def _verdict(name: str, asked: Callable[[Subject], Iterable[Comparison]]) -> dict[str, Any] | None:
-    """What is wrong with a model; None if nothing is."""
+    """The disagreement of a model; None if there is none."""
     try:
         for row in asked(subject(name)):
             if not row.ok:

@@ -63,7 +63,7 @@ def measure(
 
 
 def as_data(study: Study) -> dict[str, Any]:
-    """What is known of each fault, as plain data; faults that no judge was asked about are left out."""
+    """Known results of each fault as plain data; faults without a verdict are left out."""
     rows = []
     for fault in study.faults:
         answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, OUTPUTS)} | {TESTS: study.tested(fault)}

@@ -169,7 +169,7 @@ class _Planter:
                 pass
 
     def _between(self, kind: str, left: ast.expr, right: ast.expr, operator: str) -> SourceFault:
-        """What stands between two operands, but for parentheses and spaces, replaced."""
+        """The operator between two operands replaced; parentheses and spaces are kept."""
         start, end = self._span(left)[1], self._span(right)[0]
         piece = self.text[start:end]
         inner = re.search(r"[^\s()#]+(?: (?:not|in))?", piece)

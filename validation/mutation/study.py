@@ -194,7 +194,7 @@ class Study:
         return all(answer is not None and answer.get("code") == -signal.SIGBUS for answer in answers)
 
     def fate(self, fault: SourceFault) -> str:
-        """What became of a fault, as far as it is known."""
+        """The fate of a fault, as far as it is known."""
         check, tests = self.store.get(fault.id, CHECK), self.tested(fault)
         outputs = self.store.get(fault.id, OUTPUTS)
         if stillborn(fault, check) or stillborn(fault, outputs):

@@ -97,7 +97,7 @@ _GENERAL = {
 
 
 class _Listener:
-    """What fails, and what hangs."""
+    """Records failing and hanging tests."""
 
     def __init__(self) -> None:
         self.failed: list[str] = []
@@ -138,7 +138,7 @@ def _run(files: list[str], options: list[str], listener: _Listener) -> int:
 
 
 def _spent() -> float:
-    """CPU time of this process and of those that it has waited for [s]: other work of the machine does not count."""
+    """CPU time of this process and its finished children [s], unaffected by other processes."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
@@ -164,7 +164,7 @@ def judge(files: list[str], deselected: list[str], budget: float) -> dict[str, A
 
 @cache
 def _imports(file: Path) -> frozenset[str]:
-    """Paths of what a file of tests imports, as `symofros.mechanics.beams.fields` is stated."""
+    """Paths of modules that a test file imports, such as `symofros.mechanics.beams.fields`."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):

@@ -51,7 +51,7 @@ def measure(
 
 
 def _kept(run: Run, quick: bool) -> dict[str, Any]:
-    """What an earlier run left on this machine, in the same way: problems by name."""
+    """Results of an earlier run on this machine with the same settings: problems by name."""
 
     def kept(data: Any) -> dict[str, Any]:
         if data["quick"] != quick or data["machine"] != machine():

@@ -65,7 +65,7 @@ class Point:
 
     @property
     def series(self) -> tuple[str, str, str]:
-        """What stays the same while the step varies."""
+        """Settings that stay fixed while the step varies."""
         return self.who, self.model, self.method
 
     @property

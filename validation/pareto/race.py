@@ -64,5 +64,5 @@ def _run(one: Contestant, repeats: int, enough: float) -> Point:
 
 
 def engines(points: tuple[Point, ...]) -> tuple[str, ...]:
-    """Who else ran, in order."""
+    """Engines that also ran, in order."""
     return tuple(dict.fromkeys(p.who for p in points if p.who != OURS))

@@ -89,7 +89,7 @@ def compose(data: Data) -> Report:
 
 
 def _chosen(name: str, problem: BenchmarkProblem, result: Result) -> list[str]:
-    """What to take at each error; the scene is named once, with what its error is."""
+    """The best choice at each error; the scene is named once, with its error."""
 
     def loss(best: Point, other: Point | None, who: str) -> str:
         if other is None:

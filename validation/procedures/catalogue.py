@@ -134,7 +134,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
 
 
 def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Iterator[Comparison]:
-    """What is done with the equations of a model, against formulas of its own; nothing for most models.
+    """Checks of the equations of a model against its own formulas; none for most models.
 
     Args:
         label: Name of the model in tables.

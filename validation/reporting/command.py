@@ -99,7 +99,7 @@ class Run:
         self._tell(f"{doing or self.topic.name}: {total} in all")
 
     def advance(self, doing: str | None = None, steps: int = 1) -> None:
-        """Steps are done; `doing` says what comes next, or came out."""
+        """Count finished steps; `doing` names the next one, or a result."""
         self._done += steps
         self.bar.update(self._task, advance=steps, description=doing)
         self._tell(doing and f"[{self._done}/{self._total}] {doing}")
@@ -155,7 +155,7 @@ def present(topic: Topic) -> str:
 
 
 def composed(topic: Topic, data: Data) -> Report:
-    """The report of what JSON keeps of its data."""
+    """The report composed from the stored JSON data."""
     return topic.compose(json.loads(json.dumps(data, allow_nan=False)))
 
 
@@ -188,7 +188,7 @@ def code(report: Report) -> Exit:
 
 
 def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) -> None:
-    """Measure with the options of what measures, write, print (data alone if `as_json`), exit."""
+    """Measure with the given options, write, print (data only if `as_json`), exit."""
     run = Run(topic, folder)
     try:
         with run.bar:
@@ -251,7 +251,7 @@ def known(
     noun: str,
     retired: Mapping[str, str] = MappingProxyType({}),
 ) -> list[str]:
-    """What is chosen, or else all.
+    """The chosen names, or all.
 
     Raises:
         BadParameter: One of them does not exist; of one that is `retired`, with the command that answers its question.

@@ -126,7 +126,7 @@ def block(item: Block, figure_name: str = "") -> str:
 
 
 def chart(item: Chart | Drawing) -> str:
-    """A picture under its title, or what it would take to draw it."""
+    """A picture under its title, or the package needed to draw it."""
     try:
         picture = f'<div class="scroll" tabindex="0">{draw(item)}</div>'
     except ModuleNotFoundError as error:

@@ -27,7 +27,7 @@ def digits(x: float | None, number: int = 2) -> str:
 
 
 def times(x: float) -> str:
-    """A ratio."""
+    """A ratio as text."""
     return f"{short(float(f'{x:.2g}'))}×"
 
 

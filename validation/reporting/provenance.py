@@ -77,7 +77,7 @@ def _digest(data: Any, present: str) -> str:
 
 
 def stamp() -> dict[str, Any]:
-    """What every report states: versions, machine, compilation of C, source, date."""
+    """Provenance stated in every report: versions, machine, compilation of C, source, date."""
     toolchain = find_toolchain()
     return {
         "versions": versions(),

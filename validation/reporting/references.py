@@ -20,7 +20,7 @@ class References:
         return reference
 
     def source(self, name: str) -> str:
-        """Where they come from, in words."""
+        """Source of the references, in words."""
         return str(self._read(name)["source"])
 
     def _read(self, name: str) -> dict[str, Any]:

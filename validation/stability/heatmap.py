@@ -44,7 +44,7 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
 
 
 def borders(values: Array, grid: Grid) -> Array:
-    """Where cells meet, halfway between neighbours on the axis as drawn; categories are a unit wide."""
+    """Borders of cells, halfway between neighbours on the axis as drawn; categories are a unit wide."""
     if grid.labels or len(values) == 1:
         return np.arange(-0.5, len(values))
     at = np.log10(values) if grid.log else values
@@ -67,7 +67,7 @@ def _scaled(axes: Any, name: str, values: Array, grid: Grid, ends: Array) -> Non
 
 
 def _cells(axes: Any, mapped: Map, columns: Array, rows: Array) -> None:
-    """The cells, those of one colour and depth as one path; then what is written into them."""
+    """The cells, those of one colour and depth as one path, then their texts."""
     ends = zip(_APART, (columns, rows), SIZE, strict=True)
     strides = [math.ceil(apart * (len(values) - 1) / size) for apart, values, size in ends]
     middles = _middles(columns, axes.xaxis), _middles(rows, axes.yaxis)
@@ -100,7 +100,7 @@ def _middles(ends: Array, axis: Any) -> Array:
 
 
 def cell(one: Cell, bound: float) -> tuple[str, float, str]:
-    """The kind of a run, the depth of its colour, and what is written into the cell."""
+    """Kind of a run, depth of its colour, and text of its cell."""
     if one.ended not in FINISHED:
         return ("refused", 0.5, "r") if one.ended == "refused" else ("ended", 0.85, "×")
     decades = math.log10(max(one.value, 1e-300))

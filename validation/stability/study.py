@@ -42,7 +42,7 @@ class Grid:
 
     @classmethod
     def of(cls, name: str, labels: tuple[str, ...], few: tuple[str, ...] = ()) -> Grid:
-        """Categories."""
+        """A grid axis of categories."""
         return cls(
             name,
             tuple(map(float, range(len(labels)))),
@@ -81,13 +81,13 @@ class Cell:
     note: str = ""
 
     def __post_init__(self) -> None:
-        """A run that is said to have come to its end has a number."""
+        """Check that a completed run has a number."""
         if self.ended in FINISHED and not math.isfinite(self.value):
             raise ArithmeticError(f"a run is said to be {self.ended} and has no number: {self.value} {self.note}")
 
 
 def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
-    """What a run comes to; why it failed and its notes are kept."""
+    """Result of a run; the reason of a failure and its notes are kept."""
     outcome = run.outcome
     note = "; ".join((*(() if outcome.ok else (outcome.reason,)), *outcome.notes))
     if not outcome.ok:
@@ -118,7 +118,7 @@ def longest(holds: Callable[[float], bool], low: float, high: float, within: flo
 
 
 def refused(error: Exception) -> Cell:
-    """What was not begun, in words."""
+    """A cell for a run that was refused, with the reason."""
     return Cell(math.nan, REFUSED, str(error).splitlines()[0])
 
 
@@ -154,7 +154,7 @@ class Subject:
 
 @dataclass(frozen=True)
 class Map:
-    """What one subject comes to, all over the grid.
+    """Results of one subject over the grid.
 
     Attributes:
         subject: Method, formulation or engine that was run.
@@ -177,7 +177,7 @@ class Map:
 
     @cached_property
     def good(self) -> npt.NDArray[np.bool_]:
-        """Where the criterion is met (ny, nx)."""
+        """Cells where the criterion is met (ny, nx)."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.values <= self.bound)
 

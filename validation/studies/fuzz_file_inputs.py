@@ -64,7 +64,7 @@ def mutated_files(kind: str, seed: int) -> Iterator[bytes]:
 
 
 def sound_files(kind: str) -> list[bytes]:
-    """What mutations of a kind start from."""
+    """Valid files from which mutations of a kind start."""
     if kind == "document":
         return _documents()
     if kind.endswith(".csv"):

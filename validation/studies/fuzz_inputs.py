@@ -27,7 +27,7 @@ _WORD = re.compile(rb"[A-Za-z_]\w*|-?\d+(?:\.\d+)?")
 
 
 def corpus(kind: str) -> list[bytes]:
-    """What mutations of a kind start from."""
+    """Inputs from which mutations of a kind start."""
     if kind == "formula":
         return list(_FORMULAS)
     folders = (CORPUS, references.FOLDER)

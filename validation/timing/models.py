@@ -90,7 +90,7 @@ class TimedModel:
     closed: Mapping[str, float] | None = None
 
     def load(self) -> sf.System:
-        """Its description, without friction and springs in joints, which engines have each in their own way."""
+        """Load its description, without friction and springs in joints, as engines model them differently."""
         system = self.make()
         bodies = [
             body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))

@@ -34,7 +34,7 @@ LEFT = "what was left"
 
 
 def run_job(job: Job, record: Record, doing: Doing = lambda model, function, part: None) -> None:
-    """Time one model in a process of its own; what was measured before it ended, or Ctrl-C, is kept.
+    """Time one model in a separate process; results before its end, or Ctrl-C, are kept.
 
     Args:
         job: Model, functions and peers to time.
@@ -73,7 +73,7 @@ def jobs(
     states: int,
     done: Record | None = None,
 ) -> list[Job]:
-    """What is to be done: each model's functions among those asked for, less what was done."""
+    """The jobs: requested functions of each model that were not measured before."""
     wanted = set(functions)
     todo = []
     for model in models:
@@ -85,7 +85,7 @@ def jobs(
 
 
 def prepare(todo: Iterable[Job], say: Say) -> list[str]:
-    """Compile what the models of some jobs share, by all compilers at the same time; what can't be, each model tells.
+    """Compile shared parts of the jobs' models by all compilers in parallel; failures are reported by each model.
 
     Args:
         todo: Jobs.
@@ -108,7 +108,7 @@ def prepare(todo: Iterable[Job], say: Say) -> list[str]:
 
 
 def facts() -> Mapping[str, Any]:
-    """What times depend on: processor, its measured limits, compilers, flags."""
+    """Conditions that times depend on: processor, its measured limits, compilers, flags."""
     toolchain = find_toolchain()
     flags = {
         "symofros": " ".join(toolchain.default_flags) if toolchain else "none",

@@ -86,7 +86,7 @@ TARGETS: tuple[Target, ...] = (
 
 
 def verdicts(record: Record) -> list[Verdict]:
-    """Each target against the peer's fastest way, which depends on nothing of ours."""
+    """Verdict on each target against the peer's fastest way, which does not depend on our code."""
     judged = []
     for target in TARGETS:
         entry = record.best(target.model, target.function, target.peer, target.family)
@@ -125,7 +125,7 @@ class ReverseCost(Labelled):
 
     @property
     def met(self) -> bool:
-        """Whether it is at most what is asked for."""
+        """Whether it is within the target."""
         return self.ratio <= MOST_REVERSE
 
 

@@ -88,7 +88,7 @@ def measure_waits(doing: Callable[[str], None]) -> list[Wait]:
 
 
 def _robot_waits(robot: Robot, cache: Path, doing: Callable[[str], None]) -> Iterator[Wait]:
-    """Those of one robot.
+    """Waiting times of one robot.
 
     Args:
         robot: The robot.
@@ -132,7 +132,7 @@ def process_time(arguments: Sequence[str], cache: Path | None, runs: int) -> flo
 
 
 def _process(arguments: Sequence[str], cache: Path) -> tuple[float, str]:
-    """Seconds that a process of Python takes, and what it prints."""
+    """Seconds and output of a Python process."""
     environment = {**os.environ, "SYMOFROS_CACHE": str(cache)}
     # Whoever installs a package has its bytecode; without, each process would translate its text again.
     environment.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -178,7 +178,7 @@ class Orientation(Block):
     target: str = "matrix"
 
     def __post_init__(self) -> None:
-        """Known forms."""
+        """Refuse unknown forms."""
         choice(self.name, "source", self.source, FORMS)
         choice(self.name, "target", self.target, FORMS)
 

@@ -74,7 +74,7 @@ class Gain(Block):
 
     @property
     def conversion(self) -> float:
-        """What the units contribute."""
+        """Factors of the units."""
         if not self.unit_in or not self.unit_out:
             return 1.0
         a, b = parse(self.unit_in), parse(self.unit_out)
@@ -98,7 +98,7 @@ class Gain(Block):
 
 
 def _one_an_input(name: str, field: str, given: str, pair: str) -> None:
-    """Refuse what is no word of the two characters of a pair, one an input."""
+    """Refuse text that is not one character of a pair for each input."""
     if not given or set(given) - {*pair} or len(given) > MOST_INPUTS:
         rule = f"1 to {MOST_INPUTS} {field} {pair[0]} or {pair[1]}, one an input"
         raise refuse(name, field, repr(given), rule, f'write for example "{pair}"')

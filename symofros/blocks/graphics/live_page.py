@@ -39,7 +39,7 @@ class Feed:
         self.lock = threading.Lock()
 
     def take(self, data: bytes) -> None:
-        """One datagram; what is no packet of the run is dropped."""
+        """Read one datagram; data that is not a packet of the run is dropped."""
         packet = unpack(data, len(self.head.get("labels", ())))
         if packet is not None:
             with self.lock:
@@ -62,7 +62,7 @@ class Page(BaseHTTPRequestHandler):
     port: int
 
     def do_GET(self) -> None:
-        """The page under /TOKEN/, the rows under /TOKEN/rows; nothing else, and to nobody else."""
+        """Serve the page under /TOKEN/ and the rows under /TOKEN/rows; refuse every other request."""
         hosts = (f"127.0.0.1:{self.port}", f"localhost:{self.port}")
         first, _, rest = self.path.removeprefix("/").partition("/")
         foreign = {*self.headers.get_all("Origin", [])} - {f"http://{host}" for host in hosts}
@@ -89,7 +89,7 @@ class Page(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def _stream(self) -> None:
-        """Events without end: what is shown, whenever that changes, and new rows."""
+        """Stream events: the layout whenever it changes, and new rows."""
         self._begin("text/event-stream")
         self.end_headers()
         seen, sent_head = 0, None

@@ -80,7 +80,7 @@ class Store(ExternalBlock):
         return open_ports(self.name, self.signals, environment)
 
     def begin(self, environment: Environment) -> Running:
-        """Nothing is stored yet."""
+        """Start without stored samples."""
         return _Stored(self.signals, self.most)
 
 

@@ -97,7 +97,7 @@ class View3D(ExternalBlock):
 
     @property
     def viewer(self) -> Viewer | None:
-        """What shows the last run; None before the first."""
+        """The viewer of the last run; None before the first."""
         return self.__dict__.get("_viewer")
 
     def close(self) -> None:

@@ -20,7 +20,7 @@ def _rates(unit: str) -> tuple[str, str, str]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Wave(Block):
-    """What the signals share: numbers that broadcast, a unit, and an output."""
+    """Base of the wave signals: parameters that broadcast, a unit, and an output."""
 
     unit: str = ""
 

@@ -97,7 +97,7 @@ class InverseKinematics(Block):
         return joints
 
     def _moved(self, context: EvaluationContext, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Rates and accelerations of the joints, and what is missing."""
+        """Rates and accelerations of the joints, and the residual."""
         task, chosen = self._task(context.environment), self._chosen(context.environment)
         q = chosen.configuration(context, joints)
         J, error = task.jacobian(context, q), task.error(context, q)
@@ -125,5 +125,5 @@ class InverseKinematics(Block):
         return {"joints": self._moved(context, context.states["joints"])[0]} if self.period is None else {}
 
     def update(self, context: EvaluationContext) -> Values:
-        """Where the next sample starts."""
+        """Start of the next sample."""
         return {} if self.period is None else {"joints": self._placed(context)}

@@ -128,7 +128,7 @@ class _Listening(Receiving):
         self._socket = listener
 
     def arrived(self) -> Iterator[bytes]:
-        """What the socket holds."""
+        """Packets in the socket."""
         for _ in range(MAX_TAKEN):
             try:
                 yield self._socket.recv(65536)

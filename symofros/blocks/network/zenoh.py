@@ -37,7 +37,7 @@ class _ByZenoh(Exchange):
         return host.strip("[]"), int(port) if port.isdigit() and len(port) < 6 else 0
 
     def check(self) -> None:
-        """Refuse what is no address or no key.
+        """Refuse invalid addresses and keys.
 
         Raises:
             DescriptionError: It is none.
@@ -139,7 +139,7 @@ class _Subscribed(Receiving):
         self._subscriber = subscriber  # Zenoh hears as long as it is referred to.
 
     def arrived(self) -> Iterator[bytes]:
-        """What the queue holds; what comes meanwhile is the next sample's."""
+        """Packets in the queue; later ones belong to the next sample."""
         for _ in range(len(self._waiting)):
             yield self._waiting.popleft()
 
@@ -149,7 +149,7 @@ class _Subscribed(Receiving):
 
 
 def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
-    """A peer that talks by one address only, and what it declares.
+    """A peer restricted to one address, and the declared endpoint.
 
     Raises:
         SymofrosError: Zenoh is not installed, the address is taken, or the key is none.

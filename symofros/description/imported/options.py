@@ -35,7 +35,7 @@ class ImportOptions:
     limits: LimitsAs = "data"
 
     def __post_init__(self) -> None:
-        """Refuse what is no choice.
+        """Refuse unknown choices.
 
         Raises:
             ArgumentError: A word is unknown, or `snap_tol` is not a small number.

@@ -126,5 +126,5 @@ class ImportedTree:
 
     @property
     def keeps(self) -> Dissipation:
-        """What of the passive losses is kept."""
+        """The passive losses that are kept."""
         return self.options.dissipation or self.dissipation

@@ -108,7 +108,7 @@ class ActuatorReader:
             )
 
     def _obstacle(self, i: int, place: int, target: int) -> str:
-        """What keeps an actuator from being a formula of its control; "" where nothing does."""
+        """The reason why an actuator can't be a formula of its control; "" if there is none."""
         m = self.model
         if m.opt.disableflags & _NO_ACTUATION or m.opt.disableactuator & 1 << int(np.clip(m.actuator_group[i], 0, 30)):
             return "that are switched off"
@@ -153,7 +153,7 @@ class ActuatorReader:
         self._efforts[joint] = [_sum([e, _scaled(r, force)]) for e, r in zip(efforts, gear, strict=True)]
 
     def _push(self, body: int, force: Term, *parts: tuple[Sequence[float], str, Any]) -> None:
-        """Add the force and the moment of an actuator to the loads on a body; what never moves feels none."""
+        """Add the force and the moment of an actuator to the loads on a body; fixed bodies are skipped."""
         if self.model.body_treeid[body] < 0:
             return
         for kind, (direction, at, axes) in zip(("force", "torque"), parts, strict=True):

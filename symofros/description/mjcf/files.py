@@ -98,7 +98,7 @@ class Folder:
         return data
 
     def _expand(self, element: Element, folder: Path, depth: int) -> None:
-        """Put what is included in the place of each <include>."""
+        """Replace each <include> by the included elements."""
         if depth > MAX_DEPTH:
             raise DescriptionError(
                 Problem(

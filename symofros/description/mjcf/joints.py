@@ -55,7 +55,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class JointEfforts:
-    """What actuators do on a joint.
+    """Efforts of actuators on a joint.
 
     Attributes:
         formulas: Efforts, one a speed; none where no actuator is a formula.
@@ -142,7 +142,7 @@ class JointReader:
         return Limits(lower, upper)
 
     def _resistances(self, j: int) -> tuple[Resistance, ...]:
-        """What resists each speed, with MuJoCo's higher orders where ours have them.
+        """Resistances of each speed, with MuJoCo's higher orders where they exist here.
 
         MuJoCo: F = -(k x + k2 x^2 + k3 x^3) with x = q - springref, and F = -(d v + d2 v |v| + d3 v^3).
         """

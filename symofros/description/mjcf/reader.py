@@ -100,7 +100,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
 
 
 def compiled(document: Document, remarks: Remarks) -> Any:
-    """MuJoCo's model.
+    """The model compiled by MuJoCo.
 
     Raises:
         DescriptionError: MuJoCo is not installed, or refuses the model.
@@ -166,7 +166,7 @@ def _written(element: Element) -> Iterator[tuple[str, Element]]:
 
 
 def _places(element: Element) -> dict[tuple[str, ...], str]:
-    """Where named bodies, joints and constraints are stated."""
+    """Places in the file of named bodies, joints and constraints."""
     kinds = {"body": "body", "joint": "joint", "freejoint": "joint"}
     places: dict[tuple[str, ...], str] = {}
     pending = list(element.children)

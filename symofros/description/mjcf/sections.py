@@ -76,7 +76,7 @@ class Sections:
         self.remarks = remarks
 
     def kept(self, root: Element) -> Element:
-        """The document without what is ignored; everything refused or unknown is noted as a fault."""
+        """The document without ignored elements; refused and unknown ones are noted as faults."""
         result = self._kept(root)
         copies = self._expanded(result) - size(result)
         if copies > MAX_COPIES:
@@ -136,7 +136,7 @@ class Sections:
                 self.remarks.add(f"{label} of <tendon> ignored", "tendon", _name(item))
 
     def _expanded(self, element: Element) -> int:
-        """How many elements MuJoCo makes of one; it takes time for copies of nothing, too."""
+        """Number of elements that MuJoCo makes of one; copies of empty elements take time, too."""
         inside = sum(map(self._expanded, element.children))
         if element.tag != "replicate":
             return 1 + inside

@@ -78,7 +78,7 @@ class Frames:
         self.nodes[name] = FrameNode(element, scope, self.values.pose(stated, owner), full, attached_to)
 
     def full(self, scope: str, name: str) -> str:
-        """The full name of what a model calls by a name."""
+        """Full name for a name used within a model."""
         if name == WORLD and scope + name not in self.nodes:
             return WORLD
         own = f"{scope}{SEPARATOR}{name}" if scope else name

@@ -124,7 +124,7 @@ class JointReader:
         return ImportedBody(child, parent=parent, joints=(made,), placement=held)
 
     def _made(self, joint: SdfJoint, child: str, placement: Placement) -> ImportedJoint:
-        """The joint itself, at its place on what carries it."""
+        """The joint itself, at its place on the carrying body."""
         kind, (position, rotation) = joint.kind, placement
         if "axis" not in KINDS[kind].entries:
             if kind == "ball" and joint.element.first("axis"):
@@ -195,7 +195,7 @@ class JointReader:
         return Closure(joint.name, first, second, *BLOCKED[joint.kind])
 
     def couplings(self) -> Iterator[Coupling]:
-        """What <mimic> states."""
+        """Couplings from <mimic> elements."""
         for joint in self.joints.values():
             for k, tag in enumerate(("axis", "axis2")):
                 axis = joint.element.first(tag)

@@ -131,7 +131,7 @@ class _Importer:
         return tree
 
     def model(self, model: Element, scope: str, around: str) -> None:
-        """Take up a model: its frame, and what is in it.
+        """Read a model: its frame and its contents.
 
         Args:
             model: The element.
@@ -285,5 +285,5 @@ class _Importer:
         return x, y, z
 
     def shapes(self, name: str, link: Element) -> tuple[Visual, ...]:
-        """What a link looks like."""
+        """Visual shapes of a link."""
         return self.visuals.of(as_urdf(link), name, Path(link.file).parent)

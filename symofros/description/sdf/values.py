@@ -145,7 +145,7 @@ class SdfValues(Values):
         return Pose(np.array(numbers[:3]), roll_pitch_yaw(angles))
 
     def mass_properties(self, link: Element, name: str) -> Inertia:
-        """Inertia of a link; what is not stated has SDFormat's defaults, 1 kg and a unit matrix."""
+        """Inertia of a link; unstated values have SDFormat's defaults, 1 kg and a unit matrix."""
         element, owner = link.first("inertial"), f"link '{name}'"
         if element is None:
             self.remarks.add("links without <inertial> have SDFormat's 1 kg and unit inertia", "link", name)

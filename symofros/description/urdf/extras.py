@@ -77,7 +77,7 @@ def _remark_transmission(element: Element, remarks: Remarks) -> None:
 
 
 def _inside(element: Element) -> Iterator[Element]:
-    """The elements in one, at any depth, but for those of a plug-in, whose meaning is its own."""
+    """The elements inside one at any depth, except those of plug-ins."""
     pending = list(reversed(element.children))
     while pending:
         inner = pending.pop()

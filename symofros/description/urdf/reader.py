@@ -249,7 +249,7 @@ class _Importer:
         return Joint(name, "planar", position=position, rotation=placed)
 
     def resistances(self, element: Element, joint: Joint) -> tuple[Resistance, ...]:
-        """Damping and friction; what is no number counts as stated, and is refused where it is asked for."""
+        """Damping and friction; invalid numbers count as stated and are refused only if they are used."""
         dynamics = element.first("dynamics")
         stated = {} if dynamics is None else dynamics.attributes
         damping, friction = (

@@ -42,7 +42,7 @@ expressions = _beside("xacro_expressions")
 
 
 def parsed(inp: Any, filename: str | None = None) -> Any:
-    """What xacro parses, without document types: only they define entities.
+    """The document parsed by xacro, without document types, as only they define entities.
 
     Raises:
         Refusal: A document type, or too many bytes.
@@ -222,7 +222,7 @@ def innermost(error: BaseException) -> BaseException:
 
 
 def told(error: BaseException) -> str:
-    """What went wrong, once, and what xacro says of the places where it did: its own texts repeat their causes."""
+    """The error message once, with the places that xacro names; xacro's own texts repeat their causes."""
     first = innermost(error)
     said = [str(first).strip() or type(first).__name__]
     while error is not first:
@@ -234,7 +234,7 @@ def told(error: BaseException) -> str:
 
 
 def main() -> None:
-    """Expand what is asked for."""
+    """Expand the requested file."""
     task = json.load(sys.stdin)
     out, sys.stdout = sys.stdout, sys.stderr  # What xacro prints is no answer.
     try:

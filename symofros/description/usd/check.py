@@ -65,7 +65,7 @@ def _stated(row: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _bounds(row: Mapping[str, Any]) -> Iterator[Fault]:
-    """Limits, drives, and what extensions of the format state: one number each, infinities among them."""
+    """Numbers of a row: limits, drives and those of format extensions, infinities included."""
     limits = ((f"limit {freedom}", value) for freedom, pair in row.get("limits", {}).items() for value in pair)
     drives = (("maxForce", drive["maxForce"]) for drive in row.get("drives", {}).values())
     for name, value in (*limits, *drives):

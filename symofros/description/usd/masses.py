@@ -57,7 +57,7 @@ class Extent:
     E: Array
 
     def times(self, factor: float) -> Extent:
-        """That of so many times the density."""
+        """The mass properties at a multiple of the density."""
         return Extent(self.size * factor, self.center, self.E * factor)
 
 

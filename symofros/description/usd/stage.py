@@ -20,7 +20,7 @@ _SOURCE = re.compile(r"^(Warning|Error|Runtime Error|Coding Error): in .*? (at l
 
 
 def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """What the stage of a file states, in its own units (`usd_worker.stage_data`), with the "warnings" of OpenUSD.
+    """Contents of the stage of a file in its own units (`usd_worker.stage_data`), with OpenUSD's "warnings".
 
     Args:
         path: Root layer: .usd, .usda, .usdc, .usdz.
@@ -60,7 +60,7 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def warnings_of(printed: str) -> list[str]:
-    """What OpenUSD prints, a text a line, without the place in OpenUSD's own source.
+    """Messages printed by OpenUSD, one per line, without their place in OpenUSD's source.
 
     Args:
         printed: Lines such as "Warning: in NAME at line N of FILE -- TEXT".
@@ -82,7 +82,7 @@ def _missing(text: str, path: str | os.PathLike[str]) -> Problem:
 
 
 def _refuse_outside(file: Path, layers: Iterable[str]) -> None:
-    """Refuse a stage that draws on other places than its own folder: who sends a file does not choose what is read."""
+    """Refuse a stage that reads outside its own folder, as its author must not choose which files are read."""
     folder = resolved(file).parent
     for layer in layers:
         if not resolved(Path(layer)).is_relative_to(folder):

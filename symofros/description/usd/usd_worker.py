@@ -121,7 +121,7 @@ def _time() -> Any:
 
 
 def stage_data(file: str) -> dict[str, Any]:
-    """What a stage states.
+    """Contents of a stage.
 
     Args:
         file: Path of its root layer.
@@ -282,7 +282,7 @@ def printable(text: str) -> str:
 
 
 def main() -> None:
-    """Read what is asked for."""
+    """Read the requested stage."""
     task = json.load(sys.stdin)
     answers = os.dup(1)
     os.dup2(2, 1)  # What OpenUSD prints is no answer.

@@ -24,7 +24,7 @@ _ROUND = 1e-6
 
 
 def visual(shape: Mapping[str, Any], body: Pose, placed: Affine) -> Visual | None:
-    """How a shape looks on its body; None if it can't be drawn.
+    """Visual of a shape on its body; None if it can't be drawn.
 
     Args:
         shape: What the stage states of it.

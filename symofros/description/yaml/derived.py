@@ -38,7 +38,7 @@ _ANCHOR = (str, str | None)
 
 
 def _entry_type(name: str, kind: Any) -> Any:
-    """What an entry of the file holds for a field of that type."""
+    """Type of the file entry for a field of that type."""
     arguments = get_args(kind)
     if kind == Value:
         return Formula
@@ -116,7 +116,7 @@ class NounEntry(PartEntry):
         return {name: _value(getattr(self, name)) for name in type(self).model_fields}
 
     def build(self, **given: Any) -> Any:
-        """The noun, of these fields and of those that the file gives elsewhere.
+        """The noun made of these fields and of further ones given elsewhere in the file.
 
         Raises:
             DescriptionError: It refuses them.

@@ -45,7 +45,7 @@ _KINDS = {
 
 
 def placed_problems(error: ValidationError, root: Node, file: str, data: Any) -> list[tuple[Problem, Path]]:
-    """What pydantic finds wrong, and where in the data each is.
+    """Problems found by pydantic, each with its place in the data.
 
     Args:
         error: What validation raised.
@@ -58,7 +58,7 @@ def placed_problems(error: ValidationError, root: Node, file: str, data: Any) ->
 
 
 def _path_of(error: ErrorDetails) -> Path:
-    """Where in the data the error is; pydantic marks one of a key itself by a last item "[key]"."""
+    """Path of an error in the data; pydantic marks an error of a key itself by a last item "[key]"."""
     loc = error["loc"]
     return loc[:-1] if loc and loc[-1] == "[key]" else loc
 
@@ -165,7 +165,7 @@ def _short(value: Any) -> str:
 
 
 def _about(path: Path, what: str) -> str:
-    """The fault with the name of what it is in: "body 'arm1': joint: axis[2]: not a number"."""
+    """Text of a fault with its context: "body 'arm1': joint: axis[2]: not a number"."""
     return ": ".join([*_words(path), what.removeprefix("value: ")])
 
 

@@ -76,7 +76,7 @@ class ShapedEntry(PartEntry):
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
-        """Refuse sizes that the shape does not have, a shape without those that it needs, and what can't be made."""
+        """Refuse unknown, missing and impossible sizes of a shape."""
         parameters, stated = self._parameters(self.shape), set(self.sizes)
         missing = {name for name, each in parameters.items() if each.default is each.empty} - stated
         superfluous = stated - set(parameters)
@@ -193,7 +193,7 @@ class RotationEntry(PartEntry):
         return self
 
     def build(self) -> Rotation:
-        """The Rotation."""
+        """Make the Rotation."""
         if self.matrix is not None:
             return Rotation.matrix(self.matrix)
         kind, values = next((kind, values) for kind in ROTATIONS if (values := getattr(self, kind)) is not None)

@@ -219,7 +219,7 @@ class _Merger:
         return None
 
     def merge(self, file: NativeFile, root: Node, shown: str, included: bool) -> None:
-        """Add one file's entries to what is there."""
+        """Add the entries of one file."""
         system_line = f"{shown}:{root.at(('system',)).key_line}"
         if file.system is not None and included:
             self.problems.append(
@@ -272,7 +272,7 @@ class _Merger:
 
 
 def _refuse_diagram(root: Node, shown: str) -> None:
-    """Tell a diagram from a mechanism, instead of what each of its entries is not.
+    """Report a diagram file as such, instead of refusing each of its entries.
 
     Raises:
         DescriptionError: It is one.
@@ -310,7 +310,7 @@ def _validate(root: Node, shown: str) -> tuple[NativeFile | None, list[Problem],
 
 
 def _names_of(section: str, name: str, entry: Any) -> set[str]:
-    """What others may call an unreadable entry: its name and, for a body, its coordinates and speeds."""
+    """Names that refer to an unreadable entry: its name and, for a body, its coordinates and speeds."""
     if section != "bodies":
         return {name}
     joint = entry.get("joint") if isinstance(entry, dict) else None

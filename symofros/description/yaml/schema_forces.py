@@ -50,7 +50,7 @@ class ElementEntry(PartEntry):
 
     @property
     def given(self) -> list[NounEntry]:
-        """What is stated."""
+        """The stated forces."""
         return [entry for name in ELEMENTS if (entry := getattr(self, name)) is not None]
 
     @model_validator(mode="after")

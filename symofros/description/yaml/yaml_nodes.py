@@ -108,7 +108,7 @@ def decoded(data: bytes, file: str) -> str:
 
 
 def too_many_nodes(where: str) -> Problem:
-    """That a document has more than MAX_NODES values.
+    """Fault: the document has more than MAX_NODES values.
 
     Args:
         where: Place of the first beyond.
@@ -180,7 +180,7 @@ def _not_yaml(found: str, where: str) -> Problem:
 
 
 def scalar_of(text: str) -> Any:
-    """What a plain scalar of this text means."""
+    """Value of a plain scalar with this text."""
     if text in _WORDS:
         return _WORDS[text]
     if _INTEGER.match(text):

@@ -144,7 +144,7 @@ def _document(system: System) -> Plain:
 
 
 def _entry(entry: type[NounEntry], noun: Any) -> Plain:
-    """The entries of a noun that the file requires, and those that differ from their defaults."""
+    """The required entries of a noun, and those that differ from their defaults."""
     defaults = {item.name: item.default for item in fields(noun)}
     entries: Plain = {}
     for name, stated in entry.model_fields.items():
@@ -276,7 +276,7 @@ def _styled(value: Any, role: str) -> Any:
 
 
 def _role(key: str, owner: str) -> str:
-    """What an entry is to the layout; names of things are not keys of the format."""
+    """Role of an entry in the layout; names of elements are not keys of the format."""
     if owner == "bodies":
         return "body"
     return key if owner in ("", "body") else "item"

@@ -73,7 +73,7 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
 
 
 def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
-    """What was asked to be written; a window comes last, and waits until it is closed."""
+    """Write the requested files; a window opens last and waits until it is closed."""
     files = run.save(request.output, *request.signals) if request.output else []
     if request.jitter:
         histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(request.jitter, dpi=120)
@@ -87,7 +87,7 @@ def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
 
 
 def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
-    """Outcome, cost, jitter, what was kept, last values."""
+    """Print outcome, cost, jitter, results of blocks and last values."""
     cost, outcome = run.cost, run.outcome
     jitter = jitter_of(cost) if cost.late.size else None
     counts = {

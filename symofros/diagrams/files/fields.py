@@ -26,7 +26,7 @@ class Misfit(Exception):
 
 
 def types_of(owner: type[Any]) -> dict[str, Any]:
-    """Field -> type, of a dataclass; those that its constructor does not take left out."""
+    """Field -> type of a dataclass, for fields that its constructor takes."""
     hints = get_type_hints(owner)
     return {item.name: hints[item.name] for item in dataclasses.fields(owner) if item.init}
 
@@ -139,7 +139,7 @@ def _listed(arguments: tuple[Any, ...], node: Node, kind: Any) -> Any:
 
 
 def _object(kind: type[Any], node: Node) -> Any:
-    """A dataclass from a mapping; its own checks may raise what they like."""
+    """A dataclass from a mapping; its own checks may raise any exception."""
     if not isinstance(node.value, dict):
         raise Misfit(node, words_for(kind))
     types = types_of(kind)
@@ -153,7 +153,7 @@ def _object(kind: type[Any], node: Node) -> Any:
 
 
 def write(value: Any) -> Any:
-    """A field's value as what YAML holds.
+    """A field's value in a form that YAML holds.
 
     Raises:
         TypeError: No file can state it.

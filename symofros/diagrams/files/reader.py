@@ -81,7 +81,7 @@ def read_diagram(
 
 @dataclass
 class _Shared:
-    """What the files of one diagram share."""
+    """Data shared by the files of one diagram."""
 
     folder: Path
     kinds: Mapping[str, type[Block]]
@@ -127,7 +127,7 @@ class _Reader(Entries):
         self.shared, self.base, self.here = shared, path.parent, here
 
     def diagram(self, entries: Mapping[str, Node], name: str) -> Diagram:
-        """What a file, or an inline part, states."""
+        """The diagram stated in a file or an inline part."""
         diagram = Diagram(self.text(entries["name"], "name") if "name" in entries else name)
         for key, read_one in (("models", self.model), ("blocks", self.block), ("parts", self.part)):
             if key in entries:

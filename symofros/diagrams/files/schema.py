@@ -97,7 +97,7 @@ def _block(kind: str, owner: type[Block]) -> Plain:
 
 
 def _attributes(owner: type[Block]) -> dict[str, str]:
-    """Field -> what the docstrings of a class and its bases say of it."""
+    """Field -> its description in the docstrings of a class and its bases."""
     descriptions: dict[str, str] = {}
     for base in reversed(owner.__mro__):
         _, _, section = inspect.cleandoc(vars(base).get("__doc__") or "").partition("Attributes:\n")

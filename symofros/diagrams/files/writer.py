@@ -144,7 +144,7 @@ class _Writer:
 
 
 def _replayed(diagram: Diagram) -> Diagram:
-    """What the parts of a diagram bring along.
+    """Libraries and models used by the parts of a diagram.
 
     Raises:
         DescriptionError: A part was changed after it was included.
@@ -172,7 +172,7 @@ def _replayed(diagram: Diagram) -> Diagram:
 
 
 def _unchanged(diagram: Diagram, path: Path) -> bool:
-    """Whether a part's file still says what the part is."""
+    """Whether a part's file still equals the part."""
     try:
         stated = load_diagram(path, network=True)
     except DescriptionError:

@@ -52,7 +52,7 @@ class Resolved:
 
 
 def rates_of(pieces: Mapping[str, Piece]) -> list[tuple[str, float, float]]:
-    """(block, period, offset) of what is sampled."""
+    """(block, period, offset) of the sampled blocks."""
     return [
         (name, piece.block.period, piece.block.offset)
         for name, piece in pieces.items()
@@ -143,7 +143,7 @@ class CompiledDiagram:
 
 
 def fuser(resolved: Resolved) -> Fuser:
-    """What writes a diagram's functions."""
+    """The writer of a diagram's functions."""
     return Fuser(resolved.wired, resolved.pieces, resolved.layout, resolved.order)
 
 
@@ -199,11 +199,11 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
     unit, text = unit_of(motion, record, toolchain, options)
 
     def formulas(_: tuple[object, ...], __: bool) -> Unit:
-        """What the stepper looks for zeros of."""
+        """Formulas whose zeros the stepper locates."""
         return unit
 
     def instants(_: Sequence[object], par: Array, t0: float, t_end: float) -> Array:
-        """Those of the formulas of time that the part's motion has."""
+        """Instants of the part's formulas of time."""
         edges = [edge for function in motion.functions for edge in function.edges()]
         return formula_instants(motion, edges, par, t0, t_end)
 

@@ -74,7 +74,7 @@ class Point:
         return self._values[source]
 
     def _place(self, source: Source) -> Place | None:
-        """Where an output is read from; None for one that is computed."""
+        """Storage of an output; None for one that is computed."""
         layout, piece = self._layout, self._pieces[source[0]]
         if source in layout.samples:
             return layout.samples[source]
@@ -106,7 +106,7 @@ class Point:
         return copy_into(self.g, piece.g, edges, replacement)
 
     def _group(self, piece: Piece, group: str) -> list[Edge]:
-        """What stands for an input group of a block."""
+        """Signal for an input group of a block."""
         name, layout = piece.name, self._layout
         if group == "t":
             return [self.g.input("t", 0)]
@@ -193,7 +193,7 @@ class Fuser:
         return self._program(self._wired.name, g, functions, part)
 
     def _judging(self, at: Point, part: Part) -> list[Function]:
-        """What a part with elastic beams is judged by: mass_matrix, and beam_stiffness as models have it."""
+        """Functions that judge a part with elastic beams: mass_matrix, and beam_stiffness as models have it."""
         nv, layout, models = part.nv, self._layout, self._wired.models
         M = [[ONE if i == k else ZERO for k in range(nv)] for i in range(nv)]
         K = [[ZERO] * nv for _ in range(nv)]
@@ -316,7 +316,7 @@ class Fuser:
         return [name for name in (names | rest) if self._pieces[name].is_external]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
-        """What happens at instants: functions "due_i" for each set and "crossed_i" for each crossing.
+        """Functions evaluated at instants: "due_i" for each set and "crossed_i" for each crossing.
 
         "inputs_i_j" gives what the j-th block of set i is called with: its inputs, one after the other.
         """

@@ -158,7 +158,7 @@ def _refuse_missing(name: str, block: Block, parameters: Mapping[str, Array]) ->
 def _context(
     g: Graph, wired: Wired, name: str, known: Environment, own: Sequence[Mapping[str, Array]]
 ) -> EvaluationContext:
-    """What a block's formulas read.
+    """Inputs of a block's formulas.
 
     Args:
         g: Graph of the block.
@@ -201,7 +201,7 @@ def _given(g: Graph, wired: Wired, name: str, port: Port) -> Tensor:
 
 
 def _fit(wired: Wired, piece: Piece) -> None:
-    """Formulas have the shapes of what they give; a block sticks to the kind that its sample time makes it."""
+    """Check the shapes of results, and that the sample time does not change the kind of a block."""
     name, block = piece.name, piece.block
     shapes = {port.name: port.shape for port in wired.ports[name].outputs}
     given = set() if piece.is_external else shapes.keys() - block.samples().keys()

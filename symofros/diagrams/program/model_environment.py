@@ -52,7 +52,7 @@ class Models:
         return tuple(self._setups)
 
     def setup(self, name: str) -> ModelSetup:
-        """What was stated of a model.
+        """The stated settings of a model.
 
         Raises:
             DescriptionError: There is none of that name.

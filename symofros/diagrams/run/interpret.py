@@ -130,7 +130,7 @@ class _RecordFeed:
         self._sent, self._when = 0, time.perf_counter()
 
     def send(self, t: float, is_over: bool = False) -> bool:
-        """Send what is new, at a stop or when it is time for it; whether the run goes on."""
+        """Send new records, at a stop or when due; whether the run continues."""
         is_due = t >= self._observer.stop() - _SLACK or time.perf_counter() - self._when >= _SENT_EVERY
         if not (is_over and self._sent < len(self._rows)) and not (is_due and not is_over):
             return True
@@ -330,7 +330,7 @@ def run_interpreted(
 
 
 def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> float:
-    """What happens at an instant: blocks are sampled, constraints engage, signals are recorded.
+    """Handle an instant: sample blocks, engage constraints, record signals.
 
     Returns:
         The largest |phi| that engaging has closed.

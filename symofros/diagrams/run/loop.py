@@ -141,7 +141,7 @@ class Loop:
         d.event_t, d.event_index = memory.shared(self._event_t), memory.shared(self._event_index)
 
     def _call_block(self, _data: Any, block: int, t: float, inputs: Any, u: Any) -> int:
-        """Call an external block, and write its outputs into u; what it raises is kept and ends the run."""
+        """Call an external block and write its outputs into u; its exception is stored and ends the run."""
         try:
             given = self._memory.view(inputs, self._external.input_sizes[block]).copy()
             outputs = self._external.call(block, t, given)
@@ -211,7 +211,7 @@ class Loop:
         return self._memory.view(self.diagram.u, self.diagram.nu).copy()
 
     def put(self, places: Iterable[Place], values: Array) -> None:
-        """Some entries of the inputs <- those of others (nu)."""
+        """Assign some entries of the inputs from values (nu)."""
         u = self._memory.view(self.diagram.u, self.diagram.nu)
         for place in places:
             u[place.slice] = values[place.slice]

@@ -115,7 +115,7 @@ def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Star
 
 
 def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par: Array) -> Placed:
-    """A part on its constraints, with what is stated of its start.
+    """A part on its constraints, with the stated values of its start.
 
     Raises:
         AssemblyError: There is no such state.

@@ -13,7 +13,7 @@ from symofros.simulation.results.plots import Panel
 
 
 def plots_of(wired: Wired) -> list[Plot]:
-    """What a diagram asks to be shown: what it lists, then its scopes."""
+    """Plots of a diagram: those it lists, then its scopes."""
     plots = list(wired.plots)
     for name, block in wired.blocks.items():
         outputs = [port.name for port in wired.ports[name].outputs]

@@ -72,7 +72,7 @@ class Called:
         return named_function(getattr(self._wired.blocks[name], "function", None) or self._running[name].call)
 
     def kept(self) -> dict[str, dict[str, Array]]:
-        """What each block kept of the run, those left out that keep nothing."""
+        """Results stored by each block; blocks without results are left out."""
         return {name: dict(kept) for name, one in self._running.items() if (kept := one.kept())}
 
 
@@ -93,7 +93,7 @@ class CalledBefore(Called):
         self.given = given
 
     def call(self, name: str, t: float, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """What it gave then.
+        """Stored output at that time.
 
         Raises:
             NotKeptError: That is not known.

@@ -185,7 +185,7 @@ def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Seque
 
 
 def _gone_on(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
-    """A run that goes on from a record, and that record with those after it; None where that does not move."""
+    """A run continued from a record, with the later records; None where the part does not move."""
     begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
     try:
         ended = _drive(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
@@ -195,7 +195,7 @@ def _gone_on(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple
 
 
 def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: list[Array], par: Array) -> None:
-    """Tell an observer what was recorded; the clock of a run in real time stands still meanwhile."""
+    """Send records to an observer; the clock of a real-time run stops meanwhile."""
     began = time.perf_counter()
     t, q, v, u = states
     portion = Records(compiled, t, q, v, u, par)
@@ -286,7 +286,7 @@ def _recorded(
     bendings: tuple[BeamBending, ...],
     kept: Mapping[str, Mapping[str, Array]],
 ) -> DiagramRun:
-    """The records of a run, and what it took."""
+    """The records of a run and its cost."""
     d, (seconds, worked), looked_for = ended.loop.diagram, ended.spent, watched(ended.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[int(which)], when) for which, when in ended.recorded.events)
     clock = ended.spacing / (float(task.options.realtime) or 1.0)

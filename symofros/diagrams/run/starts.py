@@ -50,7 +50,7 @@ def stated_entries(resolved: Resolved, part: Part) -> tuple[list[int], list[int]
 
 
 def close_loops(resolved: Resolved, part: Part, begin: Start, par: Array) -> tuple[str, ...]:
-    """Bring the mechanisms of a part onto their constraints, in place, so that what is stated of their starts is kept.
+    """Project the mechanisms of a part onto their constraints, in place; stated starts are preserved.
 
     Those with prescribed motions, or with constraints that engage, stay as they are: their inputs say where they are.
 
@@ -75,7 +75,7 @@ def close_loops(resolved: Resolved, part: Part, begin: Start, par: Array) -> tup
 
 
 def changes_of_driven(resolved: Resolved, part: Part, asked: Start, found: Start) -> tuple[str, ...]:
-    """What is stated of starts of mechanisms with prescribed motions and changed in its last digits, in words.
+    """Notes on stated starts of driven mechanisms whose last digits changed.
 
     Raises:
         AssemblyError: More than those changed.

@@ -87,7 +87,7 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
 
 
 def record_interval(record: Any, t0: float, t_end: float, dt: float | None) -> float:
-    """Between records: what was asked for, or a multiple of dt that gives about _RECORDS of them.
+    """Record interval: the stated one, or a multiple of dt that gives about _RECORDS records.
 
     Raises:
         SymofrosError: It is no positive number, or there is no span of time.

@@ -82,6 +82,6 @@ def _conditions_text(judged: Judged, offset: int) -> tuple[list[str], list[str]]
 
 
 def _rule(condition: Condition, numbers: Numbers) -> str:
-    """What a condition asks for, of which object; where it holds, its problem has numbers that mean nothing."""
+    """Text of a condition and its object; the numbers in its problem are meaningless where it holds."""
     problem = condition.problem(numbers)
     return f"run-time parameters: {problem.what.partition(': ')[0]}: {problem.rule}"

@@ -15,7 +15,7 @@ from symofros.simulation.stepping.tableaus import Tableau
 
 
 def header_text(material: Material) -> str:
-    """NAME.h: sizes, and what there is to call."""
+    """NAME.h: sizes and declarations."""
     name, record = material.c_name, material.record
     upper = name.upper()
     sizes = {
@@ -62,7 +62,7 @@ def header_text(material: Material) -> str:
 
 
 def _reaction_calls(name: str) -> tuple[str, ...]:
-    """What a package declares of reactions."""
+    """Declarations of the reaction functions of a package."""
     return (
         "/* Names of the joints, rows of joint_wrenches, and of the speeds of prescribed motions, entries of",
         " * prescribed_efforts; these two are functions of the model, the latter where a motion is prescribed. */",
@@ -88,7 +88,7 @@ class Moving(Protocol):
 
     @property
     def c_name(self) -> str:
-        """What symbols are called."""
+        """Prefix of C symbols."""
         ...
 
     @property
@@ -128,7 +128,7 @@ class Moving(Protocol):
 
     @property
     def generator(self) -> str:
-        """Name and version of what wrote it."""
+        """Name and version of the generator."""
         ...
 
 
@@ -174,7 +174,7 @@ def plant_text(material: Moving) -> str:
 
 
 def _beams(name: str, beams: Sequence[ElasticBeam]) -> list[str]:
-    """What judges the bending of the beams."""
+    """Functions that judge the bending of beams."""
     if not beams:
         return []
     structs, lines, first = [], [], 0

@@ -107,7 +107,7 @@ def _wrapped(line: str) -> str:
 
 
 def _starts(functions: Sequence[NamedFunction]) -> Iterable[int]:
-    """Where the results of each function begin in the object's memory."""
+    """Index of the first result of each function in the object's memory."""
     at = 0
     for function in functions:
         yield at

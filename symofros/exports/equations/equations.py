@@ -164,7 +164,7 @@ class ReadableEquations:
         return "import numpy as np\n\n\n" + "\n".join(lines) + "\n"
 
     def recursion(self) -> str:
-        """LaTeX of the recursive form, for models of any size: what each joint and body is, then the formulas."""
+        """LaTeX of the recursive form for models of any size: definitions of joints and bodies, then the formulas."""
         symbols = {symbol.name: symbol for group in self.symbols.values() for symbol in group}
         constants = {name: formulas.symbol(name) for name in self._tree.coordinates.constants}
         return recursion_text(self._tree, symbols | constants, self._latex_names)

@@ -55,7 +55,7 @@ class _Writer:
         self._symbols, self._names = symbols, names
 
     def link(self, index: int, link: Link, links: Sequence[Link]) -> str:
-        """One joint and what it carries."""
+        """A joint and the link that it carries."""
         parent = (
             "the base" if link.parent == BASE else f"link {link.parent + 1} ({latex_text(links[link.parent].name)})"
         )

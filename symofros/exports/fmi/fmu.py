@@ -117,7 +117,7 @@ def _glue(material: Material, version: int, token: str) -> str:
 
 
 def _token(material: Material, sources: dict[str, str], version: int) -> str:
-    """Of the content: another model, other outputs or another version are another FMU."""
+    """Identifier that depends on the content: another model, other outputs or another version give another one."""
     parts = [*sources.values(), *material.outputs, *material.functions[-1], str(version)]
     digest = hashlib.sha256("\0".join(parts).encode()).digest()
     return f"{{{UUID(bytes=digest[:16])}}}"

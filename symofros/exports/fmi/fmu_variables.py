@@ -105,7 +105,7 @@ def _states(material: Material, at: _Numbering, units: Mapping[str, str]) -> Ite
 
 
 def _rates(material: Material, at: _Numbering, units: Mapping[str, str]) -> Iterator[Variable]:
-    """Their derivatives by time."""
+    """Time derivatives of the variables."""
     rates = _rate_dependencies(material, at.q, at.v)
     groups = (
         ("q", at.dq, at.q, material.record.q_names, "s", rates),
@@ -194,7 +194,7 @@ def _effort(unit: str) -> str:
 
 
 def _rate_dependencies(material: Material, at_q: int, at_v: int) -> dict[int, tuple[int, ...]]:
-    """Coordinate -> what q' = N v reads."""
+    """Coordinate -> variables on which its rate in q' = N v depends."""
     dependencies: dict[int, tuple[int, ...]] = {}
     for s in material.record.segments:
         if s.kind == "linear":

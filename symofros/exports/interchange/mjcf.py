@@ -114,7 +114,7 @@ def _moves(body: GatheredBody) -> bool:
 
 
 def _lost(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
-    """What MJCF has no place for, and what acts there and is data here."""
+    """Features that MJCF can't represent, and forces that become plain data."""
     losses = []
     moving = [(link, link.joint) for link in links if link.joint is not None]
     elements = [j.name for _, j in moving if any(not _kept(element) for element in j.elements)]
@@ -215,7 +215,7 @@ def _joints(body: Tree.Element, link: RigidLink, numbers: Numbers, place: JointP
 
 
 def _positive(inertia: Array) -> Array:
-    """MuJoCo refuses the inertia of a line or a point: what is missing is made too small to matter."""
+    """Inertia that MuJoCo accepts: missing moments of a line or a point are made negligibly small."""
     sizes, axes = np.linalg.eigh(inertia)
     least = _LEAST * max(1.0, float(sizes[-1]))
     if sizes[0] >= least:
@@ -252,7 +252,7 @@ def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> di
 
 
 def _springs(joint: Joint, index: int, numbers: Numbers) -> tuple[float, float]:
-    """Of the linear springs on a coordinate together: stiffness, and effort at zero."""
+    """Combined linear springs of a coordinate: stiffness, and effort at zero."""
     springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
     terms = [(numbers.value(spring.stiffness), numbers.value(spring.rest)) for spring in springs]
     return math.fsum(k for k, _ in terms), math.fsum(k * rest for k, rest in terms)

@@ -13,7 +13,7 @@ from symofros.expr.program import Function, Program
 
 
 def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> list[int]:
-    """The nodes that must be computed for some edges, operands first; what no edge needs is left out.
+    """Nodes that some edges depend on, operands first.
 
     Args:
         graph: The graph.

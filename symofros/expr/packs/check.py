@@ -88,7 +88,7 @@ def _cycle(graph: Graph, homes: dict[int, tuple[int, int]]) -> list[_Vertex]:
 
 
 def _reader(graph: Graph, homes: dict[int, tuple[int, int]]) -> Callable[[_Vertex], Iterator[_Vertex]]:
-    """What gives the vertices on which a vertex depends."""
+    """A function that gives the vertices on which a vertex depends."""
     vertices = {node: -1 - index for node, (index, _) in homes.items()}
 
     def read(vertex: _Vertex) -> Iterator[_Vertex]:
@@ -105,7 +105,7 @@ def _read_edges(pack: Pack) -> list[Edge]:
 
 
 def _cycle_text(graph: Graph, cycle: Sequence[_Vertex]) -> str:
-    """What a cycle of dependences means for the packs on it."""
+    """Text of a dependence cycle in terms of packs."""
     indices = sorted(-1 - vertex for vertex in cycle if vertex < 0)
     if len(indices) > 1:
         return f"packs {', '.join(map(str, indices))} wait for each other"

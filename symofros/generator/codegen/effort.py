@@ -36,7 +36,7 @@ def _effort(plan: PackPlan) -> float:
 def pack_figures(
     plan: PackPlan | None, scalars: int, stores: Sequence[Store]
 ) -> dict[str, float | Callable[[], float]]:
-    """What decides whether a function is faster with its packs than with scalars (docs/theory/code.md, section 2).
+    """Quantities that decide whether packs make a function faster than scalars (docs/theory/code.md, section 2).
 
     Args:
         plan: Vectors of the function; None for none.

@@ -119,7 +119,7 @@ def strided(c_name: str, program: Program, function: Function, work: int, lanes:
 
 
 def _runs(edges: Sequence[Edge]) -> Iterator[tuple[int, int]]:
-    """Where entries that are always zero begin, and how many there are."""
+    """Start and length of the runs of entries that are always zero."""
     first = 0
     for is_zero, group in groupby(edge == 0 for edge in edges):
         count = sum(1 for _ in group)

@@ -47,7 +47,7 @@ class Loop:
 
     @cached_property
     def columns(self) -> list[list[list[Leaf]]]:
-        """What each mention of each statement stands for, iteration by iteration."""
+        """Value of each mention of each statement, per iteration."""
         return [
             [list(column) for column in zip(*(body[j] for body in self.leaves), strict=True)] for j in range(len(self))
         ]

@@ -120,7 +120,7 @@ def model_text(
 
 
 def _called(texts: Sequence[str], vectors: LaneOptions | None) -> Iterator[str]:
-    """Texts of what functions of vectors, sines and cosines call."""
+    """Definitions of the functions of vectors, sines and cosines that the texts call."""
     yield from trigonometry.routines(texts, vectors is not None)
     if vectors is not None:
         yield lanes.routines(vectors)

@@ -27,7 +27,7 @@ class Pattern:
 
     @staticmethod
     def filled(columns: Sequence[Iterable[int]]) -> Pattern:
-        """The pattern of the factor of a matrix with these entries: what each column leaves behind is filled in."""
+        """Pattern of the factor of a matrix with these entries, with fill-in of each eliminated column."""
         left = [set(column) for column in columns]
         for column in left:
             if column:

@@ -276,17 +276,17 @@ class BeamTheory(ABC):
 
     @property
     def interpolated(self) -> Interpolated:
-        """What is taken between stations by interpolation; no properties where all integrals are exact or checked."""
+        """Properties interpolated between stations; none where all integrals are exact or checked."""
         return Interpolated()
 
     @property
     @abstractmethod
     def judged(self) -> Judged:
-        """What a deformation of this beam is judged by."""
+        """Measures that judge a deformation of this beam."""
 
     @abstractmethod
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:
-        """Where the sections are.
+        """Positions of the sections.
 
         Args:
             values: Number of each parameter.

@@ -50,7 +50,7 @@ class FrameEquations:
 
     @cached_property
     def jacobian(self) -> Matrix:
-        """Jacobian J with velocity = J v + what prescribed motions add (6 x nv)."""
+        """Jacobian J with velocity = J v + contribution of prescribed motions (6 x nv)."""
         return self._frames.jacobian(self._frame)
 
     @cached_property

@@ -188,7 +188,7 @@ class _Section:
             )
 
     def interpolation_problems(self, numbers: Numbers) -> Iterator[Problem]:
-        """What a rod's few sections do not follow along the axis (docs/theory/rods.md, section 6)."""
+        """Problems of properties that vary too fast for a rod's few sections (docs/theory/rods.md, section 6)."""
         interpolated = theory_of(self.beam).interpolated
         for labels, values in interpolated.properties:
             error = float(_interpolation_error(self.beam, interpolated, values, numbers.parameters)[0])
@@ -273,7 +273,7 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
 
 
 def interpolation_error(beam: Beam, values: Mapping[str, Array | float]) -> Array:
-    """Largest relative error of what is taken through a beam's sections (states)."""
+    """Largest relative error of properties interpolated at a beam's sections (states)."""
     interpolated = theory_of(beam).interpolated
     errors = [_interpolation_error(beam, interpolated, stated, values) for _, stated in interpolated.properties]
     return np.asarray(reduce(np.maximum, errors, np.zeros(1)))

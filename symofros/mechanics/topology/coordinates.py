@@ -17,12 +17,12 @@ def joint_sizes(joint: Joint) -> tuple[int, int]:
 
 
 def angles(joint: Joint) -> tuple[bool, ...]:
-    """Whether each coordinate of a joint is periodic; those that a user defines are taken for not periodic."""
+    """Whether each coordinate of a joint is periodic; user-defined ones count as not periodic."""
     return (False,) * len(joint.coordinates) if joint.traits.user_defined else joint.traits.angles
 
 
 def joint_units(joint: Joint) -> tuple[str, ...]:
-    """SI unit of each coordinate of a joint; "" for those that a user defines, and for components of a quaternion."""
+    """SI unit of each coordinate of a joint; "" for user-defined ones and components of a quaternion."""
     if joint.traits.user_defined:
         return ("",) * len(joint.coordinates)
     return tuple(coordinate.unit for coordinate in joint.traits.coordinates)

@@ -201,7 +201,7 @@ class _Checker:
             yield from self._taken(joint, "speed", rates, taken)
 
     def _taken(self, joint: Joint, role: str, symbols: Sequence[str], taken: dict[str, str]) -> Iterator[Problem]:
-        """Symbols of a joint that are taken already; those that are not are taken then.
+        """Symbols of a joint that are taken already; the others become taken.
 
         A coordinate door may have the name of the rate of one called oor, which formulas alone could confuse; they are
         refused where they do. Inputs, which rates of prescribed joints are, and speeds of their own are told by names.
@@ -297,7 +297,7 @@ class _Checker:
     # Forces.
 
     def acting(self) -> Iterator[Problem]:
-        """Loads, connections and powers that refer to what does not exist."""
+        """Loads, connections and powers that refer to missing elements."""
         for body in self.system.bodies:
             for load in body.loads:
                 yield from self._load(body, load)
@@ -348,7 +348,7 @@ class _Checker:
     # Numbers.
 
     def values(self, numbers: Numbers) -> Iterator[Problem]:
-        """That every constant is a finite number, every rotation a rotation, every axis a direction."""
+        """Check that constants are finite, rotations orthonormal and axes nonzero."""
         yield from violations(value_conditions(self.system), numbers)
         for body in self.system.bodies:
             for what, rotation, where in rotations_of(self.system, body):

@@ -91,7 +91,7 @@ class Numbers:
             )
 
     def rounded(self, rotation: Rotation) -> float:
-        """How far a matrix of numbers, stated with few digits, is from the rotation that is used: |R R^T - 1|."""
+        """Distance of a matrix of few digits from the rotation that is used: |R R^T - 1|."""
         if rotation.kind != "matrix" or any(map(symbols, rotation)):
             return 0.0
         return _defect(self.values(rotation).reshape(3, 3))

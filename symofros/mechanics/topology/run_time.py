@@ -87,7 +87,7 @@ class RunTimeCheck:
         return Conditions(c for c, broken in zip(stated.conditions, violated, strict=True) if not broken)
 
     def problems(self, par: Array) -> list[Problem]:
-        """What is wrong with the first set of parameters that something is wrong with.
+        """Problems of the first invalid set of parameters.
 
         Args:
             par: Sets of parameters (n, npar).
@@ -126,7 +126,7 @@ class RunTimeCheck:
         return []
 
     def _sampled_problems(self, par: Array) -> list[Problem]:
-        """Of checks without a margin: rotations and axes, where parameters change them."""
+        """Problems of checks without a margin: rotations and axes that depend on parameters."""
         if not (self._turned or self._axes):
             return []
         _, first = np.unique(par, axis=0, return_index=True)

@@ -217,7 +217,7 @@ class _Builder:
         self.nq = self.nv = 0
 
     def place(self, body: Body, link: int, placement: Placement, key: str) -> None:
-        """Put a body, and then what it carries, at a placement on a link; depth first without recursion."""
+        """Place a body and its descendants on a link; depth first without recursion."""
         stack = [(body, link, placement, key)]
         while stack:
             body, link, placement, key = stack.pop()

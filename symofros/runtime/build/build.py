@@ -35,7 +35,7 @@ def recall_library(
     toolchain: Toolchain,
     flags: Sequence[str] | None = None,
 ) -> Path:
-    """The library of what a recipe states; its C text is only asked for where no library is known.
+    """The library of a recipe; its C text is formed only if no library is cached.
 
     Args:
         recipe: All that the C text depends on, but for the code that writes it.

@@ -73,7 +73,7 @@ def _refused(folder: Path, state: str) -> CompileError:
 
 
 def create_cache_folder(folder: Path) -> None:
-    """Create the folder, and what is missing above it, for this user alone; remove what is too old.
+    """Create the folder and its parents for this user only, and remove entries that are too old.
 
     That is leftovers, and models that were used longest ago where the folder is over its limit.
 

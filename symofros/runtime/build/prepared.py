@@ -42,7 +42,7 @@ class Prepared(NamedTuple):
 
 
 def recall_prepared(description: Path, request: str, toolchain: Toolchain) -> Prepared | None:
-    """What a description led to, if its files are unchanged and its libraries intact.
+    """Cached result of a description, if its files are unchanged and its libraries intact.
 
     Args:
         description: The file.
@@ -65,7 +65,7 @@ def recall_prepared(description: Path, request: str, toolchain: Toolchain) -> Pr
 
 
 def _prepared(stated: Any) -> Prepared:
-    """What a file states, each value of its type."""
+    """Contents of a cache file, with the type of each value checked."""
     sources = tuple(Source(str(a), str(b), int(size), str(digest)) for a, b, size, digest in stated["sources"])
     return Prepared(str(stated["name"]), sources, tuple(map(file_name, stated["libraries"])))
 
@@ -78,7 +78,7 @@ def note_prepared(
     sources: Iterable[Source],
     libraries: Iterable[Path],
 ) -> None:
-    """Keep what a description led to.
+    """Store the result of a description.
 
     Args:
         description: The file, as of `recall_prepared`, like the next two.

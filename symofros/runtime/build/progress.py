@@ -34,7 +34,7 @@ class Progress:
         self._teller: threading.Thread | None = None
 
     def begin(self, stage: str) -> None:
-        """Go on with a stage, such as "compiling"; the first one begins the time."""
+        """Enter a stage, such as "compiling"; the first one starts the clock."""
         self._stage = stage
         LOGGER.info("%s: %s", self._label, stage)
         if not self._began:
@@ -47,7 +47,7 @@ class Progress:
                     _LINE.release()
 
     def __enter__(self) -> Self:
-        """Nothing is reported before a stage begins: most libraries are in the cache."""
+        """Enter without a report, as most libraries are in the cache and no stage begins."""
         return self
 
     def __exit__(

@@ -95,7 +95,7 @@ class NativeMemory:
         return arrays
 
     def own(self, kind: str, values: Sequence[Any] | int) -> Any:
-        """A C array of a type such as "int32_t[]", of values or of a length; of one element where there are none."""
+        """An owned C array of a type such as "int32_t[]", from values or of a length, at least one element long."""
         array = self.ffi.new(kind, values or 1)
         self.keep(array)
         return array

@@ -60,7 +60,7 @@ def type_at_hand() -> Any:
 
 
 def begin() -> None:
-    """Begin what plain calls need, by other threads, unless that has begun: the type, and the declarations of C."""
+    """Start preparing plain calls in other threads, unless that has started: the type, and the declarations of C."""
     if next(_begun) == 0:
         try_to_start(threading.Thread(target=interface))
         # The process waits for it at its end: a script that is over sooner would never have it.

@@ -92,7 +92,7 @@ class Strided(NamedTuple):
 
     @classmethod
     def of(cls, array: Numbers, dtype: npt.DTypeLike) -> Self:
-        """In place, or a copy of what is of another type, or not in steps of whole numbers."""
+        """The array in place, or a copy if its type or strides do not fit."""
         by, to = array.strides
         size = array.itemsize
         if array.dtype != dtype or by % size or to % size or not array.flags.aligned:

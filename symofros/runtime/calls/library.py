@@ -171,7 +171,7 @@ class CompiledKernel:
         return self._unit.prepare(par)
 
     def in_lanes(self, lanes: LaneOptions = SHARED_PARAMETERS) -> CompiledKernel:
-        """The same by vectors, compiled at the first call; itself where there is no such thing."""
+        """The kernel by vectors, compiled at the first call; the scalar one where no vector code exists."""
         if lanes not in self._lanes:
             make = self._unit.in_lanes
             key = self.signature.name, self.signature.frame

@@ -125,7 +125,7 @@ class CudaModel:
                 raise UnknownNameError(Problem(what, given[:60], listed, remedy))
 
     def usage(self, name: str, frame: str = "", architecture: str = "") -> dict[str, KernelUsage]:
-        """What the kernels of a function take of an architecture ("sm_90"); that of this machine by default.
+        """Resources of the kernels of a function on an architecture ("sm_90"); that of this machine by default.
 
         Raises:
             CompileError: There is no compiler, or no such architecture.
@@ -345,7 +345,7 @@ class CudaModel:
         return at_unit_length(self.record, group, array)
 
     def _default(self, group: str, device: Driver) -> DeviceArray:
-        """What u and t are where they are left out, (size): copied once, as a copy waits for what was started."""
+        """Default values of u and t, (size), copied once because a copy waits for earlier work."""
         if group not in self._defaults:
             values = np.asarray(self.record.u_default if group == "u" else np.zeros(1), self._dtype)
             self._defaults[group] = DeviceArray(device, values.shape, self._dtype)

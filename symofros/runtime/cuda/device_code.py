@@ -25,7 +25,7 @@ class DeviceKernel:
     signature: Signature
 
     def bytes_of_state(self, precision: Precision) -> int:
-        """Bytes that a state reads and writes, with every input of its own: what the memory's bandwidth bounds."""
+        """Bytes read and written per state, every input separate: the load on memory bandwidth."""
         numbers = sum(size for _, size in self.signature.inputs)
         numbers += sum(prod(shape) for _, shape in self.signature.outputs)
         return numbers * (4 if precision == "single" else 8)

@@ -68,7 +68,7 @@ def receivers(
 
 
 def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
-    """As kernels take a result: entries by rows, at equal distances.
+    """Result array in the layout of kernels: entries by rows, at equal distances.
 
     Raises:
         ShapeError: It has another shape or layout.

@@ -38,7 +38,7 @@ def stream_handle(stream: Any) -> int:
 
 
 def is_captured(device: Driver, stream: int) -> bool:
-    """Whether what is started in a stream becomes part of a graph instead of running.
+    """Whether work in a stream is being captured in a graph instead of running.
 
     Raises:
         SymofrosError: A graph is captured from another stream, the current one of PyTorch or CuPy, or one that waits
@@ -59,7 +59,7 @@ def is_captured(device: Driver, stream: int) -> bool:
 
 
 def refused_in_capture(what: str, found: str, remedy: str) -> SymofrosError:
-    """What is said of a call that can't become part of a graph."""
+    """Error for a call that can't become part of a graph."""
     rule = "while a graph is captured nothing is allocated, copied from the host or waited for"
     return SymofrosError(Problem(f"CUDA: {what} can't be captured in a graph", found, rule, remedy))
 

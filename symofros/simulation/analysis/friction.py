@@ -33,7 +33,7 @@ class FrictionCurve(NamedTuple):
 def friction_curve(
     model: Model, i: int, speeds: Array, state: tuple[Array, Array, Array], par: ArrayLike | None, t: float
 ) -> FrictionCurve | None:
-    """What the forces of a state carry as one of its speeds changes; None where they grow on, or can't be asked for.
+    """Friction forces of a state as one of its speeds changes; None where they are unbounded or undefined.
 
     Args:
         model: The model.

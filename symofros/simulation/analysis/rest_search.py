@@ -99,7 +99,7 @@ class Balance:
 
 @dataclass(frozen=True)
 class Search:
-    """Where a search has come to.
+    """State of a search.
 
     Attributes:
         q: Configuration (nq).
@@ -215,7 +215,7 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
 
 
 def _unit_mass(M: Array) -> Array:
-    """L^-T of (7a), which makes the mass of motions one (n, n); what has none gets _LEAST_MASS of the mean."""
+    """L^-T of (7a), which normalises the mass of motions (n, n); massless ones get _LEAST_MASS of the mean."""
     least = _LEAST_MASS * float(np.trace(M)) / max(len(M), 1) or 1.0
     return np.asarray(np.linalg.inv(np.linalg.cholesky(M + least * np.eye(len(M)))).T)
 

@@ -68,7 +68,7 @@ def _weighted(directions: Complex, inertia: Array) -> Complex:
 
 
 def _independent(directions: Complex) -> list[int]:
-    """Indices of directions that span all of them: again and again the first of those farthest from the ones before."""
+    """Indices of directions that span all of them: repeatedly the one farthest from those chosen before."""
     rest, chosen = directions.copy(), list[int]()
     while rest.size:
         lengths = np.linalg.norm(rest, axis=0)

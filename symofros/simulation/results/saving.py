@@ -19,7 +19,7 @@ SUFFIXES = (".npz", ".csv", ".parquet")
 
 
 def refuse_suffix(path: Path, what: str) -> None:
-    """Refuse what none of the writers writes.
+    """Refuse suffixes without a writer.
 
     Raises:
         SymofrosError: Another suffix than SUFFIXES.

@@ -146,7 +146,7 @@ class Trajectories(BatchResults):
         return f"<Trajectories of '{name}' by {self.method}: {self.shape} runs, {len(self.t)} samples; {ends}>"
 
     def __str__(self) -> str:
-        """How many ended how, the first that went wrong, in how many beams bend much, and the steps of some."""
+        """Counts of outcomes, the first failure, the number of beams that bend much, and steps."""
         kinds = self.kinds
         names, counts = np.unique(kinds, return_counts=True)
         lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]

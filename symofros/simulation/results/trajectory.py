@@ -203,7 +203,7 @@ class Trajectory:
         return html_table(repr(self).strip("<>"), ("name", "range"), rows)
 
     def columns(self) -> dict[str, Array]:
-        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name bears a d.
+        """Time, coordinates, speeds and inputs by name (n); a speed that shares its coordinate's name gets a d.
 
         A coordinate called t is in the column "`t`".
         """

@@ -77,7 +77,7 @@ def _oscillator(z: complex) -> tuple[float, float]:
 
 
 def _nearest(factors: list[complex], z: complex) -> complex:
-    """Of a mode's factors the largest where that grows beyond the mode itself; else the one nearest to exp(z)."""
+    """The factor of a mode: the largest one if it exceeds the mode's own growth, otherwise the nearest to exp(z)."""
     exact = cmath.exp(min(z.real, 300.0) + 1j * z.imag)
     largest = max(factors, key=abs)
     if abs(largest) > max(1.0, abs(exact)) * (1.0 + 1e-9):

@@ -205,7 +205,7 @@ class BatchStepper:
         batch.beam_guard = memory.own("sym_beam_guard[]", results.beam_errors.size)
 
     def _beam_numbers(self, par: Array) -> dict[str, Array]:
-        """What beams are judged by, for each set of parameters, by its name in C."""
+        """Numbers that judge beams, for each set of parameters, by their name in C."""
         beams = [self.single.model.beams(values) for values in par]
         return {
             name: np.array([np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams])

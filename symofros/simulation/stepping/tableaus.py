@@ -135,7 +135,7 @@ def _nested(b: Array, d: Array) -> Array:
 
 
 def _linear_euler() -> Tableau:
-    """Implicit Euler with one Newton step: order 1, damps what is stiff."""
+    """Implicit Euler with one Newton step: order 1, damps stiff modes."""
     one = np.ones(1)
     return Tableau(
         1, 1, np.zeros((1, 1)), one, np.zeros(1), 0, np.zeros((0, 1)), 0, np.zeros((1, 0)), 1.0, np.zeros((1, 1)), one

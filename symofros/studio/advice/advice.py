@@ -137,7 +137,7 @@ class Advice:
         write_atomically(file, comment + write_yaml(self.system))
 
     def summary(self) -> list[str]:
-        """What is saved and how exact it is, a line each."""
+        """Savings and accuracy, a line each."""
         lines = [f"step it by {self.stepping}; functions: {', '.join(self.options.functions or ())}"]
         for name, share in self.errors.items():
             bound = self.bounds[name]
@@ -152,7 +152,7 @@ class Advice:
 
     @property
     def _beside(self) -> str:
-        """Cost of the full model, and what it is worth."""
+        """Cost of the full model relative to the reduced one."""
         taken = f"takes {self.full_cost.total} ({self.full_stepping})"
         if self.truncation > 1.0:
             return f"the full model {taken}, and errs by {self.truncation:.3g} of what is allowed"

@@ -143,7 +143,7 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
 
 
 def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str, float]]:
-    """What outputs lose with a direction, deflection and the vibration it leaves; in words; in numbers."""
+    """Loss of outputs without a direction, from deflection and residual vibration; in words; in numbers."""
     static = loads.deflection(direction)
     if direction == "twist":
         return loads.share(static), f"twist: static {static.slope:.2g} rad", {"static": static.slope}
@@ -249,7 +249,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
 
 
 def changed_beam(name: str, **changed: Any) -> Callable[[System], System]:
-    """What changes entries of a beam of a system."""
+    """A reduction that changes entries of a beam of a system."""
 
     def apply(system: System) -> System:
         body = system.body(name)

@@ -104,7 +104,7 @@ class BeamLoads:
         )
 
     def share(self, bent: TipDeflection) -> float:
-        """What a displacement and a slope of the tip do to outputs, in units of what is allowed."""
+        """Effect of a displacement and a slope of the tip on outputs, in units of the tolerance."""
         return bent.displacement * self.reach + bent.slope * self.lever
 
     def frequency(self, direction: Direction) -> float:
@@ -198,7 +198,7 @@ class Observed:
         return ""
 
     def beam(self, beam: Beam) -> BeamLoads:
-        """What a beam meets."""
+        """Loads on a beam."""
         length = self.number(beam.length)
         p, R = self.poses[beam.name]
         gravity = np.array([self.number(value) for value in self.system.gravity])

@@ -12,7 +12,7 @@ _COLORS = {"taken": "green", "refused": "red", "not tried": "yellow"}
 
 
 def table_of(advice: Advice) -> RenderableType:
-    """Every choice, then what the reduced model costs and errs by."""
+    """Every choice, then cost and error of the reduced model."""
     table = Table(
         "what",
         "change",

@@ -111,7 +111,7 @@ class _Reader:
         return self.number(node, what)
 
     def built(self, node: Node, make: Callable[[], Made]) -> Made:
-        """What a constructor makes, its complaint put at a line."""
+        """Result of a constructor, with its error placed at a line."""
         try:
             return make()
         except DescriptionError as error:

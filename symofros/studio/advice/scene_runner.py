@@ -116,7 +116,7 @@ class SceneRunner:
         return Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:
-        """What a run by a method calls of a model; poses of the scene's frames come to it."""
+        """Functions of a model that a run by a method calls, with poses of the scene's frames."""
         needed = ["forward_dynamics", *METHODS[method].family.functions]
         if system.constraints:
             needed += ["project", "constraint", "constraint_rate", "constraint_jacobian"]
@@ -264,7 +264,7 @@ class SceneRunner:
         return {name: known[name] for name in functions}
 
     def cost(self, system: System, trial: Trial, method: str) -> Cost:
-        """What a run took, counted."""
+        """Operations of a run."""
         assert trial.run is not None
         statistics, kind = trial.run.statistics, METHODS[method].kind
         n = trial.run.model.nv + trial.run.model.nc

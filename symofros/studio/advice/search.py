@@ -134,7 +134,7 @@ class _Search:
         return ReferenceSolution(richer, reference)
 
     def _note_what_is_not_judged(self) -> None:
-        """Say of which beams no richer model exists: those whose functions the user gives."""
+        """Note beams without a richer model: those with user-defined functions."""
         own = [f"'{b.name}'" for b in self.current.beams if b.modes and b.family == "user"]
         if own:
             self.notes.append(
@@ -276,7 +276,7 @@ class _Search:
         return any(not b.modes and one.subject == f"beam '{b.name}'" for b in self.current.beams)
 
     def _worse(self, one: Reduction) -> Reduction:
-        """A refused "no foreshortening", with what becomes of a model that keeps the softening alone."""
+        """A refused "no foreshortening", with the error of a model that keeps only the softening."""
         name = one.subject.split("'")[1]
         body = self.current.body(name)
         assert isinstance(body, Beam)
@@ -310,7 +310,7 @@ _PRIORITY = ("rigid", "elastic joint", "direction", "theory", "rotor", "rotary i
 
 
 def _still_to_come(changes: Sequence[float]) -> float:
-    """What further functions may change the outputs by, after changes by one more each, in units of what is allowed.
+    """Bound of the changes by further functions, after changes by one more each, in units of the tolerance.
 
     Those that settle are taken to go on as they did last, by one ratio; of the first change alone none is known, and
     what is left after a small one counts as nothing.

@@ -45,7 +45,7 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
 
 
 def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
-    """What the error of second-order theory does to outputs, in units of what is allowed.
+    """Effect of the error of second-order theory on outputs, in units of the tolerance.
 
     Args:
         loads: The beam in the motion.
@@ -101,7 +101,7 @@ def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Itera
 
 
 def _is_beyond_second_order(rod: Beam) -> bool:
-    """Whether a rod has what beams of second order lack."""
+    """Whether a rod has features that beams of second order lack."""
     beyond = any(getattr(rod, label) for label in ("stretch", "shear_y", "shear_z"))
     curved = any(getattr(rod, label) != 0.0 for label in PRE_STRAINS)
     return beyond or curved or rod.is_coupled or rod.family == "user"

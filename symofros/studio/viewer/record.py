@@ -76,7 +76,7 @@ class _Recording:
 
     @property
     def factor(self) -> str:
-        """How much larger deformations are drawn than they are, in words after the time; "" where they are not."""
+        """Scale of deformations in words after the time; "" where it is one."""
         return "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
 
 
@@ -159,7 +159,7 @@ def record(
 
 
 def check_suffix(file: Path) -> None:
-    """Refuse what can't be recorded to.
+    """Refuse suffixes that can't be recorded.
 
     Raises:
         SymofrosError: Its suffix is another.
@@ -178,7 +178,7 @@ def check_suffix(file: Path) -> None:
 def _asked(
     system: System | DiagramRun, run: Played | str | Path, path: str | Path | None, block: str
 ) -> tuple[System, Played, Path]:
-    """What moves, how, and where to write it."""
+    """Mechanism, motion and path of a recording."""
     if isinstance(system, DiagramRun) and isinstance(run, (str, Path)) and path is None:
         return *shown_of(system, block), Path(run)
     if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:

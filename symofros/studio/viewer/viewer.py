@@ -111,7 +111,7 @@ class Viewer(ViewerPage):
 
     @property
     def url(self) -> str:
-        """What to open in a browser, or in an iframe; whoever has it may look and move controls, nobody else."""
+        """Address to open in a browser or an iframe; it grants access to the controls."""
         return f"http://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}/{self._token}/"
 
     @property
@@ -121,7 +121,7 @@ class Viewer(ViewerPage):
 
     @property
     def is_closed(self) -> bool:
-        """Whether it serves no more."""
+        """Whether the server has stopped."""
         return self._closing
 
     @property
@@ -231,7 +231,7 @@ class Viewer(ViewerPage):
         stop_server(self._server)
 
     def __enter__(self) -> Self:
-        """The viewer."""
+        """Return the viewer."""
         return self
 
     def __exit__(

@@ -29,7 +29,7 @@ def test_constants_are_run_time_parameters() -> None:
     assert sf.Simulation(diagram).run(1.0, dt=0.1, parameters={"f.k": 3.0})["f.y"][-1] == pytest.approx(3.0)
 
 
-def test_python_is_called_at_samples_and_told_of_the_run() -> None:
+def test_python_blocks_are_called_at_samples_and_notified_of_the_run() -> None:
     heard: list[object] = []
 
     def function(t: float, inputs: object) -> dict[str, object]:
@@ -52,7 +52,7 @@ def test_python_is_called_at_samples_and_told_of_the_run() -> None:
     run(block, {"u": u})
 
 
-def test_what_python_returns_is_checked() -> None:
+def test_outputs_of_python_functions_are_checked() -> None:
     block = PythonBlock(name="p", function=lambda t, inputs: {"y": [1, 2, 3]}, outputs={"y": (2,)}, period=STEP)
     diagram = sf.Diagram("one")
     diagram.add(block)

@@ -75,7 +75,7 @@ def test_orientations_keep_their_digits_at_every_angle(by_matrix: bool) -> None:
 
 
 @pytest.mark.parametrize("sequence", ["zyx", "xzx"])
-def test_angles_near_a_singular_attitude_are_those_of_the_rotation(sequence: str) -> None:
+def test_angles_near_a_singular_attitude_match_those_of_the_rotation(sequence: str) -> None:
     """Two of the angles are defined by rounding alone, and not compared between interpreter and C: the turn is."""
     turns = 10.0 ** np.arange(-16, -5)[:, None] * np.array([[1.0, -2.0, 3.0]])
     singular = Rotation.from_euler("ZYX", [0.3, np.pi / 2, 0]) if sequence == "zyx" else Rotation.from_euler("X", 0.3)
@@ -86,7 +86,7 @@ def test_angles_near_a_singular_attitude_are_those_of_the_rotation(sequence: str
 
 
 @pytest.mark.slow
-def test_all_sequences_of_euler_angles(rng: np.random.Generator) -> None:
+def test_all_sequences_of_euler_angles_match_scipy(rng: np.random.Generator) -> None:
     angles = rng.uniform(-3, 3, size=(20, 3))
     R = {sequence: Rotation.from_euler(sequence.upper(), angles) for sequence in EULER}
     to = [(Orientation(name=f"to_{s}", source=f"euler_{s}", target="matrix"), {"u": angles}) for s in EULER]
@@ -107,7 +107,7 @@ def test_quaternions_have_no_negative_w_and_turns_are_of_at_most_half_a_revoluti
 
 
 @pytest.mark.parametrize("axes", ["world", "body"])
-def test_the_error_turns_what_is_into_what_should_be(axes: str, rng: np.random.Generator) -> None:
+def test_the_orientation_error_turns_actual_into_desired(axes: str, rng: np.random.Generator) -> None:
     desired, actual = Rotation.random(9, random_state=1), Rotation.random(9, random_state=2)
     block = OrientationError(name="e", kind="quaternion", axes=axes)
     error = run(block, {"desired": desired.as_quat(), "actual": actual.as_quat()})["error"]

@@ -29,7 +29,7 @@ X, Y = [-1.0, 0.5, 2.0], [3.0, -1.0, 0.0]
         ),
     ],
 )
-def test_static(block: sf.blocks.Saturation, expected: np.ndarray) -> None:
+def test_static_nonlinearities(block: sf.blocks.Saturation, expected: np.ndarray) -> None:
     np.testing.assert_allclose(run(block, {"u": U})["y"], expected, atol=1e-14)
 
 

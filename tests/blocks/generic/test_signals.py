@@ -24,7 +24,7 @@ def test_a_constant_is_a_run_time_parameter() -> None:
 
 
 @pytest.mark.parametrize("gain", [2.0, [1.0, -2.0, 3.0], MATRIX])
-def test_gain(gain: object, rng: np.random.Generator) -> None:
+def test_matrix_gain(gain: object, rng: np.random.Generator) -> None:
     u = rng.normal(size=(6, 3))
     expected = u @ np.array(MATRIX).T if gain is MATRIX else u * np.asarray(gain)
     np.testing.assert_allclose(run(Gain(name="g", gain=gain), {"u": u})["y"], expected, rtol=1e-14)
@@ -113,5 +113,5 @@ def make_pick(**fields: object) -> None:
         (lambda: make_pick(entries="actuated", model="free"), "none", "name the entries"),
     ],
 )
-def test_what_is_wrong_is_said(make: Callable[[], object], found: str, remedy: str) -> None:
+def test_invalid_fields_are_refused(make: Callable[[], object], found: str, remedy: str) -> None:
     refused(make, found, remedy)

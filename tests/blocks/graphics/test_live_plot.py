@@ -45,7 +45,7 @@ def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
     return head, rows
 
 
-def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
+def test_the_page_receives_the_samples_sent(shown: LivePlot) -> None:
     head, rows = told(shown)
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
     # What was sent before the page's program knew what it is, is not shown.
@@ -55,7 +55,7 @@ def test_the_page_tells_what_was_sent(shown: LivePlot) -> None:
         assert "EventSource" in text and "frame-ancestors 'none'" in page.headers["Content-Security-Policy"]
 
 
-def test_others_are_refused(shown: LivePlot) -> None:
+def test_requests_to_other_addresses_are_refused(shown: LivePlot) -> None:
     root = shown.url.rsplit("/", 2)[0]
     for path in ("/", "/guess/", "/guess/rows", "/favicon.ico"):
         with pytest.raises(urllib.error.HTTPError, match="403"):
@@ -67,7 +67,7 @@ def test_others_are_refused(shown: LivePlot) -> None:
         urllib.request.urlopen(shown.url + "other", timeout=60)
 
 
-def test_packets_of_others_are_dropped(shown: LivePlot) -> None:
+def test_packets_from_other_senders_are_dropped(shown: LivePlot) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         for data in (b"", b"SYMO", pack(1, 1, 9.0, np.zeros(3)), pack(1, 1, 9.0, np.full(4, np.nan))):
             other.sendto(data, ("127.0.0.1", shown.__dict__["_page"].port))

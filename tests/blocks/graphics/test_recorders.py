@@ -51,7 +51,7 @@ def test_a_store_is_bounded_and_saved_beside_the_run(tmp_path: Path) -> None:
     assert np.load(tmp_path / "r.npz")["log.q"].shape == (5, 2)
 
 
-def test_what_is_drawn() -> None:
+def test_recorders_draw_their_signals() -> None:
     simulation = arm(
         (Scope(name="both", signals=("q", "time"), title="Two"), {"q": "plant.q", "time": "ramp.y"}),
         (StatePlot(name="states", model="arm"), {"q": "plant.q", "v": "plant.v"}),
@@ -86,7 +86,7 @@ def test_plots_of_the_diagram_come_first_and_single_signals_by_name() -> None:
         run.plot("plant.a[9]")
 
 
-def test_nothing_to_draw_is_told() -> None:
+def test_a_diagram_without_plots_is_reported() -> None:
     with pytest.raises(sf.SymofrosError, match="there is nothing to draw"):
         sf.Simulation(sf.Diagram("empty")).run(0.01, dt=1e-3).plot()
 
@@ -101,6 +101,6 @@ def test_nothing_to_draw_is_told() -> None:
         (ExtremityPlot(name="b", model="arm", frames=("tipp",)), "did you mean 'tip'"),
     ],
 )
-def test_what_does_not_fit_is_told(block: Block, words: str) -> None:
+def test_signals_that_do_not_fit_a_recorder_are_refused(block: Block, words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         arm((block, {}))

@@ -46,7 +46,7 @@ def until_shown(block: View3D, q: np.ndarray, u: np.ndarray | None = None) -> No
         time.sleep(0.005)
 
 
-def test_it_shows_the_run_and_does_not_change_it(
+def test_the_view_shows_the_run_without_changing_it(
     viewed: tuple[sf.Simulation, View3D], capsys: pytest.CaptureFixture[str]
 ) -> None:
     simulation, block = viewed
@@ -63,7 +63,7 @@ def test_it_shows_the_run_and_does_not_change_it(
     assert np.linalg.norm(elbow) == pytest.approx(0.8)
 
 
-def test_the_page_shows_what_its_own_run_is_about(viewed: tuple[sf.Simulation, View3D]) -> None:
+def test_a_new_page_opens_only_for_another_model(viewed: tuple[sf.Simulation, View3D]) -> None:
     """One block in two diagrams, of which one has another model in place of the first; one page for all runs of one."""
     simulation, block = viewed
     simulation.run(0.1, dt=1e-2)
@@ -78,7 +78,7 @@ def test_the_page_shows_what_its_own_run_is_about(viewed: tuple[sf.Simulation, V
         until_shown(block, run["plant.q"][-1])
 
 
-def test_it_ends_with_the_run_if_it_is_told_to() -> None:
+def test_the_viewer_closes_with_the_run_if_asked() -> None:
     simulation, block = shown(stays=False)
     simulation.run(0.1, dt=1e-2)
     first = block.viewer
@@ -107,6 +107,6 @@ def test_a_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("fields", [{"port": 70000}, {"exaggeration": float("nan")}])
-def test_what_can_not_be_is_refused(fields: dict[str, Any]) -> None:
+def test_invalid_view_fields_are_refused(fields: dict[str, Any]) -> None:
     with pytest.raises(sf.DescriptionError, match="block 'view3d': can't show that"):
         shown(**fields)

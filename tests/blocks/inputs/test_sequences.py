@@ -58,7 +58,7 @@ def test_a_trajectory_has_several_outputs(csv: Path, tmp_path: Path) -> None:
         ("", "", ""),
     ],
 )
-def test_faults_of_files_are_said_by_line(tmp_path: Path, text: str, found: str, where: str) -> None:
+def test_faults_in_files_are_reported_with_their_line(tmp_path: Path, text: str, found: str, where: str) -> None:
     path = tmp_path / "bad.csv"
     path.write_text(text)
     with pytest.raises(sf.DescriptionError) as caught:
@@ -92,7 +92,7 @@ def test_large_and_foreign_files_are_not_read(tmp_path: Path, csv: Path, monkeyp
     assert "at most 10" in refused(csv)
 
 
-def test_a_line_longer_than_the_reader_of_lines_takes_is_said(tmp_path: Path) -> None:
+def test_lines_beyond_the_csv_field_limit_are_reported(tmp_path: Path) -> None:
     (tmp_path / "long.csv").write_text("t,y\n0," + "1" * 200_000 + "\n")
     with pytest.raises(sf.DescriptionError, match="larger than field limit"):
         Sequence(name="s", file=str(tmp_path / "long.csv"))

@@ -181,5 +181,5 @@ def make(**fields: Any) -> None:
         ({}, "nothing", "connect"),
     ],
 )
-def test_what_is_wrong_is_said(fields: dict[str, Any], found: str, remedy: str) -> None:
+def test_invalid_inverse_kinematics_fields_are_refused(fields: dict[str, Any], found: str, remedy: str) -> None:
     refused(lambda: make(**fields), found, remedy)

@@ -86,7 +86,7 @@ def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
     assert np.all(age[first:] < TIMEOUT)
 
 
-def test_zenoh_takes_what_is_published() -> None:
+def test_zenoh_receives_published_messages() -> None:
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     way: dict[str, Any] = {"key": "arm/state", "address": address, "period": PERIOD}
     heard = {"size": 2, "timeout": TIMEOUT, "on_silence": "value", "fallback": -1.0}
@@ -101,7 +101,7 @@ def test_zenoh_takes_what_is_published() -> None:
     assert np.all(signal[alive == 0.0] == -1.0)
 
 
-def test_a_port_in_use_is_told_before_the_run() -> None:
+def test_a_port_in_use_is_reported_before_the_run() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
         simulation = loop_of(UdpReceiver(name="rx", port=other.getsockname()[1], size=2, period=0.01))
@@ -117,7 +117,7 @@ def test_a_port_in_use_is_told_before_the_run() -> None:
         assert re.search("in use", str(caught.value))
 
 
-def test_what_is_sent_in_a_loop_arrives_and_both_ways_of_running_agree() -> None:
+def test_udp_messages_in_a_loop_arrive_compiled_and_interpreted() -> None:
     port = free_port()
     simulation = loop_of(
         UdpTransmitter(name="tx", port=port, period=0.01),
@@ -129,7 +129,7 @@ def test_what_is_sent_in_a_loop_arrives_and_both_ways_of_running_agree() -> None
         assert run.kept["tx"]["sent"] == 21 and run.kept["rx"]["received"] == 20
 
 
-def test_hostile_packets_neither_stop_the_loop_nor_get_in() -> None:
+def test_hostile_packets_neither_stop_the_loop_nor_are_accepted() -> None:
     port, rng = free_port(), np.random.default_rng(1)
 
     def flood(t: float, _: object) -> dict[str, float]:
@@ -156,19 +156,19 @@ def test_hostile_packets_neither_stop_the_loop_nor_get_in() -> None:
         (ZenohSubscriber(name="b", key="a", size=1, address="here", period=1.0), "no address"),
     ],
 )
-def test_what_does_not_fit_is_told(block: Block, words: str) -> None:
+def test_signals_of_wrong_size_are_refused(block: Block, words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         loop_of(block)
 
 
-def test_a_key_that_is_none_is_told_before_the_run() -> None:
+def test_an_invalid_key_is_reported_before_the_run() -> None:
     address = f"127.0.0.1:{free_port(socket.SOCK_STREAM)}"
     block = ZenohSubscriber(name="rx", key="a/**b", address=address, size=2, period=0.01)
     with pytest.raises(sf.SymofrosError, match=r"block 'rx': no key 'a/\*\*b'"):
         loop_of(block).run(0.1, dt=1e-2)
 
 
-def test_zenoh_missing_is_told_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_zenoh_package_is_reported_with_the_remedy(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "zenoh", None)
     d = sf.Diagram("d")
     d.add(ramp())

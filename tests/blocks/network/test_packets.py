@@ -68,7 +68,9 @@ def test_malformed_packets_are_counted_and_forgotten(data: bytes) -> None:
         ((2**32 - 2, 1, 2**32 - 1), 1, 1, 0, 1),
     ],
 )
-def test_what_is_counted(sequences: tuple[int, ...], lost: int, late: int, duplicate: int, newest: int) -> None:
+def test_lost_late_and_duplicate_packets_are_counted(
+    sequences: tuple[int, ...], lost: int, late: int, duplicate: int, newest: int
+) -> None:
     r = after(*sequences)
     assert (r.lost, r.late, r.duplicate) == (lost, late, duplicate)
     assert r.received == len(sequences) - duplicate

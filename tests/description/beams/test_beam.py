@@ -12,7 +12,7 @@ NAMES = ["EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z", "EA", "GA_y", "GA_z",
 NAMES += ["curvature_y", "curvature_z", "twist_rate", "EI_yz", "rhoI_yz"]
 
 
-def test_stiffnesses_inertias_and_damping_that_are_not_stated_are_zero() -> None:
+def test_unstated_stiffnesses_inertias_and_damping_are_zero() -> None:
     beam = sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0)
     assert {name: getattr(beam, name) for name in NAMES} == dict.fromkeys(NAMES, 0.0)
     stated = {item.name for item in fields(sf.Beam) if item.type == "Value" and isinstance(item.default, float)}
@@ -46,7 +46,7 @@ def test_sections_that_contradict_themselves_are_refused(entries: dict[str, obje
         rod_by(**entries)
 
 
-def test_rounding_across_the_diagonal_is_no_asymmetry() -> None:
+def test_rounding_across_the_diagonal_is_not_asymmetry() -> None:
     rows = [list(row) for row in IDENTITY]
     rows[0][3], rows[3][0] = 0.1, 0.1 + 1e-9
     stated = rod_by(stiffness=rows).stiffness

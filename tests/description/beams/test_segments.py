@@ -41,7 +41,7 @@ def test_a_rigid_beam_is_the_same_in_any_number_of_segments(segments: int) -> No
     np.testing.assert_allclose(divided.frame_pose("tip", q)[0], whole.frame_pose("tip", q)[0], atol=1e-15)
 
 
-def test_a_tip_of_a_beam_in_segments_is_that_of_the_last() -> None:
+def test_a_tip_of_a_beam_in_segments_matches_that_of_the_last() -> None:
     divided = arm(3)
     assert [body.name for body in divided.bodies] == ["link", "link.2", "link.3", "hand"]
     assert [body.joint.name for body in divided.bodies if body.joint] == [
@@ -62,7 +62,7 @@ def test_a_divided_system_is_written_and_read(tmp_path: Path) -> None:
     assert sf.load(tmp_path / "arm.yaml") == divided
 
 
-def test_segments_in_the_file_are_those_of_python(tmp_path: Path) -> None:
+def test_segments_from_yaml_equal_those_from_python(tmp_path: Path) -> None:
     whole = arm(1, 2)
     sf.save(whole, tmp_path / "arm.yaml")
     text = (tmp_path / "arm.yaml").read_text()
@@ -89,7 +89,7 @@ def test_a_load_along_axes_that_turn_with_the_segments_is_refused() -> None:
         arm(2, loads=(sf.BeamLoad((0, 1, 0)),))
 
 
-def test_a_frame_may_bear_the_name_of_what_joins_segments() -> None:
+def test_a_frame_may_have_the_name_of_a_segment_joint() -> None:
     beam = sf.Beam("link", sf.Joint("hub", "revolute"), 2.0, 1.0, segments=3, frames=(sf.Frame("end"),))
     m = sf.compile(sf.System("s", (beam,)), sf.Options(("frame_pose",), ("end",), backend="interpreter"))
     p, _ = m.frame_pose("end", m.neutral())

@@ -20,7 +20,7 @@ def run(*arguments: object):
     return CliRunner().invoke(app, list(map(str, arguments)))
 
 
-def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
+def test_simulate_reports_the_outcome_and_writes_the_run(tmp_path: Path) -> None:
     file, table, picture = folder_with(tmp_path), tmp_path / "r.csv", tmp_path / "r.png"
     found = run("simulate", file, "-o", table, "--plot", picture, "--json", "--signals", "plant.q,pd.effort[1]")
     assert found.exit_code == 0, found.output
@@ -31,7 +31,7 @@ def test_it_says_how_the_run_went_and_writes_it(tmp_path: Path) -> None:
     assert picture.stat().st_size > 10_000
 
 
-def test_files_hold_what_the_run_gave(tmp_path: Path) -> None:
+def test_written_files_contain_the_run(tmp_path: Path) -> None:
     run_ = sf.Simulation(sf.load_diagram(folder_with(tmp_path))).run()
     run_.save(tmp_path / "r.npz")
     arrays = np.load(tmp_path / "r.npz")
@@ -58,7 +58,7 @@ def test_parameters_are_set(tmp_path: Path) -> None:
     assert np.all(ends[1] == 0.0) and np.all(ends[2] == 0.0)
 
 
-def test_real_time(tmp_path: Path) -> None:
+def test_real_time_runs_last_as_long_as_stated(tmp_path: Path) -> None:
     found = run("simulate", folder_with(tmp_path), "--speed", "2", "--jitter", tmp_path / "j.png", "--json")
     said = json.loads(found.stdout)
     jitter = said["jitter"]
@@ -69,7 +69,7 @@ def test_real_time(tmp_path: Path) -> None:
     assert (tmp_path / "j.png").stat().st_size > 10_000
 
 
-def test_info_shows_what_a_diagram_is(tmp_path: Path) -> None:
+def test_info_lists_the_contents_of_a_diagram(tmp_path: Path) -> None:
     file = folder_with(tmp_path)
     found = run("info", file, "--json")
     assert found.exit_code == 0, found.output

@@ -44,7 +44,7 @@ def problems(path: Path, text: str, **options: object) -> list[sf.Problem]:
     return list(caught.value.problems)
 
 
-def test_what_a_file_states(tmp_path: Path) -> None:
+def test_a_diagram_file_is_read_completely(tmp_path: Path) -> None:
     d = sf.load_diagram(folder_with(tmp_path))
     assert d.name == "held_arm" and list(d.blocks) == ["plant", "pd"] and d.simulation.t_end == 0.2
     assert [plot.signals for plot in d.simulation.plots] == [("plant.q",), ("pd.effort[0]",), ("plant.v",)]
@@ -54,7 +54,7 @@ def test_what_a_file_states(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("old", "new", "line", "words"), FAULTS)
-def test_faults_say_where_they_are(tmp_path: Path, old: str, new: str, line: str, words: list[str]) -> None:
+def test_faults_name_their_place_in_the_file(tmp_path: Path, old: str, new: str, line: str, words: list[str]) -> None:
     assert old in TEXT
     text = TEXT.replace(old, new.replace("LONG", 500 * "a"), 1)
     found = problems(tmp_path, text)
@@ -63,7 +63,7 @@ def test_faults_say_where_they_are(tmp_path: Path, old: str, new: str, line: str
     assert any(one.where.endswith(f":{line_of(text, line)}") for one in found), (first, line_of(text, line))
 
 
-def test_all_faults_are_told_at_once(tmp_path: Path) -> None:
+def test_all_faults_of_a_diagram_are_reported_together(tmp_path: Path) -> None:
     text = TEXT.replace("kd: 2", "kd: [{}]").replace("t_end: 0.2", "t_end: x")
     text = text.replace("kind: forward_d", "kind: froward_d")
     found = problems(tmp_path, text.replace("m2: 0.9", "m2: a"))

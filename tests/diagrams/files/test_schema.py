@@ -29,11 +29,11 @@ def test_the_published_schema_is_current() -> None:
     assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text(), "run: python -m symofros.diagrams.files.schema"
 
 
-def test_it_is_a_legal_schema() -> None:
+def test_the_diagram_schema_is_legal() -> None:
     jsonschema.Draft202012Validator.check_schema(json.loads(schema_text()))
 
 
-def test_it_accepts_what_the_reader_does() -> None:
+def test_the_diagram_schema_accepts_readable_files() -> None:
     check(TEXT)
     check(TEXT + PART)
 
@@ -51,7 +51,7 @@ def test_it_accepts_what_the_reader_does() -> None:
         ("{file: x.yaml,", "{file: x.yaml, diagram: {},"),
     ],
 )
-def test_it_refuses_what_the_reader_does(old: str, new: str) -> None:
+def test_the_diagram_schema_refuses_unreadable_files(old: str, new: str) -> None:
     assert old in TEXT + PART
     with pytest.raises(jsonschema.ValidationError):
         check((TEXT + PART).replace(old, new, 1))

@@ -43,7 +43,7 @@ def test_a_file_reads_back_as_the_same(tmp_path: Path) -> None:
     assert (tmp_path / "third.yaml").read_text() == (tmp_path / "again.yaml").read_text()
 
 
-def test_what_python_stated_reads_back(tmp_path: Path) -> None:
+def test_diagrams_built_in_python_survive_saving(tmp_path: Path) -> None:
     files = sf.save_diagram(stated(), tmp_path / "d.yaml")
     assert [file.name for file in files] == ["d_arm.yaml", "d.yaml"]
     again = sf.load_diagram(tmp_path / "d.yaml")

@@ -36,7 +36,7 @@ def test_a_diagram_notes_the_largest_bending_at_its_parameters() -> None:
     assert not stiff.run(1.0, parameters={"plant.L": 0.5}).outcome.notes
 
 
-def test_interpreted_runs_say_the_same_of_beams() -> None:
+def test_interpreted_runs_give_the_same_notes_on_beams() -> None:
     stiff, limp = simulation(0.5), simulation(60.0)
     compiled, run = stiff.run(1.0, dt=0.01, record=0.1), stiff.interpret(1.0, dt=0.01, record=0.1)
     notes = [note for note in compiled.outcome.notes if "second-order theory" in note]

@@ -26,7 +26,7 @@ def run_with(function: Callable[[float, Any], Any], **options: Any) -> sf.Diagra
 
 
 @pytest.mark.parametrize(("method", "bad"), [("rk4", np.nan), ("dopri5", np.inf)])
-def test_an_output_that_is_not_finite_names_block_and_line(method: str, bad: float) -> None:
+def test_non_finite_outputs_name_block_and_line(method: str, bad: float) -> None:
     def push(t: float, inputs: Any) -> dict[str, list[float]]:
         return {"force": [bad if t > 0.095 else 0.0]}
 
@@ -66,9 +66,7 @@ def fed_back(formula: str, period: float | None = None) -> sf.Simulation:
 
 @pytest.mark.parametrize("period", [None, 0.01])
 @pytest.mark.parametrize(("formula", "value"), [("sqrt(x)", "nan"), ("-1/max(x - 0.02, 0)", "-inf")])
-def test_a_formula_that_is_not_finite_is_named_compiled_and_interpreted(
-    formula: str, value: str, period: float | None
-) -> None:
+def test_non_finite_formulas_are_named_compiled_and_interpreted(formula: str, value: str, period: float | None) -> None:
     simulation = fed_back(formula, period)
     # Adaptive steps come closer to the pole of an infinite force without end: "step too small".
     methods = ("rk4", "dopri5", "euler") if value == "nan" else ("rk4", "euler")
@@ -81,7 +79,7 @@ def test_a_formula_that_is_not_finite_is_named_compiled_and_interpreted(
         assert period or ", with x = " in outcome.reason
 
 
-def test_a_first_output_that_is_not_finite_is_named() -> None:
+def test_a_non_finite_first_output_is_named() -> None:
     with pytest.raises(sf.SymofrosError, match="block 'law': output 'force' is nan at t = 0 s, with x = 0.05"):
         fed_back("sqrt(-x)").run(1.0, dt=1e-3)
     assert "output 'force' is nan at t = 0 s" in fed_back("sqrt(-x)").interpret(1.0, compiled=False).outcome.reason
@@ -96,7 +94,7 @@ def test_a_signal_that_spoils_a_state_of_a_block_is_named() -> None:
     assert "block 'root': output 'y' is nan" in outcome.reason and outcome.t == pytest.approx(np.pi / 7, abs=2e-3)
 
 
-def test_a_step_past_the_limit_of_stability_is_told() -> None:
+def test_an_unstable_step_is_reported() -> None:
     """A spring of 1000 rad/s beside a controller, by steps of 1 ms to 5 ms."""
     diagram = moving(oscillator_system(k=1e6), start={"x": 1e-3}, u="law.force")
     diagram.add(PythonBlock(name="law", function=lambda t, _: {"force": [0.0]}, outputs={"force": (1,)}, period=PERIOD))

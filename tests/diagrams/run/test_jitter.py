@@ -15,7 +15,7 @@ def cost(late: list[float], spacing: float = 1e-3) -> Cost:
     return Cost("rk4", 0, 0, 0, 0, 0.0, late=np.array(late), spacing=spacing)
 
 
-def test_it_is_told_from_the_times() -> None:
+def test_jitter_statistics_follow_from_the_times() -> None:
     found = jitter_of(cost([1e-6] * 499 + [5e-6] * 500 + [2e-3]))
     assert (found.minimum, found.median, found.maximum, found.instants) == (1e-6, 5e-6, 2e-3, 1000)
     assert 5e-6 < found.p999 < 2e-3 and found.missed == 1
@@ -23,7 +23,7 @@ def test_it_is_told_from_the_times() -> None:
     assert jitter_of(cost([6e-4] * 3, 5e-4)).missed == 3 and jitter_of(cost([6e-4] * 3)).missed == 0
 
 
-def test_without_a_pace_there_is_none() -> None:
+def test_jitter_needs_a_real_time_run() -> None:
     with pytest.raises(sf.SymofrosError, match="run with realtime=True"):
         jitter_of(cost([]))
 

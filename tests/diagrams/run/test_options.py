@@ -24,7 +24,7 @@ def test_an_unknown_option_is_refused_with_the_nearest_known_one() -> None:
     assert "SimulationOptions" in refusal.value.problems[0].rule
 
 
-def test_start_and_interval_of_recording_are_those_of_the_options() -> None:
+def test_start_and_record_interval_follow_the_options() -> None:
     run = bouncing().run(1.5, t0=1.0, dt=1e-2, record=0.1)
     np.testing.assert_allclose(run.t[[0, -1]], [1.0, 1.5])
     np.testing.assert_allclose(np.diff(run.t[np.searchsorted(run.t, [1.1, 1.2])]), 0.1)
@@ -36,7 +36,7 @@ def test_options_of_single_models_are_refused() -> None:
             bouncing().run(1.0, **option)
 
 
-def test_bounds_of_adaptive_steps_are_those_of_single_models() -> None:
+def test_bounds_of_adaptive_steps_match_those_of_single_models() -> None:
     diagram = sf.Diagram("oscillator")
     diagram.add_model("plant", oscillator_system(k=100.0), start={"x": 1.0})
     diagram.add(ForwardDynamics(name="plant", model="plant"))

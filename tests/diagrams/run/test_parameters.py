@@ -27,7 +27,7 @@ def simulation() -> sf.Simulation:
 @pytest.mark.parametrize(
     ("name", "value", "says"), [("m", -1.0, "mass -1"), ("L", 0.0, "moves no mass"), ("m", 0.0, "moves no mass")]
 )
-def test_a_run_refuses_what_the_description_refuses(name: str, value: float, says: str) -> None:
+def test_runs_refuse_parameters_that_descriptions_refuse(name: str, value: float, says: str) -> None:
     with pytest.raises(sf.ParameterError, match=rf"diagram 'bench': model 'plant': (.|\n)*{says}"):
         simulation().run(0.01, parameters={f"plant.{name}": value})
     with pytest.raises(sf.ParameterError, match=says):

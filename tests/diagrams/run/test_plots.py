@@ -29,6 +29,6 @@ def test_a_plot_over_a_plane_draws_the_second_entry_over_the_first_at_one_scale(
     assert axis.get_aspect() == 1.0
 
 
-def test_what_has_no_two_entries_is_no_path_in_a_plane() -> None:
+def test_a_plane_plot_of_one_entry_is_refused() -> None:
     with pytest.raises(DescriptionError, match="over a plane"):
         sf.Simulation(circle(Plot("path", ("wave.y",), xy=True)))

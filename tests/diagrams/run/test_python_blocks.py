@@ -44,7 +44,7 @@ def nested(block: Block, **inputs: str) -> tuple[sf.DiagramRun, Inside]:
     return simulation.run(6 * PERIOD, dt=PERIOD), inside
 
 
-def test_two_runs_at_once_keep_what_is_theirs() -> None:
+def test_nested_runs_keep_their_own_results() -> None:
     run, inside = nested(Store(name="log", signals=("y",), period=PERIOD), y="ramp.y")
     assert inside.inner is not None
     for one, count in ((run, 7), (inside.inner, 3)):
@@ -96,7 +96,7 @@ class Returning(Running):
 
 
 @pytest.mark.parametrize(("returned", "found"), [(1.0, r"\(\)"), ([1.0, 2.0, 3.0], r"\(3,\)"), (None, "nothing")])
-def test_what_was_not_promised_is_refused_both_ways(returned: Any, found: str) -> None:
+def test_undeclared_outputs_are_refused_compiled_and_interpreted(returned: Any, found: str) -> None:
     d = sf.Diagram("promise")
     d.add(Promising(name="p", returned=returned, period=PERIOD))
     simulation = sf.Simulation(d)
@@ -107,7 +107,7 @@ def test_what_was_not_promised_is_refused_both_ways(returned: Any, found: str) -
     assert run.outcome.kind == "input failed" and "output 'y' does not fit" in run.outcome.reason
 
 
-def test_what_began_ends_where_another_does_not_begin() -> None:
+def test_started_blocks_are_stopped_when_another_fails_to_start() -> None:
     heard: list[str] = []
 
     def fails() -> None:

@@ -38,7 +38,7 @@ def test_a_controlled_arm_is_the_same_compiled_and_interpreted(period: float | N
     agree(arm(PENDULUM, period, q1=0.3), 0.05, ["plant.q", "plant.v", "pd.effort", "plant.a"], 100.0)
 
 
-def test_a_continuous_controller_is_that_of_simulate() -> None:
+def test_a_continuous_controller_matches_that_of_simulate() -> None:
     """The same law as formulas of `simulate`'s, by the same method and steps: another path to the same motion."""
     model = sf.compile(PENDULUM)
     names = model.names
@@ -174,7 +174,7 @@ def test_parameters_change_without_compiling() -> None:
         simulation.run(0.1, parameters={"pd.kp": [1.0, 2.0, 3.0]})
 
 
-def test_friction_is_what_the_model_says() -> None:
+def test_friction_of_a_diagram_matches_the_model() -> None:
     system = sf.load(MODELS / "flexible" / "planar_robot.yaml")
     model = sf.compile(system)
     diagram = moving(system, start={"dq1": 0.5, "dq3": -0.2})
@@ -185,7 +185,7 @@ def test_friction_is_what_the_model_says() -> None:
     assert friction[model.names.v.index("e1")] == 0.0
 
 
-def test_a_diagram_serves_another_model() -> None:
+def test_a_diagram_can_switch_to_another_model() -> None:
     """The same diagram, rigid: by changing the initialisation."""
     system = sf.load(MODELS / "flexible" / "flexible_pendulum.yaml")
     flexible, rigid = sf.Diagram("swap"), sf.Diagram("rigid")
@@ -203,7 +203,7 @@ def loop_from(**stated: float) -> sf.Diagram:
 
 
 @pytest.mark.parametrize("how", ["run", "interpret"])
-def test_what_is_stated_of_a_loop_s_start_is_kept_or_refused(how: str) -> None:
+def test_stated_loop_starts_are_kept_or_refused(how: str) -> None:
     """It was projected with all else: q1 = 1 and dq1 = 1 became other numbers without a word."""
     run = getattr(sf.Simulation(loop_from(q1=1.0, dq1=1.0)), how)(0.002, dt=1e-3, record=1e-3)
     assert run["plant.q"][0][0] == pytest.approx(1.0, abs=1e-9) and run["plant.v"][0][0] == pytest.approx(1.0, abs=1e-9)

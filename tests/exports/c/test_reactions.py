@@ -119,7 +119,7 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
             assert numbers(next(lines)) == pytest.approx(inside, rel=1e-9, abs=1e-9 * float(np.abs(inside).max()))
 
 
-def test_motions_that_actuators_can_not_produce_are_refused(tmp_path: Path) -> None:
+def test_motions_that_actuators_cannot_produce_are_refused(tmp_path: Path) -> None:
     name, m = "four_bar", compiled("four_bar")
     state = sf.assemble(m, [1.2, -1.0, 1.3], [1.0, 0, 0], held=["q1"])
     a = m.forward_dynamics(state.q, state.v, np.zeros(m.nu))

@@ -43,7 +43,7 @@ def test_direct_dynamics_integrate(block: tuple[str, Path]) -> None:
     assert len(found) == (4 if name == "four_bar" else 3)
 
 
-def test_functions(block: tuple[str, Path]) -> None:
+def test_s_function_outputs_match_the_model(block: tuple[str, Path]) -> None:
     name, folder = block
     model = sf.compile(system_of(name))
     q, v = first_state(model, name)

@@ -86,7 +86,7 @@ def test_the_table_states_the_order_of_the_arguments(package: Path) -> None:
     assert all(symbol.replace("pendulum", "pendulum_single") in declared for symbol in stated)
 
 
-def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> None:
+def test_notes_say_that_constrained_motion_stays_in_c(tmp_path: Path) -> None:
     exported = sf.export(system("four_bar"), "cuda", tmp_path)
     assert "no kernels of forward_dynamics, forward_dynamics_derivatives" in exported.notes[0]
     assert "no rollouts" in (tmp_path / "README.md").read_text()
@@ -94,7 +94,7 @@ def test_constrained_motion_stays_in_c_and_the_notes_say_so(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(("name", "bends"), [("double_pendulum", False), ("flexible_pendulum", True)])
-def test_rollouts_of_beams_are_said_not_to_be_judged(tmp_path: Path, name: str, bends: bool) -> None:
+def test_notes_say_that_beam_rollouts_are_not_judged(tmp_path: Path, name: str, bends: bool) -> None:
     notes = sf.export(system(name), "cuda", tmp_path).notes
     assert bool([note for note in notes if "rollouts do not judge how far beams bend" in note]) == bends
 

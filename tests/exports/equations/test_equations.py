@@ -102,7 +102,7 @@ def test_the_double_pendulum_is_the_textbooks() -> None:
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar"])
-def test_latex_parses(name: str) -> None:
+def test_latex_can_be_parsed(name: str) -> None:
     parser = MathTextParser("path")
     body = readable(name).latex().splitlines()[1:-1]
     assert len(body) > 3
@@ -111,7 +111,7 @@ def test_latex_parses(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["puma560", "stewart", "flexible_arm"])
-def test_large_models_are_refused_in_words_and_have_their_recursion(name: str) -> None:
+def test_large_models_are_refused_and_have_their_recursion(name: str) -> None:
     equations = sf.equations(MODELS[name])
     assert not equations.is_small
     with pytest.raises(sf.ExportError, match="at most 300 operations"):

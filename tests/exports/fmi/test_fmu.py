@@ -23,6 +23,7 @@ import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
 from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.exports.fmi.logs import heard
 from tests.models import sampled
 from tests.simulation.beam_models import at_rest, cantilever_system
 
@@ -53,15 +54,11 @@ OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR, "turned": TURNE
 
 def simulated(path: str, **options: Any) -> tuple[Any, list[str]]:
     """What FMPy's simulator returns, or None where the unit refuses to go on, and the unit's log."""
-    log: list[str] = []
-
-    def logger(*given: Any) -> None:
-        log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
-
-    try:
-        return fmpy.simulate_fmu(path, logger=logger, **options), log
-    except FMICallException:
-        return None, log
+    with heard() as (logger, log):
+        try:
+            return fmpy.simulate_fmu(path, logger=logger, **options), log
+        except FMICallException:
+            return None, log
 
 
 def system_called(name: str) -> sf.System:
@@ -124,7 +121,7 @@ def columns(result: Any, prefix: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
-def test_valid(made: Any, name: str, version: int) -> None:
+def test_fmpy_validates_the_unit(made: Any, name: str, version: int) -> None:
     assert validate_fmu(str(made(name, version))) == []
 
 
@@ -242,7 +239,7 @@ def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
 
 
 @pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
-def test_directional_derivatives_are_those_of_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
+def test_directional_derivatives_match_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
     it = unit(name, cosim=False)
     it.start()
     if it.version == 2:
@@ -318,7 +315,7 @@ def test_parameters_that_the_description_refuses_are_refused(unit: Any, value: f
         it.start()
 
 
-def test_what_the_standard_forbids_is_refused(unit: Any) -> None:
+def test_calls_forbidden_by_the_standard_are_refused(unit: Any) -> None:
     it = unit("four_bar", cosim=True)
     forbidden = [
         lambda: it.fmu.doStep(0.0, 0.01),  # before initialisation
@@ -364,7 +361,7 @@ def test_units_and_dependencies(made: Any, version: int) -> None:
     assert {variable.name for variable in outputs["p.tool.x"]} >= {"q.q1", "q.'link.bend_y[0]'"}
 
 
-def test_without_fmpy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_missing_fmpy_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     with pytest.raises(sf.ExportError, match=r"pip install 'symofros\[fmi\]'"):
         sf.export(REFERENCE["pendulum"], "fmu2", tmp_path)
@@ -390,7 +387,7 @@ def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribe
 
 @pytest.mark.parametrize("version", ONE_VERSION)
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_beams_beyond_their_theory_are_told(made: Any, version: int, kind: str) -> None:
+def test_beams_beyond_their_theory_are_reported(made: Any, version: int, kind: str) -> None:
     """A warning from 1 % on; beyond the limit a step of Co-Simulation is discarded, and Model Exchange is ended."""
     remarks: dict[float, list[str]] = {}
     ends: dict[float, float] = {}

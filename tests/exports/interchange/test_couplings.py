@@ -78,5 +78,5 @@ def test_the_coordinate_that_can_follow_does(
         "0*a - b^2",
     ],
 )
-def test_what_is_no_such_polynomial_is_none(residual: str) -> None:
+def test_other_constraints_are_not_recognised_as_polynomials(residual: str) -> None:
     assert polynomial(residual) is None

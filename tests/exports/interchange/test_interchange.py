@@ -26,7 +26,7 @@ def original(name: str) -> sf.System:
 
 
 @pytest.mark.parametrize("name", ["panda", "ur5", "four_bar", "wrist", "puma560", "anymal"])
-def test_pinocchio_agrees(tmp_path: Path, name: str, rng: np.random.Generator) -> None:
+def test_exported_urdf_agrees_in_pinocchio(tmp_path: Path, name: str, rng: np.random.Generator) -> None:
     system = original(name)
     done = sf.export(system, "urdf", tmp_path)
     engine = pinocchio.buildModelFromUrdf(str(done.files[0]))
@@ -160,7 +160,7 @@ def test_gears_are_mimics_of_urdf(tmp_path: Path, rng: np.random.Generator) -> N
     assert sf.compile(sf.load(done.files[0], mimic=True)).constraint(q) == pytest.approx([0.0], abs=1e-15)
 
 
-def test_what_mimics_has_no_place_for_stays_dropped(tmp_path: Path) -> None:
+def test_couplings_that_mimic_cannot_express_are_dropped(tmp_path: Path) -> None:
     """A curve, a joint that is held, a second line of one joint, a leader that follows."""
     lines = ("q1 - q0", "q1 - 2*q2", "q2 - q1", "q3 - q2^2", "q3 - 0.5")
     system = _pair(*(sf.Coupling(f"c{k}", line) for k, line in enumerate(lines)))
@@ -170,7 +170,7 @@ def test_what_mimics_has_no_place_for_stays_dropped(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-16, 1e-12, 1e-9, 1e-8, 1e-7])
-def test_angles_near_right_angles_are_those_of_the_rotation(noise: float) -> None:
+def test_angles_near_right_angles_give_the_rotation(noise: float) -> None:
     """Near a pitch of a right angle, roll and yaw are defined by noise, but for their sum."""
     rng, numbers = np.random.default_rng(1), Numbers(sf.System("s"))
     for quarters in product(range(4), repeat=3):

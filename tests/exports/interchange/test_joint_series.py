@@ -56,7 +56,9 @@ def mass_matrix(engine: mujoco.MjModel, model: sf.Model, q: np.ndarray) -> np.nd
 
 @settings(max_examples=20, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 10**6), links=st.integers(1, 7))
-def test_what_mujoco_reads_has_our_mass_matrix(tmp_path_factory: pytest.TempPathFactory, seed: int, links: int) -> None:
+def test_exported_mjcf_has_the_same_mass_matrix(
+    tmp_path_factory: pytest.TempPathFactory, seed: int, links: int
+) -> None:
     system = series(seed, links)
     done = sf.export(system, "mjcf", tmp_path_factory.mktemp("mjcf"))
     try:
@@ -85,7 +87,7 @@ def test_a_chain_of_carriers_is_one_body(tmp_path: Path) -> None:
     np.testing.assert_allclose(engine.joint("roll").pos, [-0.1, -0.2, 0.0], atol=1e-15)
 
 
-def test_frames_of_carriers_and_what_is_refused_are_said(tmp_path: Path) -> None:
+def test_notes_name_frames_of_carriers_and_refused_items(tmp_path: Path) -> None:
     """A carrier of two bodies can't be gathered; a frame of one has no place in the body that takes it over."""
     ring = sf.RigidBody("ring", sf.Joint("a", "revolute"), None, [sf.Frame("mark", (1, 0, 0))])
     wheels = [
@@ -101,7 +103,7 @@ def test_frames_of_carriers_and_what_is_refused_are_said(tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize("name", sampled(MODELS, ["puma560", "car", "four_bar", "gyroscope", "space_arm"]))
-def test_mujoco_reads_what_reference_models_give_or_a_note_says_why_not(name: str, tmp_path: Path) -> None:
+def test_reference_models_load_in_mujoco_or_a_note_gives_the_reason(name: str, tmp_path: Path) -> None:
     build_tree(MODELS[name])
     try:
         done = sf.export(MODELS[name], "mjcf", tmp_path)

@@ -208,7 +208,7 @@ def _bounds(limits: sf.Limits) -> tuple[float | None, ...]:
 
 
 @pytest.mark.parametrize("target", ["c", "mex", "sfunction", "fmu2", "fmu3", "wasm", "cuda"])
-def test_other_targets_say_that_limits_stay_behind(
+def test_other_targets_note_that_limits_are_dropped(
     target: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Numbers in text alone: nothing is compiled here."""

@@ -92,7 +92,7 @@ def test_a_run_moves_as_strict_native_code_does(answers: dict[str, Any], tmp_pat
 
 
 @pytest.mark.tools
-def test_wrong_names_and_sizes_are_refused_in_words(answers: dict[str, Any]) -> None:
+def test_wrong_names_and_sizes_are_refused(answers: dict[str, Any]) -> None:
     unknown, size, number, memory, freed, *gone = answers["refusals"]
     assert "no function 'mass'" in unknown and "forward_dynamics" in unknown
     assert "'q' has 5 numbers; it takes 2" in size
@@ -115,7 +115,7 @@ def test_arrays_of_a_prepared_batch_outlive_memory_that_grows(answers: dict[str,
 
 
 @pytest.mark.tools
-def test_wasmtime_runs_it(package: Path) -> None:
+def test_wasmtime_runs_the_module(package: Path) -> None:
     """Without a single import: any runtime will do."""
     wasmtime = require("wasmtime", "dev")
     store = wasmtime.Store()
@@ -168,14 +168,14 @@ def test_the_page_simulates_without_a_server(package: Path, chromium: Any) -> No
     assert drawn["speed"] > 20 and drawn["angle"] == 0 and np.isfinite(value)
 
 
-def test_without_zig_it_is_said_in_words(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_zig_the_remedy_names_the_extra(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(wasm.importlib.util, "find_spec", lambda name: None)
     with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):
         sf.export(PLANAR, "wasm", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
-def test_names_can_not_end_the_script_of_the_page() -> None:
+def test_names_cannot_end_the_script_of_the_page() -> None:
     assert "<" not in wasm._json({"name": "</script><!--<script"})
 
 

@@ -71,7 +71,7 @@ def test_within_one_unit_in_the_last_place(kind: str) -> None:
     assert errors(x, cosine(x), mpmath.cos) < ULPS
 
 
-def test_special_values() -> None:
+def test_special_values_of_sine_and_cosine() -> None:
     special = np.array([np.inf, -np.inf, np.nan, 0.0, -0.0, 5e-324, FAR, np.nextafter(FAR, np.inf)])
     s, c = sine(special), cosine(special)
     assert np.isnan(s[:3]).all() and np.isnan(c[:3]).all()
@@ -86,7 +86,7 @@ def test_parity_is_exact() -> None:
     assert np.array_equal(sine(-x), -sine(x)) and np.array_equal(cosine(-x), cosine(x))
 
 
-def test_one_bad_angle_spoils_no_other() -> None:
+def test_an_invalid_angle_does_not_affect_others() -> None:
     x = np.array([1.0, np.nan, 2.0, 1e300])
     assert np.array_equal(OPS["sin"].rule(x)[[0, 2]], sine(x[[0, 2]]))
     assert np.isfinite(OPS["cos"].rule(x)[3])

@@ -47,7 +47,7 @@ def test_a_pack_that_becomes_its_operand_is_its_operand() -> None:
     assert operand.lanes == inputs(into, "y").lanes
 
 
-def test_a_lane_that_folds_is_no_exact_lane() -> None:
+def test_a_folded_lane_is_not_exact() -> None:
     """0.7 (0.3 z) becomes 0.21 z, which is rounded otherwise."""
     g = Graph()
     c, k = g.input("c", 0), g.input("c", 1)
@@ -58,7 +58,7 @@ def test_a_lane_that_folds_is_no_exact_lane() -> None:
     assert set(copy.exact_lanes) == set(copy.new_lanes) == ALL - {3}
 
 
-def test_what_was_there_before_is_no_new_lane() -> None:
+def test_lanes_that_existed_before_are_not_new() -> None:
     g, into = Graph(), Graph()
     pack = combination(g)
     new = {node: into.input(slot.group, slot.index) for node, slot in g.slot.items()}

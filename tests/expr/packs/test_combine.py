@@ -35,7 +35,7 @@ def test_other_lanes_are_zero() -> None:
     assert [lane != ZERO for lane in pack.lanes] == [True] * 3 + [False] * 5
 
 
-def test_a_node_that_was_there_before_is_no_new_lane() -> None:
+def test_nodes_that_existed_before_are_not_new_lanes() -> None:
     g = Graph()
     a, x = g.input("c", 0), inputs(g, "x")
     before = g.mul(a, x.lanes[2])
@@ -44,7 +44,7 @@ def test_a_node_that_was_there_before_is_no_new_lane() -> None:
     assert 2 not in pack.new_lanes
 
 
-def test_a_product_that_the_graph_folds_is_no_new_lane() -> None:
+def test_products_that_the_graph_folds_are_not_new_lanes() -> None:
     """2 (3 x) becomes 6 x, which rounds otherwise than 2 * (3 x)."""
     g = Graph()
     lanes: list[Edge] = list(inputs(g, "x").lanes)
@@ -53,7 +53,7 @@ def test_a_product_that_the_graph_folds_is_no_new_lane() -> None:
     assert set(pack.new_lanes) == set(range(WIDTH)) - {4}
 
 
-def test_a_product_that_folds_to_its_operand_is_no_exact_lane() -> None:
+def test_products_that_fold_to_an_operand_are_not_exact_lanes() -> None:
     """c (x / c) becomes x, which differs from c * (x * (1/c)) by rounding."""
     g = Graph()
     lanes: list[Edge] = list(inputs(g, "x").lanes)

@@ -81,7 +81,7 @@ def assert_alike(case: str, flags: tuple[str, ...], functions: tuple[str, ...], 
 
 
 @pytest.mark.parametrize("case", sampled(("double_pendulum", "cart_pole", "planar_robot"), ("double_pendulum",)))
-def test_every_function(case: str) -> None:
+def test_every_function_agrees_in_lanes(case: str) -> None:
     assert_alike(case, QUICK, MODEL_FUNCTIONS, [2, 17])
 
 
@@ -118,7 +118,7 @@ def test_columns_of_any_number_of_states(width: str) -> None:
 
 
 @pytest.mark.parametrize("width", sampled(tuple(WIDTHS), FORCED))
-def test_every_operation(width: str) -> None:
+def test_every_operation_agrees_in_lanes(width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
     assert_alike("operations", WIDTHS[width], ("generalized_force", "mass_matrix"), [5, 16])

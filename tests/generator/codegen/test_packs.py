@@ -50,7 +50,7 @@ def source(system: sf.System, functions: tuple[str, ...], packs: Packs = "where 
 
 @pytest.mark.parametrize("part", PARTS)
 @pytest.mark.parametrize("name", sampled(CASES, ("chain7", "planar_robot")))
-def test_bits_are_those_of_scalars(name: str, part: int) -> None:
+def test_packed_results_equal_scalar_bits(name: str, part: int) -> None:
     rng = np.random.default_rng(7)
     system = MODELS[name]
     assert "SYM_PACK(" in source(system, ("dynamics",))
@@ -67,7 +67,7 @@ def test_bits_are_those_of_scalars(name: str, part: int) -> None:
     "name",
     sampled(("puma560", "spdm", "mss", "flexible_pendulum", "joint_zoo"), ("puma560",)),
 )
-def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
+def test_packed_derivatives_equal_scalar_bits(name: str) -> None:
     rng = np.random.default_rng(8)
     functions = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
     options = sf.Options(functions=functions, flags=EXACT)
@@ -80,7 +80,7 @@ def test_bits_of_derivatives_are_those_of_scalars(name: str) -> None:
             np.testing.assert_array_equal(ours, theirs)
 
 
-def test_equal_limbs_share_vectors_in_what_a_solver_finishes() -> None:
+def test_equal_limbs_of_constrained_models_share_vectors() -> None:
     """Six legs of a Stewart platform, three in a vector."""
     functions = ("forward_dynamics",)
     assert "sym_quad p" in source(MODELS["stewart"], functions)

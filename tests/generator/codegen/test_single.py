@@ -84,7 +84,7 @@ def test_sines_and_cosines(kind: str, width: str) -> None:
     assert np.max(np.abs(found - expected) / last) <= ULPS
 
 
-def test_no_angle() -> None:
+def test_sine_of_non_finite_angles_is_nan() -> None:
     u = np.array([np.inf, -np.inf, np.nan, -0.0, 0.0], dtype=np.float32)[:, None]
     found = sines("native").generalized_force(np.zeros(2), np.zeros(2), u)
     assert np.isnan(found[:3]).all() and np.array_equal(found[3:], [[0.0, 1.0], [0.0, 1.0]])
@@ -121,7 +121,7 @@ def test_within_the_rounding_of_its_depth(name: str, function: str) -> None:
     assert EPS / 100 < error < EPS / 2 * depth(MODELS[name], function), "neither doubles nor worse than floats"
 
 
-def test_forward_dynamics_loses_what_the_condition_takes() -> None:
+def test_single_precision_error_grows_with_the_condition_of_m() -> None:
     m = sf.compile(MODELS["chain7"])
     rng = np.random.default_rng(1)
     q, v = rng.uniform(-1.0, 1.0, (2, 400, 7)).astype(np.float32)

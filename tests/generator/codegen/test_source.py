@@ -194,7 +194,7 @@ OPERATIONS = sf.System(
 )
 
 
-def test_every_operation_prints_what_it_computes() -> None:
+def test_printed_operations_match_interpreter_and_python() -> None:
     """Compiled, interpreted, and as Python makes of the same text."""
     u = np.random.default_rng(0).uniform(-3, 3, (200, 2))
     zero = np.zeros(len(FORMULAS))
@@ -210,7 +210,7 @@ def test_every_operation_prints_what_it_computes() -> None:
             assert value == pytest.approx(python, rel=1e-13, abs=1e-13), formula
 
 
-def test_one_description_gives_one_text() -> None:
+def test_generated_text_does_not_depend_on_hash_order() -> None:
     """Whatever the order in which a process keeps its sets of names: libraries are known by their text."""
     program = (
         "import hashlib, symofros as sf; from tests.generator.codegen.test_source import source_of_functions;"
@@ -246,7 +246,7 @@ def test_each_function_begins_with_the_users_names_of_its_inputs() -> None:
     assert f"{legend}static void crane_dynamics" in text
 
 
-def test_a_name_does_not_end_the_comment_that_states_it() -> None:
+def test_names_cannot_close_c_comments() -> None:
     solid = sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1))
     text = source_of_functions(sf.System("s", [sf.RigidBody("b", sf.Joint("a */ b", "revolute"), solid)]), ("bias",))
     assert " *   q[0] a * / b\n" in text

@@ -73,7 +73,7 @@ def test_tables_factor_the_matrix(A: np.ndarray) -> None:
 
 
 @given(matrices(), st.sets(st.integers(0, 11)))
-def test_what_a_right_hand_side_reaches_is_foreseen(A: np.ndarray, support: set[int]) -> None:
+def test_nonzero_rows_of_a_right_hand_side_are_predicted(A: np.ndarray, support: set[int]) -> None:
     n = len(A)
     pattern = Pattern.filled([[i for i in range(k + 1, n) if A[i, k]] for k in range(n)])
     b = np.zeros(n)

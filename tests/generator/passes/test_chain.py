@@ -70,7 +70,7 @@ def fused(program: Program) -> int:
     return count
 
 
-def test_a_term_that_is_no_product_comes_first() -> None:
+def test_terms_that_are_not_products_come_first() -> None:
     g = Graph()
     x = [g.input("x", i) for i in range(SIZE)]
     early = g.add(g.mul(x[0], x[1]), g.mul(x[2], x[3]))
@@ -129,7 +129,7 @@ def test_packs_come_along() -> None:
     assert lanes[:2] == lanes[2:] and min(lanes) > 100
 
 
-def test_what_other_functions_read_does_not_split_sums() -> None:
+def test_sums_are_not_split_for_other_functions() -> None:
     """A tree's energy is formed in the same order with and without the other functions."""
     tree = build_tree(system("tree0"))
     names = ("dynamics", "kinetic_energy", "mass_matrix")
@@ -152,7 +152,7 @@ def test_what_other_functions_read_does_not_split_sums() -> None:
         pytest.param("spdm", "forward_dynamics_derivatives", marks=pytest.mark.slow),
     ],
 )
-def test_vectors_say_what_scalars_say(name: str, function: str) -> None:
+def test_packs_equal_their_scalar_sums(name: str, function: str) -> None:
     """Each lane that a function needs is the sum that its pack states, to the bit, of lanes that are there."""
     staged = hoist_parameters(form_program(Equations(build_tree(MODELS[name])), [Request(function)]))
     for program in (staged, chain_sums(staged)):

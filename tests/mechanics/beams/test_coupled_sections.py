@@ -65,7 +65,7 @@ def test_where_the_axis_is_put_does_not_matter(more: dict[str, Any], errors: tup
 
 
 @pytest.mark.parametrize("shears", [{}, {"stretch": 1}, {"stretch": 1, "shear_y": 1, "shear_z": 1}], ids=str)
-def test_a_matrix_is_what_centres_and_stiffnesses_make(shears: dict[str, int]) -> None:
+def test_section_matrices_follow_from_centres_and_stiffnesses(shears: dict[str, int]) -> None:
     stated: dict[str, Any] = {"EI_z": 3.0, "EI_y": 5.0, "GJ": 1.5, "EI_yz": 1.2} | STIFF
     centers: dict[str, Any] = {"tension_center": (0.06, -0.02), "shear_center": (0.04, -0.05)}
     matrix = Section(rhoA=2.0, rhoI_y=0.03, rhoI_z=0.02, **stated, **centers).stiffness_matrix()

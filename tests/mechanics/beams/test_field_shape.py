@@ -21,7 +21,7 @@ def beam(family: str = "spline", **more: object) -> sf.Beam:
 
 @pytest.mark.parametrize("family", [family for family in FAMILIES if family != "user"])
 @pytest.mark.parametrize("more", [{}, {"foreshortening": False, "retain": "zeroth_order"}], ids=["all", "linear"])
-def test_the_tip_is_where_the_model_has_it(family: str, more: dict, rng: np.random.Generator) -> None:
+def test_the_tip_matches_the_model(family: str, more: dict, rng: np.random.Generator) -> None:
     stated = beam(family, **more)
     model = sf.compile(sf.System("s", [stated]), sf.Options(("frame_pose",), ("tip",), backend="interpreter"))
     q = 3 * rng.uniform(-1, 1, (4, stated.modes)) * small_coordinates(stated, LENGTH)
@@ -31,7 +31,7 @@ def test_the_tip_is_where_the_model_has_it(family: str, more: dict, rng: np.rand
     assert np.allclose(line.axes(LENGTH, q)[:, -1], R, atol=1e-13)
 
 
-def test_it_starts_at_the_root_and_is_straight_at_rest() -> None:
+def test_the_axis_starts_at_the_root_and_is_straight_at_rest() -> None:
     line = FieldShape(beam(), STATIONS)
     expected = np.zeros((len(STATIONS), 3))
     expected[:, 0] = LENGTH * np.array(STATIONS)

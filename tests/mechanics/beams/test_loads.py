@@ -65,7 +65,7 @@ def test_loads_are_exact_if_everything_is_kept(case: str, rng: np.random.Generat
 
 
 @pytest.mark.parametrize("case", [*FORCES, *TORQUES])
-def test_what_is_cut_is_of_second_order(case: str, rng: np.random.Generator) -> None:
+def test_truncated_terms_are_of_second_order(case: str, rng: np.random.Generator) -> None:
     model, oracle = both(*ALL[case], "first_order")
     q, v = rng.standard_normal((2, model.nq))
     elastic = np.arange(model.nq) >= 6

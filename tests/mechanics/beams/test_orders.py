@@ -125,7 +125,7 @@ def test_spin_stiffens_nothing_at_zeroth_order(axis: str, loaded: bool) -> None:
 
 
 @pytest.mark.parametrize("loaded", [False, True])
-def test_zeroth_order_keeps_coriolis_of_what_the_tip_carries(loaded: bool) -> None:
+def test_zeroth_order_keeps_coriolis_forces_of_tip_bodies(loaded: bool) -> None:
     """2 w x (r_T + s x c) of a mass at c from the tip, by hand; of the beam itself nothing."""
     m, rate, c = 0.7, 3.0, np.array([0.1, 0.3])
     stem = sf.Beam(

@@ -57,7 +57,7 @@ def test_rods_of_little_turn_and_stated_sections_stay_as_they_were(more: dict[st
         assert beam is system.bodies[0]
 
 
-def test_a_twist_without_curvature_needs_no_more() -> None:
+def test_a_twist_without_curvature_needs_no_more_sections() -> None:
     """The axis of a rod that is twisted without stress is straight."""
     assert sections_of_turn(20.0, 0.0) == 2
     assert [sections_of_turn(turn, 1.0) for turn in (0.5, np.pi / 2, 2 * np.pi, 6 * np.pi)] == [2, 3, 7, 16]

@@ -44,7 +44,7 @@ def test_energy_is_kept_and_coriolis_matrix_gives_the_rate_of_mass(name: str, rn
 @pytest.mark.parametrize(
     ("counts", "sections", "error"), [((3, 0, 0), 12, 1e-10), ((0, 3, 0), 12, 1e-10), ((2, 2, 2), 16, 1e-8)]
 )
-def test_sections_are_those_of_an_integrated_frame(
+def test_sections_match_an_integrated_frame(
     counts: tuple[int, int, int], sections: int, error: float, rng: np.random.Generator
 ) -> None:
     stations = np.array([0.3, 0.75, 1.0])
@@ -81,7 +81,7 @@ def test_small_turns_are_integrated_exactly_by_as_many_sections_as_functions(fun
     assert few == pytest.approx(many, rel=1e-13)
 
 
-def test_small_strains_are_those_of_the_beam_of_second_order(rng: np.random.Generator) -> None:
+def test_small_strains_match_the_second_order_beam(rng: np.random.Generator) -> None:
     """Displacement functions whose second derivatives are 1 and xi, over L, as a user states them.
 
     Without twist, displacements and strains are the same coordinates up to terms of third degree. Sections that spin do

@@ -26,7 +26,7 @@ def test_strains_of_the_user_that_are_legendres_give_the_same_equations(rng: np.
         assert a == pytest.approx(b, rel=1e-12, abs=1e-12)
 
 
-def test_strains_of_the_user_that_are_no_polynomials_place_the_tip() -> None:
+def test_user_strains_that_are_not_polynomials_place_the_tip() -> None:
     """A curvature cos(pi xi) in one plane: its angle is q/pi sin(pi xi)."""
     stated = rod((1, 0, 0), family="user", shapes={"bend_y": ("cos(pi*xi)",)}, sections=14)
     (tip,), _ = StrainShape(stated, {}, [1.0]).sections(np.array([2.5]))

@@ -96,7 +96,7 @@ def test_high_eigenmodes_keep_their_digits() -> None:
         ("clamped_free", clamped_free(3, 1.0)),
     ],
 )
-def test_values_are_those_of_scipy_and_textbooks(family: str, expected: tuple[object, ...]) -> None:
+def test_values_match_scipy_and_textbooks(family: str, expected: tuple[object, ...]) -> None:
     xi = np.linspace(0, 1, 41)
     for phi, known in zip(made(family, len(expected)), expected, strict=True):
         for order, tolerance in ((0, 1e-10), (1, 1e-9), (2, 1e-8)):
@@ -139,7 +139,7 @@ def test_mass_and_stiffness_of_a_formula_keep_their_digits(text: str) -> None:
         ("user", "bend_y", 1, (sf.formula("xi^2*log(xi - 2)"),), "not a number at xi"),
     ],
 )
-def test_what_a_family_can_not_give_is_said(
+def test_invalid_shape_function_requests_are_refused(
     family: str, direction: Direction, count: int, user: tuple[sf.Expression, ...], says: str
 ) -> None:
     with pytest.raises(FamilyError, match=says):

@@ -44,7 +44,7 @@ def frequency_equation(squared: float) -> float:
     return float(np.linalg.det(expm(A * L)[2:, 2:]))
 
 
-def test_frequencies_are_those_of_timoshenkos_beam() -> None:
+def test_frequencies_match_timoshenko() -> None:
     m = model("mass_matrix", "generalized_force", bend=10, shear_y=10, rotary_inertia=True)
     squares = eigh(stiffness(m), m.mass_matrix(np.zeros(20)), eigvals_only=True)
     for square in squares[:2]:

@@ -45,7 +45,7 @@ def test_momentum_is_linear_in_the_speeds_and_moves_the_mass_centre(name: str, r
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (1.0, -2.0, -9.81)], ids=["no weight", "weight"])
 @pytest.mark.parametrize("name", ["space_arm", "torque_free_body", "free_boom"])
-def test_what_floats_has_the_momentum_that_its_weight_gives(
+def test_momentum_of_a_floating_system_changes_by_its_weight(
     name: str, gravity: tuple[float, float, float], rng: np.random.Generator
 ) -> None:
     """Efforts of joints are internal; of a beam, deflections too."""
@@ -86,7 +86,7 @@ bodies:
 """
 
 
-def test_without_mass_there_is_no_mass_centre(tmp_path: Path) -> None:
+def test_massless_models_have_no_mass_centre(tmp_path: Path) -> None:
     file = tmp_path / "motor.yaml"
     file.write_text(MOTOR, encoding="utf-8")
     m = sf.compile(sf.load(file))

@@ -25,7 +25,7 @@ def test_the_mass_matrix_changes_by_it_and_its_transpose(name: str, rng: np.rand
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "space_arm", "gyroscope", "joint_zoo", "friction_arm", *MOTORS])
-def test_it_gives_the_bias_without_weight(name: str, rng: np.random.Generator) -> None:
+def test_the_coriolis_matrix_gives_the_bias_without_gravity(name: str, rng: np.random.Generator) -> None:
     """Motors on turning axes keep both identities."""
     m = interpreted(replace(MOTORS.get(name) or MODELS[name], gravity=(0.0, 0.0, 0.0)))
     q, v = m.random_state(rng)

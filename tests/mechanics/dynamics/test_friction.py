@@ -89,7 +89,7 @@ def test_static_below_dynamic_is_friction_that_rises_with_speed() -> None:
     )
 
 
-def test_speeds_that_are_no_numbers_are_not_passed_over() -> None:
+def test_friction_of_nan_speeds_is_nan() -> None:
     for friction in (sf.Friction(1.0), sf.Friction(1.0, 2.0)):
         assert np.isnan(forces(slider(friction), np.array([np.nan]))[0])
 

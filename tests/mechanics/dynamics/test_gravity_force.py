@@ -13,7 +13,7 @@ CASES = ("double_pendulum", "heavy_top", "slider_crank", "planar_robot", "fricti
 
 
 @pytest.mark.parametrize(("name", "backend"), [("slider_crank", "c"), *((name, "interpreter") for name in CASES)])
-def test_it_is_the_bias_at_rest(name: str, backend: str, rng: np.random.Generator) -> None:
+def test_gravity_force_is_the_bias_at_rest(name: str, backend: str, rng: np.random.Generator) -> None:
     model = sf.compile(MODELS[name], sf.Options(NAMES[:2], backend=backend))  # type: ignore[arg-type]
     states = [model.random_state(rng) for _ in range(3)]
     q = np.array([q for q, _ in states])
@@ -22,7 +22,7 @@ def test_it_is_the_bias_at_rest(name: str, backend: str, rng: np.random.Generato
     np.testing.assert_allclose(model.gravity_force(q[0]), h[0], rtol=0, atol=1e-12 * max(1.0, np.abs(h).max()))
 
 
-def test_it_is_the_slope_of_the_weight_and_costs_less_than_the_bias(rng: np.random.Generator) -> None:
+def test_gravity_force_is_the_potential_gradient_and_cheaper_than_the_bias(rng: np.random.Generator) -> None:
     from symofros.compiler import program_of
     from symofros.generator.passes.count import count_program
 

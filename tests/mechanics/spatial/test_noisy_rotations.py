@@ -123,7 +123,7 @@ def test_axes_and_quaternions_of_any_length_give_the_same_rotation(size: float) 
 MATRIX = [[0.9553365, -0.2955202, 0], [0.2955202, 0.9553365, 0], [0, 0, 1]]
 
 
-def test_a_matrix_of_few_digits_is_told_by_how_much_it_is_no_rotation() -> None:
+def test_the_rounding_of_a_rotation_matrix_is_reported() -> None:
     body = sf.RigidBody("b", sf.Joint("q", "revolute", rotation=sf.Rotation.matrix(MATRIX)), sf.Inertia(1.0))
     with pytest.warns(sf.InconsistentModelWarning, match=r"joint 'q': rotation: \|R R\^T - 1\| = 2e-08 .* nearest"):
         model = sf.compile(sf.System("s", (body,)), sf.Options(backend="interpreter"))

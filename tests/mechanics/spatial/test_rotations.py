@@ -80,7 +80,7 @@ def test_right_angles_are_exact_and_free() -> None:
 
 
 @pytest.mark.parametrize("k", range(3))
-def test_an_axis_turn_costs_what_the_theory_says(k: int) -> None:
+def test_an_axis_rotation_has_the_operation_count_of_the_theory(k: int) -> None:
     """Vectors 4 + 2, symmetric tensors 8 + 8, others 12 + 11 (docs/theory/rigid.md, eq. 12)."""
     g = Graph()
     rotation = RotationProduct(g, (AxisRotation(k, g.input("q", 0), g.input("q", 1)),))

@@ -33,12 +33,12 @@ def problems(one: sf.Beam, **system: Any) -> str:
         ({"loads": [sf.Load((1.0, 0, 0))]}, ["Load on a Beam"]),
     ],
 )
-def test_a_beam_that_can_not_exist_is_refused(changed: dict[str, Any], said: list[str]) -> None:
+def test_a_beam_that_cannot_exist_is_refused(changed: dict[str, Any], said: list[str]) -> None:
     text = problems(beam(**changed))
     assert all(part in text for part in said), text
 
 
-def test_a_parameter_may_not_bear_the_name_of_the_station() -> None:
+def test_a_parameter_may_not_be_named_like_the_station() -> None:
     assert "'x'" in problems(beam(), parameters=[sf.Parameter("x", 1.0)])
 
 
@@ -67,13 +67,13 @@ def test_stations_of_samples_rise_from_0_to_1() -> None:
         sf.Samples((0, 0.5, 0.4, 1), (0, 1, 2, 3))
 
 
-def test_softening_without_stiffening_is_warned_of() -> None:
+def test_missing_foreshortening_is_warned_of() -> None:
     with pytest.warns(sf.InconsistentModelWarning, match="'b'.*diverges"):
         sf.compile(sf.System("s", [beam(foreshortening=False)]), sf.Options(functions=("mass_matrix",)))
 
 
 @pytest.mark.parametrize(("functions", "mode", "inertia"), [(2, 1, 0.02), (3, 2, 0.01)])
-def test_rotary_inertia_that_is_stated_and_left_out_is_warned_of(functions: int, mode: int, inertia: float) -> None:
+def test_neglected_rotary_inertia_is_warned_of(functions: int, mode: int, inertia: float) -> None:
     """By as much as it lowers the frequency of the model that has it."""
     stated = beam(bend_y=functions, rhoI_z=inertia, family="clamped_free")
     options = sf.Options(backend="interpreter")

@@ -37,7 +37,7 @@ def test_a_constraint_is_refused_when_it_is_stated(make: Any, said: str) -> None
         make()
 
 
-def test_a_ratio_of_zero_locks_what_follows() -> None:
+def test_a_ratio_of_zero_locks_the_follower() -> None:
     """A joint that mimics another by a multiplier of zero stays at the offset, as MuJoCo's does."""
     system = sf.System("s", BODIES, constraints=(sf.Coupling("k", "q - 0*p - 0.5"),), gravity=(0, -9.81, 0))
     run = sf.simulate(sf.compile(system), {"q": 0.5, "p": 0.1}, {"p": 1.0}, t_end=0.1)
@@ -50,7 +50,7 @@ def test_a_coupling_of_prescribed_coordinates_alone_binds_nothing() -> None:
         sf.compile(sf.System("s", (led, BODIES[1]), constraints=(sf.Coupling("k", "p - 1"),)))
 
 
-def test_a_condition_that_is_not_linear_in_speeds_is_refused_in_its_own_words() -> None:
+def test_conditions_nonlinear_in_speeds_have_their_own_message() -> None:
     """Not in those for potentials, which share the names that they may use."""
     upright = sf.Nonholonomic("upright", (("dq", "dp"),))
     bodies = (

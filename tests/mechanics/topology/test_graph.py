@@ -51,7 +51,7 @@ def winch(**cable: Any) -> sf.System:
     return sf.System("winch", [base, bob], [sf.Parameter("k", 1e4)], [sf.Input("length")], **cable)
 
 
-def test_a_cable_that_a_winch_draws_in_is_refused_with_what_states_it() -> None:
+def test_a_cable_with_changing_length_is_refused_with_the_remedy() -> None:
     cable = sf.Connection("cable", ("base", "top"), ("bob", None), stiffness="k", length="length")
     problem = only(winch(connections=[cable]))
     assert "cable" in problem.what and "'length' may not be used here" in problem.what
@@ -59,7 +59,7 @@ def test_a_cable_that_a_winch_draws_in_is_refused_with_what_states_it() -> None:
 
 
 @pytest.mark.parametrize("length", [1.0, 2.0])
-def test_that_remedy_pulls_and_does_not_push(length: float) -> None:
+def test_the_remedy_for_winch_cables_pulls_only(length: float) -> None:
     """As a load on a free body, and as virtual power on a slide 1 m beside the winch."""
     d = "sqrt(m.px^2 + m.py^2 + (m.pz - 2)^2)"
     pull = f"max(0, k*({d} - length))/{d}"
@@ -88,7 +88,7 @@ def test_names_that_appear_twice_are_refused() -> None:
 
 
 @pytest.mark.parametrize("name", ["sin", "t", "pi", "my input", "a-b", "1", "ü"])
-def test_inputs_and_joints_bear_any_printable_name(name: str) -> None:
+def test_inputs_and_joints_may_have_any_printable_name(name: str) -> None:
     assert find_problems(arm(inputs=[sf.Input(name)])) == []
     assert find_problems(arm().with_bodies(body("hand", sf.Joint(name, "revolute")))) == []
     assert "the name" in only(arm(inputs=[sf.Input(name)]).with_bodies(body("hand", sf.Joint(name, "revolute")))).what
@@ -118,7 +118,7 @@ def test_errors_cross_processes() -> None:
     assert again.problems == error.problems and str(again) == str(error)
 
 
-def test_references_to_what_could_not_be_read_are_not_reported_again() -> None:
+def test_references_to_unreadable_elements_are_not_reported_again() -> None:
     stated = arm().with_bodies(body("hand", sf.Joint("q3", "revolute", "wrist"), sf.Inertia("m_hand")))
     assert len(find_problems(stated)) == 2
     assert find_problems(stated, broken={"wrist", "m_hand"}) == []

@@ -33,6 +33,6 @@ def test_entries_of_q_v_and_a_stand_in_one_order() -> None:
     assert second == tuple(Slot(slot.group, slot.index + (4 if slot.group == "q" else 3)) for slot in first)
 
 
-def test_deep_limbs_are_no_recursion() -> None:
+def test_deep_limbs_do_not_exhaust_the_stack() -> None:
     chains = [body(f"{side}{i}", f"{side}{i - 1}" if i else "world") for side in "lr" for i in range(1500)]
     assert [len(limb) for limb in joints(sf.System("deep", chains))[0]] == [1500, 1500]

@@ -25,7 +25,7 @@ def test_a_matrix_is_refused_or_taken_for_the_nearest_rotation(shear: float) -> 
         np.testing.assert_allclose(R, np.eye(3), rtol=0, atol=shear)
 
 
-def test_a_rotation_of_what_is_no_number_is_nowhere() -> None:
+def test_rotations_of_invalid_numbers_are_nan() -> None:
     """So that what is made of it is no number either, and the check tells the description's fault in words."""
     body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0))
     numbers = Numbers(sf.System("s", [body], [sf.Parameter("a", 1.0)]))

@@ -106,7 +106,7 @@ def without_compilers(monkeypatch: pytest.MonkeyPatch) -> pytest.MonkeyPatch:
     return monkeypatch
 
 
-def test_without_any_compiler_the_interpreter_serves(
+def test_without_a_compiler_the_interpreter_is_used(
     cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
     without_compilers.setattr(toolchain.importlib.util, "find_spec", lambda name: None)
@@ -120,7 +120,7 @@ def test_without_any_compiler_the_interpreter_serves(
 
 
 @pytest.mark.slow(minutes=2)
-def test_the_ziglang_package_serves_as_compiler(
+def test_the_ziglang_package_is_used_as_compiler(
     cache: Path, without_compilers: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
     require("ziglang", "zig")

@@ -71,7 +71,7 @@ def test_another_user_s_folder_is_refused(cache: Path, monkeypatch: pytest.Monke
     assert "owns it" in caught.value.problem.found and "SYMOFROS_CACHE" in caught.value.problem.remedy
 
 
-def test_another_user_s_library_in_our_folder_is_compiled_anew(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_library_owned_by_another_user_is_recompiled(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     library = build()
     if os.geteuid() != 0:
         pytest.skip("only the administrator can give a file away")
@@ -98,7 +98,7 @@ def with_a_flipped_bit(content: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("damage", [truncated, with_a_flipped_bit, lambda content: b"", lambda content: b"no library"])
-def test_a_damaged_library_is_compiled_anew(cache: Path, damage: Callable[[bytes], bytes]) -> None:
+def test_a_damaged_library_is_recompiled(cache: Path, damage: Callable[[bytes], bytes]) -> None:
     """Mapping it would end the process by SIGBUS or SIGSEGV."""
     library = build()
     intact = library.read_bytes()
@@ -106,7 +106,7 @@ def test_a_damaged_library_is_compiled_anew(cache: Path, damage: Callable[[bytes
     assert build() == library and library.read_bytes() == intact
 
 
-def test_a_library_without_its_statement_is_compiled_anew(cache: Path) -> None:
+def test_a_library_without_its_digest_is_recompiled(cache: Path) -> None:
     library = build()
     before = library.stat().st_ino
     (statement,) = cache.glob("*.digest")

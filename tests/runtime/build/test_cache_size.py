@@ -47,7 +47,7 @@ def test_the_least_recently_used_goes_first(folder: Path) -> None:
     assert prune(folder, 6500.0) == []
 
 
-def test_files_of_others_and_links_are_never_removed(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_foreign_files_and_links_are_never_removed(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
     elsewhere = tmp_path_factory.mktemp("elsewhere") / "precious.so"
     elsewhere.write_text("x")
     (folder / "thesis.tex").write_text("x" * 9000)
@@ -77,7 +77,7 @@ def test_compiling_keeps_the_folder_within_its_limit(folder: Path, monkeypatch: 
 
 
 @pytest.mark.parametrize("stated", ["many", "-1", "nan"])
-def test_a_limit_that_is_no_size_is_refused(stated: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_invalid_size_limit_is_refused(stated: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SYMOFROS_CACHE_LIMIT", stated)
     with pytest.raises(sf.SymofrosError, match="is not a size"):
         limit()

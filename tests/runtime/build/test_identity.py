@@ -7,7 +7,7 @@ from pathlib import Path
 from symofros.runtime.build.identity import source_digest
 
 
-def test_what_is_built_beside_sources_is_no_other_code(tmp_path: Path) -> None:
+def test_build_products_do_not_change_the_source_digest(tmp_path: Path) -> None:
     (tmp_path / "part").mkdir()
     (tmp_path / "part" / "code.py").write_text("x = 1")
     before = source_digest(tmp_path)

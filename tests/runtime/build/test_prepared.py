@@ -111,7 +111,7 @@ def test_a_changed_file_is_read_again(compiling: Compiling, arm: Path, change: C
     assert compiling.read == 2
 
 
-def test_another_request_is_no_known_one(compiling: Compiling, tmp_path: Path) -> None:
+def test_other_requests_are_not_recognised(compiling: Compiling, tmp_path: Path) -> None:
     robot = tmp_path / "robot.urdf"
     robot.write_text(URDF.format(mass=1))
     requests = [
@@ -136,7 +136,7 @@ def test_another_request_is_no_known_one(compiling: Compiling, tmp_path: Path) -
         (build, "SHARED_FLAGS", (*build.SHARED_FLAGS, "-g")),
     ],
 )
-def test_other_code_packages_processors_and_flags_are_no_known_ones(
+def test_changed_code_packages_processor_or_flags_are_not_recognised(
     compiling: Compiling, arm: Path, monkeypatch: pytest.MonkeyPatch, of: object, name: str, value: object
 ) -> None:
     compiling(arm)
@@ -145,7 +145,7 @@ def test_other_code_packages_processors_and_flags_are_no_known_ones(
     assert compiling.read == 2
 
 
-def test_other_compilers_and_stated_flags_are_no_known_ones(
+def test_changed_compiler_or_flags_are_not_recognised(
     compiling: Compiling, arm: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SYMOFROS_CFLAGS", "-O0")
@@ -184,7 +184,7 @@ def test_other_compilers_and_stated_flags_are_no_known_ones(
     ],
 )
 @pytest.mark.filterwarnings("ignore::symofros.errors.StoredStateWarning")
-def test_a_damaged_note_is_none(compiling: Compiling, arm: Path, content: str) -> None:
+def test_a_damaged_record_is_ignored(compiling: Compiling, arm: Path, content: str) -> None:
     first = compiling(arm)
     (note,) = (path for path in compiling.cache.glob("*.known") if "sources" in path.read_text())
     whole = note.read_bytes()
@@ -225,7 +225,7 @@ def test_a_model_that_is_warned_of_is_warned_of_each_time(compiling: Compiling, 
 
 
 @pytest.mark.parametrize("become", [Path.mkdir, lambda path: None])
-def test_what_is_no_file_any_more_is_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
+def test_a_source_replaced_by_a_folder_counts_as_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
     path = tmp_path / "file"
     path.write_bytes(b"text")
     source = Source.of(path, b"text")

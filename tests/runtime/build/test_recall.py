@@ -78,7 +78,9 @@ def test_another_system_or_formula_is_another(cache: Path, written: list[str]) -
     assert len(written) == 4
 
 
-def test_other_code_of_ours_generates_anew(cache: Path, written: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_edited_generator_code_regenerates_the_text(
+    cache: Path, written: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     compiled(random_tree(31))
     monkeypatch.setattr(build, "CODE_IDENTITY", "edited")
     compiled(random_tree(31))
@@ -89,7 +91,7 @@ def test_other_code_of_ours_generates_anew(cache: Path, written: list[str], monk
     "spoil",
     [lambda known, _: known.unlink(), lambda known, _: known.write_text("../other.so"), lambda _, made: made.unlink()],
 )
-def test_a_lost_library_is_made_anew(cache: Path, written: list[str], spoil: object) -> None:
+def test_a_lost_library_is_rebuilt(cache: Path, written: list[str], spoil: object) -> None:
     compiled(random_tree(31))
     (known,), (library,) = cache.glob("*.known"), cache.glob("*.so")
     assert known.read_text() == library.name
@@ -99,7 +101,7 @@ def test_a_lost_library_is_made_anew(cache: Path, written: list[str], spoil: obj
 
 
 @pytest.mark.parametrize("damage", [b"", b"\0" * 40, b"\xff\xfe", b"../../../etc/passwd", b"{", None], ids=repr)
-def test_a_damaged_file_of_the_cache_is_made_anew(cache: Path, damage: bytes | None) -> None:
+def test_a_damaged_cache_file_is_rebuilt(cache: Path, damage: bytes | None) -> None:
     system = random_tree(31)
     expected = compiled(system).mass_matrix(q := sf.compile(system).neutral())
     for file in sorted(cache.iterdir()):

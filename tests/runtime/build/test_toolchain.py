@@ -55,7 +55,9 @@ def refused() -> Problem:
         ("nosuchcc -m64", "was not found"),
     ],
 )
-def test_what_is_no_compiler_is_told(monkeypatch: pytest.MonkeyPatch, stated: str, what: str, cache: Path) -> None:
+def test_a_compiler_that_does_not_work_is_reported(
+    monkeypatch: pytest.MonkeyPatch, stated: str, what: str, cache: Path
+) -> None:
     monkeypatch.setenv("CC", stated)
     assert what in refused().what
     assert not list(cache.glob("*.so"))
@@ -116,7 +118,7 @@ def test_flags_of_gcc_are_given_to_gcc_alone(
 
 # The child of the script keeps its output open, as cc1 does of gcc.
 @pytest.mark.parametrize("hangs", ["sleep 20", 'case "$*" in *--version*) echo slow;; *) sleep 20;; esac'])
-def test_a_compiler_that_does_not_end_is_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, hangs: str) -> None:
+def test_a_hanging_compiler_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, hangs: str) -> None:
     monkeypatch.setattr(toolchain, "VERSION_LIMIT", 0.3)
     monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.3)
     monkeypatch.setenv("CC", str(script(tmp_path, SHELL + f"{hangs}\n")))
@@ -132,7 +134,7 @@ def test_a_compiler_does_not_wait_for_input(monkeypatch: pytest.MonkeyPatch, tmp
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
-def test_what_a_compiler_started_ends_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_children_of_a_stopped_compiler_are_stopped(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """As a driver's own compiler, which would go on computing."""
     monkeypatch.setattr(toolchain, "COMPILATION_LIMIT", 0.5)
     started = tmp_path / "started"

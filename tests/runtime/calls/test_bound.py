@@ -219,7 +219,7 @@ def test_batches_are_computed_in_the_arrays_of_the_caller_and_beside_inputs_that
         ({"m": np.empty((2, 2))}, "no output 'm'"),
     ],
 )
-def test_arrays_that_can_not_receive_an_output_are_refused_in_words(out: dict[str, Any], words: str) -> None:
+def test_arrays_that_cannot_receive_an_output_are_refused(out: dict[str, Any], words: str) -> None:
     m = model("double_pendulum")
     with pytest.raises((sf.ShapeError, sf.UnknownNameError), match=words):
         m.evaluate("mass_matrix", q=m.neutral(), out=out)

@@ -26,7 +26,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_kept_interface_is_that_of_the_headers(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_kept_interface_matches_that_of_the_headers(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     parsed, kept = interface_anew(), interface_anew()
     assert [path.suffix for path in sorted(folder.iterdir())] == [".digest", ".py"]
     for struct in STRUCTS:
@@ -35,7 +35,7 @@ def test_a_kept_interface_is_that_of_the_headers(folder: Path, capfd: pytest.Cap
     assert "".join(capfd.readouterr()) == ""
 
 
-def test_a_damaged_one_is_parsed_anew(folder: Path) -> None:
+def test_a_damaged_declaration_file_is_parsed_again(folder: Path) -> None:
     interface_anew()
     (kept,) = folder.glob("*.py")
     sound = kept.read_text()
@@ -43,7 +43,7 @@ def test_a_damaged_one_is_parsed_anew(folder: Path) -> None:
     assert interface_anew().sizeof("sym_model") > 0 and kept.read_text() == sound
 
 
-def test_constants_are_those_of_the_headers() -> None:
+def test_constants_match_the_headers() -> None:
     enums = re.findall(r"typedef enum (?:.|\n)*?}", native_text("stepping/symofros_stepper.h"))
     stated = re.findall(r"\b(SYM_\w+) *= *(-?\d+)", "".join(enums))
     assert len(stated) > 2

@@ -63,7 +63,7 @@ def test_a_model_goes_over_to_it_by_itself(m: sf.Model, call_type: Any) -> None:
     assert np.array_equal(before, m.mass_matrix(q))
 
 
-def test_inputs_and_dictionaries_are_let_go_of(forward: SingleCall, m: sf.Model) -> None:
+def test_inputs_and_dictionaries_are_released(forward: SingleCall, m: sf.Model) -> None:
     given = state(m)
     counted = (given["q"], given["v"], given)
     for inputs in (given, given | {"v": np.zeros(m.nv + 1)}, given | {"u": "no array"}):
@@ -116,7 +116,7 @@ def test_calls_and_objects_leave_no_memory_behind(forward: SingleCall, m: sf.Mod
         *(("q", kind) for kind in (">f8", np.float32, object, np.int64)),
     ],
 )
-def test_what_is_no_plain_call_is_left_to_others(forward: SingleCall, m: sf.Model, group: str, value: Any) -> None:
+def test_unusual_calls_fall_back_to_python(forward: SingleCall, m: sf.Model, group: str, value: Any) -> None:
     given = state(m)
     is_kind = isinstance(value, str | type)  # The right numbers, of another kind.
     assert forward(given | {group: given[group].astype(value) if is_kind else value}) is None
@@ -139,7 +139,7 @@ def test_numbers_may_lie_anywhere(forward: SingleCall, m: sf.Model) -> None:
         assert all(np.array_equal(x, y) for x, y in zip(found, expected, strict=True))
 
 
-def test_its_arguments_are_checked(call_type: Any, m: sf.Model) -> None:
+def test_arguments_of_the_extension_are_checked(call_type: Any, m: sf.Model) -> None:
     kernel = callable_from_c(m.kernel("mass_matrix"))
     pre = kernel.prepare(m.parameter_values[None])
     inputs = (("q", m.nq, None, m.record.quaternions["q"]),)
@@ -174,7 +174,7 @@ def test_without_the_headers_of_python_calls_are_as_they_were(monkeypatch: pytes
     assert extension.module.__wrapped__() is None
 
 
-def test_an_extension_that_does_not_compile_is_told_and_done_without(
+def test_an_extension_that_does_not_compile_is_reported_and_skipped(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "Python.h").write_text("#error other headers\n")

@@ -98,7 +98,7 @@ def test_batches_of_several_dimensions() -> None:
 @pytest.mark.parametrize(
     "layout", ["rows", "columns", "part of wider rows", "part of longer columns", "spaced", "backwards"]
 )
-def test_nothing_is_copied(layout: str) -> None:
+def test_arrays_of_supported_layouts_are_not_copied(layout: str) -> None:
     x = LAYOUTS[layout](given("chain7", N)[0])
     seen = Strided.of(states(x, (N,)), np.float64)
     assert np.shares_memory(seen.array, x)

@@ -20,7 +20,9 @@ GUARD, UNTOUCHED = 4096, 4.25e-17
 
 @pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
 @pytest.mark.parametrize("name", sampled(("four_bar", "bricard", "stewart", "slider_crank"), ("four_bar", "bricard")))
-def test_what_lies_behind_the_scratch_stays(name: str, constraints: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_do_not_write_behind_their_scratch(
+    name: str, constraints: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     arrays = []
 
     def guarded(kernel: CompiledKernel) -> Any:

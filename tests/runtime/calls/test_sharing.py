@@ -26,7 +26,7 @@ def test_every_row_once(n: int, threads: int) -> None:
     assert (seen == 1).all() and 1 <= len(workers) <= max(1, min(threads, n // LEAST))
 
 
-def test_errors_arrive() -> None:
+def test_exceptions_in_threads_reach_the_caller() -> None:
     def work(first: int, end: int) -> None:
         raise ValueError(f"rows from {first}")
 

@@ -46,7 +46,7 @@ def outputs(results: Any) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_one_state_has_the_bits_of_a_batch(m: sf.Model, name: str, rng: np.random.Generator) -> None:
+def test_single_calls_equal_batch_bits(m: sf.Model, name: str, rng: np.random.Generator) -> None:
     for _ in range(3):
         given = state(m, rng)
         single = outputs(getattr(m, name)(*(given[group] for group in FUNCTIONS[name])))

@@ -136,7 +136,7 @@ def test_rollouts_that_do_not_fit_are_refused(on_device: CudaModel, options: dic
 
 
 @pytest.mark.parametrize("length", [1.1, 0.0])
-def test_rollouts_refuse_quaternions_that_are_no_rotations_as_simulate_does(length: float) -> None:
+def test_rollouts_refuse_invalid_quaternions_like_simulate(length: float) -> None:
     body = model("torque_free_body")
     q = np.tile(body.neutral(), (3, 1))
     q[1, -1] = length
@@ -163,7 +163,7 @@ def test_quaternions_of_the_host_are_taken_as_by_the_model(on_device: CudaModel)
     assert np.abs(on_the_device - expected).max() > 0.1 * np.abs(expected).max()  # As it is.
 
 
-def test_without_a_driver_the_error_says_so() -> None:
+def test_without_a_driver_the_error_names_it() -> None:
     try:
         ctypes.CDLL("libcuda.so.1")
     except OSError:

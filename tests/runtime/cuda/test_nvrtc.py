@@ -49,7 +49,7 @@ def code(name: str, precision: Precision) -> DeviceCode:
 
 @pytest.mark.parametrize("architecture", ARCHITECTURES)
 @pytest.mark.parametrize(("name", "precision"), MOST)
-def test_registers_and_spills_are_those_of_the_table(name: str, precision: Precision, architecture: str) -> None:
+def test_registers_and_spills_match_the_table(name: str, precision: Precision, architecture: str) -> None:
     """Spills are zero where the table says so: such a kernel moves nothing but its arrays."""
     usage = usage_of(code(name, precision).text, architecture)
     assert set(usage) == {f"{name}_{kernel}" for kernel in MOST[name, precision]}
@@ -59,7 +59,7 @@ def test_registers_and_spills_are_those_of_the_table(name: str, precision: Preci
         assert taken.spill_stores + taken.spill_loads <= spills, (kernel, taken)
 
 
-def test_text_that_is_no_cuda_is_refused_with_the_words_of_the_compiler() -> None:
+def test_invalid_cuda_text_is_refused_with_the_compiler_message() -> None:
     with pytest.raises(CompileError, match='identifier "nothing" is undefined'):
         compile_cuda('extern "C" __global__ void k(int *x) { *x = nothing; }', "sm_90")
 

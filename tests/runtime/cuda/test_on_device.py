@@ -54,7 +54,7 @@ def test_inputs_that_another_stream_writes_are_waited_for(gpu: CudaModel, torch:
         np.testing.assert_array_equal(M.numpy(), model("double_pendulum").mass_matrix(values))
 
 
-def test_what_jax_still_computes_is_waited_for(gpu: CudaModel) -> None:
+def test_pending_jax_computations_are_awaited(gpu: CudaModel) -> None:
     jax = require("jax", "jax")
     if jax.default_backend() != "gpu":
         pytest.skip("needs JAX for graphics processors")

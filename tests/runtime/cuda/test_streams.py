@@ -78,7 +78,7 @@ def test_kernels_go_into_the_stream_and_wait_for_the_producers(
     assert asked[2:] == ([] if handle == "1" else ["wait 30 0"])
 
 
-def test_results_say_which_stream_they_are_ready_in(on_device: CudaModel, said: Any, device: Driver) -> None:
+def test_results_name_their_stream(on_device: CudaModel, said: Any, device: Driver) -> None:
     q, v = states(3)
     ready = on_device.evaluate("dynamics", q=q, v=v, stream=0x30)["h"]
     begun = on_device.evaluate("dynamics", q=q, v=v, stream=0x30, wait=False)["h"]
@@ -92,7 +92,7 @@ def test_results_say_which_stream_they_are_ready_in(on_device: CudaModel, said: 
 
 
 @pytest.mark.parametrize("stream", ["x", 2.5, True, -1, object()])
-def test_what_is_no_stream_is_refused(on_device: CudaModel, stream: Any) -> None:
+def test_invalid_streams_are_refused(on_device: CudaModel, stream: Any) -> None:
     with pytest.raises(sf.ArgumentError, match="stream is no stream"):
         on_device.evaluate("mass_matrix", q=np.zeros((3, 2)), stream=stream)
 
@@ -110,7 +110,7 @@ def captured(on_device: CudaModel, device: Driver, **changes: Any) -> dict[str, 
     return on_device.evaluate("mass_matrix", **{**arguments, **changes})
 
 
-def test_a_graph_takes_in_what_goes_into_its_stream(on_device: CudaModel, device: Driver, said: Any) -> None:
+def test_graphs_capture_calls_in_their_stream(on_device: CudaModel, device: Driver, said: Any) -> None:
     captured(on_device, device)
     assert said()[-1] == "launch 20 0"
 
@@ -123,7 +123,7 @@ def test_a_graph_takes_in_what_goes_into_its_stream(on_device: CudaModel, device
         ({"q": np.zeros((3, 2))}, "q lies on the host"),
     ],
 )
-def test_what_no_graph_can_take_in_is_refused(
+def test_calls_that_cannot_be_captured_are_refused(
     on_device: CudaModel, device: Driver, said: Any, changes: dict[str, Any], says: str
 ) -> None:
     with pytest.raises(SymofrosError, match=f"mass_matrix can't be captured in a graph(.|\n)*{says}"):
@@ -140,7 +140,7 @@ def test_first_calls_and_rollouts_are_not_captured(on_device: CudaModel, device:
 
 
 @pytest.mark.parametrize("stream", [None, 0x30])
-def test_a_graph_of_another_stream_is_said(
+def test_a_graph_on_another_stream_is_reported(
     on_device: CudaModel, monkeypatch: pytest.MonkeyPatch, said: Any, stream: Any
 ) -> None:
     """`with torch.cuda.graph(...)`: the current stream captures, the call went into another one and ran at once."""

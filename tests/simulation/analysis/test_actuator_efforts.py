@@ -85,7 +85,7 @@ def test_the_torque_that_holds_a_parallelogram() -> None:
     assert unlike.efforts == pytest.approx([0.8 * wanted, 0.2 * wanted], rel=1e-12)
 
 
-def test_the_effort_of_an_actuator_is_that_of_a_drive() -> None:
+def test_the_effort_of_an_actuator_matches_that_of_a_drive() -> None:
     """A crank that is driven as it moves under its actuator: two functions, one torque."""
     free = sf.compile(slider_crank(actuated=True), INTERPRETED)
     driven = sf.compile(slider_crank(prescribed=True), INTERPRETED)
@@ -123,7 +123,7 @@ def test_forward_dynamics_under_the_efforts_is_the_motion(name: str, joints: tup
     np.testing.assert_allclose(products, 0.0, atol=1e-9)
 
 
-def test_a_beam_bent_beyond_its_theory_is_told_of() -> None:
+def test_a_beam_bent_beyond_its_theory_is_reported() -> None:
     """The worst of a batch: a note from 1 % on, a refusal beyond the limit."""
     beam = sf.Beam("beam", sf.Joint("q1", "revolute", actuated=True), 1.0, 1.0, 1.0, bend_y=1, retain="all")
     m = sf.compile(sf.System("s", [beam]), INTERPRETED)
@@ -155,7 +155,7 @@ class TestRefused:
             ([0, 0, 0], [0, 0, 0], [0, 1, 0], "G a - gamma = "),
         ],
     )
-    def test_what_is_no_motion_of_the_mechanism(
+    def test_motions_that_violate_constraints_are_refused(
         self, q: list[float], v: list[float], a: list[float], words: str
     ) -> None:
         m = sf.compile(slider_crank(), INTERPRETED)
@@ -191,7 +191,7 @@ def test_efforts_that_act_alike_are_redundant() -> None:
     assert result.efforts == pytest.approx(1.7 / 0.58 * np.array([0.3, 0.7]), rel=1e-9)
 
 
-def test_prescribed_motions_are_no_actuators() -> None:
+def test_prescribed_motions_are_not_actuators() -> None:
     arm = sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))
     bodies = [
         sf.RigidBody("base", sf.Joint("turn", "revolute", prescribed=True), arm),

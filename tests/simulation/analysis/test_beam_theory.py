@@ -51,7 +51,7 @@ def test_the_estimate_does_not_change_with_length_and_stiffness(length: float, s
     assert error_of(L=L, EI=EI, F=load * EI / L**2) == pytest.approx(error_of(F=load), rel=1e-9)
 
 
-def test_compression_amplifies_the_error_and_tension_lessens_it() -> None:
+def test_compression_amplifies_the_error_and_tension_reduces_it() -> None:
     pulled, free, pushed = (
         sf.equilibrium(cantilever().with_parameters(P=share * critical_load(), F=0.1)).bendings[0]
         for share in (-2.0, 0.0, 0.9)
@@ -116,7 +116,7 @@ def test_the_estimate_does_not_depend_on_the_shape_functions(family: str) -> Non
     assert bending.twist == 0.0
 
 
-def test_a_strip_whose_theory_has_no_equilibrium_does_not_blame_the_start() -> None:
+def test_a_strip_without_equilibrium_is_not_blamed_on_the_start() -> None:
     """The Princeton beam at 13.3 N and 60 degrees: strain energy to second order has no bottom there."""
     load = sf.BeamLoad((0.0, "F/2", "sqrt(3)*F/2"), at=1.0, axes="world")
     counts = {"bend_y": 2, "bend_z": 2, "twist": 2, "family": "legendre", "retain": "all", "loads": (load,)}

@@ -64,7 +64,7 @@ class TestEquilibrium:
         free = sf.equilibrium(m, q, u=rest.inputs)
         assert free.iterations == 0 and free.inputs == rest.inputs and not free.efforts
 
-    def test_none(self) -> None:
+    def test_a_missing_equilibrium_reports_the_imbalance(self) -> None:
         with pytest.raises(sf.EquilibriumError, match="imbalance of .* at 'x'"):
             sf.equilibrium(model("cart_pole"), [0, 1.0], u=[1.0])
 

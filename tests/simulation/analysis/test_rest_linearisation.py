@@ -37,7 +37,7 @@ DRIVEN = sf.System(
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "double_pendulum", "planar_robot", "driven"])
-def test_forces_and_damping_at_rest_are_those_of_the_equations_there(name: str, rng: np.random.Generator) -> None:
+def test_forces_and_damping_at_rest_match_the_equations(name: str, rng: np.random.Generator) -> None:
     m = sf.compile(DRIVEN if name == "driven" else MODELS[name])
     (q, _), still = m.random_state(rng), np.zeros(m.nv)
     u, lam = rng.normal(size=m.nu), np.zeros(m.nc)  # Prescribed motions go on.
@@ -50,7 +50,7 @@ def test_forces_and_damping_at_rest_are_those_of_the_equations_there(name: str, 
     np.testing.assert_allclose(D, by_v[: m.nv], atol=1e-13 * max(np.abs(by_v).max(), 1.0))
 
 
-def test_modes_at_rest_are_those_of_the_derivatives_in_motion() -> None:
+def test_modes_at_rest_match_derivatives_in_motion() -> None:
     m = sf.compile(chain(2, 1, sprung=True))
     q = sf.equilibrium(m, {"q0": 1.5}).q
     found = sf.modes(m, q)

@@ -40,7 +40,7 @@ def test_motions_without_mass_are_damped() -> None:
     assert _unit_mass(np.zeros((0, 0))).shape == (0, 0)
 
 
-def test_what_falls_for_ever_has_no_rest() -> None:
+def test_a_freely_falling_body_has_no_equilibrium() -> None:
     ball = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     with pytest.raises(sf.EquilibriumError, match="after 100 steps"):
         sf.equilibrium(sf.compile(sf.System("ball", (ball,))))

@@ -55,7 +55,7 @@ def test_a_floating_tree_has_six_whatever_the_noise(
 
 
 @pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9])
-def test_a_soft_mode_is_none(ratio: float) -> None:
+def test_a_soft_mode_is_not_a_rigid_motion(ratio: float) -> None:
     """Beside one that is faster by up to 1e9: its own stiffness is no small difference."""
     soft = sf.Joint("soft", "prismatic", elements=[sf.Spring(ratio**2)])
     stiff = sf.Joint("stiff", "prismatic", "a", axis=(1, 0, 0), elements=[sf.Spring(1.0)])

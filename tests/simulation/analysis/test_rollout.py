@@ -53,7 +53,7 @@ def by_hand(x: np.ndarray, u: np.ndarray, par: np.ndarray, method: str) -> np.nd
     return x
 
 
-def test_the_gradient_is_that_of_a_complex_step(method: str, rng: np.random.Generator) -> None:
+def test_the_gradient_matches_that_of_a_complex_step(method: str, rng: np.random.Generator) -> None:
     m, u = pendulum(), rng.normal(size=N)
     names = {name: m.names.par.index(name) for name in ("m", "L", "d")}
     given = u[:, None].copy()
@@ -98,7 +98,7 @@ def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str
 
 
 @pytest.mark.parametrize("case", FLOATING)
-def test_the_gradient_of_turning_bodies_is_that_of_differences(
+def test_the_gradient_of_turning_bodies_matches_that_of_differences(
     method: str, case: str, rng: np.random.Generator
 ) -> None:
     """With weights of the quaternions' coordinates, along a random change of start, speeds, inputs and parameters."""
@@ -123,7 +123,7 @@ def test_the_gradient_of_turning_bodies_is_that_of_differences(
 
 
 @pytest.mark.parametrize("scale", [1e-3, 0.05, 1.0])
-def test_slopes_of_charts_are_those_of_differences(scale: float, rng: np.random.Generator) -> None:
+def test_chart_derivatives_match_differences(scale: float, rng: np.random.Generator) -> None:
     """On both sides of the angle where a series takes over."""
     segments = (Segment("linear", 0, 0, 1), Segment("pose", 1, 1, 7), Segment("quaternion", 8, 7, 4))
     nv, h = 10, 1e-5
@@ -159,7 +159,7 @@ def record_of(segments: tuple[Segment, ...]) -> ModelRecord:
 
 
 @pytest.mark.parametrize("case", ["double_pendulum", "heavy_top", "torque_free_body"])
-def test_the_steps_are_those_of_simulate(method: str, case: str, rng: np.random.Generator) -> None:
+def test_rollout_steps_match_those_of_simulate(method: str, case: str, rng: np.random.Generator) -> None:
     m = model(case, "c")
     u = rng.normal(size=(N, m.nu))
     if method == "rk4":  # Its last stage stands at the end of the step, where the next sample of a signal holds.
@@ -183,14 +183,14 @@ def test_the_steps_are_those_of_simulate(method: str, case: str, rng: np.random.
         ("double_pendulum", {"v0": [1e200, 1e200]}, "leaves the finite numbers"),
     ],
 )
-def test_what_has_no_derivative_is_refused_in_words(case: str, changes: dict[str, object], words: str) -> None:
+def test_rollouts_without_derivatives_are_refused(case: str, changes: dict[str, object], words: str) -> None:
     m = model(case, "c")
     given = {"q0": m.neutral(), "v0": np.zeros(m.nv), "u": np.zeros((3, m.nu)), "dt": 0.01} | changes
     with pytest.raises(sf.SymofrosError, match=words):
         sf.rollout(m, **given)
 
 
-def test_a_quaternion_among_the_inputs_that_is_no_rotation_is_refused() -> None:
+def test_invalid_quaternions_among_the_inputs_are_refused() -> None:
     m = sf.compile(turned())
     u = np.zeros((5, m.nu))
     u[:, m.names.u.index("p.qw")] = 1.0

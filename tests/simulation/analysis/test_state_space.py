@@ -85,7 +85,7 @@ def test_outputs_against_differences(name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "freedoms"), [("four_bar", 2), ("slider_crank", 2), ("rolling_disc", 8)])
-def test_only_what_the_constraints_allow(name: str, freedoms: int) -> None:
+def test_states_are_reduced_to_admissible_motions(name: str, freedoms: int) -> None:
     """Two states for a degree of freedom; of the disc's twelve a height and its rate go, and two rates of slip."""
     m = model(name)
     q, u = sf.assemble(m, CLOSED[name]).q, np.zeros(m.nu)

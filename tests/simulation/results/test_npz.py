@@ -25,7 +25,7 @@ ARRAYS = {
 
 
 @pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
-def test_what_numpy_writes_is_read(tmp_path: Path, save: Callable[..., None]) -> None:
+def test_files_written_by_numpy_are_read(tmp_path: Path, save: Callable[..., None]) -> None:
     save(tmp_path / "a.npz", **ARRAYS)
     arrays = read_npz(tmp_path / "a.npz", 100)
     assert arrays.keys() == ARRAYS.keys()

@@ -28,7 +28,7 @@ def test_columns_by_name(run: sf.Trajectory) -> None:
         run["nothing"]
 
 
-def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path: Path) -> None:
+def test_section_forces_of_a_swing_match_the_joint_wrench(tmp_path: Path) -> None:
     """Over time and along the span; the envelope holds every instant, and figures show both."""
     joint = sf.Joint("pin", "revolute", axis=(0, 0, 1))
     swinging = sf.Beam("b", joint, 1.0, 2.0, EI_z=30.0, bend_y=2, family="legendre")
@@ -51,7 +51,7 @@ def test_section_forces_of_a_swing_start_with_what_the_joint_transmits(tmp_path:
         run.section_forces("c")
 
 
-def test_names_of_columns_are_told_apart_and_survive_files(tmp_path: Path) -> None:
+def test_column_names_are_distinct_and_survive_files(tmp_path: Path) -> None:
     """Commas, quotes, the name of the time, and a name that is the rate of another."""
     names = ("t", 'a,"b', "door", "oor", "left-hip")
     bodies = [

@@ -143,7 +143,7 @@ def test_zeros_at_the_ends_of_steps(rotor: sf.Model, method: str, dt: float) -> 
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_the_start_is_no_arrival_and_the_end_is_one(rotor: sf.Model, method: str) -> None:
+def test_a_zero_at_the_start_is_not_an_event_and_one_at_the_end_is(rotor: sf.Model, method: str) -> None:
     events = {"start": "t", "angle": "a", "end": "t - 1", "beyond": "t - 1.001", "always": "0*a"}
     events["rests"] = "max(t - 0.6, 0)"
     run = sf.simulate(rotor, [0.0], [1.0], 1.0, method=method, dt=0.1, events=events)
@@ -201,7 +201,7 @@ def test_a_step_that_jumps_in_an_input_is_met_at_its_instant(rotor: sf.Model, me
 
 
 @pytest.mark.parametrize("method", ["rk4", *ADAPTIVE, *SUNDIALS])
-def test_what_steps_cannot_tell_is_noted_and_nothing_else(thrown: sf.Model, method: str) -> None:
+def test_undecidable_events_are_noted_and_no_others(thrown: sf.Model, method: str) -> None:
     top = 10.0**2 / (2 * G)
     for level, noted in ((top + 1e-13, True), (top - 1e-13, True), (0.99 * top, False), (1.01 * top, False)):
         run = sf.simulate(

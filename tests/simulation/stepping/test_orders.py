@@ -59,7 +59,7 @@ def error(name: str, method: str, span: float, steps: int) -> float:
         if method.order < 5 or (scene, name) in FIRST_OF
     ],
 )
-def test_order(name: str, method: str) -> None:
+def test_methods_converge_with_their_order(name: str, method: str) -> None:
     if method == "variational" and scene(name)[0].nc:
         with pytest.raises(sf.SymofrosError, match="trees of free motion only"):
             error(name, method, SPAN, 10)

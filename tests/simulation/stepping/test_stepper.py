@@ -59,7 +59,7 @@ def test_a_run_in_many_pieces_keeps_the_states_of_a_run_in_one_for_its_diagnosis
 
 
 @pytest.mark.parametrize("length", [0.8, 1.25])
-def test_rates_at_a_quaternion_of_any_length_are_those_of_its_rotation(length: float) -> None:
+def test_quaternion_rates_at_any_length_match_the_rotation(length: float) -> None:
     """Integrators of others let lengths drift: accelerations are those of the unit one, its rate scales (section 7)."""
     top = compiled("heavy_top")
     q, v = top.random_state(np.random.default_rng(2))

@@ -24,7 +24,7 @@ def moving(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("method", ["cvode", "cvode_adams", "ida"])
 @pytest.mark.parametrize("name", ["double_pendulum", "heavy_top", "joint_zoo"])
-def test_it_follows_its_tolerance(name: str, method: str) -> None:
+def test_errors_follow_the_tolerance(name: str, method: str) -> None:
     model, q, v = moving(name)
     exact = sf.simulate(model, q, v, 1.0, method="dop853", rtol=1e-12, atol=1e-13)
     for tolerance in (1e-6, 1e-9):
@@ -56,7 +56,7 @@ def test_constraints_by_gains_only() -> None:
     assert np.abs(model.constraint(run.q)).max() < 1e-6
 
 
-def test_ends() -> None:
+def test_runs_of_sundials_end_with_the_right_status() -> None:
     model = compiled("pendulum")
 
     def call(t, q, v):
@@ -101,7 +101,7 @@ def test_ida_keeps_loops_closed_and_follows_projected_steps(name: str) -> None:
     assert errors[1] < 1e-7 and errors[1] < errors[0] / 20
 
 
-def test_ida_rolls() -> None:
+def test_ida_integrates_a_rolling_disc() -> None:
     """Conditions on speeds have no condition on positions beside them."""
     model = compiled("rolling_disc")
     q, v = model.random_state(np.random.default_rng(4))
@@ -127,7 +127,7 @@ def test_combinations_are_judged_by_the_rows_own_sizes(scale: float) -> None:
 
 
 @pytest.mark.parametrize(("seed", "rtol"), [(0, 1e-4), (1, 1e-6), (2, 1e-8)])
-def test_ida_moves_loops_whose_conditions_repeat_each_other_in_closed_postures_alone(rtol: float, seed: int) -> None:
+def test_ida_integrates_redundant_loops_from_closed_postures_only(rtol: float, seed: int) -> None:
     """Which combinations are independent changes along the motion."""
     bennett = Bennett.drawn(np.random.default_rng(seed))
     model = sf.compile(bennett.system())

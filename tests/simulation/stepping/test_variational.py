@@ -12,7 +12,7 @@ SOLID = sf.Inertia(1.5, (0.3, -0.4, 0.2), (0.3, 0.4, 0.5))
 
 
 @pytest.mark.parametrize("kind, nv", [("free", 6), ("ball", 3)])
-def test_a_body_whose_mass_centre_is_beside_its_joint_moves_as_by_another_method(kind: str, nv: int) -> None:
+def test_variational_matches_other_methods_with_an_offset_mass_centre(kind: str, nv: int) -> None:
     """The force on the momentum in body axes, v x f + w x n, has two parts; both methods agree to second order."""
     model = sf.compile(sf.System("s", (sf.RigidBody("b", sf.Joint("j", kind), SOLID),)))  # type: ignore[arg-type]
     v = np.array([0.7, -0.4, 1.1, 2.0, -1.5, 0.8])[-nv:]

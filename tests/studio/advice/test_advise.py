@@ -72,7 +72,7 @@ def test_the_spin_up_keeps_foreshortening() -> None:
 
 
 @pytest.mark.slow  # In every run: the rod that spins up, and beams that may be rigid or must bend.
-def test_planar_robot() -> None:
+def test_advice_for_the_planar_robot() -> None:
     robot = advised("planar_robot")
     assert robot.ok and robot.gain >= 3.0
     # A slow motion needs no stiffening, and 50:1 gears no gyroscopic moments; the beams must bend.
@@ -98,7 +98,7 @@ def crane(**changed: object) -> tuple[sf.System, sf.Scene]:
 
 
 @pytest.mark.slow
-def test_a_beam_that_may_be_rigid_is_said_to() -> None:
+def test_a_beam_that_may_be_rigid_is_recommended_as_rigid() -> None:
     system, scene = crane()
     advice = sf.advise(system, scene)
     choice = advice.choice("rigid", "boom")
@@ -121,7 +121,7 @@ def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
 
 
 @pytest.mark.slow
-def test_what_a_law_reads_is_not_removed() -> None:
+def test_joints_that_a_controller_reads_are_not_removed() -> None:
     """The wrist's own coordinate drives an effort: locking it would take away what the law needs. By fixed steps."""
     system, scene = crane()
     law = f"{scene.inputs['swing']} + 1e-6*wrist"
@@ -150,7 +150,7 @@ def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
     assert words in str(raised.value)
 
 
-def test_runs_that_end_early_are_told_from_runs_that_differ(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_runs_that_end_early_are_distinguished_from_runs_that_differ(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only motions that reach the end and differ whatever their tolerance may be chaotic."""
     system, scene = crane()
     monkeypatch.setattr(scene_runner, "MOST_STEPS", 3)
@@ -166,7 +166,7 @@ def test_runs_that_end_early_are_told_from_runs_that_differ(monkeypatch: pytest.
 
 
 @pytest.mark.slow(minutes=5)
-def test_the_station() -> None:
+def test_advice_for_the_space_station() -> None:
     """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
     advice = advised("flexible_mss")
     # By articulated bodies an evaluation costs what its coordinates do, 57 or 25; the rest is fewer evaluations.
@@ -254,7 +254,7 @@ def test_segments_that_take_the_place_of_a_rod() -> None:
     assert [*offered(replace(rod, loads=(pressed,)))] == ["second order, first_order", "second order, all"]
 
 
-def test_a_beam_beyond_its_theory_whose_coordinates_the_scene_starts_from_is_refused() -> None:
+def test_starts_of_replaced_beam_coordinates_are_refused() -> None:
     """Those of a rod are others; without a start, a rod takes its place."""
     beam = sf.Beam("blade", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
     scene = sf.Scene(0.2, (sf.Output("end", "position", "tip", absolute=5e-2),), samples=50)

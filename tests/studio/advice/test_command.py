@@ -24,7 +24,7 @@ def run(*arguments: object) -> Result:
         return CliRunner().invoke(app, ["advise", *map(str, arguments)])
 
 
-def test_it_tells_programs_and_people(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_advise_prints_text_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One advice serves both: it takes seconds. Eight seconds of the scene's spin-up are enough for them."""
     scene = tmp_path / "scene.yaml"
     scene.write_text(SCENE.read_text().replace("t_end: 20", "t_end: 8"))

@@ -31,7 +31,7 @@ THRESHOLDS = (
 )
 
 
-def test_residual_vibration() -> None:
+def test_residual_vibration_estimates_match_simulation() -> None:
     """Smooth, too, where the load meets the mode; its bound lets a beam be rigid."""
     for r, simulated in RESIDUALS:  # Integrated to about 1e-9 of the amplitude by the benchmark.
         assert estimators.residual(r) == pytest.approx(simulated, rel=1e-6, abs=1e-9)
@@ -61,7 +61,7 @@ def test_critical_speed_is_the_first_frequency() -> None:
     assert estimators.critical_ratio(eta) == pytest.approx(6.0 / 2.910758394396504, rel=1e-8)
 
 
-def test_static_deflections() -> None:
+def test_static_deflections_match_formulas() -> None:
     """G3: 11 rhoA alpha L^5 / 120 EI, rhoA g L^4 / 8 EI, P L^3 / 3 EI."""
     rhoA, EI, L = 0.7, 90.0, 1.3
     turned, _ = estimators.deflection(rhoA, EI, L, 0.0, 2.0, 0.0, 0.0)

@@ -20,7 +20,7 @@ def read(tmp_path: Path, text: str) -> sf.Scene:
     return sf.load_scene(file)
 
 
-def test_a_file(tmp_path: Path) -> None:
+def test_a_scene_file_is_read(tmp_path: Path) -> None:
     scene = read(
         tmp_path,
         GOOD + "  turn: {coordinate: q1, relative: 0.01}\ninputs:\n  a: 2*sin(t)\n  b: 3\n"
@@ -61,7 +61,7 @@ def test_the_reference_scenes_belong_to_models(path: Path) -> None:
         ("a: &x 1\nb: *x\n", "anchors and aliases are refused"),
     ],
 )
-def test_what_does_not_fit(tmp_path: Path, text: str, words: str) -> None:
+def test_invalid_scene_files_are_refused(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(sf.DescriptionError) as raised:
         read(tmp_path, text)
     assert words in str(raised.value)
@@ -72,7 +72,7 @@ def test_a_file_that_is_too_large(tmp_path: Path) -> None:
         read(tmp_path, "#" * (1 << 20) + GOOD)
 
 
-def test_other_tolerances() -> None:
+def test_other_tolerances_change_the_bounds() -> None:
     outputs = (sf.Output("a", "speed", "q", relative=0.1), sf.Output("b", "effort", "q", absolute=1.0))
     scene = sf.Scene(1.0, outputs)
     assert [(one.absolute, one.relative) for one in scene.within(0.5).outputs] == [(0.5, 0.0), (0.5, 0.0)]
@@ -83,6 +83,6 @@ def test_other_tolerances() -> None:
         sf.Output("a", "place", "q", absolute=1.0)  # type: ignore[arg-type]
 
 
-def test_what_is_allowed_is_absolute_and_a_share_of_the_travel() -> None:
+def test_tolerances_are_absolute_plus_relative_to_travel() -> None:
     output = sf.Output("a", "position", "tip", absolute=0.1, relative=0.01)
     assert output.bound(np.array([[1.0, 0, 0], [1.0, 3.0, 4.0]])) == pytest.approx(0.15)

@@ -91,7 +91,7 @@ def alive(pid: int) -> bool:
 
 
 @pytest.mark.slow
-def test_pages_are_told_of_each_other_s_edits_of_jobs_and_of_the_disk(file: Path) -> None:
+def test_pages_are_notified_of_edits_jobs_and_file_changes(file: Path) -> None:
     with served(str(file)) as (process, client), served(str(file)) as (_, other):
         assert len(other.headers["Authorization"]) > 40  # A token of its own.
         assert client.get("/api/document", headers=other.headers).status_code == 401
@@ -118,7 +118,7 @@ def event(lines: Iterator[str], kind: str) -> str:
     raise AssertionError("the stream ended")
 
 
-def test_a_port_that_is_taken_and_a_file_that_is_none_are_told(file: Path, tmp_path: Path) -> None:
+def test_a_port_in_use_and_a_missing_file_are_reported(file: Path, tmp_path: Path) -> None:
     with served(str(file)) as (_, client):
         taken = CliRunner().invoke(app, ["edit", str(file), "--port", str(client.base_url.port), "--no-browser"])
         assert taken.exit_code == 2 and "in use" in taken.output

@@ -45,7 +45,7 @@ def open_page(chromium: Any) -> Iterator[Open]:
     assert not errors
 
 
-def test_it_has_a_scale_units_and_its_reader_s_colours(chromium: Any) -> None:
+def test_the_page_has_a_scale_units_and_the_preferred_colours(chromium: Any) -> None:
     with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
         context = chromium.new_context(viewport={"width": WIDTH, "height": HEIGHT}, color_scheme="dark")
         page = context.new_page()

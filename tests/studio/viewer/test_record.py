@@ -81,7 +81,7 @@ def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> No
         ("m.gif", {"speed": 1e-6}, r"too long\n  found:  \d+ pictures\n  rule:   20000 at most"),
     ],
 )
-def test_what_can_not_be_is_refused(
+def test_invalid_recordings_are_refused(
     name: str, more: dict, expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)
@@ -105,7 +105,7 @@ def test_time_and_exaggeration_are_written_on_pictures(tmp_path: Path) -> None:
     assert np.ptp(drawn) == pytest.approx(bar.share * 240, abs=1.5)
 
 
-def test_names_can_not_end_the_script_of_a_replay() -> None:
+def test_names_cannot_end_the_script_of_a_replay() -> None:
     evil = "</script><script>alert(1)</script>"
     camera = Camera(np.array([0.0, -2.0, 1.0]), np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.7)
     page = f"<head><title>Viser</title>{'{darkMode:false}'}</head>"

@@ -35,7 +35,7 @@ def node(viewer: sf.Viewer, name: str) -> object:
     return viewer._server.scene.get_handle_by_name(f"/mechanism/{name}")
 
 
-def test_it_is_seen_from_this_machine_alone(viewer: sf.Viewer) -> None:
+def test_the_viewer_listens_only_on_this_machine(viewer: sf.Viewer) -> None:
     assert viewer.host == "127.0.0.1" and viewer.url.startswith(f"http://127.0.0.1:{viewer.port}/")
     with socket.create_connection(("127.0.0.1", viewer.port), timeout=60):
         pass
@@ -67,7 +67,7 @@ def test_section_forces_are_plotted_over_the_span_at_the_instant_shown() -> None
         assert viewer._panel.force_plot is None
 
 
-def test_an_address_that_can_not_be_or_is_taken_is_refused(viewer: sf.Viewer) -> None:
+def test_an_address_that_cannot_be_or_is_taken_is_refused(viewer: sf.Viewer) -> None:
     for host, port in (("127.0.0.1", 70000), ("192.0.2.1", 0)):
         with pytest.raises(SymofrosError, match="can't serve at"):
             sf.Viewer(MODELS["pendulum"], host=host, port=port)
@@ -112,7 +112,7 @@ class TestPush:
         with pytest.raises(ShapeError, match=r"q has shape \(10,\)"):
             viewer.push(0.0, [0.0])
 
-    def test_it_never_waits_for_the_picture(self, viewer: sf.Viewer) -> None:
+    def test_push_does_not_wait_for_drawing(self, viewer: sf.Viewer) -> None:
         q = viewer.mechanism.model.neutral()
         done = threading.Event()
 
@@ -129,7 +129,7 @@ class TestPush:
         until(lambda: viewer.painted == 1)
         assert np.all(viewer.state.q == 0.0)
 
-    def test_what_is_shown_meanwhile_is_newer(self, viewer: sf.Viewer) -> None:
+    def test_the_newest_state_is_shown_after_a_delay(self, viewer: sf.Viewer) -> None:
         nq = viewer.mechanism.model.nq
         with viewer._painting:
             viewer.push(0.0, np.ones(nq))
@@ -140,7 +140,7 @@ class TestPush:
 
 
 class TestPlay:
-    def test_it_goes_on_by_itself_until_it_is_paused(self, viewer: sf.Viewer) -> None:
+    def test_playing_continues_until_paused(self, viewer: sf.Viewer) -> None:
         t = np.array([0.0, 1000.0])
         q = np.zeros((2, viewer.mechanism.model.nq))
         q[1, 0] = 1000.0
@@ -163,7 +163,7 @@ class TestPlay:
 
 
 class TestMove:
-    def test_what_is_named_moves_and_loops_close_around_it(self) -> None:
+    def test_named_coordinates_move_and_loops_close(self) -> None:
         with sf.Viewer(MODELS["four_bar"], port=0) as viewer:
             first, *others = (slider.label for slider in viewer.sliders)
             assert viewer.move({first: 1.2}) == ""
@@ -185,7 +185,7 @@ class TestMove:
         assert viewer.state.par[index] == 0.8 and np.flatnonzero(viewer.state.par != before).tolist() == [index]
 
 
-def test_where_loops_can_not_be_closed_a_slider_leaves_the_picture() -> None:
+def test_where_loops_cannot_be_closed_a_slider_leaves_the_picture() -> None:
     stop = sf.Rod("rod", ("world", None), ("b", "end"), 1.0)
     body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0), (sf.Frame("end"),))
     with sf.Viewer(sf.System("s", [body], constraints=[stop]), port=0) as viewer:
@@ -194,7 +194,7 @@ def test_where_loops_can_not_be_closed_a_slider_leaves_the_picture() -> None:
         assert viewer.state.q[0] == 1.0
 
 
-def test_parameters_draw_anew_only_where_they_are_seen_and_so_does_another_system(viewer: sf.Viewer) -> None:
+def test_parameters_redraw_only_affected_shapes(viewer: sf.Viewer) -> None:
     model, scene = viewer.mechanism.model, viewer._scene_state.scene
     q, par = model.neutral(), np.array(model.parameter_values)
     par[model.names.par.index("k1")] *= 2
@@ -218,7 +218,7 @@ def test_parameters_draw_anew_only_where_they_are_seen_and_so_does_another_syste
     assert np.all(viewer.state.q == 0.0)
 
 
-def test_the_controls_say_what_is_shown(viewer: sf.Viewer) -> None:
+def test_controls_name_the_available_choices(viewer: sf.Viewer) -> None:
     with pytest.raises(sf.UnknownNameError, match=r"no layer 'frame'\n(.*\n)*  remedy: did you mean 'frames'\?"):
         viewer.set_layer("frame", True)
     viewer.set_layer("frames", True)
@@ -243,7 +243,7 @@ def test_a_state_that_bends_beams_beyond_a_per_cent_of_error_is_remarked_on(view
     assert not panel._warning.content
 
 
-def test_it_may_be_closed_twice_and_its_port_is_free_again(viewer: sf.Viewer) -> None:
+def test_closing_twice_is_allowed_and_frees_the_port(viewer: sf.Viewer) -> None:
     port = viewer.port
     viewer.close()
     viewer.close()

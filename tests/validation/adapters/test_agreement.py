@@ -65,7 +65,7 @@ def test_forces_are_the_stated_formulas() -> None:
 
 
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (0.0, 9.81, 0.0)])
-def test_quantities_that_vanish_are_no_trouble(gravity: tuple[float, ...]) -> None:
+def test_vanishing_quantities_agree(gravity: tuple[float, ...]) -> None:
     """Without gravity, or with gravity along the axis, bias and potential energy are zero or rounding."""
     result = check(subject_of(pendulum(gravity=gravity)), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
@@ -93,7 +93,7 @@ def test_slight_tilts_are_kept(tilt: float) -> None:
         ({"elements": (sf.Damper(0.0, 0.1),)}, "damper"),
     ],
 )
-def test_a_corner_in_a_force_is_no_drift_of_ours(force: dict[str, tuple[object, ...]], word: str) -> None:
+def test_force_discontinuities_are_not_reported_as_drift(force: dict[str, tuple[object, ...]], word: str) -> None:
     joint = sf.Joint("q", "revolute", axis=(0, 1, 0), **force)  # type: ignore[arg-type]
     result = check(subject_of(sf.System("dry", [sf.RigidBody("rod", joint, UNIT)])), FEW)
     (row,) = (row for row in result.comparisons if row.quantity == "energy_drift")

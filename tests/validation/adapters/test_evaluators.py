@@ -14,7 +14,7 @@ from validation.contract.interface import States, Subject
 SUBJECT = Subject("double_pendulum", MODELS["double_pendulum"], ("tip",))
 
 
-def test_one_program_serves_all_ways(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_routes_share_one_program(monkeypatch: pytest.MonkeyPatch) -> None:
     formed = []
     form = programs.form_program
 

@@ -62,7 +62,7 @@ def test_pinocchios_constrained_dynamics(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled((*REPRESENTED, "delta"), SMALL))
-def test_exudyns_joints(name: str) -> None:
+def test_exudyn_joints_agree(name: str) -> None:
     """Every body with Euler parameters of its own: nothing is shared with a tree but what the bodies are.
 
     The rods' crosses have no mass, and some rods stand nearly along an axle of theirs: bodies' accelerations then leave
@@ -119,7 +119,7 @@ A, B = ("a", "e"), ("b", "e")
         (sf.Closure("k", A, B, ("x", "y")), "leaves a direction free in which the bodies do move"),
     ],
 )
-def test_what_pinocchio_can_not_represent(constraint: sf.Constraint, reason: str) -> None:
+def test_constraints_that_pinocchio_lacks_are_named(constraint: sf.Constraint, reason: str) -> None:
     found = pinocchio_loops.build(two_balls(constraint))
     assert isinstance(found, Unsupported) and reason in found.reason
 
@@ -132,7 +132,7 @@ def test_what_pinocchio_can_not_represent(constraint: sf.Constraint, reason: str
         (two_balls(sf.Rod("k", A, B, 1.0), kind="screw"), "no screw joint"),
     ],
 )
-def test_what_exudyn_is_not_asked(subject: Subject, reason: str) -> None:
+def test_models_that_exudyn_cannot_represent_are_named(subject: Subject, reason: str) -> None:
     found = exudyn_loops.build(subject)
     assert isinstance(found, Unsupported) and reason in found.reason
 

@@ -54,7 +54,7 @@ def test_mujoco_starts_from_the_same_posture_wherever_it_is_stated(stated_at: fl
     assert four_bars.tip_error(1, 0.5, np.array([np.cos(angle), np.sin(angle)])) < 1e-6
 
 
-def test_mujoco_says_when_it_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_failed_mujoco_run_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """And writes no log into the working directory."""
     monkeypatch.chdir(tmp_path)
     text = '<mujoco><option timestep="0.1"/><worldbody><body><joint type="hinge" stiffness="-1e9"/>'

@@ -114,7 +114,7 @@ def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], 
 
 @settings(max_examples=15, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(system=trees(), which=st.integers(0, 5))
-def test_the_drive_of_a_prescribed_joint_supplies_what_inverse_dynamics_asks(system: sf.System, which: int) -> None:
+def test_the_drive_effort_of_a_prescribed_joint_matches_inverse_dynamics(system: sf.System, which: int) -> None:
     """The same motion, one joint of it prescribed: its effort and those of the other joints are as before."""
     described = assemble(system).joints
     chosen = described[which % len(described)]

@@ -52,7 +52,7 @@ def test_engines_agree_on_rotors(seed: int) -> None:
     ],
     ids=["ratio", "axis", "same axis"],
 )
-def test_they_see_a_rotor_that_is_not_ours(
+def test_a_changed_rotor_is_detected(
     change: dict[str, object], wrong: set[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stated = MODELS["gyroscope"]

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[3]
 
 
 @pytest.mark.slow
-def test_neither_the_command_line_nor_the_differences_import_an_engine() -> None:
+def test_the_command_line_imports_no_engine() -> None:
     """Nor SciPy, whose integrators and transforms take as long to load as all else that a check of a file needs."""
     code = """
 import sys

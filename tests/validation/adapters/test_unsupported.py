@@ -44,13 +44,13 @@ def test_mujoco_refuses_impossible_inertia_by_name() -> None:
     assert check(subject_of(system), FEW).ok
 
 
-def test_what_is_fixed_to_a_massless_body_gives_it_mass() -> None:
+def test_a_massless_body_takes_the_mass_of_fixed_bodies() -> None:
     tool = sf.RigidBody("tool", sf.Joint("f", "fixed", "cross"), UNIT)
     built = mujoco.build(subject_of(cross_and_rod().with_bodies(tool)))
     assert not isinstance(built, Unsupported)
 
 
-def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
+def test_a_missing_engine_is_a_row_with_the_remedy() -> None:
     factories = {"mujoco": Missing("No module named 'mujoco'; pip install")}
     result = check(subject_of(pendulum()), FEW, factories)
     (row,) = (row for row in result.comparisons if row.engine == "mujoco")
@@ -58,7 +58,7 @@ def test_an_engine_that_is_not_installed_is_a_row_with_the_remedy() -> None:
     assert result.ok
 
 
-def test_agreement_with_nobody_is_no_agreement() -> None:
+def test_a_check_without_engines_does_not_count_as_agreement() -> None:
     factories = {name: Missing("no") for name, route in ROUTES.items() if route.independent}
     result = check(subject_of(pendulum()), FEW, factories)
     assert not result.ok
@@ -81,7 +81,7 @@ class TestUrdf:
         assert isinstance(route.build(subject_of(pendulum())), Unsupported)  # type: ignore[attr-defined]
 
     @pytest.mark.parametrize("route", [pinocchio_urdf, mujoco_urdf])
-    def test_another_mechanism(self, route: object, tmp_path: object) -> None:
+    def test_a_urdf_with_other_joints_is_refused(self, route: object, tmp_path: object) -> None:
         """A file with other joints than the description has."""
         subject = self.subject(URDF, tmp_path)
         assert subject.urdf is not None
@@ -106,7 +106,7 @@ class TestUrdf:
         assert isinstance(built, Unsupported) and "'foot'" in built.reason
 
 
-def test_a_prescribed_motion_is_refused_in_words() -> None:
+def test_a_prescribed_motion_is_refused() -> None:
     cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", prescribed=True), sf.Inertia(1.0))
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute", "cart"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
     result = check(Subject("driven", sf.System("driven", [cart, rod])), Settings(states=5))

@@ -57,7 +57,7 @@ def test_budgets_are_kept(tmp_path: Path) -> None:
     assert hunt(SOUND, tmp_path, 0, Budget(0.0, 7), tally, set()) is None and tally.tried == 7
 
 
-def test_an_exception_that_is_no_refusal_is_a_contradiction() -> None:
+def test_unexpected_exceptions_are_contradictions() -> None:
     def crash(scene: Scene) -> Verdict:
         raise IndexError("out of bounds")
 
@@ -65,7 +65,7 @@ def test_an_exception_that_is_no_refusal_is_a_contradiction() -> None:
     assert not verdict.sound and verdict.quantity == "IndexError" and "out of bounds" in verdict.said
 
 
-def test_an_error_that_is_not_a_number_contradicts() -> None:
+def test_nan_errors_are_contradictions() -> None:
     assert not compared("size", float("nan"), 1.0, "small").sound
     assert compared("size", 0.0, 0.0, "small").sound and not compared("size", 1.0, 0.0, "small").sound
 
@@ -86,7 +86,7 @@ def test_the_command_writes_log_report_and_a_test_that_fails_while_the_fault_is_
     test()
 
 
-def test_a_search_goes_on_where_it_ended_and_forgets_what_is_mended(
+def test_a_search_resumes_and_drops_mended_finds(
     command: Callable[..., Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     command("--examples", 50)

@@ -94,7 +94,7 @@ def test_a_campaign_on_a_cluster_outlives_a_worker_and_leaves_the_scheduler(tmp_
         ("carrier-pigeon://roof:1", "no such address"),
     ],
 )
-def test_nobody_there_is_told_at_once(tmp_path: Path, address: str, found: str) -> None:
+def test_an_unreachable_scheduler_is_reported_at_once(tmp_path: Path, address: str, found: str) -> None:
     with socket.socket() as reserved:  # Bound, and not listening.
         reserved.bind(("127.0.0.1", 0))
         asked = address.format(closed=reserved.getsockname()[1])

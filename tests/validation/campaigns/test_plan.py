@@ -53,7 +53,7 @@ BAD = YAML(typ="safe").load(Path(__file__).with_name("bad_plans.yaml"))
 
 
 @pytest.mark.parametrize("bad", BAD, ids=lambda bad: f"{bad['of']}: {bad['says']}")
-def test_a_bad_plan_is_refused_in_words(bad: dict[str, Any]) -> None:
+def test_a_bad_plan_is_refused(bad: dict[str, Any]) -> None:
     with pytest.raises(PlanError, match="remedy") as caught:
         tasks(make({"check": CHECK, "sweep": SWEEP}[bad["of"]] | bad["change"], "plan.toml"))
     assert bad["says"] in str(caught.value)
@@ -66,14 +66,14 @@ def test_a_file_of_a_plan_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["kind = ", "\udcff", "a = " + "[" * 100_000, "#" * (2 << 20)])
-def test_what_is_no_toml_is_refused(tmp_path: Path, text: str) -> None:
+def test_invalid_toml_is_refused(tmp_path: Path, text: str) -> None:
     path = tmp_path / "plan.toml"
     path.write_bytes(text.encode("utf-8", "surrogateescape"))
     with pytest.raises(PlanError, match="plan.toml"):
         read(path)
 
 
-def test_a_batch_gives_the_same_rows_each_time_and_says_where_it_stands() -> None:
+def test_a_batch_is_reproducible_and_reports_its_position() -> None:
     plan = make({"kind": "check", "models": ["pendulum"], "states": 40, "batch": 20, "engines": ["pinocchio"]}, "plan")
     first, second = tasks(plan)
     rows = second.run()
@@ -83,7 +83,7 @@ def test_a_batch_gives_the_same_rows_each_time_and_says_where_it_stands() -> Non
     assert "energy_drift" in first.run()["quantity"].to_pylist() and "energy_drift" not in rows["quantity"].to_pylist()
 
 
-def test_a_model_that_can_not_be_compared_is_a_row(tmp_path: Path) -> None:
+def test_a_model_that_cannot_be_compared_is_a_row(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text("nonsense: 1")
     plan = make({"kind": "check", "models": [str(path)], "states": 5}, "plan")

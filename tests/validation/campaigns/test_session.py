@@ -32,7 +32,7 @@ def store(tmp_path: Path) -> Store:
     return Store.create(tmp_path / "c", MANIFEST)
 
 
-def test_a_worker_does_not_do_again_what_is_done(store: Store) -> None:
+def test_workers_skip_finished_tasks(store: Store) -> None:
     first = runner.execute(Scripted(4), store.folder, "abc", runner.sources())
     assert runner.execute(Scripted(4, "raise"), store.folder, "abc", runner.sources()) == first == store.part(4)
     assert [line["event"] for line in store.journal()] == ["begun", "done"]
@@ -51,7 +51,7 @@ def test_a_worker_of_other_code_does_nothing(store: Store) -> None:
 
 
 @pytest.mark.slow
-def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> None:
+def test_batches_that_cannot_be_done_leave_the_others_alone(store: Store) -> None:
     done: list[int] = []
     tasks = [Scripted(0), Scripted(1, "raise"), Scripted(2, "die"), *(Scripted(k) for k in range(3, 12))]
     failures = runner.run(store, tasks, runner.Pool(workers=1), lambda task: done.append(task.number))
@@ -60,7 +60,7 @@ def test_batches_that_can_not_be_done_leave_the_others_alone(store: Store) -> No
     assert failures[2] == "scripted: the process that did it died, each time it was tried"
 
 
-def test_nothing_listens_but_on_the_loopback() -> None:
+def test_servers_listen_only_on_the_loopback() -> None:
     """Neither scheduler nor workers nor pages of dask."""
     with runner.Pool(workers=1).client() as client:
         addresses = [client.scheduler.address, *client.scheduler_info()["workers"]]
@@ -106,7 +106,7 @@ def test_a_summary_keeps_the_worst_state_of_all_batches() -> None:
     assert (group["error"], group["batch"], group["worst_state"], group["scale"]) == (4e-14, 1, 7, 5.0)
 
 
-def test_what_is_no_number_is_the_worst() -> None:
+def test_nan_errors_rank_as_worst() -> None:
     data = summary({}, {"batch": 1, "error": None, "agree": False, "status": "disagree", "worst_state": 5})
     (group,) = data["groups"]
     assert not data["ok"] and group["error"] is None and group["worst_state"] == 5
@@ -114,7 +114,7 @@ def test_what_is_no_number_is_the_worst() -> None:
     assert "1 comparison: 1 do not agree" in compose(data | {"kind": "check", "effort": spent}).summary
 
 
-def test_agreement_with_nobody_is_none() -> None:
+def test_a_campaign_without_engines_does_not_agree() -> None:
     nobody = {"agree": None, "error": None}
     assert not summary(nobody | {"status": "unsupported"})["ok"]
     assert not summary({}, nobody | {"batch": 1, "status": "failed", "engine": "any", "quantity": "all"})["ok"]
@@ -135,7 +135,7 @@ def called(*words: str) -> tuple[int, str]:
 
 
 @pytest.mark.slow
-def test_a_campaign_from_the_command_line_and_what_is_said_of_it_later(tmp_path: Path) -> None:
+def test_a_campaign_runs_from_the_command_line_and_resumes(tmp_path: Path) -> None:
     """Done, shown, resumed (nothing is left to do), and not mistaken for another."""
     folder, report = str(tmp_path / "c"), tmp_path / "reports"
     asked = ("--models", "pendulum", "--states", "20", "--batch", "10", "--engines", "pinocchio", "-o", folder)

@@ -47,7 +47,7 @@ def test_a_part_that_is_damaged_counts_as_not_done(store: Store) -> None:
     assert store.part(1) is None and store.part(3) is None
 
 
-def test_parts_of_another_plan_or_place_are_none_of_ours(store: Store) -> None:
+def test_parts_of_another_plan_or_place_are_ignored(store: Store) -> None:
     store.write(3, part(Store(store.folder, "other"), 3))
     store.write(4, part(store, 5))
     assert store.finished()[0] == set()

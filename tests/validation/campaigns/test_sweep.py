@@ -39,7 +39,7 @@ def sweeper(data: dict[str, Any]) -> Sweeper:
     return Sweeper(plan, Case(plan.model))
 
 
-def test_end_states_are_those_of_single_simulations() -> None:
+def test_end_states_match_single_simulations() -> None:
     rows = [row for task in tasks(make(END_STATE, "plan")) for row in task.run().to_pylist()]
     assert [row["point"] for row in rows] == list(range(16))
     model = sf.compile(reference_models.MODELS["double_pendulum"])
@@ -52,7 +52,7 @@ def test_end_states_are_those_of_single_simulations() -> None:
         assert row["outcome"] == DONE
 
 
-def test_frequencies_are_those_of_the_steady_motion() -> None:
+def test_frequencies_match_the_steady_motion() -> None:
     rows = sweeper(FREQUENCIES).table(0, 0, 6).to_pylist()
     model = sf.compile(reference_models.MODELS["spinning_beam"])
     for row in rows:

@@ -26,7 +26,7 @@ def gitlab() -> tuple[dict[str, str], list[str]]:
 
 
 @pytest.mark.parametrize("server", [github, gitlab])
-def test_the_steps_of_a_template_ask_for_what_there_is(server) -> None:
+def test_templates_use_existing_options(server) -> None:
     """Options of the plug-in, then options of `check`."""
     _, (install, check, compare) = server()
     assert "symofros[validation]" in install

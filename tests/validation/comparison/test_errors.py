@@ -29,7 +29,7 @@ def test_the_worst_frame_counts() -> None:
     assert state_errors(QUANTITIES["frame_velocity"], value, reference, ONES).tolist() == [0.0, 0.5]
 
 
-def test_a_small_sum_is_judged_by_what_is_typical() -> None:
+def test_small_entries_are_judged_by_the_typical_size() -> None:
     reference = np.array([[1.0]] * 9 + [[1e-9]])
     errors = state_errors(QUANTITIES["mass_matrix"], (reference + 1e-12)[..., None], reference[..., None], ONES)
     assert errors[-1] == pytest.approx(1e-12 / SMALL, rel=1e-3)
@@ -48,7 +48,7 @@ def test_the_zero_of_potential_energy_is_arbitrary() -> None:
     assert state_errors(QUANTITIES["potential_energy"], reference + 1e-3, reference, ONES).max() == pytest.approx(1e-5)
 
 
-def test_all_zero_is_judged_absolutely() -> None:
+def test_zero_references_are_judged_absolutely() -> None:
     zero = np.zeros((2, 1, 1))
     assert state_errors(QUANTITIES["mass_matrix"], zero, zero, ONES).max() == 0.0
     assert state_errors(QUANTITIES["mass_matrix"], zero + 0.5, zero, ONES).max() == 0.5
@@ -84,7 +84,7 @@ def test_states_are_counted_by_decade() -> None:
     assert BIN_EDGES[k - 1] <= 1.5e-15 < BIN_EDGES[k]
 
 
-def test_the_scale_of_an_error_is_that_of_its_worst_frame() -> None:
+def test_the_scale_of_an_error_matches_that_of_its_worst_frame() -> None:
     reference = np.array([[[2.0, 1.0], [8.0, 1.0]], [[4.0, 0.0], [1.0, 0.0]]])
     value = reference + np.array([[[0.2, 0.0], [0.4, 0.0]], [[0.1, 0.0], [np.nan, 0.0]]])
     errors, sizes = scaled_errors(QUANTITIES["frame_velocity"], value, reference, ONES)

@@ -50,7 +50,7 @@ def broken(_: Subject) -> Engine:
 
 
 @pytest.mark.parametrize("engine", ["pinocchio", "description", "interpreted"])
-def test_an_adapter_that_can_not_build_is_one_failed_row(engine: str) -> None:
+def test_an_adapter_that_cannot_build_is_one_failed_row(engine: str) -> None:
     found = check(SUBJECT, SETTINGS, {engine: broken})
     (row,) = [row for row in found.comparisons if row.engine == engine]
     assert (row.quantity, row.status) == ("all", "failed") and not found.ok
@@ -72,7 +72,7 @@ def test_a_quantity_that_raises_is_one_failed_row_and_the_others_are_compared(qu
     assert any("raises IndexError: index 9 is out of bounds" in line for line in report.missed)
 
 
-def test_a_model_of_ours_that_raises_is_our_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_in_our_model_is_our_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     from validation.adapters.compiled import SymofrosEngine
 
     def fault(*_: object) -> None:

@@ -56,11 +56,11 @@ def only(quantity: str, engine: str, **changes: Any) -> Callable[[Comparison], C
     return change
 
 
-def test_the_same_run_is_no_worse(stored: Path, checked: ModelResult) -> None:
+def test_the_same_run_gives_no_regression(stored: Path, checked: ModelResult) -> None:
     assert judged(stored, checked) == []
 
 
-def test_an_error_of_1e_9_is_named_even_where_the_check_allows_it(stored: Path, checked: ModelResult) -> None:
+def test_a_grown_error_is_a_regression_even_within_tolerance(stored: Path, checked: ModelResult) -> None:
     # Forward dynamics may be off by what the condition of M makes of rounding; the stored run was not.
     change = only("forward_dynamics", "pinocchio", error=1e-9, tolerance=1e-8)
     assert judged(stored, checked, change) == [("forward_dynamics", "pinocchio", "less accurate")]
@@ -71,7 +71,7 @@ def test_errors_of_rounding_move_with_the_order_of_summation(stored: Path, check
     assert judged(stored, checked, only("mass_matrix", "mujoco", error=1e-13)) != []
 
 
-def test_what_is_compared_no_more_is_named(stored: Path, checked: ModelResult) -> None:
+def test_missing_comparisons_are_named(stored: Path, checked: ModelResult) -> None:
     def without(row: Comparison) -> Comparison | None:
         return None if (row.quantity, row.engine) == ("bias", "mujoco") else row
 
@@ -90,7 +90,7 @@ def test_a_slowdown_of_30_percent_is_named_and_noise_is_not(stored: Path, checke
     ("noise", "growth", "decided"),
     [(0.0, 1.0, True), (0.05, 1.0, True), (0.2, 1.0, False), (0.2, 1.3, False), (1.0, 2.0, False)],
 )
-def test_a_speed_is_not_decided_where_noise_hides_what_is_looked_for(
+def test_speed_changes_within_noise_are_not_decided(
     stored: Path, checked: ModelResult, noise: float, growth: float, decided: bool
 ) -> None:
     data = as_data(SETTINGS, [checked], 1.0, (), (replace(SPEEDS[0], ratio=growth * SPEEDS[0].ratio, noise=noise),))
@@ -104,7 +104,7 @@ def test_speeds_of_another_machine_are_not_compared(stored: Path, checked: Model
     assert regressions == [] and "another machine" in notes[0]
 
 
-def test_a_changed_description_is_said_and_not_compared(stored: Path, checked: ModelResult) -> None:
+def test_a_changed_description_is_noted_and_not_compared(stored: Path, checked: ModelResult) -> None:
     data = as_data(SETTINGS, [replace(checked, hash="0" * 16)], 1.0, ())
     regressions, notes = Baseline.read(stored).judge(Record.of(data), machine_of(data))
     assert regressions == [] and "its description has changed" in notes[0]
@@ -119,7 +119,7 @@ def test_a_changed_description_is_said_and_not_compared(stored: Path, checked: M
         ('{"schema": 1, "comparisons": [{"model": 3}], "models": [{"model": 1}]}', "damaged"),
     ],
 )
-def test_a_file_that_is_no_baseline_is_refused_in_words(text: str, complaint: str, tmp_path: Path) -> None:
+def test_an_invalid_baseline_file_is_refused(text: str, complaint: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.json"
     path.write_text(text)
     with pytest.raises(BaselineError, match=complaint):
@@ -131,7 +131,7 @@ def test_a_run_over_other_states_is_refused(stored: Path) -> None:
         Baseline.read(stored).require(21, 0)
 
 
-def test_the_ratio_is_that_of_processor_times(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_ratio_matches_that_of_processor_times(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = 0
 
     def takes(nanoseconds: int) -> Callable[[], None]:

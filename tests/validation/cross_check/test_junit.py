@@ -37,7 +37,7 @@ def parsed(text: str) -> junitparser.JUnitXml:
     return junitparser.JUnitXml.fromstring(text.encode())
 
 
-def test_counts_names_and_times_are_those_of_the_run(models: list[ModelResult]) -> None:
+def test_counts_names_and_times_match_the_run(models: list[ModelResult]) -> None:
     read = parsed(to_junit(models, 12.3))
     assert read.time == 12.3
     for suite, model in zip(read, models, strict=True):
@@ -51,7 +51,7 @@ def test_counts_names_and_times_are_those_of_the_run(models: list[ModelResult]) 
     assert [suite.name for suite in read] == ["pendulum", NASTY.replace("\x00", "?").replace("\x1b", "?"), "gone"]
 
 
-def test_a_suite_of_what_is_worse_states_all_counts(models: list[ModelResult]) -> None:
+def test_the_suite_of_regressions_has_all_counts(models: list[ModelResult]) -> None:
     worse = Regression("arm", "mujoco", "bias", "less accurate", "1e-9 after 1e-15")
     *_, suite = parsed(to_junit(models[:1], 1.0, (worse,)))
     assert (suite.name, suite.tests, suite.failures, suite.errors, suite.skipped) == ("baseline", 1, 1, 0, 0)
@@ -59,7 +59,7 @@ def test_a_suite_of_what_is_worse_states_all_counts(models: list[ModelResult]) -
     assert isinstance(failure, junitparser.Failure) and failure.message == "less accurate: 1e-9 after 1e-15"
 
 
-def test_the_command_writes_what_it_says(tmp_path: Path) -> None:
+def test_the_command_writes_the_listed_files(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(URDF)
     asked = ["check", str(tmp_path / "arm.urdf"), str(tmp_path / "gone.urdf"), "--states", "10", "--engine", "mujoco"]
     file = tmp_path / "junit.xml"

@@ -72,14 +72,14 @@ def test_the_page_needs_nothing_from_outside(mixed: Data) -> None:
     assert re.findall(r'https?://[^"\s<]+', page.replace("http://www.w3.org/2000/svg", "")) == []
 
 
-def test_names_from_files_can_not_break_the_page(mixed: Data) -> None:
+def test_names_from_files_cannot_break_the_page(mixed: Data) -> None:
     assert NASTY not in to_html(mixed) and "&lt;script&gt;" in to_html(mixed)
     for block in to_markdown(mixed).split("\n\n"):
         columns = {len(re.findall(r"(?<!\\)\|", row)) for row in block.splitlines() if row.startswith("|")}
         assert len(columns) <= 1, block
 
 
-def test_what_independent_engines_compared_is_counted_apart(mixed: Data) -> None:
+def test_comparisons_with_independent_engines_are_counted_separately(mixed: Data) -> None:
     """Our own code, read by other compilers or by NumPy, and formulas of ours are no second opinion."""
     own = {"vectors", "interpreted", "description", "formulas", "symofros"}
     judged = [row for row in mixed["comparisons"] if row["tolerance"]]
@@ -94,7 +94,7 @@ def test_what_independent_engines_compared_is_counted_apart(mixed: Data) -> None
     assert facts[label] == str(len(independent))
 
 
-def test_bad_news(mixed: Data) -> None:
+def test_disagreements_are_shown_in_all_formats(mixed: Data) -> None:
     assert not mixed["ok"] and code(compose(mixed)) == 1
     for text in (to_html(mixed), to_markdown(mixed)):
         assert "What disagrees or failed" in text and "bias: error 3.0e-07 in state 4 of 20" in text
@@ -103,7 +103,7 @@ def test_bad_news(mixed: Data) -> None:
         assert "on 2 models disagree, 1 model failed" in text
 
 
-def test_nothing_at_all() -> None:
+def test_an_empty_check_is_not_ok() -> None:
     record = as_data(SETTINGS, [], 0.0, ())
     assert not record["ok"]
     assert "Nothing was compared" in to_html(record) and "Nothing was compared" in to_markdown(record)

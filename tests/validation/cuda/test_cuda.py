@@ -64,7 +64,7 @@ def test_kernels_and_rollouts_are_compared_with_c(device: Driver, monkeypatch: p
     assert "8 kernels differ from C by at most" in text and "MuJoCo Warp: not here" in text
 
 
-def test_numbers_that_are_not_those_of_c_are_told(device: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernel_results_that_differ_from_c_are_reported(device: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     """A planted fault: C's side gets other inputs."""
     subject = Subject.of("planar2R", 4)
     kernel = kernels.kernels_of(subject, ("bias",))[0]
@@ -74,7 +74,7 @@ def test_numbers_that_are_not_those_of_c_are_told(device: Driver, monkeypatch: p
     assert not Record(kernels=[row]).ok
 
 
-def test_what_was_run_and_is_no_number_is_wrong() -> None:
+def test_nan_results_are_wrong() -> None:
     assert not KernelRow("panda", "bias", "double", False, 1, 0, 0, 8, 1e9, math.nan).right
     assert not RolloutRow("panda", "step", "rk4", "single", 1e9, math.nan).right
 

@@ -74,7 +74,7 @@ def made(folder: Path) -> list[str]:
     return runs.read_text().split() if runs.exists() else []
 
 
-def test_reports_are_made_and_what_is_made_of_this_code_is_left(tmp_path: Path, ways: dict[str, str]) -> None:
+def test_missing_reports_are_made_and_current_ones_kept(tmp_path: Path, ways: dict[str, str]) -> None:
     first = run(tmp_path)
     assert first.exit_code == 0 and made(tmp_path) == [*NAMES], first.output
     assert "[1/3] fuzz: written" in first.output

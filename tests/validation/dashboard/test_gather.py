@@ -48,7 +48,7 @@ def write(folder: Path, data: object, name: str = "fuzz") -> Path:
     return folder
 
 
-def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> None:
+def test_a_report_entry_has_verdict_and_page(tmp_path: Path) -> None:
     (tmp_path / "fuzz.md").write_text("")
     found = entry(write(tmp_path, FUZZ))
     assert found.verdict == "good" and not found.remarks and found.page == "fuzz.md"
@@ -61,7 +61,7 @@ def test_a_report_says_what_it_found_and_where_it_is_from(tmp_path: Path) -> Non
     ("text", "says"),
     [("{", "can't be read"), ("[]", "layout that is not known"), ('{"ok": true}', "layout that is not known")],
 )
-def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str, says: str) -> None:
+def test_a_broken_report_is_marked_and_spares_the_others(tmp_path: Path, text: str, says: str) -> None:
     write(tmp_path, FUZZ, "fuzz")
     found = entry(write(tmp_path, text, "mutation"), "mutation")
     assert found.verdict == "absent" and says in found.remarks[0]
@@ -81,5 +81,5 @@ def test_a_broken_report_says_so_and_spares_the_others(tmp_path: Path, text: str
         ({"versions": {}}, "does not say with which versions"),
     ],
 )
-def test_doubts_are_told(tmp_path: Path, change: dict[str, Any], says: str) -> None:
+def test_doubts_about_a_report_are_listed(tmp_path: Path, change: dict[str, Any], says: str) -> None:
     assert entry(write(tmp_path, FUZZ | change)).remarks == (says,)

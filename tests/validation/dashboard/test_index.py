@@ -50,7 +50,7 @@ def test_the_page_has_every_report_and_nothing_from_outside(page: str) -> None:
     assert "is not made yet" in page and "was made with numpy &lt;b&gt;1, now 2" in page
 
 
-def test_a_readme_keeps_what_stands_around_the_summary(tmp_path: Path) -> None:
+def test_the_readme_keeps_text_around_the_summary(tmp_path: Path) -> None:
     readme = tmp_path / "README.md"
     readme.write_text(f"before\n{BEGIN}\nold\n{END}\nafter\n")
     assert quote(readme, "new\n") and readme.read_text() == f"before\n{BEGIN}\nnew\n\n{END}\nafter\n"
@@ -61,7 +61,7 @@ def test_a_readme_keeps_what_stands_around_the_summary(tmp_path: Path) -> None:
     assert not quote(tmp_path / "none", "new\n")
 
 
-def test_the_command_gathers_what_is_there(tmp_path: Path) -> None:
+def test_the_dashboard_collects_existing_reports(tmp_path: Path) -> None:
     write(tmp_path, FUZZ)
     readme = tmp_path / "README.md"
     readme.write_text(f"{BEGIN}\n{END}\n")
@@ -76,7 +76,7 @@ def test_the_command_gathers_what_is_there(tmp_path: Path) -> None:
     ("stated", "says"),
     [(DIGEST, ""), ("another", "older than the code it judges"), ("", "made before digests were kept")],
 )
-def test_what_is_older_than_the_code_says_so_wherever_it_is_quoted(tmp_path: Path, stated: str, says: str) -> None:
+def test_reports_older_than_the_code_are_marked_everywhere(tmp_path: Path, stated: str, says: str) -> None:
     entries = gather(write(tmp_path, FUZZ | {"digest": stated}), {"numpy": "2.0"}, digest)
     page = write_index(entries, tmp_path, "2026-11-21 12:00 UTC").read_text(encoding="utf-8")
     summary = (tmp_path / "summary.md").read_text(encoding="utf-8")
@@ -85,7 +85,7 @@ def test_what_is_older_than_the_code_says_so_wherever_it_is_quoted(tmp_path: Pat
     assert says or not any(text in summary + page for text in ("older than", "before digests"))
 
 
-def test_pages_are_rendered_anew_from_what_was_measured(tmp_path: Path) -> None:
+def test_pages_are_rendered_from_stored_measurements(tmp_path: Path) -> None:
     write(tmp_path, FUZZ)
     write(tmp_path, "{", "mutation")
     result = CliRunner().invoke(app, ["render", "fuzz", "--output", str(tmp_path)])

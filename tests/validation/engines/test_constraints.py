@@ -48,7 +48,7 @@ def test_constraint_dynamics_obey_the_equations_that_define_them_to_all_digits(n
     assert np.max(np.abs(digits(truth.value(lambda t, s: constraints.jacobian(t, s.q) @ s.v, s)))) < 1e-13
 
 
-def test_power_of_constraint_forces_is_none_on_a_closed_state() -> None:
+def test_constraint_forces_have_no_power_on_a_closed_state() -> None:
     truth, s = _closed("weld between branches")
     power = truth.value(
         lambda t, s: np.array([constraints.forces(t, s.q, s.v, s.tau) @ (constraints.jacobian(t, s.q) @ s.v)]), s

@@ -31,7 +31,7 @@ def test_a_strangers_engine_is_found_by_its_entry_point_and_judged(tmp_path: Pat
     assert run.stdout.split()[2] == "0.33"
 
 
-def test_the_conventions_on_the_page_are_those_of_the_plug_ins() -> None:
+def test_the_page_states_the_conventions_of_the_plug_ins() -> None:
     assert page(PAGE.read_text()) == PAGE.read_text()
 
 

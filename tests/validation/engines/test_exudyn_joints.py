@@ -29,7 +29,7 @@ def test_joints_between_oblique_links_are_right_with_all_nodes(kind: str) -> Non
 
 
 @pytest.mark.parametrize("name", ["huge before tiny masses", "kilometres"])
-def test_what_conditions_of_masses_and_lengths_lose_is_not_laid_at_exudyns_door(name: str) -> None:
+def test_rounding_by_ill_conditioning_is_not_attributed_to_exudyn(name: str) -> None:
     """The equations of index 1 are solved by us: without steps that mend the solution, masses of 1e8 hid 1e-8."""
     functions = tuple(one for one in PLUGIN.functions if one.startswith("forward_dynamics"))
     assert {cell.verdict for cell in cells(PLUGIN, trees()[name], functions)} == {"right"}
@@ -58,7 +58,7 @@ def test_another_joint_than_the_trees_is_a_red_cell(monkeypatch: pytest.MonkeyPa
     assert judge(PLUGIN.name, tree, "forward_dynamics", np.asarray(names["value"]), want).verdict == "wrong"
 
 
-def test_what_exudyn_has_no_joint_for_is_not_offered() -> None:
+def test_joints_that_exudyn_lacks_are_not_offered() -> None:
     for kind in ("helical", "ellipsoid", "offset hinges", "mimic revolute", "revolute with armature"):
         answer = PLUGIN.build(tree_of(kind))
         assert isinstance(answer, Unsupported) and not answer.offered, kind

@@ -74,7 +74,7 @@ def proven(stored: Report, engine: str) -> list[bool]:
         ("leaving", "SystemExit: 3 (fakes.py:"),
     ],
 )
-def test_what_a_plug_in_raises_is_said_in_its_cells(stored: Report, engine: str, words: str) -> None:
+def test_exceptions_of_plug_ins_are_shown_in_their_cells(stored: Report, engine: str, words: str) -> None:
     assert set(verdicts(stored, engine).values()) == {"raises"} and len(verdicts(stored, engine)) == 2
     assert words in said(stored, engine)
 
@@ -106,7 +106,7 @@ def test_the_headline_counts_proven_scripts(stored: Report) -> None:
     assert report.ok is False and stored["exit"] == 1  # Two scripts that there are prove nothing.
 
 
-def test_a_report_is_good_where_what_is_not_proven_has_no_script(stored: Report) -> None:
+def test_a_report_is_good_if_only_faults_without_script_are_unproven(stored: Report) -> None:
     few = [proof for proof in stored["proofs"] if proof["engine"] in ("pinocchio", "silent", "starred", "bare")]
     assert compose(stored | {"proofs": few}).ok is True
     assert compose(stored | {"proofs": few, "ours": ["unbuilt"]}).ok is False
@@ -117,7 +117,7 @@ def test_no_file_is_written_of_a_proof_without_a_script(stored: Report, tmp_path
     assert not list(tmp_path.glob("silent-*")) and list(tmp_path.glob("starred-*"))
 
 
-def test_what_is_no_plug_in_is_refused_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_plug_ins_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     install(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     registry = installed(OWN, {"mass_matrix", "gravity"})

@@ -33,7 +33,7 @@ def test_an_engine_is_right_about_a_joint_between_oblique_links(engine: str, kin
 
 
 @pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("euler xyz", "revolute unbounded oblique")])
-def test_pinocchio_has_every_kind_of_joint_and_the_right_mass_matrix_of_it(kind: str) -> None:
+def test_pinocchio_is_right_for_every_kind_of_joint(kind: str) -> None:
     (cell,) = cells(OWN["pinocchio"], tree_of(kind), ("mass_matrix",))
     assert (cell.verdict, cell.words) == ("right", "")
 
@@ -45,7 +45,7 @@ def test_engines_are_right_about_hostile_trees(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", readings())
-def test_engines_read_what_files_state(name: str) -> None:
+def test_engines_read_the_stated_files(name: str) -> None:
     for engine in ("pinocchio", "mujoco"):
         plugin, reading = OWN[engine], readings()[name]
         functions = ("sizes", "mass_matrix", "bias")
@@ -83,7 +83,7 @@ def test_a_planted_fault_in_an_answer_is_a_red_cell(fault: object) -> None:
     assert cell.verdict == "wrong" and cell.error > cell.tolerance
 
 
-def test_digits_lost_are_no_gross_fault() -> None:
+def test_lost_digits_are_not_called_gross_faults() -> None:
     (one,) = _judged("universal", "mass_matrix")
     assert one.want is not None
     near = np.asarray(one.answer.value) * (1.0 + 1e-8)
@@ -114,7 +114,7 @@ def test_an_engine_that_gives_no_answer_in_time_is_an_answer() -> None:
     assert [answer.value for answer in answers] == [Crashed("no answer in 0 s")] * 2
 
 
-def test_a_process_that_died_is_started_anew() -> None:
+def test_a_dead_process_is_restarted() -> None:
     with Worker() as worker:
         job = Job("pinocchio", tree_of("revolute x"), ("mass_matrix", "bias"), SEED)
         assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
@@ -123,7 +123,7 @@ def test_a_process_that_died_is_started_anew() -> None:
         assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
 
 
-def test_a_state_stays_what_it_is_when_it_is_taken_apart() -> None:
+def test_splitting_a_state_does_not_change_it() -> None:
     from validation.engines.proving.pieces import taken
 
     job = Job("pinocchio", tree_of("mimic revolute"), ("mass_matrix",), SEED)

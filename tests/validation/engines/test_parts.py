@@ -41,7 +41,7 @@ def stored(folder: Path, *stated: dict[str, Any]) -> list[Path]:
     return paths
 
 
-def test_parts_become_one_report_that_says_where_each_is_from(tmp_path: Path) -> None:
+def test_parts_merge_into_one_report_with_their_origin(tmp_path: Path) -> None:
     own = part("mine", absent={"theirs": "pip install theirs"})
     whole = parts.merged(own, parts.load(stored(tmp_path, part("theirs"), part("third"))))
     assert [engine["name"] for engine in whole["engines"]] == ["mine", "theirs", "third"]

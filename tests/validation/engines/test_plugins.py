@@ -52,21 +52,21 @@ def test_an_engine_is_right_about_hinges_between_oblique_links(
 
 @pytest.mark.parametrize("engine", ("casadi", "dart", "drake", "symofros"))
 @pytest.mark.parametrize("kind", ("ball", "planar", "helical oblique", "free", "universal"))
-def test_joints_of_several_coordinates_mean_what_their_charts_say(engine: str, kind: str) -> None:
+def test_joints_of_several_coordinates_match_their_charts(engine: str, kind: str) -> None:
     _installed(engine)
     functions = ("mass_matrix", "inverse_dynamics", "link_velocities", "link_poses")
     assert {cell.verdict for cell in cells(OWN[engine], tree_of(kind), functions)} == {"right"}
 
 
 @pytest.mark.parametrize("engine", ("adam", "dynibo", "frax", "idyntree"))
-def test_floating_bases_mean_what_their_charts_say(engine: str) -> None:
+def test_floating_bases_match_their_charts(engine: str) -> None:
     _installed(engine)
     functions = ("mass_matrix", "gravity", "coriolis_forces")
     assert {cell.verdict for cell in cells(OWN[engine], tree_of("free"), functions)} == {"right"}
 
 
 @pytest.mark.parametrize("engine", EXTRAS)
-def test_an_engine_refuses_in_words_what_it_has_no_joint_for(engine: str) -> None:
+def test_joints_that_an_engine_lacks_are_refused(engine: str) -> None:
     tree = Tree("ellipsoid", (Link("a", -1, (Joint("ellipsoid", radii=(0.3, 0.2, 0.4)),)),))
     answer = OWN[engine].build(tree)
     assert isinstance(answer, Unsupported)

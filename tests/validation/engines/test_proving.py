@@ -21,13 +21,13 @@ def test_stored_script_compiles_and_ends_by_an_assertion_or_a_crash(path: Path) 
     assert text.startswith("# ") and (" crashes (" in text.partition("\n")[0]) != ("\nassert " in text)
 
 
-def test_files_that_are_written_from_trees_are_told_from_others() -> None:
+def test_files_written_from_trees_are_distinguished() -> None:
     known = formats()["urdf of six oblique hinges"]
     assert texts(known.tree)["urdf"] == known.text
     assert all(texts(one.tree).get(one.form) != one.text for one in readings().values())
 
 
-def test_armature_is_on_every_axis_that_states_it() -> None:
+def test_armature_acts_on_every_stated_axis() -> None:
     """Newton's joints of several axes had none, and were called wrong for it."""
     for kind, axes in (("universal with armature", 2), ("planar with armature", 3)):
         text = OWN["newton"].building(tree_of(kind))  # type: ignore[attr-defined]

@@ -21,7 +21,7 @@ FUNCTIONS = ("mass_matrix", "bias", "gravity", "link_jacobians")
 
 
 @pytest.mark.parametrize("name", trees())
-def test_engines_are_right_about_models_that_they_make_of_others(name: str) -> None:
+def test_engines_are_right_about_transformed_models(name: str) -> None:
     tree = trees()[name]
     offering = [
         engine

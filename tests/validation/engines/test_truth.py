@@ -57,7 +57,7 @@ def test_a_double_pendulum_has_the_mass_matrix_of_textbooks() -> None:
     np.testing.assert_allclose(M, [[2.0 + 3.0 * (1.25 + c), off], [off, 0.75]], rtol=1e-15)
 
 
-def test_forces_by_newton_and_euler_are_those_of_lagrange() -> None:
+def test_newton_euler_forces_match_lagrange() -> None:
     tree = tree_of("revolute y")
     truth, point = Truth(tree, HINGES), Point.of(random_state(tree, HINGES, 1))
 
@@ -97,7 +97,7 @@ def test_forward_and_inverse_dynamics_undo_each_other_to_all_digits() -> None:
     assert np.max(np.abs(digits(both))) < 1e-30
 
 
-def test_a_case_is_shrunk_to_what_shows_the_fault_and_no_further() -> None:
+def test_shrinking_keeps_only_the_faulty_part() -> None:
     tree = tree_of("helical oblique")
     case = Case(tree, ((), (), ()))
     smaller = smallest(

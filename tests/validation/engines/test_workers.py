@@ -10,7 +10,7 @@ from validation.engines.workers import Crashed, Job, Worker
 
 
 @pytest.mark.parametrize("functions", (("mass_matrix",), ("mass_matrix", "gravity")))
-def test_a_job_whose_first_answer_is_all_that_is_read_leaves_the_worker_whole(functions: tuple[str, ...]) -> None:
+def test_reading_only_the_first_answer_leaves_the_worker_usable(functions: tuple[str, ...]) -> None:
     job = Job("pinocchio", tree_of("revolute x"), functions, SEED)
     with Worker() as worker:
         answers = [next(iter(worker.ask(job))).value for _ in range(3)]

@@ -23,7 +23,9 @@ def _offer(who: str, results: Array, function: str, states: int) -> Side:
     return Side(who, lambda: None, lambda: results)
 
 
-def test_a_side_that_differs_or_fails_is_told_and_not_timed(subject: Subject, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_framework_that_differs_or_fails_is_reported_and_not_timed(
+    subject: Subject, monkeypatch: pytest.MonkeyPatch
+) -> None:
     right = native(subject, "forward_dynamics", 3).results()
     told: list[tuple[str, str]] = []
 

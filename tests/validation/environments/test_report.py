@@ -63,9 +63,7 @@ def test_words_of_a_worker_are_taken_and_others_left() -> None:
 
 
 @pytest.mark.parametrize("environment", [JAX, TORCH])
-def test_a_framework_that_is_missing_is_told_with_its_command(
-    environment: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_framework_is_reported_with_its_command(environment: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     def absent(name: str) -> Any:
         raise ModuleNotFoundError(name)
 

@@ -36,7 +36,7 @@ def test_states_leave_a_tail_behind_vectors_of_every_width() -> None:
     assert all(DEFAULT_STATES % lanes for lanes in (2, 4, 8))
 
 
-def test_names_are_told_apart_taken_once_and_known(tmp_path: Path) -> None:
+def test_names_are_distinct_unique_and_known(tmp_path: Path) -> None:
     for names, labels in (
         (["a/arm.urdf", "b/arm.urdf"], ["a/arm.urdf", "b/arm.urdf"]),
         (["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"], ["ur5", "arm"]),
@@ -81,7 +81,7 @@ def test_a_urdf_brings_its_text_and_its_digits(tmp_path: Path, floating_base: bo
 
 
 @pytest.mark.parametrize("reading", [ReadingOptions(dissipation="viscous"), ReadingOptions(limits="stops")])
-def test_who_reads_a_urdf_by_itself_is_not_asked_about_other_forces(tmp_path: Path, reading: ReadingOptions) -> None:
+def test_engines_that_read_urdf_skip_models_with_other_forces(tmp_path: Path, reading: ReadingOptions) -> None:
     path = tmp_path / "arm.urdf"
     path.write_text(URDF)
     assert Case("arm", path, reading).load().urdf is None

@@ -56,7 +56,7 @@ def test_fixed_bodies_are_merged() -> None:
     assert np.allclose(assembly.frames["tool"].X_BF.p, [1, 1, 1])
 
 
-def test_what_is_fixed_to_the_base_has_no_inertia() -> None:
+def test_bodies_fixed_to_the_base_have_no_inertia() -> None:
     system = sf.System(
         "t",
         [

@@ -36,7 +36,7 @@ def test_product_of_quaternions_is_product_of_rotations(rng: np.random.Generator
     assert np.allclose(quaternion_matrix(quaternion_product(a, b)), quaternion_matrix(a) @ quaternion_matrix(b))
 
 
-def test_quarter_turns() -> None:
+def test_quarter_turns_map_axes() -> None:
     x, y, z = np.eye(3)
     assert np.allclose(about_axis(z, math.pi / 2) @ x, y)
     assert np.allclose(quaternion_matrix(np.array([0, 0, math.sqrt(0.5), math.sqrt(0.5)])) @ x, y)

@@ -33,7 +33,7 @@ def test_each_kind_of_fault_is_planted(suffix: str, text: str, kind: str, faulty
 
 
 @pytest.mark.parametrize(("suffix", "text"), [case for case in CASES if len(case) == 2])
-def test_what_computes_nothing_is_left_alone(suffix: str, text: str) -> None:
+def test_faults_are_not_planted_in_inactive_text(suffix: str, text: str) -> None:
     assert not planted(suffix, text)
 
 

@@ -50,7 +50,7 @@ def repository(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_faults_are_drawn_in_what_was_added_alone(repository: Path) -> None:
+def test_faults_are_drawn_only_in_added_code(repository: Path) -> None:
     faults = list(drawn(repository, 0, Fresh(repository, "HEAD~1")))
     assert faults and {fault.line for fault in faults} == {9}
     added = NEW.index("+ max") - 12
@@ -59,7 +59,7 @@ def test_faults_are_drawn_in_what_was_added_alone(repository: Path) -> None:
     assert not list(drawn(repository, 0, Fresh(repository, "HEAD")))
 
 
-def test_a_revision_that_is_not_there_is_said(repository: Path) -> None:
+def test_an_unknown_revision_is_reported(repository: Path) -> None:
     with pytest.raises(LookupError, match="no revision 'nowhere'"):
         Fresh(repository, "nowhere")
     with pytest.raises(LookupError, match="before 2001-01-01"):

@@ -139,7 +139,9 @@ def test_scores_count_faults_that_change_a_result(tmp_path: Path) -> None:
         ({TESTS: ("crashed", 77)}, "halted"),
     ],
 )
-def test_what_ends_by_a_signal_or_not_at_all(tmp_path: Path, ends: dict[str, tuple[str, int]], expected: str) -> None:
+def test_runs_ended_by_a_signal_or_timeout_are_classified(
+    tmp_path: Path, ends: dict[str, tuple[str, int]], expected: str
+) -> None:
     study = a_study(tmp_path, 1)
     (fault,) = study.faults
     for stage in () if CHECK in ends else (CHECK, OUTPUTS):

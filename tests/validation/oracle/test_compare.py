@@ -28,7 +28,7 @@ JOINTS = [body.joint for system in SYSTEMS for body in system.bodies if body.joi
 
 
 @pytest.mark.parametrize("name", CASES, ids=lambda x: x.replace(" ", "_"))
-def test_digits(name: str) -> None:
+def test_oracle_models_agree_to_the_stated_digits(name: str) -> None:
     result = compare.check(name)
     assert result.ok, result.digits
 
@@ -85,13 +85,13 @@ def test_the_oracle_can_disagree(name, change, functions) -> None:  # type: igno
     assert all(10 < digits[function] < 15 for function in functions)
 
 
-def test_a_prescribed_motion_with_quaternions_is_refused_in_words() -> None:
+def test_a_prescribed_motion_with_quaternions_is_refused() -> None:
     driven = sf.System("s", (sf.RigidBody("b", sf.Joint("j", "ball", prescribed=True)),))
     with pytest.raises(NotDerivable, match="joint 'j': a prescribed motion with quaternions"):
         kane.derive(driven)
 
 
-def test_command(tmp_path: Path) -> None:
+def test_the_oracle_command_succeeds(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["oracle", "--model", "cart-pole", "--points", "1", "--json", "-o", str(tmp_path)])
     content = json.loads(result.stdout)
     assert result.exit_code == 0 and content["ok"]

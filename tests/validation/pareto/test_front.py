@@ -15,7 +15,7 @@ def at(error: float, seconds: float, who: str = "one", method: str = "m", ended:
     return Point(who, "model", method, "step", error, seconds, ended)
 
 
-def test_every_point_off_the_front_is_beaten_by_one_on_it() -> None:
+def test_every_point_off_the_front_is_dominated() -> None:
     draw = random.Random(2)
     points = [at(10 ** draw.uniform(-8, 0), 10 ** draw.uniform(-5, 0)) for _ in range(200)]
     best = front(points)
@@ -29,7 +29,7 @@ def test_every_point_off_the_front_is_beaten_by_one_on_it() -> None:
 @pytest.mark.parametrize(
     "point", [at(math.nan, 1.0), at(math.inf, 1.0), at(0.0, 1.0), at(1.0, math.nan), at(1e-9, 1e-9, ended="diverged")]
 )
-def test_what_has_no_number_is_on_no_front(point: Point) -> None:
+def test_points_without_a_number_are_not_on_the_front(point: Point) -> None:
     assert usable([point]) == [] and front([point, at(1.0, 1.0)]) == [at(1.0, 1.0)]
 
 
@@ -41,12 +41,12 @@ def test_times_between_steps_follow_the_order(order: int) -> None:
         assert seconds_at(points, h**order) == pytest.approx(1.0 / h, rel=1e-12)
 
 
-def test_nothing_is_drawn_between_methods() -> None:
+def test_nothing_is_interpolated_between_methods() -> None:
     points = [at(1e-1, 1.0, method="coarse"), at(1e-5, 100.0, method="fine")]
     assert seconds_at(points, 1e-3) == 100.0
 
 
-def test_ratio() -> None:
+def test_ratios_compare_fronts_at_equal_error() -> None:
     points = [at(1e-1, 1.0, "us"), at(1e-3, 10.0, "us"), at(1e-1, 50.0, "them"), at(1e-5, 5000.0, "them")]
     assert ratio(points, "us", "them", 1e-1) == pytest.approx(50.0)
     assert ratio(points, "us", "them", 1e-3) == pytest.approx(500.0 / 10.0)

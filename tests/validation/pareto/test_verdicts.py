@@ -43,7 +43,7 @@ def test_the_fastest_run_that_keeps_an_error_is_chosen_and_below_the_floor_an_en
     assert len(verdicts.choices(PROBLEM, result(1e-4, 1e-1, best=3e-3))) == 1, "no run goes below the floor"
 
 
-def test_a_quick_run_in_which_nobody_keeps_the_error_is_no_miss() -> None:
+def test_a_quick_run_without_valid_points_is_not_a_miss() -> None:
     target = Target("MuJoCo", 1e-6, 2.0)
     nobody = verdicts.Verdict(target, math.inf, math.inf, math.nan, quick=True)
     assert nobody.ok is None

@@ -93,7 +93,7 @@ def test_vector_jacobian_products_of_a_beam_that_leave_a_coordinate_out_show(mon
     )
 
 
-def test_what_a_procedure_raises_is_a_failed_row(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_in_a_procedure_is_a_failed_row(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(_: Scene) -> Iterator[Cell]:
         yield Cell("before", 0.0, 1.0)
         raise sf.SymofrosError(sf.Problem("a", "b", "c", "d"))

@@ -35,14 +35,14 @@ def test_a_chart_places_points_by_their_values() -> None:
 
 
 @pytest.mark.parametrize("gap", [np.nan, np.inf, -1.0])
-def test_what_can_not_be_drawn_leaves_a_gap(gap: float) -> None:
+def test_non_finite_points_leave_a_gap(gap: float) -> None:
     y = np.array([1.0, 2.0, gap, 2.0, 1.0])
     chart = Chart("t", "x", "y", (Curve("a < b", np.arange(5.0), y),), log="y")
     drawn, page = charts.draw(chart), html.chart(chart)
     assert line(drawn).count("M") == 2 and "nan" not in drawn and "a &lt; b" in page
 
 
-def test_a_picture_is_sound_and_says_what_it_shows() -> None:
+def test_a_chart_is_valid_svg_with_its_labels() -> None:
     svg = charts.draw(Chart("t < u", "x  [m]", "y  [s]", (Curve("a", Y, 0.0125 * Y),), log="x"))
     root = xml.etree.ElementTree.fromstring(svg)
     assert root.get("role") == "img" and [root[k].text for k in (0, 1)] == ["t < u", "y  [s] against x  [m]. a."]
@@ -51,7 +51,7 @@ def test_a_picture_is_sound_and_says_what_it_shows() -> None:
     assert len(set(identifiers)) == len(identifiers) and not re.search("#[0-9a-f]{6}", svg)
 
 
-def test_without_the_library_a_page_says_so_in_place_of_its_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_matplotlib_the_page_names_it_in_place_of_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     page = html.chart(Chart("t", "x", "y", (Curve("a", Y, Y),)))
     assert "Not drawn: figures are drawn by Matplotlib, which is not installed: pip install" in page

@@ -68,7 +68,7 @@ def forget() -> None:
     evidence._imported.cache_clear()
 
 
-def test_what_numbers_come_from_counts_and_nothing_else(tree: Path) -> None:
+def test_only_sources_of_the_numbers_change_the_digest(tree: Path) -> None:
     before, counted = evidence.digest("timing"), []
     for name in list(TREE)[1:]:
         (tree / name).write_text(TREE[name] + "# changed\n")
@@ -79,9 +79,7 @@ def test_what_numbers_come_from_counts_and_nothing_else(tree: Path) -> None:
     assert sorted(counted) == sorted(COUNTED)
 
 
-def test_neither_the_place_nor_files_that_are_not_part_of_the_repository_count(
-    tree: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_location_and_untracked_files_do_not_change_the_digest(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = evidence.digest("timing")
     (tree / "symofros/new.py").write_text("")
     (tree / "symofros/__pycache__").mkdir()
@@ -108,7 +106,7 @@ def test_an_installed_harness_has_the_same_digest(tree: Path, monkeypatch: pytes
     assert evidence.digest("timing") == before
 
 
-def test_a_revision_says_whether_sources_differ_from_it(tree: Path) -> None:
+def test_a_revision_is_marked_if_sources_differ(tree: Path) -> None:
     plain = evidence.revision(tree)
     (tree / "README.md").write_text("changed")
     (tree / "symofros/new.py").write_text("not part of it")
@@ -126,7 +124,7 @@ def test_every_report_names_the_folder_that_measures_it(name: str) -> None:
     assert not any(one.startswith(("validation/reporting/", "symofros/studio/editor/")) for one in names)
 
 
-def test_a_run_during_which_the_code_changes_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_report_notes_code_changed_during_its_run(monkeypatch: pytest.MonkeyPatch) -> None:
     topic = Topic("t", "g", "q?", lambda _: Report("t", "s.", True, ()))
     run = Run(topic)
     assert run.stamped({})["digest"] == present(topic)

@@ -110,7 +110,7 @@ def test_a_missed_bound_fails_the_command(monkeypatch: pytest.MonkeyPatch, tmp_p
         assert "**missed** 1" in (tmp_path / page).read_text()
 
 
-def test_a_study_that_can_not_be_done_fails_the_command_and_no_other(
+def test_a_study_that_cannot_be_done_fails_the_command_and_no_other(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     def broken(quick: bool) -> Study:
@@ -123,11 +123,11 @@ def test_a_study_that_can_not_be_done_fails_the_command_and_no_other(
 
 
 @pytest.mark.parametrize(("found", "ok"), [(1.0, True), (1.011, False), (0.989, False), (np.nan, False)])
-def test_bounds(found: float, ok: bool) -> None:
+def test_bounds_decide_the_answer(found: float, ok: bool) -> None:
     assert near("x", found, 1.0, 0.01, "").ok is ok
     assert near("x", -found, -1.0, 0.01, "").ok is ok
 
 
-def test_nothing_asked_is_not_a_success(tmp_path: Path) -> None:
+def test_a_report_without_studies_is_not_a_success(tmp_path: Path) -> None:
     data = Done().head(True, False) | {"studies": {}}
     assert write(TOPIC, data, tmp_path).ok is False and (tmp_path / "accuracy.html").is_file()

@@ -17,7 +17,7 @@ from validation.stability.report import TOPIC
 from validation.stability.study import Cell, Map, Subject, cell
 
 
-def test_a_map_counts_what_is_good_wrong_and_stopped_and_knows_its_edge() -> None:
+def test_a_stability_map_counts_outcomes_and_finds_its_edge() -> None:
     values = ((0.1, 0.1, 0.1), (0.1, 0.1, 5.0), (0.1, math.nan, 7.0))
     cells = tuple(tuple(Cell(v) if math.isfinite(v) else Cell(v, "diverged", "why") for v in row) for row in values)
     decades = np.array([1.0, 10.0, 100.0])

@@ -28,12 +28,12 @@ def test_a_peers_best_is_its_fastest_way_by_the_median() -> None:
 
 
 @pytest.mark.parametrize(("ratio", "words"), [(7.0, "met, 0% above"), (8.4, "met, 20% above"), (6.3, "missed by 10%")])
-def test_a_verdict_says_by_how_much(ratio: float, words: str) -> None:
+def test_a_verdict_states_the_margin(ratio: float, words: str) -> None:
     found = Verdict(Target("panda", "dynamics", "pinocchio", 7.0), entry(), ratio)
     assert found.statement == words and found.met == words.startswith("met")
 
 
-def test_what_was_not_measured_is_not_met() -> None:
+def test_unmeasured_targets_are_not_met() -> None:
     found = verdicts(Record())
     assert len(found) == len(TARGETS)
     assert all(not verdict.met and verdict.statement == "not measured" for verdict in found)

@@ -33,7 +33,7 @@ LINES = [
 ]
 
 
-def test_what_a_worker_prints_becomes_a_record() -> None:
+def test_output_lines_of_a_worker_become_a_record() -> None:
     record, told = Record([entry(peer_time=1.0)]), []
     for line in LINES:
         take(line, JOB, record, lambda *what: told.append(what))
@@ -42,7 +42,7 @@ def test_what_a_worker_prints_becomes_a_record() -> None:
     assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
 
 
-def test_a_worker_ends_with_the_process_that_started_it() -> None:
+def test_a_worker_ends_with_its_parent_process() -> None:
     """Were it to go on, it would take a core from whatever is measured next."""
     job = {"model": "chain52", "peers": [], "functions": ["forward_dynamics"], "repeats": 10**6, "states": 64}
     command, pipe = [sys.executable, "-m", "validation.timing.worker", json.dumps(job)], subprocess.PIPE
@@ -77,7 +77,7 @@ def test_a_peer_that_disagrees_is_skipped_loudly(monkeypatch: pytest.MonkeyPatch
     assert "differs from ours by" in words[3] and not [value for kind, value in said if kind == "entry"]
 
 
-def test_interrupted_it_keeps_what_was_measured(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interrupt_keeps_earlier_measurements(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def half(job: Job, record: Record, done: object) -> None:
         record.entries.append(entry())
         raise KeyboardInterrupt

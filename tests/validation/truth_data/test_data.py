@@ -34,7 +34,7 @@ def numbers(value: dict[str, Any]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ["two_hinges", *(pytest.param(n, marks=pytest.mark.slow(1)) for n in [*MODELS][1:])])
-def test_the_files_are_what_the_truth_gives(name: str, tmp_path: Path) -> None:
+def test_the_truth_files_are_current(name: str, tmp_path: Path) -> None:
     write(tmp_path, [MODELS[name]])
     assert changes(FOLDER, tmp_path) == []
 
@@ -112,14 +112,14 @@ def read_by_python() -> list[list[str]]:
     return lines(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
-def test_the_reader_in_python_needs_nothing_of_ours(read_by_python: list[list[str]]) -> None:
+def test_the_python_reader_needs_no_package_of_ours(read_by_python: list[list[str]]) -> None:
     model, state, function, shape, *values = read_by_python[0]
     expected = stored(f"values/{model}.json")["states"][int(state)]["values"][function]
     assert shape == "x".join(map(str, expected["shape"])) and [*map(float, values)] == [*map(float, expected["digits"])]
     assert len(read_by_python) == len(MODELS) * 3 * len(FUNCTIONS)
 
 
-def test_the_command_says_what_would_change(tmp_path: Path) -> None:
+def test_the_check_option_lists_changes(tmp_path: Path) -> None:
     shutil.copytree(FOLDER, tmp_path / "truth")
     arguments = ["truth", "--check", "--model", "two_hinges", "--output", str(tmp_path / "truth")]
     assert CliRunner().invoke(app, arguments).exit_code == 0
@@ -132,7 +132,7 @@ def test_the_command_says_what_would_change(tmp_path: Path) -> None:
 @pytest.mark.parametrize("core", ["Nehalem", "Haswell"])
 def test_every_processor_writes_the_same_files(core: str) -> None:
     """Kernels of OpenBLAS sum in orders of their own: nothing that is written may rest on them."""
-    one = f"{Path(__file__)}::test_the_files_are_what_the_truth_gives"
+    one = f"{Path(__file__)}::test_the_truth_files_are_current"
     command = [sys.executable, "-m", "pytest", "-q", "-n", "0", "--slow", f"{one}[heavy_on_light]", f"{one}[balls]"]
     done = subprocess.run(command, env=os.environ | {"OPENBLAS_CORETYPE": core}, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-2000:]

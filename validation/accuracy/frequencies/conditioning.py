@@ -18,7 +18,7 @@ COLORS = {"polynomial": 2, "spline": 1, "legendre": 0, "clamped_free": 5}
 
 
 def study(quick: bool) -> Study:
-    """Answer."""
+    """Run the study: its findings and figures."""
     counts = np.arange(1.0, 9.0 if quick else 17.0)
     numbers = {family: np.full(len(counts), np.nan) for family in COLORS}
     errors = {family: np.full(len(counts), np.nan) for family in COLORS}
@@ -53,7 +53,7 @@ def study(quick: bool) -> Study:
 
 
 def _findings(numbers: Mapping[str, Array], errors: Mapping[str, Array], refused: int) -> list[Finding]:
-    """What is asked of condition numbers, of errors of the first frequency, of the number of functions refused."""
+    """Findings on condition numbers, errors of the first frequency, and the number of functions refused."""
     rows = data("conditioning")["rows"]
     findings = [
         near(
@@ -102,7 +102,7 @@ def round_trip(M: Array) -> float:
 
 
 def _kept(trips: Mapping[str, Array], errors: Mapping[str, Array]) -> list[Finding]:
-    """What is asked of the digits that well-conditioned families keep."""
+    """Findings on the digits that well-conditioned families keep."""
     others = max(float(np.nanmax(trip)) for family, trip in trips.items() if family != "polynomial")
     best = float(np.nanmin(errors["legendre"]))
     return [
@@ -112,7 +112,7 @@ def _kept(trips: Mapping[str, Array], errors: Mapping[str, Array]) -> list[Findi
 
 
 def figure(counts: Array, numbers: dict[str, Array], errors: dict[str, Array]) -> Figure:
-    """Condition and what it does to the first frequency."""
+    """Condition numbers and their effect on the first frequency."""
     x, refused = "number of functions  [1]", (Mark("refused", 1e12),)
     condition, first = (
         curves(counts, {family: np.maximum(y, 1e-17) for family, y in drawn.items()}, "joined", COLORS)

@@ -26,7 +26,7 @@ PRINTED = 0.5e-4 + 1e-6
 
 
 def study(quick: bool) -> Study:
-    """Answer."""
+    """Run the study: its findings and figures."""
     reference = data("spinning_cantilever")
     etas = np.linspace(0.0, 12.0, 13 if quick else 97)
     worst = {n: errors(n, reference["table"]) for n in BOUNDS}
@@ -62,7 +62,7 @@ def _findings(
     critical: Mapping[float, float],
     apart: float,
 ) -> list[Finding]:
-    """What is asked of frequencies.
+    """Findings on frequencies.
 
     Args:
         worst: Errors by number of functions, then by plane and hub.
@@ -147,7 +147,7 @@ def growth(eta: float) -> float:
 
 
 def _above_divergence() -> list[Finding]:
-    """What is asked of speeds above the first frequency, in lag: η up to 8, hubs up to twice the length."""
+    """Findings on speeds above the first frequency, in lag: η up to 8, hubs up to twice the length."""
     places = [(eta, delta) for eta in (4.0, 6.0, 8.0) for delta in (0.0, 0.5, 1.0, 2.0)]
     stiff, ruthless = spinning("bend_y", 5), spinning("bend_y", 5, retain="zeroth_order")
     least = min(float(spinning_squares(stiff, *place)[0]) for place in places)

@@ -47,7 +47,7 @@ def tip(times: Array, modes: int, **changed: Any) -> Array:
 
 
 def study(quick: bool) -> Study:
-    """Answer."""
+    """Run the study: its findings and figures."""
     reference = data("spin_up")
     rod = reference["exact_inextensible_rod"]
     end = 8.0 if quick else 20.0
@@ -88,7 +88,7 @@ def study(quick: bool) -> Study:
 def _findings(
     errors: Mapping[int, Array], lowest: float, without: float, apart: float, reference: dict[str, Any]
 ) -> list[Finding]:
-    """What is asked of the spin-up.
+    """Findings on the spin-up.
 
     Args:
         errors: Distances of the tip from the rod (n, 2) [m], by number of functions.

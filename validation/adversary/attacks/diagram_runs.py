@@ -120,7 +120,7 @@ def judge(scene: Scene) -> Verdict:
 
 
 def _common(*times: Array) -> tuple[npt.NDArray[np.intp], ...]:
-    """Where each has the instants that all have."""
+    """Indices of the common instants in each array."""
     shared = times[0]
     for other in times[1:]:
         shared = np.intersect1d(shared, other)

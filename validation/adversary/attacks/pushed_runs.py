@@ -98,23 +98,25 @@ def judge(scene: Scene) -> Verdict:
     model, par, first = one.model, one.par(**_values(scene)), 1.0 if hill else scene["speed"]
     law = {} if hill else {"x": _law(scene)}
     options: dict[str, Any] = {} if scene["method"] in _ADAPTIVE else {"dt": scene["step"]}
-    if scene["records"]:
-        options["output"] = np.linspace(0.0, _SPAN, scene["records"])
+    records: dict[str, Any] = {"output": np.linspace(0.0, _SPAN, scene["records"])} if scene["records"] else {}
+    steps = {"method": scene["method"], "max_steps": 200_000} | options
+
+    def moved(**recorded: Any) -> sf.Trajectory:
+        return sf.simulate(model, [0.0], [first], _SPAN, u=law, par=par, **steps, **recorded)
+
     in_batch = scene["batch"] and scene["method"] != "cvode"
-    if hill or not in_batch:
-        run = sf.simulate(
-            model, [0.0], [first], _SPAN, u=law, par=par, method=scene["method"], max_steps=200_000, **options
-        )
+    if not in_batch:
+        run = moved(**records)
         outcome, place, speed = run.outcome, float(run.q[-1, 0]), float(run.v[-1, 0])
-    if in_batch:
-        runs = sf.simulate_batch(
-            model, np.zeros((2, 1)), np.full((2, 1), first), _SPAN, u=law, par=par, method=scene["method"], **options
-        )
+    else:
+        options = {"method": scene["method"]} | options | records
+        runs = sf.simulate_batch(model, np.zeros((2, 1)), np.full((2, 1), first), _SPAN, u=law, par=par, **options)
         outcome, place, speed = runs.outcome(0), float(runs.q_last[0, 0]), float(runs.v_last[0, 0])
     exact = -first if hill else first + 1.0
     share = abs(speed - exact) / max(1.0, abs(exact))
-    if hill:  # Energy that is off while it is there is an error, too: that of speeds is half as large.
-        share = max(share, 0.5 * float(np.ptp(run.energy)) / float(run.kinetic_energy.max()))
+    if hill:  # Energy that is off on the way, recorded or not, is an error, too: that of speeds is half as large.
+        whole = moved()
+        share = max(share, 0.5 * float(np.ptp(whole.energy)) / float(whole.kinetic_energy.max()))
     else:  # A push that is met late leaves the right speed, and a motion that is off.
         begin, length = _pulse(scene)
         reached = first * _SPAN + _SPAN - begin - 0.5 * length

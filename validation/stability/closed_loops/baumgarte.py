@@ -129,7 +129,7 @@ def judge(maps: Maps) -> Verdict:
 
 
 def _findings(maps: Maps, reached: Mapping[str, float], slope: float) -> list[Finding]:
-    """What is asked of the edges.
+    """Findings on the edges.
 
     Args:
         maps: Map of each method.

@@ -161,7 +161,7 @@ def judge(maps: Maps) -> Verdict:
 
 
 def _of_ways(maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str, float]) -> tuple[Finding, ...]:
-    """What is asked of each way.
+    """Findings on each method of keeping constraints.
 
     Args:
         maps: Maps of all ways.
@@ -207,7 +207,7 @@ def _of_ways(maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str
 
 
 def _of_known(noted: float) -> tuple[Finding, ...]:
-    """What is known of the motion, and what runs say of themselves; `noted` is the share of ours that do."""
+    """Findings on the known motion, and on notes of runs; `noted` is the share of our runs with one."""
     known = data("four_bars")
     exact = max(
         four_bars.tip_error(int(n), float(t), np.array([row["B0x"][t], row["B0y"][t]]))

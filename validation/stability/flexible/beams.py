@@ -222,7 +222,7 @@ def line(bound: float) -> Limit:
 
 
 def stiff() -> ParameterStudy:
-    """Undamped."""
+    """The undamped beam."""
     return ParameterStudy(
         "How long may an explicit step be on a stiff beam?",
         f"A clamped strip of steel, 1 m x 20 mm x 1 mm, rings for {STEPS} steps from a millimetre in every mode.",
@@ -242,7 +242,7 @@ def stiff() -> ParameterStudy:
 
 
 def kelvin_voigt() -> ParameterStudy:
-    """Damped."""
+    """The damped beam."""
     c = np.array(RETARDATION.values)
     boundary = Limit("|R(h s)| = 1", c, lambda values: np.array([closed_form(x) for x in values]))
     return ParameterStudy(

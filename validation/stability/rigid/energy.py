@@ -43,7 +43,7 @@ def swing(method: str, h: float, steps: int) -> sf.Trajectory:
 
 
 def excursion(run: sf.Trajectory) -> float:
-    """Largest change of the energy over m g L, which is what the swing exchanges."""
+    """Largest change of the energy over m g L, the energy exchanged by the swing."""
     return float(np.abs(run.energy - run.energy[0]).max() / 9.81)
 
 
@@ -63,7 +63,7 @@ def measure(steps: int) -> Subject:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Who drifts, who swings."""
+    """Findings: which side drifts, which oscillates."""
     early, late = maps.values()
     rows = {WHO.label(y): k for k, y in enumerate(late.y)}
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -90,7 +90,7 @@ def massless() -> sf.System:
 
 
 def refusal() -> tuple[str, str]:
-    """What is said of a massless last link: at compilation, and in motion if its mass is a parameter that is zero."""
+    """Messages for a massless last link: at compilation, and in motion if its mass is a parameter that is zero."""
     try:
         sf.compile(massless())
         said = ""
@@ -100,7 +100,7 @@ def refusal() -> tuple[str, str]:
 
 
 def judge(maps: Maps) -> Verdict:
-    """The edge on a spring against 2.83/omega, and what is said of no mass at all."""
+    """Findings on the edge on a spring against 2.83/omega, and on messages for zero mass."""
     missed = maps[SPRING].miss("y", lambda m2: 2.8284271 / fastest(m2, STIFFNESS))
     free = maps[FREE]
     said, kind = refusal()

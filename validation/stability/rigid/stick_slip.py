@@ -111,7 +111,7 @@ def reach(runs: Map) -> list[tuple[float, float]]:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Where chatter costs accuracy, and where smoothing does."""
+    """Findings on accuracy lost to chatter and to smoothing."""
     rk4, implicit = maps["rk4"], maps["implicit_euler"]
     below = 0
     for name, bound in LIMITS.items():

@@ -96,7 +96,7 @@ def pinocchio_builds(program: str = TREES, say: Say = silent) -> tuple[list[tupl
 
 
 def _includes() -> list[Path]:
-    """Where the headers of Pinocchio, Boost and Eigen are: in wheels; Eigen's in Debian's place otherwise."""
+    """Folders with the headers of Pinocchio, Boost and Eigen: wheels; Eigen's in Debian's place otherwise."""
     headers = [_headers("libpinocchio", "pinocchio/algorithm/crba.hpp")]
     try:
         headers.append(_headers("cmeel-eigen", "Eigen/Core"))
@@ -147,7 +147,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
 
 def _ties_text(task: Task) -> str:
-    """How Pinocchio's rigid constraints close the loops, for `validation/native/loop_closed.cpp`."""
+    """Text of Pinocchio's rigid constraints that close the loops, for `validation/native/loop_closed.cpp`."""
     from ...adapters.pinocchio import loops as pinocchio_loops  # Who lacks Pinocchio has the rest.
 
     engine = pinocchio_loops.build(Subject(task.label, task.system))
@@ -286,7 +286,7 @@ class _Converted:
         return chart.our_forces(q, computed) if function == "inverse_dynamics" else self._ended(computed)
 
     def _ended(self, computed: Array) -> Array:
-        """Where a motion ends: q and v from the engine's."""
+        """End of a motion: q and v from the engine's."""
         assert self.chart is not None
         q = np.zeros((1, self.task.assembly.nq))
         for slot in self.chart.slots:

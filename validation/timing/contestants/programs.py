@@ -116,7 +116,7 @@ def source(name: str) -> str:
 
 
 def declared(name: str) -> str:
-    """What bindings read of a native file."""
+    """Declarations of a native file for bindings."""
     return source(name).partition("/* cdef begin: what Python reads */")[2].partition("/* cdef end */")[0]
 
 

@@ -112,7 +112,7 @@ def _rectangle(y: float, z: float) -> tuple[Point, ...]:
 
 
 def _refuse_unusable(rings: Sequence[Sequence[Point]]) -> None:
-    """Refuse outlines that are none; what only geometry tells is left to shapely."""
+    """Refuse invalid outlines; faults that need geometry are found by shapely."""
     count = sum(map(len, rings))
     if any(len(ring) < 3 for ring in rings) or count > _MOST_POINTS:
         raise DescriptionError(_unusable(f"{count} corners", f"3 corners or more an outline, {_MOST_POINTS} in all"))

@@ -52,7 +52,7 @@ def flexure_coefficients(lateral: Term, k: Term) -> tuple[Term, Term]:
 
 
 def rectangle_torsion(y: Term, z: Term) -> Term:
-    """J of Saint-Venant's torsion (eq. 27): the sum of 1/n^5 is known, and what is left of the series vanishes fast."""
+    """J of Saint-Venant's torsion (eq. 27); the sum of 1/n^5 is known and the remaining series converges fast."""
     a = y.maximum(z)
     b = y * z / a
     rest = Term(0.0)
@@ -102,7 +102,7 @@ def unit_stresses(kind: Kind, sizes: tuple[float, float], ratio: float, y: Array
 
 
 def _force_on_ellipse(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
-    """Eq. 28a."""
+    """Shear stress of a force on an ellipse (eq. 28a)."""
     k = (b / a) ** 2
     p, s = map(_number, flexure_coefficients(Term(lateral), Term(k)))
     moment = 0.25 * np.pi * a**3 * b
@@ -110,12 +110,12 @@ def _force_on_ellipse(a: float, b: float, lateral: float, y: Array, z: Array) ->
 
 
 def _torque_on_ellipse(a: float, b: float, y: Array, z: Array) -> Array:
-    """Eq. 32a."""
+    """Shear stress of a torque on an ellipse (eq. 32a)."""
     return np.stack([-z / b**2, y / a**2]) * (2.0 / (np.pi * a * b))
 
 
 def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
-    """Eq. 28c."""
+    """Shear stress of a force on an elliptic tube (eq. 28c)."""
     p, s = map(_number, flexure_coefficients(Term(lateral), Term(1.0)))
     square = np.maximum(y * y + z * z, np.finfo(float).tiny)
     cosine, sine = y / np.sqrt(square), z / np.sqrt(square)

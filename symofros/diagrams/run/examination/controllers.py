@@ -77,7 +77,7 @@ def blamed(outcome: Outcome, resolved: Resolved, again: Again) -> Outcome:
 
 
 def _controllers(wired: Wired) -> Iterator[str]:
-    """Sampled blocks in a loop with a mechanism, those nearest to what it is driven by first."""
+    """Sampled blocks in a loop with a mechanism, nearest to its inputs first."""
     seen: set[str] = set()
     nearest = [source[0] for name in wired.mechanisms() for source in wired.behind(name, ["u"])]
     while nearest:
@@ -140,7 +140,7 @@ def _jolts(resolved: Resolved, v: Array) -> tuple[float, float]:
 
 
 def _outputs(resolved: Resolved, name: str, u: Array) -> Iterator[Array]:
-    """Each entry of what a block holds between samples, at the records (n)."""
+    """Each output entry that a block holds between samples, at the records (n)."""
     for (block, _), place in resolved.layout.held.items():
         if block == name:
             yield from u[:, place.slice].T

@@ -146,7 +146,7 @@ class Examined(HeldRun):
         return (_UNANSWERED if self.external else 1.0) * TOLERANCE
 
     def coarse(self, window: Window, every: int) -> States | None:
-        """Its records; made once more where none lies in the window."""
+        """The window's records; recomputed if the window contains none."""
         t, first = self.states[0], window.first
         last = window.last if window.last is not None else int(np.searchsorted(t, window.t_end, side="right")) - 1
         if last > first:
@@ -171,7 +171,7 @@ class Examined(HeldRun):
             )
 
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
-        """Of the mechanism that changes most."""
+        """Change of the mechanism that changes most."""
         run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
         shares = ((_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v)
         return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)

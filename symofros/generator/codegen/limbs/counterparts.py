@@ -68,7 +68,7 @@ class Rows:
 
 
 class Counterparts:
-    """Finds rows.
+    """Finds rows of corresponding nodes.
 
     Args:
         graph: Graph of the program.
@@ -136,7 +136,7 @@ class Counterparts:
             heappush(self._waiting, user)
 
     def _match(self, node: int, operand: int) -> bool:
-        """Find the counterparts of a node among the users of those of an operand; whether there are some."""
+        """Find counterparts of a node among the users of those of an operand; whether any exist."""
         found: list[_Trial] = []
         for lane, partner in enumerate(self._partners[operand]):
             trial: _Trial = {}

@@ -153,7 +153,7 @@ class LimbPlan:
         return vector
 
     def _inline(self, read: Collection[int]) -> None:
-        """Let vectors that one other reads, and nobody else, stand where they are used."""
+        """Inline vectors that only one other vector reads."""
         uses = Counter(term.vector for vector in self._vectors for term in vector.terms)
         for vector in sorted(self._vectors, key=lambda vector: (vector.is_computed, vector.first_node)):
             if vector.size > _MAX_INLINE:
@@ -163,7 +163,7 @@ class LimbPlan:
             vector.is_inlined = uses[vector] == 1 and vector.nodes.keys().isdisjoint(read)
 
     def _count(self, read: Collection[int]) -> int:
-        """Operations that are spared, less those that put lanes in, turn their signs and read them one by one."""
+        """Operations saved, less those that insert lanes, change signs and extract lanes."""
         spared = -sum(len(nodes) - 1 for nodes in self._put)
         for vector in self._formed.values():
             spared += (len(vector.nodes) - 1) * (vector.op != STOP_GRADIENT)

@@ -43,7 +43,7 @@ class Deformation:
 
     @cached_property
     def integrals(self) -> dict[Hashable, UnitIntegral]:
-        """Integrals of products of its fields that were formed so far, by what they are of."""
+        """Cached integrals of products of its fields, by their factors."""
         return {}
 
     @cached_property

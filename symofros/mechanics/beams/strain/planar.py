@@ -138,7 +138,7 @@ class PlanarStrainEquations(StrainEquations):
 
     @cached_property
     def _linear(self) -> tuple[list[_Plane], _Plane, list[_Plane]]:
-        """What is linear in the tangents: z, first moment, its partial derivatives."""
+        """Terms linear in the tangents: z, first moment, its partial derivatives."""
         g, n = self.g, len(self.coordinates)
         S = self.first_moment_weights
         partials = [[g.mul(g.constant(row[i]), x) for row, x in zip(self._turns, S, strict=True)] for i in range(n)]

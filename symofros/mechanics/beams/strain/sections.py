@@ -46,7 +46,7 @@ class BeamSections(SectionFrames):
 
     @cached_property
     def mass_vectors(self) -> tuple[Vec3, ...]:
-        """What positions of the mass are sums of, in B: the tangents, then the arms of the mass centres (12a)."""
+        """Vectors that span the mass positions in B: the tangents, then the arms of the mass centres (12a)."""
         return self.tangents + self._arms
 
     @cached_property

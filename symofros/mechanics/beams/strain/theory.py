@@ -46,7 +46,7 @@ class StrainTheory(BeamTheory):
         return tuple("rad" if axis < TURNING else "" for axis, _ in strains_of(self.beam).axes)
 
     def sizes(self, length: float) -> tuple[float, ...]:
-        """What turns the rod by a right angle, and stretches or shears it by a tenth."""
+        """Function that gives strains which turn the rod by a right angle, or stretch or shear it by a tenth."""
         return strains_of(self.beam).sizes
 
     def resolved(self, number: Callable[[Value, float], float]) -> Beam:
@@ -68,7 +68,7 @@ class StrainTheory(BeamTheory):
 
     @property
     def judged(self) -> Judged:
-        """What a deformation is judged by: rotations of sections, and the error of the shape's integration."""
+        """Measures that judge a deformation: rotations of sections, and the error of the shape's integration."""
         beam, strains = self.beam, strains_of(self.beam)
         xi = tuple(k / _INTERVALS for k in range(_INTERVALS + 1))
         return Judged(
@@ -85,7 +85,7 @@ class StrainTheory(BeamTheory):
         )
 
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:
-        """Where the sections are, from the frames that its equations come from."""
+        """Positions of the sections from the frames of the equations."""
         return StrainShape(self.beam, values, stations)
 
     def equations(

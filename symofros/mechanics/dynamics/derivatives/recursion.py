@@ -36,7 +36,7 @@ from symofros.mechanics.topology.tree import BASE
 
 
 def route(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> Choice:
-    """Whether the recursion serves: no beam deforms, and no rotor's spin acts on a link that moves."""
+    """Whether the recursion applies: no beam deforms, and no rotor's spin acts on a moving link."""
     figures = {
         "elastic_beams": sum(beam.tip is not None for beam in kinematics.beams),
         "moving_rotors": sum(rotor.carrier != BASE for rotor in rotors),
@@ -46,7 +46,7 @@ def route(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> Choice:
 
 @dataclass(frozen=True)
 class _Response:
-    """What a unit of one coordinate (by q) and of its speed (by v) do to the composite body beyond the joint.
+    """Response of the composite body beyond a joint to a unit of one coordinate (by q) and of its speed (by v).
 
     Attributes:
         variations: Change of motion by q, by v.

@@ -92,7 +92,7 @@ def balances_by_link(
     a: Sequence[Edge],
     hold: Callable[[Sequence[Edge]], list[Edge]],
 ) -> list[Edge]:
-    """What drives the derivatives of the acceleration once it is differentiated (linear.md, eq. 29).
+    """Terms that drive the derivatives of the acceleration (linear.md, eq. 29).
 
     Args:
         kinematics: Kinematics of the tree.
@@ -363,7 +363,7 @@ class _Coupling:
 
 
 def _carried(link: MovingLink, body: _ArticulatedBody, moving: _ArticulatedBody) -> _Coupling:
-    """What a section of a beam carries, on the speeds that move it (rods.md, eq. 19).
+    """Momentum that a section of a beam carries, on the speeds that move it (rods.md, eq. 19).
 
     Args:
         link: The section.

@@ -122,7 +122,7 @@ def approach(
     par: ArrayLike | None = None,
     t: float = 0.0,
 ) -> Attempt:
-    """Where Gauss-Newton steps from this very guess end, closed or with a residual left.
+    """End of Gauss-Newton steps from exactly this guess, closed or with a residual left.
 
     Args:
         model: Model with constraints.
@@ -153,7 +153,7 @@ class _Conditions(NamedTuple):
     t: float
 
     def residual(self, q: Array) -> Array:
-        """Phi (nc)."""
+        """Residual phi (nc)."""
         return self.model.constraint(q, u=self.u, par=self.par, t=self.t)
 
     def jacobian(self, q: Array) -> Array:
@@ -284,14 +284,14 @@ def _drawn_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
 
 
 def _movable(at: _Conditions, q: Array, free: Indices) -> Array:
-    """The scales (nv) by which guesses are shifted, 0 of what does not move."""
+    """The scales (nv) by which guesses are shifted, 0 for speeds that do not move."""
     movable = np.zeros(at.model.nv)
     movable[free] = shift_scales(at.model, at.jacobian(q))[free]
     return movable
 
 
 def shift_scales(model: Model, G: Array) -> Array:
-    """What a shift of one is for each speed (nv): a radian, the largest reach; none of elastic coordinates."""
+    """Size of a unit shift of each speed (nv): a radian, the largest reach; none of elastic coordinates."""
     measures = model.record.measures
     kinds = np.array(measures.speed, dtype=np.intp)
     lengths = np.array(measures.unit, dtype=np.intp) == LENGTH

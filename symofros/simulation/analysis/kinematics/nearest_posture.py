@@ -64,7 +64,7 @@ def pull(model: Model, q: Array, rest: Array) -> Array:
 
 
 class Objective(Protocol):
-    """What is to be least: f(q) >= 0.
+    """The function to be minimised: f(q) >= 0.
 
     Attributes:
         curvature: Unit of its second derivatives by motions.
@@ -109,12 +109,12 @@ class FromRest:
         return 0.5 * self.distance(q) ** 2
 
     def flat(self, q: Array) -> float:
-        """Where the distance changes by rounding."""
+        """Configurations over which the distance changes only by rounding."""
         return OPTIMALITY * (1.0 + self.distance(q))
 
 
 class FromTargets:
-    """Half the square of what targets are missed by, metres and radians alike.
+    """Half the squared residual of the targets, metres and radians alike.
 
     Args:
         task: Targets; the rows of its constraints take no part.

@@ -184,7 +184,7 @@ def changes(
     asked: tuple[Array, Array],
     found: tuple[Array, Array],
 ) -> tuple[str, ...]:
-    """What of a stated start changed in its last digits, in words.
+    """Notes on stated starts whose last digits changed.
 
     Args:
         model: Name of the model.

@@ -87,12 +87,12 @@ class Task:
         return np.concatenate([np.full(self.wishes, tolerance), of_constraints])
 
     def position_errors(self, q: Array) -> Array:
-        """What is missing of the targets' positions [m] at a configuration (nq)."""
+        """Residual of the targets' positions [m] at a configuration (nq)."""
         units = np.array(self.measures.unit[: self.wishes], dtype=np.intp)
         return np.asarray(self.error(q)[: self.wishes][units == LENGTH])
 
     def error(self, q: Array) -> Array:
-        """What is missing: positions [m], rotation vectors [rad] in world axes, residuals of constraints."""
+        """Residual: positions [m], rotation vectors [rad] in world axes, constraints."""
         parts = [np.zeros(0)]
         for frame, (position, rotation) in self.wanted.items():
             p, R = self.model.frame_pose(frame, q, **self.inputs)

@@ -45,7 +45,7 @@ class BatchExamination:
     def outcome(
         self, i: int, status: int, states: tuple[Array, ...], steps: int, bendings: tuple[BeamBending, ...]
     ) -> Outcome:
-        """How run i ended.
+        """Outcome of run i.
 
         Args:
             i: Number of the run.

@@ -57,7 +57,7 @@ def diagnose(
 def diagnose_one(
     run: ExaminedRun, status: int, bendings: tuple[BeamBending, ...], fault: str, *, interrupted: bool
 ) -> Outcome:
-    """How a run of a batch ended: as a single one, but for what only the stepper of a single one counts.
+    """Outcome of a run of a batch, without the counts that only a single stepper has.
 
     Args:
         run: The run; its stepper is at the last state.
@@ -121,7 +121,7 @@ def outcome_of(
     *,
     interrupted: bool,
 ) -> Outcome:
-    """How a run ended, once its steps are examined; arguments as of `diagnose_one`."""
+    """Outcome of a run after its steps are examined; arguments as of `diagnose_one`."""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
     meant = replace(run, steps=_steps_meant(run.settings)) if failed else run
     mode, remarks = examine_run(meant, ended_well=status >= 0, failed=failed) if meant.steps else (None, ())

@@ -34,7 +34,7 @@ Part = Literal["run", "window", "part"]
 
 @dataclass(frozen=True)
 class Changed:
-    """What finer steps change in a part of a run.
+    """Change of a part of a run by finer steps.
 
     Attributes:
         share: Change of speeds or displacements, relative to those of the run.
@@ -77,7 +77,7 @@ class HeldRun(ABC):
 
     @property
     def external(self) -> str:
-        """What answers to the motion from outside, and can only answer as it did; "" where there is no such."""
+        """External source that can't be evaluated again; "" where there is none."""
         return ""
 
     @property
@@ -98,7 +98,7 @@ class HeldRun(ABC):
         """The largest change, relative to the size of the motion, and the mechanism that changes so."""
 
     def halvings(self, part: Part) -> int:
-        """How often steps are refined at most."""
+        """Maximum number of refinements."""
         return HALVINGS if self.h and part == "run" else 1
 
     def jumps(self, fine: States) -> bool:
@@ -121,7 +121,7 @@ class HeldRun(ABC):
         return max(1, round(self.span / self.mean_step))
 
     def changed(self, window: Window, part: Part, every: int = 1) -> Changed:
-        """What finer steps change in a window: they are refined until a part of what is noted is added at most."""
+        """Change of a window by finer steps, refined until the change converges to a fraction of the noted size."""
         t = float(self.states[0][window.first])
         worst = Changed(0.0, t, max(1, round((window.t_end - t) / self.mean_step)))
         coarse, before = self.coarse(window, every), 0.0
@@ -138,11 +138,11 @@ class HeldRun(ABC):
         return worst
 
     def may_add_up_to(self, worst: Changed) -> float:
-        """What the change in a window may grow to over the run, with the square of time at most."""
+        """Bound of the accumulated change over the run, growing at most with the square of time."""
         return float(worst.share * (self.length / worst.steps) ** _GROWTH)
 
     def added_up(self, worst: Changed) -> Changed:
-        """What the change in a window adds up to over the run, seen in ever longer parts of it from its start, (17b).
+        """Accumulated change over the run, from ever longer parts of it from its start, (17b).
 
         Args:
             worst: The window that finer steps change most.
@@ -165,7 +165,7 @@ class HeldRun(ABC):
 
 
 def finer_steps_note(run: HeldRun) -> str:
-    """What finer steps make of a run, in words; nothing where it is nearly the same.
+    """Note on the change of a run by finer steps; "" where it is small.
 
     Args:
         run: The run. Where something external answers to the motion, all of it would show nothing of what that makes of

@@ -22,7 +22,7 @@ _ALLOWED, _MOTION, _TIGHT = 0.1, 100.0, 1e-3
 
 
 def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
-    """What half the step makes of a run with fixed steps (17), in words; nothing where it is nearly the same.
+    """Note on the change of a run with fixed steps by halving the step (17); "" where it is small.
 
     Args:
         run: The run.
@@ -44,7 +44,7 @@ def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
 
 
 def tolerance_note(run: ExaminedRun) -> str:
-    """What an absolute tolerance that exceeds the speeds makes of a motion, in words; nothing where it does no harm."""
+    """Note on an absolute tolerance that exceeds the speeds; "" where it does no harm."""
     settings, (t, q, v, u) = run.settings, run.states
     if not settings.adaptive or not run.model.nv or run.stepper.method.family.multistep or run.steps < 1:
         return ""

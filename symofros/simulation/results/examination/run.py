@@ -188,7 +188,7 @@ class ExaminedRun(HeldRun):
         return self.steps <= WHOLE
 
     def coarse(self, window: Window, every: int) -> States | None:
-        """Its records, or its steps made once more where these are fewer."""
+        """Its records, or recomputed steps where these are fewer."""
         if self.short:
             return self.states
         if len(self.states[0]) == self.steps + 1:  # A record at each step.
@@ -196,7 +196,7 @@ class ExaminedRun(HeldRun):
         return self.fine(window, 0, every)
 
     def fine(self, window: Window, refinements: int, every: int) -> States | None:
-        """By halves of the step, quarters, ..., with the states at the ends of the steps."""
+        """The window by halves of the step, quarters, ..., with the states at the ends of the steps."""
         start: Sequence[Any] = [x[window.first] for x in self.states[:3]]
         t_end, parts = float(start[0]) + self._count(window) * self.h, 2**refinements
         if self.short:

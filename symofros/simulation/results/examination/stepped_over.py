@@ -31,7 +31,7 @@ _DOUBTED = 0.5
 
 
 def stepped_over_note(run: ExaminedRun) -> str:
-    """What acts within steps unseen (18b), in words; nothing where no shorter step shows it."""
+    """Note on forces that act unseen within steps (18b); "" where no shorter step shows any."""
     settings, steps = run.settings, run.steps
     run = _from_the_start(run)
     if settings.realtime or not run.model.nv or steps < 1 or len(run.states[0]) < 2:

@@ -61,7 +61,7 @@ def _mechanisms(wired: Wired) -> dict[str, System]:
 
 
 def _as_a_whole(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:
-    """What is wrong with a diagram whose wires fit, and its algebraic loops."""
+    """Problems of a diagram whose wires fit, and its algebraic loops."""
     try:
         wired = whole(diagram, drafted)
         needs, problems = _needs(diagram, wired)

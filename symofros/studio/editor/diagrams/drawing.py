@@ -145,7 +145,7 @@ class Drawing:
         return any(a == start and f"blocks/{b[0]}" == target for a, b in self.loops)
 
     def _source(self, text: str) -> tuple[str, str] | None:
-        """The node and the output that a source's text names; None if there is no such node."""
+        """The node and the output named by a source; None if there is no such node."""
         block, _, port = text.rpartition(".") if "." in text else (text, "", "")
         part, inside, rest = block.partition(INSIDE)
         if inside:

@@ -51,17 +51,17 @@ class EditedDocument:
 
     @property
     def dirty(self) -> bool:
-        """Whether the text is not what was last saved."""
+        """Whether the text differs from the last saved one."""
         return self.text != self.saved
 
     @property
     def content(self) -> bytes:
-        """What the file should hold."""
+        """Contents for the file."""
         return ((BOM if self.marked else "") + self.text).encode("utf-8")
 
     @property
     def analysis(self) -> Analysis:
-        """What the text says; made once a text."""
+        """Analysis of the text, cached per text."""
         if self._analysis is None:
             self._analysis = analyse(self.file, self.text)
             if self._analysis.readable:
@@ -69,7 +69,7 @@ class EditedDocument:
         return self._analysis
 
     def read_again(self, revision: int) -> None:
-        """Forget what the text says, because files that it refers to have changed; at a new revision."""
+        """Drop the analysis because files that it refers to have changed; at a new revision."""
         self.revision, self._analysis = revision, None
 
     def expect(self, revision: Any) -> None:
@@ -122,7 +122,7 @@ class EditedDocument:
             kept -= len(self._undo.pop(0).text)
 
     def as_json(self) -> dict[str, Any]:
-        """What the page shows of it; its data are a mapping, whatever the text is."""
+        """The document as the page shows it; its data are a mapping, whatever the text is."""
         now = self.analysis
         readable = now if now.readable else self._readable or now
         return {
@@ -165,7 +165,7 @@ def refuse_text(text: Any) -> str:
 
 
 def too_large(size: int) -> Problem:
-    """What is wrong with a text of more bytes than the editor takes."""
+    """The problem of text of more bytes than the editor accepts."""
     return Problem(
         "the text is too large to edit", f"{size} bytes", f"at most {MAX_TEXT} bytes", "split it, and use include"
     )

@@ -19,7 +19,7 @@ Json = dict[str, Any]
 
 
 def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any, draft: Edit | None = None) -> Json:
-    """What is to say about a formula in a field.
+    """The message about a formula in a field.
 
     Args:
         file: The document's.

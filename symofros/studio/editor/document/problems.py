@@ -37,7 +37,7 @@ _WORDS = {"inertia": "moments", "modes": "family", "functions": "family"}
 
 
 def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
-    """What the format finds wrong with the main file, each with its exact path."""
+    """Format errors of the main file, each with its exact path."""
     try:
         NativeFile.model_validate(source.data)
     except ValidationError as error:

@@ -48,7 +48,7 @@ class Session:
         return self.storage.document
 
     def shown_system(self, block: str = "") -> System | None:
-        """What the 3-D view shows; None while the document has problems.
+        """The system of the 3-D view; None while the document has problems.
 
         Args:
             block: Block of a diagram that moves a mechanism; "" for the first one.
@@ -112,7 +112,7 @@ class Session:
         self.storage.autosave()
 
     def discard(self, body: Json) -> None:
-        """Go back to what was saved."""
+        """Return to the last saved text."""
         self.document.expect(body.get("revision", self.document.revision))
         self.storage.discard()
 
@@ -127,7 +127,7 @@ class Session:
         self.storage.save(text_of(body, "path"), text_of(body, "over"))
 
     def open(self, body: Json) -> None:
-        """Open a file of the workspace; `discard`: the user gave up what is unsaved of the present one."""
+        """Open a file of the workspace; `discard`: the user gave up unsaved changes of the present one."""
         file = self.workspace.inside(text_of(body, "path"))
         self._leave(body, lambda: self.storage.open(file))
 
@@ -151,7 +151,7 @@ class Session:
         self.storage = inner
 
     def leave(self, body: Json) -> None:
-        """Go back to the diagram that one came from; `discard`: what is unsaved here is given up."""
+        """Return to the parent diagram; `discard`: unsaved changes here are given up."""
         self.document.expect(body.get("revision"))
         if not self._outer:
             raise refusal("there is no way back", "the outermost document", "one goes back from inside", "open a file")
@@ -165,7 +165,7 @@ class Session:
         self._leave(body, lambda: self.storage.adopt(name, text))
 
     def _leave(self, body: Json, enter: Callable[[], None]) -> None:
-        """Go to another document; what is unsaved stays beside its file, unless it was given up."""
+        """Go to another document; unsaved changes stay beside their file, unless given up."""
         if body.get("discard") is not True:
             enter()
         else:
@@ -189,7 +189,7 @@ class Session:
     # Beside the document.
 
     def place(self, body: Json) -> None:
-        """Remember where blocks are; of those that are named.
+        """Store positions of the named blocks.
 
         Raises:
             StaleError: They are of another document than the one that is open: blocks there may have the same names.
@@ -206,7 +206,7 @@ class Session:
     # Asking.
 
     def check_of_fields(self, body: Json) -> Callable[[], Json]:
-        """What says what is to say about some fields' texts, of the document as it is now, whatever becomes of it.
+        """A function that checks texts of fields against the present document, even if it changes later.
 
         Raises:
             EditError: The fields are no list of mappings, or too many.
@@ -231,7 +231,7 @@ class Session:
         return {item["name"]: item["number"] for item in parameters if item["number"] is not None}
 
     def job_request(self, body: Json) -> tuple[str, Json]:
-        """The kind of a job, and what its worker needs.
+        """The kind of a job and the request for its worker.
 
         Raises:
             EditError: An unknown kind, or options that are no mapping.

@@ -153,7 +153,7 @@ class Storage:
     # While it is open.
 
     def autosave(self) -> None:
-        """Keep what is unsaved, for the case that the server is killed; nothing once it is saved.
+        """Store unsaved changes in case the server is killed; nothing once they are saved.
 
         Where that fails (a full disk, a folder that is gone) the edit stands nevertheless, and the page says so.
         """
@@ -169,7 +169,7 @@ class Storage:
         self.note_revision()
 
     def place(self, data: Any) -> None:
-        """Remember positions: name -> [x, y]; those of other names stay."""
+        """Store positions: name -> [x, y]; other names keep theirs."""
         self.layout |= positions(data)
         self._write_layout()
 
@@ -180,7 +180,7 @@ class Storage:
             self.unkept = error.problem
 
     def changed_on_disk(self) -> bool:
-        """Whether somebody else has written the file since it was read or written here."""
+        """Whether another process has written the file since it was read or written here."""
         now = signature(self.document.file)
         if now == self._signature:
             return False
@@ -193,7 +193,7 @@ class Storage:
         return not same
 
     def reload(self) -> None:
-        """Take the text on disk; what it replaces can be had back by undo.
+        """Read the text on disk; undo restores the replaced one.
 
         Raises:
             FileError: It can't be read.
@@ -204,7 +204,7 @@ class Storage:
         self.autosave()
 
     def discard(self) -> None:
-        """Go back to what was saved, or to the empty document; what is discarded can be had back by undo."""
+        """Return to the last saved text, or to the empty document; undo restores the discarded one."""
         saved = self.document.saved
         kind = "mechanism" if self.document.analysis.diagram is None else "diagram"
         empty = EMPTY[kind].format(name=identifier(self.document.file.stem))
@@ -214,7 +214,7 @@ class Storage:
         self.note_revision()
 
     def forget(self) -> None:
-        """Drop what is kept of unsaved work."""
+        """Delete stored unsaved work."""
         self._unsaved.forget()
 
     # Saving.
@@ -271,7 +271,7 @@ class Storage:
         )
 
     def _refuse_unsaved(self, file: Path) -> None:
-        """Refuse another file that somebody has unsaved work on: it would be offered on top of this document."""
+        """Refuse another file that has unsaved work of another server, which would be offered over this document."""
         found = UnsavedWork(file).recover()
         if found is None or found.text == self.document.text:
             return

@@ -63,7 +63,7 @@ class UnsavedWork:
             return self.file.name, UNKNOWN_BASE
 
     def keep(self, text: str, base: str) -> None:
-        """Write what is unsaved.
+        """Write unsaved changes.
 
         Args:
             text: The document.
@@ -93,7 +93,7 @@ class UnsavedWork:
         )
 
     def _is_others(self) -> bool:
-        """Whether what lies there was written by somebody else since it was read or written here."""
+        """Whether the stored work was written by another server since it was read or written here."""
         autosave = autosave_of(self.file)
         now = signature(autosave)
         if now in ("", self._signature):
@@ -104,7 +104,7 @@ class UnsavedWork:
             return False
 
     def forget(self) -> None:
-        """Drop what is kept, unless another server wrote it."""
+        """Delete stored unsaved work, unless another server wrote it."""
         if self._is_others():
             return
         with suppress(OSError):  # It is not there, or can't be removed; then it is offered again, and can be discarded.

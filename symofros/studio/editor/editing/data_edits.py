@@ -118,7 +118,7 @@ def inserted(owner: Any, edit: Edit) -> Any:
 
 
 def place(path: Path, keys: Sequence[str], key: str) -> int:
-    """Where a new key goes: a section to its place in the file, anything else to the end."""
+    """Position of a new key: a section at its place in the file, any other at the end."""
     if path or key not in _ORDER:
         return len(keys)
     after = _ORDER[: _ORDER.index(key)]
@@ -137,7 +137,7 @@ def four_parts(problem: Problem) -> dict[str, str]:
 
 
 def _at(data: Any, path: Path, whole: Path, change: Any) -> Any:
-    """The data with what stands at a path changed."""
+    """The data with the value at a path changed."""
     if not path:
         return change(data)
     step = path[0]

@@ -127,7 +127,7 @@ def _joint(data: Any, path: Path, new: str) -> list[Edit]:
 
 
 def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
-    """What formulas call the coordinates, speeds and rates of a joint of that name."""
+    """Names of the coordinates, speeds and rates of a joint in formulas."""
     kind: Any = joint.get("kind")
     if kind not in KINDS or KINDS[kind].user_defined:
         return ()

@@ -112,7 +112,7 @@ def _clean(value: Any, depth: int = 0) -> Any:
 
 
 def _typed(text: Any) -> Any:
-    """What somebody who types this into a field means: a number where it is one, otherwise a text."""
+    """Value of text typed into a field: a number if it reads as one, otherwise text."""
     if not isinstance(text, str):
         raise _malformed("text", text, "a text")
     value = scalar_of(text.strip())

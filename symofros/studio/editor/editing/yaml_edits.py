@@ -71,7 +71,7 @@ def _one_by_one(text: str, edits: list[Edit]) -> str:
 
 
 def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
-    """As `apply`, and the path of the entry that had to be written anew, if one had to."""
+    """As `apply`, with the path of the entry that had to be rewritten, if any."""
     source = yaml_text_of(text)
     before = source.data
     after = edited(before, edit)
@@ -96,7 +96,7 @@ def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
 
 
 def _meaning(text: str | None, wanted: Any) -> str | None:
-    """A text, if it means what it should."""
+    """A text, if it has the wanted meaning."""
     if text is None:
         return None
     try:
@@ -106,7 +106,7 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
 
 
 def _written_anew(source: YamlText, path: Path, after: Any) -> str | None:
-    """The text with the whole value at a path written anew; None where there is none, before or after."""
+    """The text with the whole value at a path rewritten; None where there is none, before or after."""
     for step in path:
         if isinstance(after, dict) and step in after:
             after = after[step]

@@ -86,7 +86,7 @@ class YamlText:
         return list(owner.value.values()) if isinstance(owner.value, dict) else list(owner.value)
 
     def end(self, node: Node) -> int:
-        """Where a value really ends, comments and blank lines after it excluded."""
+        """End of a value, without comments and blank lines after it."""
         if node.style == "block":
             return self.end(self.children(node)[-1])
         if node.style in ("|", ">"):
@@ -94,7 +94,7 @@ class YamlText:
         return node.end
 
     def begin(self, owner: Node, i: int) -> int:
-        """Where an entry begins: at its key, or at the dash of an item."""
+        """Start of an entry: its key, or the dash of an item."""
         nodes = self.children(owner)
         if isinstance(owner.value, dict):
             return nodes[i].key_start
@@ -116,20 +116,20 @@ class YamlText:
 
     @cached_property
     def line_starts(self) -> list[int]:
-        """Where each line begins."""
+        """Position of the start of each line."""
         return [0, *(line_break.end() for line_break in _BREAK.finditer(self.text))]
 
     def line_start(self, at: int) -> int:
-        """Where the line of a position begins."""
+        """Start of the line of a position."""
         return max(self.text.rfind("\n", 0, at), self.text.rfind("\r", 0, at)) + 1
 
     def line_end(self, at: int) -> int:
-        """Where the line of a position ends, its break excluded."""
+        """End of the line of a position, without its break."""
         line_break = _BREAK.search(self.text, at)
         return line_break.start() if line_break else len(self.text)
 
     def next_line(self, at: int) -> int:
-        """Where the line after that of a position begins."""
+        """Start of the line after that of a position."""
         line_break = _BREAK.search(self.text, at)
         return line_break.end() if line_break else len(self.text)
 
@@ -142,7 +142,7 @@ class YamlText:
         return not self.text[self.line_start(at) : at].strip()
 
     def lines_of(self, owner: Node, i: int) -> Span:
-        """What belongs to an entry of a collection in block style.
+        """Lines of an entry of a collection in block style.
 
         Its own lines, the comments directly above it at its own indentation (but not those at the head of the file),
         the comment at the end of its last line, and comments below it that are indented deeper than it is.
@@ -168,7 +168,7 @@ class YamlText:
         return Span(first, last)
 
     def _floor(self, owner: Node) -> int:
-        """What comments above the first entry of a collection are not above of."""
+        """Upper bound of the comments that belong to the first entry of a collection."""
         if owner is self.root:
             return self.line_start(owner.start)
         return self.next_line(owner.key_end) if owner.key_start >= 0 else owner.start

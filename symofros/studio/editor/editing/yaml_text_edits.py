@@ -164,7 +164,7 @@ def _out_of_flow(source: YamlText, owner: Node, at: int) -> str:
 
 
 def with_entry_moved(source: YamlText, owner: Node, at: int, to: int) -> str:
-    """The text with an entry at another place of its collection; what separates entries stays where it is."""
+    """The text with an entry moved within its collection; separators stay in place."""
     text, nodes, flow = source.text, source.children(owner), owner.style == "flow"
     if flow:
         spans = [Span(source.begin(owner, i), _flow_end(source, node)) for i, node in enumerate(nodes)]

@@ -60,7 +60,7 @@ def _serve(request: Json, tell: Tell) -> None:
 
 
 def task(kind: str) -> Callable[[Json, Tell], Any]:
-    """What a kind of work is; each brings its own imports, which the others do not pay for."""
+    """The function of a kind of job; each imports only its own packages."""
     if kind == "run":
         from symofros.studio.editor.jobs.diagram_run import run_diagram  # With the library of blocks.
 

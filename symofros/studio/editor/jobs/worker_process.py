@@ -62,7 +62,7 @@ class WorkerProcess:
             raise OSError("the worker has ended") from None
 
     def lines(self) -> Iterator[bytes]:
-        """What it says, line by line, until it ends."""
+        """Lines of its output until it ends."""
         stdout = self._process.stdout
         assert stdout is not None
         return iter(lambda: stdout.readline(MAX_ANSWER), b"")
@@ -74,7 +74,7 @@ class WorkerProcess:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
     def end(self) -> tuple[int, str]:
-        """Kill it if it runs; its exit code, and the end of what it complained about."""
+        """Kill it if it runs; its exit code, and the end of its error output."""
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
         code = self._process.wait()
@@ -87,7 +87,7 @@ class WorkerProcess:
 
 
 def _tail(stream: IO[bytes], kept: list[bytes]) -> None:
-    """Keep the end of what a worker complains about."""
+    """Keep the end of a worker's error output."""
     text = b""
     for line in iter(lambda: stream.readline(MAX_COMPLAINT), b""):
         text = (text + line)[-MAX_COMPLAINT:]

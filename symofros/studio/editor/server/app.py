@@ -122,12 +122,12 @@ class Editor:
         self.events.publish("document", {"revision": document.revision, "name": document.file.name, "client": client})
 
     async def exclusively(self, work: Callable[[], Any]) -> Any:
-        """Do work on the document in a thread of its own, while nobody else does."""
+        """Run work on the document in a separate thread, exclusively."""
         async with self.turn:
             return await run_sync(work)
 
     async def schema(self, _: Request) -> Response:
-        """The format, and what the palette offers."""
+        """The format and the palette."""
         return JSONResponse(await run_sync(catalogue))
 
     async def document(self, _: Request) -> Response:
@@ -135,7 +135,7 @@ class Editor:
         return JSONResponse(await self.exclusively(self.session.as_json))
 
     async def layout(self, request: Request) -> Response:
-        """Remember positions."""
+        """Store positions."""
         await self.exclusively(partial(self.session.place, await body_of(request)))
         return JSONResponse({"layout": self.session.storage.layout})
 
@@ -157,7 +157,7 @@ class Editor:
         return JSONResponse(await self.exclusively(partial(self.session.inertia_figures, await body_of(request))))
 
     async def files(self, _: Request) -> Response:
-        """What can be opened."""
+        """Files that can be opened."""
         workspace = self.session.workspace
         return JSONResponse({"root": str(workspace.root), "files": await run_sync(workspace.files)})
 
@@ -215,7 +215,7 @@ class Editor:
         return Response(job.result["page"], media_type="text/html")
 
     async def order_job(self, request: Request) -> Response:
-        """Pause a job, let it go on, or end it with what it has."""
+        """Pause, continue or end a job."""
         order = (await body_of(request)).get("order")
         return JSONResponse((await run_sync(self.jobs.order, request.path_params["key"], order)).as_json(whole=False))
 
@@ -229,7 +229,7 @@ class Editor:
         return StreamingResponse(self.events.join(), media_type="text/event-stream")
 
     async def look(self, request: Request) -> Response:
-        """The 3-D view of the document as it is now, made or brought up to date: its address and what moves it.
+        """The 3-D view of the present document, created or updated: its address and its sliders.
 
         Of a diagram, the mechanism that "block" moves.
         """
@@ -271,7 +271,7 @@ class Editor:
         return Response(content, media_type=FILM_TYPES[suffix])
 
     async def watch(self) -> None:
-        """Tell when somebody else has written the file: once a time that it changes."""
+        """Publish each change of the file by another process."""
         notified = False
         while True:
             await anyio.sleep(WATCH_SECONDS)

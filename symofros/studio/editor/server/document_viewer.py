@@ -216,7 +216,7 @@ class DocumentViewer:
 
 
 def _stand(viewer: Viewer) -> Json:
-    """Where everything stands.
+    """Present positions of all sliders.
 
     `gap`: largest residual of the loops' conditions, None without loops, in `gap_unit`, "" of a formula; `beams`: how
     far each is bent.

@@ -102,7 +102,7 @@ def _drawn_part(data: bytes) -> bytes:
 
 
 def _check_element(element: Element) -> None:
-    """Refuse what pycollada would pass over or allocate memory for.
+    """Refuse elements that pycollada would skip or allocate too much memory for.
 
     Raises:
         ValueError: As it says.

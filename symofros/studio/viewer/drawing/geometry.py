@@ -89,7 +89,7 @@ def placed(placement: Placement, numbers: Numbers) -> tuple[Array, Array]:
 
 
 def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> Drawing:
-    """What to draw of a mechanism.
+    """Shapes of a mechanism.
 
     Args:
         tree: Tree of a checked system.
@@ -141,7 +141,7 @@ class _DrawingBuilder:
     # Rigid bodies.
 
     def _branch_points(self, link: int) -> Iterator[Array]:
-        """Where a link's frames are and what it carries begins; its mass centre if that is all there is."""
+        """Positions of a link's frames and children; its mass centre if there are none."""
         if link != BASE and self.tree.links[link].beam is not None:
             return  # The beam itself leads there.
         origins = [placed(frame.placement, self.numbers)[0] for frame in self.tree.frames if frame.link == link]

@@ -14,7 +14,7 @@ _NO_PANEL = '<style>.mantine-Paper-root:has([class*="tabler-icon-cloud"]) { disp
 
 
 def page_head(title: str, panel: bool = True) -> str:
-    """What takes the place of VISER_TITLE.
+    """Replacement for VISER_TITLE.
 
     Args:
         title: Title of the page, which its tab shows.

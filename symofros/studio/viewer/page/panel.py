@@ -128,7 +128,7 @@ class Panel:
                 self._on(self._boxes[layer], partial(controls.set_layer, layer))
 
     def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
-        """Act on what a person changes; a change by this program has no client, and nothing follows from it."""
+        """React to changes by a person; changes by this program have no client and are ignored."""
         handle.on_update(lambda event: act(event.target.value) if event.client is not None else None)
         return handle
 
@@ -191,7 +191,7 @@ class Panel:
             self._scale.content = _SCALE.format(text=bar.text, width=100.0 * bar.share / _SCALE_PART)
 
     def show(self, layers: frozenset[str], exaggeration: float) -> None:
-        """Let the controls say what is shown."""
+        """Set the controls to the displayed layers."""
         for layer in LAYERS:
             if layer in self._boxes:
                 self._boxes[layer].value = layer in layers

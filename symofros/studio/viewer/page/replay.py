@@ -32,7 +32,7 @@ def replay_page(
     units: Sequence[str],
     onward: Mapping[str, Any] | None = None,
 ) -> str:
-    """Put what a reader wants to know beside a recording.
+    """Put title and controls beside a recording.
 
     Args:
         page: Page of viser, with the recording in it.

@@ -64,12 +64,12 @@ class SceneState:
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
-        """What moves the mechanism: one a speed."""
+        """Sliders of the mechanism: one per speed."""
         return sliders_of(self.mechanism.model, self.mechanism.elastic, coordinate_units(self.mechanism.tree))
 
     @property
     def values(self) -> Array:
-        """Where the sliders of the state stand (nv)."""
+        """Positions of the sliders (nv)."""
         return values_of(self.mechanism.model, self.state.q)
 
     def with_sliders_moved(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:
@@ -104,7 +104,7 @@ class SceneState:
         return self.mechanism.posture(self.state.q, self.state.u, self.state.par, self.exaggeration)
 
     def _draw(self, drawing: Drawing) -> None:
-        """Draw anew; what is shown, hidden or marked stays so."""
+        """Redraw; visibility and marks are preserved."""
         self._drawn_par = self.state.par
         marked = self.scene.marked
         self.scene = ViserScene(self.server, drawing, self._posture(), self.scene.layers, marked, self._on_pick)

@@ -58,7 +58,7 @@ class ViewerPage:
 
     @property
     def mechanism(self) -> Mechanism:
-        """What is shown, as it is computed with."""
+        """The displayed mechanism."""
         return self._scene_state.mechanism
 
     @property
@@ -68,7 +68,7 @@ class ViewerPage:
 
     @property
     def exaggeration(self) -> float:
-        """What multiplies elastic coordinates in the picture."""
+        """Factor of elastic coordinates in the picture."""
         return self._scene_state.exaggeration
 
     @exaggeration.setter
@@ -120,7 +120,7 @@ class ViewerPage:
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def mark(self, elements: Collection[str]) -> None:
-        """Mark some elements of the description, in place of those that were: in a colour of their own, with frames.
+        """Mark some elements of the description, in place of earlier ones, by colour and frames.
 
         Args:
             elements: "world", "bodies/arm", "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop",
@@ -169,12 +169,12 @@ class ViewerPage:
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
-        """What moves it: one slider a speed."""
+        """Sliders of the mechanism: one per speed."""
         return self._scene_state.sliders
 
     @property
     def values(self) -> Array:
-        """Where the sliders stand (nv)."""
+        """Positions of the sliders (nv)."""
         return self._scene_state.values
 
     def reset(self) -> None:

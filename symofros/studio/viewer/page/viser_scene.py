@@ -103,7 +103,7 @@ class ViserScene:
 
     @property
     def layers(self) -> frozenset[str]:
-        """What is shown."""
+        """The displayed layers."""
         return self._shown
 
     def show(self, layer: str, visible: bool) -> None:
@@ -128,7 +128,7 @@ class ViserScene:
         self.mark(self.marked)
 
     def mark(self, elements: Collection[str]) -> None:
-        """Draw some elements in the colour of what is chosen, with their frames, and all others as they are."""
+        """Draw some elements in the colour of the selection, with their frames, and all others in their own."""
         with self.server.atomic():
             for element in self.marked:
                 for node, color, layer in self._of_elements.get(self._shown_by(element), ()):
@@ -152,7 +152,7 @@ class ViserScene:
         return f"bodies/{name.partition('/')[0]}"
 
     def _belongs(self, element: str, node: Any, layer: str, color: Color | None = None) -> None:
-        """Note what a node is drawn of; `color` is its own, None of what is shown to mark it."""
+        """Note the element of a node; `color` is its own, None for marks."""
         if element:
             self._of_elements.setdefault(element, []).append(_Marked(node, color, layer))
             if self._on_pick is not None and hasattr(node, "on_click"):
@@ -271,7 +271,7 @@ class ViserScene:
 
 
 def _picking(on_pick: Callable[[str], None], element: str) -> Callable[[Any], None]:
-    """What a click on a node of an element does."""
+    """The click handler of a node of an element."""
     return lambda _: on_pick(element)
 
 

@@ -59,7 +59,7 @@ def sliders_of(
 
 
 def values_of(model: Model, q: Array) -> Array:
-    """Where the sliders of a configuration (nq) stand (nv)."""
+    """Slider positions of a configuration (nq)."""
     values = model.difference(model.neutral(), q)
     for segment in model.record.segments:
         along = segment.translations

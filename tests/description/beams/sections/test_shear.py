@@ -49,7 +49,7 @@ UNITS = np.eye(6)[1:4]  # Vy, Vz, T.
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_its_integrals_are_the_forces(name: str) -> None:
+def test_shear_stresses_integrate_to_the_section_forces(name: str) -> None:
     points, areas = quadrature(SHAPES[name])
     stress = SHAPES[name].shear_stress(UNITS, points)
     forces = np.einsum("p,kpi->ki", areas, stress)
@@ -61,7 +61,7 @@ def test_its_integrals_are_the_forces(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_its_energy_is_that_of_the_stiffnesses(name: str) -> None:
+def test_shear_energy_matches_the_stiffnesses(name: str) -> None:
     """1/GA_y, 1/GA_z, 1/GJ, and none between them: what (27), (28), (28b) and (28d) say in sums of their own."""
     section = SHAPES[name]
     points, areas = quadrature(section)
@@ -73,7 +73,7 @@ def test_its_energy_is_that_of_the_stiffnesses(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_it_is_in_equilibrium_and_compatible(name: str) -> None:
+def test_shear_stress_is_in_equilibrium_and_compatible(name: str) -> None:
     """div tau = -dsigma_x/dx; the curl is constant under a torque, and 2 nu/(1 + nu)/2 of the bending under a force."""
     section, size = SHAPES[name], math.sqrt(quadrature(SHAPES[name])[1].sum())
     points = quadrature(section)[0][500::700]
@@ -122,7 +122,7 @@ def test_no_stress_leaves_the_outline(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["high", "ellipse", "tube"])
 @pytest.mark.parametrize("angle", [0.3, -2.0])
-def test_it_does_not_depend_on_the_axes_nor_on_where_they_are(name: str, angle: float) -> None:
+def test_shear_stress_does_not_depend_on_axes_or_origin(name: str, angle: float) -> None:
     section, points = SHAPES[name], quadrature(SHAPES[name])[0][::300]
     forces = np.array([900.0, 10.0, 20.0, 0.05, 7.0, -3.0])
     expected = section.shear_stress(forces, points)
@@ -149,7 +149,7 @@ def test_many_forces_at_formulas_of_the_station() -> None:
         section.shear_stress(forces, [[0.0, 0.0]])
 
 
-def test_what_is_not_known_is_said() -> None:
+def test_sections_without_shape_have_no_shear_stress() -> None:
     with pytest.raises(sf.DescriptionError, match="shear stress is not known"):
         Section(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0).shear_stress(UNITS, [[0.0, 0.0]])
     for name, point in (

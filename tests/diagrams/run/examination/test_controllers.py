@@ -90,7 +90,7 @@ def test_an_unstable_gain_is_named(kd: float, hold: bool, named: str) -> None:
     assert f"lower the gains of '{named}'" in outcome.advice and "divide it" not in outcome.advice
 
 
-def test_it_is_named_whatever_the_records() -> None:
+def test_the_unstable_controller_is_named_at_any_record_interval() -> None:
     outcome = arm().run(1.0, record=0.1, parameters=gains(50.0, 20.0)).outcome
     assert "block 'pd'" in outcome.reason
 
@@ -99,14 +99,14 @@ def test_a_law_that_is_stable_is_not() -> None:
     assert arm().run(0.2).outcome.ok
 
 
-def test_a_load_that_bends_a_beam_beyond_its_theory_is_said_of_the_beam() -> None:
+def test_excessive_bending_is_attributed_to_the_beam() -> None:
     """Also where a law holds its root, as well as it can."""
     outcome = arm(gravity=200.0, EI=2.0).run(1.0).outcome
     assert outcome.kind == "beyond theory" and "beam 'plant.boom' bends by" in outcome.reason
     assert "divide it into" in outcome.advice
 
 
-def test_a_step_past_the_limit_of_stability_is_said_of_the_step() -> None:
+def test_instability_of_the_step_is_attributed_to_the_step() -> None:
     """The same law is stable with steps that the beam allows."""
     stiff = arm(EI=2e5)
     outcome = stiff.run(0.5, dt=1e-3).outcome
@@ -115,7 +115,7 @@ def test_a_step_past_the_limit_of_stability_is_said_of_the_step() -> None:
 
 
 @pytest.mark.parametrize(("kp", "kd"), [(5.0, 0.5), (0.0, 0.0)])
-def test_a_joint_that_drives_itself_apart_is_not_said_of_a_weak_law(kp: float, kd: float) -> None:
+def test_divergence_of_a_joint_is_not_attributed_to_a_weak_controller(kp: float, kd: float) -> None:
     """With gains of zero it diverges just the same."""
     outcome = driven_apart(-40.0).run(400.0, parameters=gains(kp, kd)).outcome
     assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
@@ -126,13 +126,13 @@ def test_a_law_that_drives_the_same_joint_apart_is_named() -> None:
     assert outcome.reason.startswith("block 'pd', sampled every 0.02 s"), str(outcome)
 
 
-def test_flutter_is_not_said_of_an_idle_law() -> None:
+def test_flutter_is_not_attributed_to_an_idle_controller() -> None:
     outcome = flutter(0.1, 0.01).run(400.0).outcome
     assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
 
 
 @pytest.mark.parametrize(("EI", "k"), [(200.0, 300.0), (1000.0, 10.0)])
-def test_a_loaded_beam_that_its_joint_drives_apart_is_not_said_of_a_weak_law(EI: float, k: float) -> None:
+def test_divergence_of_a_loaded_beam_is_not_attributed_to_a_weak_controller(EI: float, k: float) -> None:
     weak = arm(gravity=1.0, EI=EI, elements=(sf.Spring(k), sf.Damper(-2.0)))
     outcome = weak.run(2.0, dt=2e-5, parameters=gains(1e-2, 1e-3)).outcome
     assert outcome.kind == "beyond theory" and "'pd'" not in str(outcome), str(outcome)

@@ -51,7 +51,7 @@ def test_a_spring_that_hardens_is_not_followed_by_long_steps(law: str, t_end: fl
 @pytest.mark.parametrize("law", ["formula", "python"])
 @pytest.mark.parametrize("damping", [0.0, 100.0])
 @pytest.mark.parametrize("record", [0.01, 0.25])
-def test_a_contact_that_steps_leap_over_is_told_and_one_that_they_follow_is_not(
+def test_contacts_that_steps_skip_are_reported_and_resolved_ones_are_not(
     law: str, damping: float, record: float
 ) -> None:
     """No mode at the few states examined knows of the floor; a contact between two records does work unseen."""
@@ -81,7 +81,7 @@ def sampled_loop(law: str, damping: float = 2.0) -> sf.Simulation:
 @pytest.mark.parametrize("method", ["euler", "semi_implicit_euler"])
 @pytest.mark.parametrize("dt", [0.01, 0.003])
 @pytest.mark.parametrize("t_end", [5.0, 15.0])
-def test_errors_that_add_up_through_samples_are_told(law: str, method: str, dt: float, t_end: float) -> None:
+def test_errors_that_accumulate_over_samples_are_reported(law: str, method: str, dt: float, t_end: float) -> None:
     """A window shows a percent: held between samples, the motion knows nothing of the loop that amplifies it."""
     simulation = sampled_loop(law)
     coarse, fine = (simulation.run(t_end, dt=h, record=0.1, method=m) for h, m in ((dt, method), (dt, "rk4")))
@@ -89,7 +89,7 @@ def test_errors_that_add_up_through_samples_are_told(law: str, method: str, dt: 
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-def test_phases_that_drift_by_errors_of_amplitudes_are_told() -> None:
+def test_phase_drift_from_amplitude_errors_is_reported() -> None:
     """Half the step changes a window by less than a thousandth, and the run by all of it."""
     simulation = pushed("formula", "-1e9*x[0]^3", x=1e-3)
     coarse, fine = (simulation.run(8.0, dt=dt, record=0.05) for dt in (1e-2, 2e-3))
@@ -97,7 +97,7 @@ def test_phases_that_drift_by_errors_of_amplitudes_are_told() -> None:
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-def test_energy_that_each_of_many_contacts_takes_is_told() -> None:
+def test_energy_lost_at_repeated_contacts_is_reported() -> None:
     simulation = pushed("python", "-9.81 + max(0, -1e3*x[0])", x=1.0)
     coarse, fine = (simulation.run(20.0, method=m, dt=1e-3, record=0.1) for m in ("euler", "rk4"))
     assert np.abs(coarse.v).max() > 1.5 * np.abs(fine.v).max()
@@ -116,7 +116,7 @@ def test_motion_that_grows_without_bound_has_diverged_before_its_energy_overflow
         assert np.isfinite(np.square(run.v)).all()
 
 
-def test_an_interpreted_step_past_the_limit_of_stability_is_told_with_the_mode() -> None:
+def test_an_unstable_interpreted_step_is_reported_with_its_mode() -> None:
     diagram = moving(oscillator_system(k=1e6), start={"x": 1e-3})
     simulation = sf.Simulation(diagram)
     (note,) = simulation.interpret(0.3, dt=3e-3, record=3e-3, compiled=False).outcome.notes
@@ -125,7 +125,7 @@ def test_an_interpreted_step_past_the_limit_of_stability_is_told_with_the_mode()
 
 
 @pytest.mark.parametrize("scale", sampled((1e-6, 1.0, 1e6), (1e-6, 1e6)))
-def test_work_of_dampers_and_sampled_efforts_is_no_fault_at_any_scale(scale: float) -> None:
+def test_work_of_dampers_and_sampled_efforts_is_not_a_fault(scale: float) -> None:
     joint = sf.Joint("q", "revolute", axis=(0, -1, 0), elements=(sf.Damper(0.2 * scale),), actuated=True)
     bar = sf.RigidBody("bar", joint, sf.Inertia(scale, (1.0, 0, 0), (0.01 * scale,) * 3))
     diagram = moving(sf.System("swing", (bar,)), start={"q": 1.0}, u="push.effort")
@@ -144,7 +144,7 @@ def test_work_of_dampers_and_sampled_efforts_is_no_fault_at_any_scale(scale: flo
         (15.0, 0.05, 0.1107, ""),
     ],
 )
-def test_steps_that_leap_over_what_ends_the_motion_are_told(t_end: float, dt: float, instant: float, said: str) -> None:
+def test_forces_singular_between_steps_are_reported(t_end: float, dt: float, instant: float, said: str) -> None:
     """A force that is no number for an instant: half the step asks for it there, in a window or in all of the run.
 
     The phase of the third one drifts, so that all of the run is made once more; in the last one no step asks.
@@ -156,7 +156,7 @@ def test_steps_that_leap_over_what_ends_the_motion_are_told(t_end: float, dt: fl
 
 
 @pytest.mark.parametrize(("method", "said"), [("euler", True), ("rk4", False)])
-def test_steps_of_a_long_run_that_are_not_held_against_finer_ones_are_told(method: str, said: bool) -> None:
+def test_long_runs_without_a_comparison_to_finer_steps_are_reported(method: str, said: bool) -> None:
     """An external block would have to answer again; where the steps are right nothing adds up."""
     notes = sampled_loop("python").run(15.0, method=method, dt=1e-3, record=0.1).outcome.notes
     assert [" are not held against " in note and "'law' is not called again" in note for note in notes] == [True] * said

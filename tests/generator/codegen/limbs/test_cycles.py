@@ -14,7 +14,7 @@ def test_a_chain_has_no_groups() -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25))
-def test_groups_are_what_reaches_each_other(pairs: list[tuple[int, int]]) -> None:
+def test_groups_are_strongly_connected_components(pairs: list[tuple[int, int]]) -> None:
     needs: dict[int, set[int]] = {}
     for a, b in pairs:
         needs.setdefault(a, set()).add(b)

@@ -92,7 +92,7 @@ def test_the_cheaper_forward_dynamics_is_chosen_with_limbs_in_mind() -> None:
 
 
 @pytest.mark.parametrize("name", ["chain22", "puma560", "four_bar"])
-def test_what_has_no_equal_limbs_has_no_vectors_of_them(name: str) -> None:
+def test_models_without_equal_limbs_have_no_limb_vectors(name: str) -> None:
     assert not VECTOR.findall(text(MODELS[name], "forward_dynamics"))
 
 
@@ -119,7 +119,7 @@ def test_vectors_do_not_wait_for_themselves() -> None:
     assert packs.vectors and not {abs(outer), abs(second)} & made.vector_of_node.keys()
 
 
-def test_what_packs_and_sines_need_is_left_to_them() -> None:
+def test_limb_vectors_leave_operands_of_packs_and_sines() -> None:
     def limb(g: Graph, q: Joint, k: int) -> Edge:
         return cubed(g, g.apply("sin", g.mul(g.add(g.mul(q(0), q(1)), q(2)), q(1))))
 

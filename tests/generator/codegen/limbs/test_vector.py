@@ -163,7 +163,7 @@ def number_of_one_limb(g: Graph, q: Joint, k: int) -> Edge:
 
 
 @pytest.mark.parametrize("limb", [stopped, turned, number_of_one_limb])
-def test_brackets_and_signs_are_those_of_the_graph(limb: Callable[[Graph, Joint, int], Edge], tmp_path: Path) -> None:
+def test_brackets_and_signs_match_the_graph(limb: Callable[[Graph, Joint, int], Edge], tmp_path: Path) -> None:
     graph, edges = of_limbs(2, limb)
     assert "sym_pair p" in assert_exact(program(graph, 2, edges), tmp_path)
 

@@ -48,7 +48,7 @@ def test_forward_undoes_inverse(name: str, retain: str, rng: np.random.Generator
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_energy_changes_by_what_damping_takes(name: str, rng: np.random.Generator) -> None:
+def test_energy_loss_equals_damping_work(name: str, rng: np.random.Generator) -> None:
     """d(T + V)/dt along the motion is the power of the damping forces, if everything is kept."""
     m = model(name, "all")
     q, v = states(m, rng)
@@ -188,7 +188,7 @@ def test_a_beam_without_shape_functions_is_a_rigid_body(
         assert counts[0] == counts[1], name
 
 
-def test_no_function_in_a_direction_is_no_motion_in_it(rng: np.random.Generator) -> None:
+def test_directions_without_functions_do_not_move(rng: np.random.Generator) -> None:
     """A beam that only bends along y is one that bends in space, its other coordinates held at zero."""
     planar = replace(CASES["free base"].system.bodies[0], bend_z=0, twist=0)
     m = model("free base", "all")

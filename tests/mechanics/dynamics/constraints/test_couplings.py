@@ -56,7 +56,7 @@ def test_runs_stay_on_a_cam_and_keep_their_energy() -> None:
     assert np.ptp(energy) < 1e-6 * np.abs(energy).max()
 
 
-def test_a_prescribed_coordinate_drives_what_is_coupled_to_it() -> None:
+def test_a_prescribed_coordinate_drives_coupled_ones() -> None:
     bodies = list(arm().bodies)
     bodies[0] = sf.RigidBody("a", sf.Joint("q1", "continuous", axis=(0, 1, 0), prescribed=True), LEVER)
     model = interpreted(sf.System("arm", bodies, (sf.Parameter("ratio", 2.5),), constraints=(GEAR,)))

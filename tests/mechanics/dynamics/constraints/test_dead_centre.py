@@ -42,7 +42,7 @@ def exact(q: float, x: float, w: float, v: float, J: float, m: float) -> tuple[f
 
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_forces_beside_a_dead_centre_are_those_of_the_posture(form: str, backend: str) -> None:
+def test_forces_near_a_dead_centre_match_theory(form: str, backend: str) -> None:
     """Entries of G are 1e-16 off, of what the distance leaves of them; no ratio of masses costs a digit more."""
     one = model(form, backend)
     for distance in 10.0 ** -np.arange(2.0, 13.0):

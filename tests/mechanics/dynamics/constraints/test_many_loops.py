@@ -102,7 +102,7 @@ def assert_same_motion(pair: tuple[sf.Model, sf.Model], q: np.ndarray, v: np.nda
 
 
 @pytest.mark.parametrize("angle", [0.3, 1.0, 2.5])
-def test_accelerations_and_multipliers_are_those_of_full_matrices(
+def test_sparse_accelerations_and_multipliers_match_full_matrices(
     pair: tuple[sf.Model, sf.Model], angle: float, rng: np.random.Generator
 ) -> None:
     q = closed(pair[0], angle)
@@ -132,7 +132,7 @@ def test_states_off_the_constraints_are_projected_alike(
         np.testing.assert_allclose(one, other, rtol=0, atol=1e-8 * max(1.0, np.abs(other).max()))
 
 
-def test_a_state_that_is_no_number_has_no_acceleration(pair: tuple[sf.Model, sf.Model]) -> None:
+def test_nan_states_give_nan_accelerations(pair: tuple[sf.Model, sf.Model]) -> None:
     sparse, _ = pair
     a, _, _ = sparse.constrained_dynamics(np.full(sparse.nq, np.nan), np.zeros(sparse.nv), np.zeros(sparse.nu))
     assert np.isnan(a).all()

@@ -144,7 +144,7 @@ class TestMultipliers:
 
     @pytest.mark.parametrize("form", ["multipliers", "null_space"])
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_no_acceleration(self, backend: str, form: str) -> None:
+    def test_unsolvable_constraints_give_no_acceleration(self, backend: str, form: str) -> None:
         bars = [
             sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
             sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (), ("massless_tip",)),
@@ -155,7 +155,7 @@ class TestMultipliers:
         a, _, rank = m.constrained_dynamics([0.0, 0.3], [0.0, 0.0], [])
         assert np.all(np.isnan(a)) and rank == -1
 
-    def test_baumgartes_terms(self) -> None:
+    def test_baumgarte_terms_are_added(self) -> None:
         m = sf.compile(MODELS["four_bar"], sf.Options(functions=_SOLVED))
         q, v, alpha, beta = np.array([1.2, -1.1, 1.3]), np.array([0.5, -0.2, 0.1]), 3.0, 5.0
         a = m.forward_dynamics(q, v, [], gains=(alpha, beta))

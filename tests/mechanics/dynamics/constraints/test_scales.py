@@ -103,7 +103,7 @@ ONES = dict.fromkeys(NAMES, 0.0)
 @example(exponents=ONES | {"plate": -9.0, "disc": 9.0, "arm": -9.0})
 @example(exponents=ONES | {"crank": -9.0, "arm": 9.0, "radius": -9.0})
 @given(exponents=exponents)
-def test_accelerations_and_multipliers_are_those_of_extended_precision_at_any_scale(
+def test_accelerations_and_multipliers_match_extended_precision_at_any_scale(
     form: str, repeated: bool, exponents: dict[str, float]
 ) -> None:
     scales = {name: 10.0**exponent for name, exponent in exponents.items()}

@@ -85,7 +85,7 @@ def test_c_has_the_interpreters_numbers(name: str, rng: np.random.Generator) -> 
 
 
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_where_conditions_repeat_each_other_it_is_no_number(backend: Literal["c", "interpreter"]) -> None:
+def test_redundant_constraints_give_nan_hessians(backend: Literal["c", "interpreter"]) -> None:
     """A third crank beside the first one: what its joints hold, the others hold already."""
     m = sf.compile(system("parallelogram"), sf.Options(FUNCTIONS[:1] + ("forward_dynamics",), backend=backend))
     at = {"q": m.neutral(), "v": np.zeros(m.nv), "u": np.zeros(m.nu)}
@@ -94,7 +94,7 @@ def test_where_conditions_repeat_each_other_it_is_no_number(backend: Literal["c"
     assert rank < m.nc and np.isnan(H).all()
 
 
-def test_without_an_acceleration_it_is_no_number() -> None:
+def test_a_singular_mass_matrix_gives_nan_hessians() -> None:
     """Two hinges at one place, the first of which carries no mass of its own: M is singular."""
     joint = sf.Joint("q1", "revolute", axis=(0, 0, 1))
     twice = sf.Joint("q2", "revolute", "first", axis=(0, 0, 1))

@@ -38,7 +38,7 @@ def numbers(e: Equations, matrix: Matrix, state: dict[str, np.ndarray]) -> np.nd
 
 
 @pytest.mark.parametrize("name", RECURSIVE)
-def test_they_are_those_of_the_graph(name: str, rng: np.random.Generator) -> None:
+def test_recursive_derivatives_match_the_graph(name: str, rng: np.random.Generator) -> None:
     """Each kind of joint, branches, parameters, several speeds of a joint, at states that move and turn."""
     e, m = Equations(build_tree(system(name))), model(name, "interpreter")
     assert e.slopes_route.method == "recursion"

@@ -213,7 +213,7 @@ def test_a_heavy_load_costs_articulated_bodies_fewer_digits() -> None:
         pytest.param(lambda: chain(32), "articulated", marks=pytest.mark.slow),
     ],
 )
-def test_auto_is_what_was_measured_to_be_faster(make: Callable[[], sf.System], way: Way) -> None:
+def test_auto_selects_the_faster_method(make: Callable[[], sf.System], way: Way) -> None:
     """docs/theory/code.md, section 2, states the times."""
     system = make()
     ours = count_program(sf.program_of(system, [NAME]))[NAME, ""]

@@ -37,7 +37,7 @@ def compiled(bodies: list[sf.Beam | sf.RigidBody], gravity: tuple[float, float, 
 
 @pytest.mark.parametrize("entries", [*THEORIES.values(), OFF_THE_CENTRES], ids=[*THEORIES, "off the centres"])
 @pytest.mark.parametrize("tapered", [False, True])
-def test_the_sections_at_root_and_tip_hold_what_joint_and_tip_transmit(entries: dict[str, Any], tapered: bool) -> None:
+def test_section_forces_at_the_ends_match_joint_and_tip_wrenches(entries: dict[str, Any], tapered: bool) -> None:
     """In any motion, whatever the theory leaves out, with loads, rotary inertia and a body on the tip."""
     loads = (
         sf.BeamLoad(force=(0.3, "0.2*x", -3.0), torque=(0.1, 0, 0.2), axes="world"),
@@ -55,7 +55,7 @@ def test_the_sections_at_root_and_tip_hold_what_joint_and_tip_transmit(entries: 
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-def test_forces_jump_by_what_a_station_carries(theory: str) -> None:
+def test_section_forces_jump_at_loaded_stations(theory: str) -> None:
     """A weight of 0.7 kg at 0.4 of the length: it counts up to its station, that included."""
     frames = (sf.Frame("middle", at=0.4), sf.Frame("tip"))
     one = replace(beam(sf.Joint("clamp", "fixed"), frames=frames, **THEORIES[theory]), stations=(0.0, 0.4, 0.41))
@@ -71,7 +71,7 @@ def test_forces_jump_by_what_a_station_carries(theory: str) -> None:
 
 @pytest.mark.parametrize("theory", ["first order", "strain"])
 @pytest.mark.parametrize("n", [2, 3])
-def test_segments_carry_what_the_whole_does(theory: str, n: int) -> None:
+def test_segments_carry_the_same_section_forces(theory: str, n: int) -> None:
     """Undeformed in any rigid motion; at the joints between segments it is what these transmit."""
     hub = sf.Joint("ball", "ball")
     stations = tuple(k / 6 for k in range(7))
@@ -119,7 +119,7 @@ def rod_shape(q: np.ndarray, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize(("theory", "center"), [("all", (0.0, 0.0)), ("strain", (0.0, 0.0)), ("strain", (0.05, -0.08))])
-def test_they_change_the_momentum_of_what_lies_beyond(theory: str, center: tuple[float, float]) -> None:
+def test_section_forces_equal_the_momentum_rate_beyond(theory: str, center: tuple[float, float]) -> None:
     """Newton and Euler for the part beyond a station: its momentum by differences of positions that share nothing."""
     shape = {"all": second_order_shape, "strain": rod_shape}[theory]
     hub = sf.Joint("hub", "revolute", axis=(0, 0, 1))

@@ -24,7 +24,7 @@ GUESSES = {
 
 
 @pytest.mark.parametrize("name", GUESSES)
-def test_loops_close(name: str) -> None:
+def test_loops_close_from_random_postures(name: str) -> None:
     m = sf.compile(MODELS[name], FUNCTIONS)
     wished = np.random.default_rng(0).normal(size=m.nv)
     found = sf.assemble(m, GUESSES[name], wished)
@@ -77,7 +77,7 @@ def test_out_of_reach_names_the_condition() -> None:
         sf.assemble(m, [1.5, -1.5, 0.0], held=["turn"])
 
 
-def test_speeds_that_can_not_be() -> None:
+def test_speeds_that_cannot_be() -> None:
     m = sf.compile(MODELS["four_bar"], FUNCTIONS)
     with pytest.raises(sf.AssemblyError, match="no speeds keep it closed"):
         sf.assemble(m, [1.2, -1.2, 1.2], [1.0, 0.0, 0.0], held=["q1", "q3"])

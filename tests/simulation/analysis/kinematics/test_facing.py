@@ -79,7 +79,7 @@ def test_of_a_batch_those_that_face_the_wrong_way_are_off() -> None:
 
 
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_projection_says_that_it_is_off(backend: str) -> None:
+def test_projection_reports_a_half_turn_residual(backend: str) -> None:
     """The residual of the function that packages and functional mock-up units step with, too."""
     model = welded(backend)
     rng = np.random.default_rng(1)

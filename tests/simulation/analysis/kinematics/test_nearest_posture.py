@@ -54,7 +54,7 @@ def test_no_posture_nearby_that_reaches_the_target_is_nearer_to_rest(limit: floa
 
 @pytest.mark.parametrize("far", [0.01, 1.0])
 @pytest.mark.parametrize("name", ["rx90", "space_arm"])
-def test_what_is_left_of_the_distance_is_at_right_angles_to_the_solutions(name: str, far: float) -> None:
+def test_the_remaining_distance_is_orthogonal_to_the_solutions(name: str, far: float) -> None:
     """Spatial arms, one on a base that floats: every small motion that keeps the target leads away from rest."""
     m, rng = sf.compile(MODELS[name], FUNCTIONS), np.random.default_rng(4)
     frame = m.names.frames[-1]
@@ -101,7 +101,7 @@ def test_limits_push_inwards_where_they_hold() -> None:
     assert np.all(multipliers[2:] > 0.0)
 
 
-def test_a_farthest_posture_is_no_answer() -> None:
+def test_a_farthest_posture_is_not_returned() -> None:
     """A link of 2 m on two slides, its tip held: d^2 = 5 + 4 cos c + c^2.
 
     It has a maximum at c = 0, where both starts lead, and minima where sin c = c/2.

@@ -73,7 +73,7 @@ def test_no_closed_posture_is_nearer(name: str, stated: list[int], rng: np.rando
 
 
 @pytest.mark.parametrize("reach", [0.25, 4.0])
-def test_speeds_of_slides_count_by_the_reach_of_what_turns(reach: float, rng: np.random.Generator) -> None:
+def test_slide_speeds_are_weighted_by_the_reach_of_turning_bodies(reach: float, rng: np.random.Generator) -> None:
     """A crank and slider: a metre a second is as much as 1/reach radians a second."""
     crank = sf.Joint("q0", "revolute")
     rod = sf.Joint("q1", "revolute", "crank", "end")

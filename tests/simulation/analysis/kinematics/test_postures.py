@@ -51,7 +51,7 @@ def parallelogram(size: float) -> sf.Model:
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
-def test_what_is_met_between_two_records_does_not_depend_on_the_unit_of_length(size: float) -> None:
+def test_events_between_records_do_not_depend_on_the_unit_of_length(size: float) -> None:
     """The motion is asked for where the straight way comes near; it turns back there."""
     m, lowest = parallelogram(size), 0.02
     times, q = swept(m, np.array([1.0, -0.98]))
@@ -87,7 +87,7 @@ def driven_crank() -> sf.Model:
 
 
 @pytest.mark.parametrize("options", [{"method": "dop853"}, {"dt": 0.01}])
-def test_the_straight_way_between_records_is_no_posture_of_the_motion(driven_crank: sf.Model, options: dict) -> None:
+def test_straight_interpolation_between_records_is_not_the_motion(driven_crank: sf.Model, options: dict) -> None:
     """Records are radians apart, and the driven crank moves between them as well."""
     start = sf.assemble(driven_crank, {"q2": 0.0, "x": A + B}, u=[0.0, SPEED, 0.0])
     run = sf.simulate(driven_crank, start.q, start.v, 20.0, u={"q1": f"{SPEED}*t"}, output=0.01, **options)
@@ -101,7 +101,7 @@ def falling(*limits: float) -> sf.System:
 
 
 @pytest.mark.parametrize(("t_end", "left"), [(0.1, False), (0.2, True)])
-def test_a_run_beyond_the_limits_of_a_joint_says_when_and_how_far(t_end: float, left: bool) -> None:
+def test_exceeded_joint_limits_are_reported_with_time_and_amount(t_end: float, left: bool) -> None:
     # It falls through 0.1 m in 0.1428 s.
     system = falling(-0.1, 0.15)
     m = sf.compile(system)
@@ -131,7 +131,7 @@ def driven(**limits: float) -> sf.System:
         ({}, ""),
     ],
 )
-def test_a_run_beyond_the_limits_of_speed_or_effort_says_so(limits: dict[str, float], said: str) -> None:
+def test_exceeded_speed_and_effort_limits_are_reported(limits: dict[str, float], said: str) -> None:
     """A force of 10 t N: it passes 5 N at 0.5 s and 1 m/s at 0.447 s, and ends at 10 N and 5 m/s."""
     m = sf.compile(driven(**limits))
     alone = sf.simulate(m, t_end=1.0, u={"s": "10*t"}, dt=1e-2, method="rk4").outcome

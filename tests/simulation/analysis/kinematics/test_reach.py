@@ -72,7 +72,7 @@ def test_a_coarse_tolerance_of_targets_leaves_loops_closed() -> None:
     assert found.converged and found.error <= 0.05 and found.gap <= 1e-10
 
 
-def test_loops_that_nothing_closes_are_said() -> None:
+def test_loops_that_cannot_close_are_reported() -> None:
     """A rod of 1 m between points 3 m apart, whose one end turns."""
     body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0), (sf.Frame("tip", (1.0, 0, 0)),))
     away = sf.RigidBody("c", sf.Joint("r", "revolute", position=(3.0, 0, 0)), sf.Inertia(1.0))
@@ -90,7 +90,7 @@ def arm(limit: float = np.inf) -> sf.Model:
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_no_posture_within_limits_is_nearer_than_what_is_returned(seed: int) -> None:
+def test_no_posture_on_a_grid_is_nearer_than_the_result(seed: int) -> None:
     """All postures of three limited joints on a grid of 0.02 rad: none misses the target by less."""
     limit, rng = 0.8, np.random.default_rng(seed)
     angles = np.linspace(-limit, limit, 81)
@@ -153,7 +153,7 @@ def at_turn(q: list[float]) -> Array:
     return np.array([np.cos(q[0]) + np.cos(sum(q[:2])), np.sin(q[0]) + np.sin(sum(q[:2])), 0.0])
 
 
-def test_further_starts_are_the_same_each_time_and_keep_what_no_target_depends_on() -> None:
+def test_further_starts_are_reproducible_and_keep_unrelated_coordinates() -> None:
     """The other arm's coordinates stay as they are guessed; no angle is a whole turn farther than it must be."""
     target = {"al1.end": sf.Target(at_turn(BEYOND))}
     answers = [sf.inverse_kinematics(two_arms(), target, BEFORE) for _ in range(2)]
@@ -169,7 +169,7 @@ def test_held_coordinates_stay_in_every_start() -> None:
     assert found.q[0] == 1.8 and found.gap <= 1e-10 and not found.converged
 
 
-def test_a_weld_closed_half_a_turn_off_is_no_solution() -> None:
+def test_a_weld_closed_half_a_turn_off_is_not_a_solution() -> None:
     """Vector parts vanish there, too; the position alone is met at once."""
     body = sf.RigidBody("b", sf.Joint("ball", "ball"), sf.Inertia(1.0), (sf.Frame("tip", (1.0, 0, 0)),))
     weld = sf.Closure("weld", ("world", None), ("b", None), translations=(), rotations=("x", "y", "z"))

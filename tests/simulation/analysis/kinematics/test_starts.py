@@ -32,7 +32,7 @@ def start(m: sf.Model, guess: list[float] | None = None, **stated: float) -> Clo
     return closed_start(m, q, v, coordinates, speeds)
 
 
-def test_what_is_stated_is_kept() -> None:
+def test_stated_values_are_kept() -> None:
     m = model("four_bar")
     found = start(m, q1=1.0, dq1=1.0)
     assert found.q[0] == 1.0 and found.v[0] == 1.0 and not found.notes
@@ -57,7 +57,7 @@ def test_any_coordinate_and_any_speed_that_can_be_kept_are(name: str, rng: np.ra
         assert found.v[j] == pytest.approx(asked[f"d{m.names.v[j]}"], abs=1e-6)
 
 
-def test_what_can_not_be_kept_is_refused_with_what_is_near() -> None:
+def test_values_that_cannot_be_kept_are_refused_with_nearby_ones() -> None:
     """With the size of the change; the numbers that the refusal names are taken as they are."""
     m = model("four_bar")
     with pytest.raises(sf.AssemblyError, match=r"dq1 = 1 would be 0, 1 off; dq2 = 1 would be 0, 1 off"):

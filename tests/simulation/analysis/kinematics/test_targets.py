@@ -29,7 +29,7 @@ def rotation(seed: int) -> np.ndarray[Any, Any]:
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-9, 1e-3, 1.0, np.pi - 1e-9, np.pi])
-def test_rotation_vectors(angle: float) -> None:
+def test_rotation_vectors_match_the_exponential(angle: float) -> None:
     axis = np.array([2.0, -1.0, 2.0]) / 3.0
     K = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     vector = rotation_vector(np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K)
@@ -56,7 +56,7 @@ def test_a_matrix_is_taken_exactly_if_it_is_a_rotation_to_seven_digits(
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
-def test_reflections_are_no_rotations(seed: int) -> None:
+def test_reflections_are_refused_as_rotations(seed: int) -> None:
     with pytest.raises(sf.SymofrosError, match="determinant -1"):
         sf.inverse_kinematics(wrist(), {"tip": sf.Target(rotation=rotation(seed) @ np.diag([1.0, 1.0, -1.0]))})
 
@@ -73,7 +73,7 @@ def test_reflections_are_no_rotations(seed: int) -> None:
         (sf.Target(), "says nothing of where the frame is wanted"),
     ],
 )
-def test_a_target_that_is_none_is_refused_in_words(target: Any, says: str) -> None:
+def test_an_invalid_target_is_refused(target: Any, says: str) -> None:
     with pytest.raises(sf.SymofrosError, match=says) as raised:
         sf.inverse_kinematics(wrist(), {"tip": target})
     assert "frame 'tip'" in raised.value.problem.what

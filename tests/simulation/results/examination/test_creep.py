@@ -43,7 +43,7 @@ def test_a_joint_that_creeps_is_named_with_its_load(load: float, v0: float) -> N
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-def test_what_slides_swings_or_rests_bears_no_note(method: str) -> None:
+def test_sliding_swinging_and_resting_blocks_get_no_note(method: str) -> None:
     slides = sf.simulate(block(), t_end=5.0, u={"x": 1.3}, method=method)
     rests = sf.simulate(block(), t_end=5.0, method=method)
     stops = sf.simulate(block(), [0.0], [1.0], 5.0, method=method)  # Nothing loads it.
@@ -54,7 +54,7 @@ def test_what_slides_swings_or_rests_bears_no_note(method: str) -> None:
 
 
 @pytest.mark.parametrize(("load", "v0"), [(-0.05, 1e-5), (0.5, 1e-1), (1.19, 1e-3)])
-def test_no_equilibrium_by_friction_is_said_to_be_so(load: float, v0: float) -> None:
+def test_failed_equilibria_with_friction_are_explained(load: float, v0: float) -> None:
     m = block().with_parameters(v0=v0, c=0.1)
     with pytest.raises(sf.EquilibriumError) as refused:
         sf.equilibrium(m, u=[load])
@@ -65,7 +65,7 @@ def test_no_equilibrium_by_friction_is_said_to_be_so(load: float, v0: float) -> 
     assert sf.equilibrium(m, u=[load], held=["x"]).efforts == pytest.approx({"x": -load})
 
 
-def test_what_friction_would_not_hold_is_not_blamed_on_it() -> None:
+def test_imbalance_beyond_static_friction_is_not_attributed_to_friction() -> None:
     """Beyond static friction, and with a place of rest."""
     with pytest.raises(sf.EquilibriumError) as refused:
         sf.equilibrium(block(), u=[1.3])

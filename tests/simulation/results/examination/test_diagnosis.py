@@ -42,14 +42,14 @@ def test_a_formula_without_a_value_is_named(formula: str, bad: str, method: str)
 
 
 @pytest.mark.parametrize(("given", "bad"), [("array", np.nan), ("number", np.inf)])
-def test_constants_that_are_not_finite_are_refused_by_name(given: str, bad: float) -> None:
+def test_non_finite_constants_are_refused_by_name(given: str, bad: float) -> None:
     u: Any = [bad] if given == "array" else {"x": bad}
     with pytest.raises(sf.ShapeError, match="input 'x' is not a finite number"):
         sf.simulate(oscillator(), u=u)
 
 
 @pytest.mark.parametrize(("given", "bad"), [("rows", np.nan), ("named", -np.inf)])
-def test_a_constant_of_a_batch_that_is_not_finite_ends_its_own_trajectory(given: str, bad: float) -> None:
+def test_a_non_finite_constant_ends_only_its_own_trajectory(given: str, bad: float) -> None:
     for which in (0, 2):
         values = np.ones(4)
         values[which] = bad
@@ -59,7 +59,7 @@ def test_a_constant_of_a_batch_that_is_not_finite_ends_its_own_trajectory(given:
         assert many.outcome(which).kind == "input failed" and "input 'x' is" in many.outcome(which).reason
 
 
-def test_a_formula_of_a_batch_that_has_no_value_is_named() -> None:
+def test_an_undefined_formula_in_a_batch_is_named() -> None:
     many = sf.simulate_batch(oscillator(), [[0.0], [0.5]], [1.0], 0.1, u={"x": "10 + sqrt(0.6 - x)"}, dt=1e-3)
     assert not many.ok[1]
     assert "input 'x' is nan" in many.outcome(1).reason and "sqrt(0.6 - x)" in many.outcome(1).reason
@@ -82,7 +82,7 @@ def test_an_exception_of_a_function_keeps_its_traceback(method: str) -> None:
 
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "euler", "dop853"])
 @pytest.mark.parametrize("name", ["double_pendulum", "cart_pole", "chain7", "gyroscope"])
-def test_a_step_that_is_too_long_is_no_singular_mass_matrix(name: str, method: str) -> None:
+def test_a_step_that_is_too_long_is_not_called_a_singular_mass_matrix(name: str, method: str) -> None:
     model = compiled(name)
     q, v = model.random_state(np.random.default_rng(2))
     for dt in (0.05, 0.2, 1.0):

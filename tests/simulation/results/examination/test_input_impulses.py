@@ -60,7 +60,7 @@ def test_a_push_shorter_than_a_step_is_met_or_noted(method: str, kind: str) -> N
 
 @pytest.mark.parametrize("method", FIXED)
 @pytest.mark.parametrize("kind", ["lines", "held", "formula", "sine", "recorded", "biased"])
-def test_inputs_that_steps_resolve_bear_no_note(method: str, kind: str) -> None:
+def test_inputs_that_steps_resolve_get_no_note(method: str, kind: str) -> None:
     t = np.arange(0.0, SPAN + 1e-9, 0.0037)
     law: Any = {
         "sine": sf.Signal(t, np.sin(2.0 * np.pi * t)),
@@ -74,7 +74,7 @@ def test_inputs_that_steps_resolve_bear_no_note(method: str, kind: str) -> None:
     assert run.outcome.ok and not run.outcome.notes, run.outcome.notes
 
 
-def test_what_moves_the_mechanism_by_little_is_not_noted() -> None:
+def test_missed_impulses_of_small_effect_are_not_noted() -> None:
     """A push that is missed, beside a motion in which it makes no difference; and one that depends on the state."""
     cart = sf.compile(CART)
     law = push("lines", 3.0013, 0.003)
@@ -103,7 +103,7 @@ def test_a_push_within_an_interval_of_samples_does_work() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if not METHODS[name].family.multistep])
-def test_nodes_are_those_of_the_steps(name: str) -> None:
+def test_quadrature_nodes_match_those_of_the_steps(name: str) -> None:
     """A resolved force that varies is integrated by a step as by its nodes; generalised alpha by its mean."""
     c, weights, of_rate = nodes(METHODS[name])
     assert abs(weights.sum() - 1.0) < 1e-13

@@ -81,7 +81,7 @@ def off(model: sf.Model, run: sf.Trajectory, right: tuple[np.ndarray, np.ndarray
 
 
 @pytest.mark.parametrize("name", sampled((*TREES, *LOOPS, *ELASTIC), SAMPLE))
-def test_a_run_that_is_right_bears_no_note(name: str) -> None:
+def test_accurate_runs_get_no_note(name: str) -> None:
     model, q, v = start(name)
     quiet = 0
     for method, settings in METHODS.items():

@@ -40,7 +40,7 @@ def exact_state(par: tuple[float, ...], q: np.ndarray, t: float) -> tuple[np.nda
 @pytest.mark.parametrize(
     "method", sampled(("generalized_alpha", "rodas4", "semi_implicit_euler", "rk4"), ("generalized_alpha", "rk4"))
 )
-def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
+def test_short_runs_with_large_errors_get_a_note(method: str) -> None:
     """Whatever the ratio of masses, the stiffness, the damping and the step."""
     rng, wrong = np.random.default_rng(0), 0
     for _ in range(40):
@@ -60,7 +60,7 @@ def test_short_runs_that_err_by_a_third_bear_a_note(method: str) -> None:
     assert wrong
 
 
-def test_runs_under_a_pure_function_are_judged_by_half_the_step_and_others_say_that_they_were_not() -> None:
+def test_runs_with_pure_functions_are_compared_with_half_the_step() -> None:
     """A spring that hardens, as a formula, as a function, as a function with a memory of its calls."""
     calls = []
 
@@ -132,7 +132,7 @@ def stiffened() -> sf.Model:
     return sf.compile(slide(loads=(sf.Load((force, 0.0, 0.0)),), parameters=parameters))
 
 
-def test_long_runs_that_err_late_bear_a_note() -> None:
+def test_long_runs_with_late_errors_get_a_note() -> None:
     """Fixed steps that suit all but one late part: its states are in no other examination."""
     rng, wrong, noted = np.random.default_rng(0), 0, 0
     for _ in range(20):
@@ -157,7 +157,7 @@ def test_long_runs_that_err_late_bear_a_note() -> None:
     ],
 )
 @pytest.mark.parametrize("met", [True, False])
-def test_steps_that_leap_over_what_ends_the_motion_are_noted(t_end: float, said: str, met: bool) -> None:
+def test_forces_singular_between_steps_are_noted(t_end: float, said: str, met: bool) -> None:
     """A force that is no number for an instant: half the step asks for it there, or no step does."""
     instant = 0.1125 if met else 0.1107
     force = sf.formula(f"-20*x^3 + 1e-9*sqrt((t - {instant})^2 - 1e-7)")

@@ -151,7 +151,7 @@ def motion_of_bricard() -> sf.Trajectory:
         ("semi_implicit_euler", 5e-3, 1e-2),
     ],
 )
-def test_loops_that_gains_keep_bear_no_note_where_they_are_right(
+def test_loops_kept_by_gains_get_no_note_if_accurate(
     method: str, dt: float, error: float, gains: tuple[float, float] | None
 ) -> None:
     """What leaves the constraints is no mode of the motion."""

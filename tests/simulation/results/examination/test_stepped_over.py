@@ -57,7 +57,7 @@ def test_a_pulse_that_a_body_at_rest_sleeps_through_is_noted(method: str, law: s
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4", "cvode"])
-def test_a_run_that_records_its_start_alone_says_nothing(method: str) -> None:
+def test_a_run_that_records_only_its_start_gives_no_note(method: str) -> None:
     """A record is no interval: there is nothing to look into, and no division by its length."""
     if method == "cvode":
         pytest.importorskip("sksundae")
@@ -65,7 +65,7 @@ def test_a_run_that_records_its_start_alone_says_nothing(method: str) -> None:
     assert run.outcome.kind == "finished" and len(run.t) == 1 and not run.outcome.notes
 
 
-def test_a_run_of_a_batch_says_so_too() -> None:
+def test_a_run_of_a_batch_gets_the_same_note() -> None:
     many = sf.simulate_batch(sf.compile(CART), np.zeros((2, 1)), [[0.0], [0.1]], 10.0, u={"x": PULSE}, method="dopri5")
     exact = 20.0 * 0.05 * np.sqrt(np.pi)
     for i, first in enumerate((0.0, 0.1)):

@@ -85,7 +85,9 @@ KINDS = {
 
 @pytest.mark.parametrize(("width", "height"), [(640, 380), (375, 667)], ids=["zoomed to 200 %", "phone"])
 @pytest.mark.parametrize("kind", KINDS)
-def test_small_pages(opened: Serve, page: Page, faults: Faults, kind: str, width: int, height: int) -> None:
+def test_small_windows_cut_nothing_off(
+    opened: Serve, page: Page, faults: Faults, kind: str, width: int, height: int
+) -> None:
     """Nothing is cut off: no page is wider than the window, and what is pressed lies in it, or is scrolled into it."""
 
     def look() -> None:

@@ -29,7 +29,7 @@ def test_the_first_load_is_small() -> None:
 
 
 @pytest.mark.browser
-def test_the_committed_page_is_what_the_source_builds_to(node_modules: Path, tmp_path: Path) -> None:
+def test_the_committed_page_matches_its_source(node_modules: Path, tmp_path: Path) -> None:
     build = ["npx", "vite", "build", "--outDir", str(tmp_path / "static"), "--emptyOutDir", "--logLevel", "error"]
     subprocess.run(build, cwd=node_modules.parent, check=True)
     assert files(tmp_path / "static") == files(GUI / "static")

@@ -15,7 +15,7 @@ from tests.studio.waiting import at_rest, until
 pytestmark = pytest.mark.browser
 
 
-def test_only_what_was_changed_is_changed_in_the_file(serve: Serve, page: Page) -> None:
+def test_unchanged_parts_of_the_file_keep_their_bytes(serve: Serve, page: Page) -> None:
     server = serve("arm.yaml", source=steps.PENDULUM)
     before = server.file.read_bytes()
     steps.open_editor(page, server.url)
@@ -207,7 +207,7 @@ def test_a_problem_leads_to_its_field(opened: Serve, page: Page, tmp_path: Path,
     expect(steps.window(page).get_by_role("alert")).to_contain_text("unknown symbol 'm3'")
 
 
-def test_work_that_cannot_be_kept_is_told(serve: Serve, page: Page) -> None:
+def test_work_that_cannot_be_stored_is_reported(serve: Serve, page: Page) -> None:
     server = serve("arm.yaml", source=steps.PENDULUM)
     fault = {"object": "autosave", "found": "the disk is full", "rule": "it is kept", "remedy": "make room"}
     page.route("**/api/document", lambda route: route.fulfill(json={**route.fetch().json(), "unkept": fault}))
@@ -215,7 +215,7 @@ def test_work_that_cannot_be_kept_is_told(serve: Serve, page: Page) -> None:
     expect(page.get_by_role("alert")).to_contain_text("the disk is full. make room")
 
 
-def test_results_of_an_earlier_model_say_so_and_what_can_not_be_read_stays_visible(arm: Server, page: Page) -> None:
+def test_outdated_results_are_marked_and_unreadable_parts_stay_visible(arm: Server, page: Page) -> None:
     steps.run(page, "Compile")
     expect(steps.results(page)).to_contain_text("Operations of a call", timeout=60_000)
     expect(steps.results(page)).not_to_contain_text("The model has changed since")

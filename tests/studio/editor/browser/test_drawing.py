@@ -104,7 +104,7 @@ def test_a_loop_is_closed_by_a_link(opened: Serve, page: Page, picture: Picture)
     expect(pose.get_by_role("button", name="Start here")).to_be_disabled()
 
 
-def test_what_is_typed_of_a_start_is_held_or_refused_in_words(opened: Serve, page: Page) -> None:
+def test_a_typed_start_is_kept_or_refused(opened: Serve, page: Page) -> None:
     opened("bar.yaml", source=FOUR_BAR)
 
     def simulate(**starts: str) -> None:

@@ -45,7 +45,7 @@ def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet
     expect(alert).to_contain_text("unknown symbol 'weight'")
 
 
-def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(opened: Serve, serve: Serve, page: Page) -> None:
+def test_text_typed_while_offline_is_kept_and_sent(opened: Serve, serve: Serve, page: Page) -> None:
     server = opened("arm.yaml", source=steps.PENDULUM)
     page.get_by_role("tab", name="YAML").click()  # The text editor is loaded.
     expect(page.get_by_label("Text of the file")).to_be_visible()
@@ -81,7 +81,7 @@ def test_what_is_typed_while_the_server_is_gone_stays_and_is_sent(opened: Serve,
     assert "value: 2.5" in again.file.read_text()
 
 
-def test_a_pane_that_can_not_be_loaded_leaves_the_page(serve: Serve, chromium: Browser) -> None:
+def test_a_pane_that_cannot_be_loaded_leaves_the_page(serve: Serve, chromium: Browser) -> None:
     """The text editor is loaded when it is opened: then the server may be gone."""
     server = serve("arm.yaml", source=steps.PENDULUM)
     page = chromium.new_page()

@@ -31,7 +31,7 @@ LARGEST = 1 << 20  # What the editor takes.
 
 
 @pytest.mark.parametrize("text", UNREADABLE)
-def test_what_can_not_be_read_is_shown_with_its_problem_and_can_be_mended(
+def test_unreadable_files_are_shown_with_their_problem_and_can_be_mended(
     serve: Serve, page: Page, tmp_path: Path, text: str
 ) -> None:
     (tmp_path / "wrong.yaml").write_text(text)
@@ -107,7 +107,7 @@ def test_no_file_leaves_a_blank_page(opened: Serve, page: Page, tmp_path: Path, 
                 expect(steps.window(page)).to_have_count(0)
 
 
-def test_more_blocks_than_can_be_drawn_are_said(serve: Serve, page: Page) -> None:
+def test_blocks_beyond_the_drawing_limit_are_reported(serve: Serve, page: Page) -> None:
     lines = (f"  b{i}: {{joint: {{kind: fixed}}}}\n" for i in range(1600))
     server = serve("many.yaml", content=f"symofros: 1\nbodies:\n{''.join(lines)}")
     page.goto(server.url)
@@ -115,7 +115,7 @@ def test_more_blocks_than_can_be_drawn_are_said(serve: Serve, page: Page) -> Non
     expect(page.get_by_label("Text of the file")).to_contain_text("b0")
 
 
-def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(serve: Serve, chromium: Browser) -> None:
+def test_a_failing_part_of_the_page_shows_the_reason_and_spares_the_others(serve: Serve, chromium: Browser) -> None:
     """The server's answer is spoilt, so that the diagram can't be drawn: a fault of the page itself."""
     server = serve("arm.yaml", source=steps.PENDULUM)
     page = chromium.new_page()
@@ -143,7 +143,7 @@ def test_a_part_of_the_page_that_fails_says_why_and_leaves_the_others(serve: Ser
     page.close()
 
 
-def test_a_document_that_is_not_given_is_said(serve: Serve, page: Page) -> None:
+def test_a_document_that_the_server_fails_to_send_is_reported(serve: Serve, page: Page) -> None:
     server = serve("arm.yaml", source=steps.PENDULUM)
     fault = {"object": "the server met a fault of its own", "found": "KeyError", "rule": "none", "remedy": "report it"}
     page.route("**/api/document", lambda route: route.fulfill(status=500, json={"error": fault}))

@@ -43,7 +43,7 @@ def looked(page: Page, faults: Faults) -> Callable[[], None]:
     "report",
     [pytest.param(file, id=file.stem, marks=[] if file.stem in FIRST else pytest.mark.slow) for file in REPORTS],
 )
-def test_reports(page: Page, looked: Callable[[], None], report: Path) -> None:
+def test_reports_are_accessible(page: Page, looked: Callable[[], None], report: Path) -> None:
     page.goto(report.as_uri())
     looked()
 
@@ -62,7 +62,7 @@ def live() -> Iterator[LivePlot]:
     plot.__dict__["_page"].close()
 
 
-def test_live_plots(page: Page, looked: Callable[[], None], live: LivePlot) -> None:
+def test_live_plots_are_accessible(page: Page, looked: Callable[[], None], live: LivePlot) -> None:
     page.goto(live.url)
     expect(page.get_by_role("status")).to_have_text("ended at t = 1.50 s")
     expect(page.get_by_role("checkbox")).to_have_count(CURVES)
@@ -87,7 +87,7 @@ def replay(tmp_path: Path) -> Path:
     return sf.record(MODELS["planar_robot"], (t, q), tmp_path / "m.html", rate=10, exaggeration=5, speed=0.5)
 
 
-def test_replays(page: Page, looked: Callable[[], None], replay: Path, picture: Picture) -> None:
+def test_replays_are_accessible(page: Page, looked: Callable[[], None], replay: Path, picture: Picture) -> None:
     page.emulate_media(color_scheme="dark")
     page.set_viewport_size({"width": 800, "height": 500})
     page.goto(replay.as_uri())
@@ -130,7 +130,7 @@ def test_replays(page: Page, looked: Callable[[], None], replay: Path, picture: 
 
 
 @pytest.mark.parametrize("colours", ["dark", "light"])
-def test_the_viewer(page: Page, looked: Callable[[], None], colours: str) -> None:
+def test_the_viewer_is_accessible(page: Page, looked: Callable[[], None], colours: str) -> None:
     """It keeps the colours of who opens it first."""
     page.emulate_media(color_scheme=colours)
     with sf.Viewer(MODELS["four_bar"], port=0) as viewer:

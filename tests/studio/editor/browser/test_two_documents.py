@@ -80,7 +80,7 @@ def test_a_run_is_asked_for_by_document(opened: Serve, page: Page, beside: Path)
     expect(steps.window(page).get_by_label("End", exact=True)).to_have_value("")
 
 
-def test_a_run_that_ends_after_another_document_was_opened_is_not_shown_in_it(arm: Server, page: Page) -> None:
+def test_results_are_not_shown_in_a_document_opened_later(arm: Server, page: Page) -> None:
     held: list[Route] = []
     page.route("**/api/jobs/*", lambda route: held.append(route))
     steps.run(page, "Compile")
@@ -94,7 +94,7 @@ def test_a_run_that_ends_after_another_document_was_opened_is_not_shown_in_it(ar
 
 
 @pytest.mark.parametrize("key", ["Control+o", "Control+s"])
-def test_what_is_typed_is_in_its_own_file_at_once(arm: Server, page: Page, key: str) -> None:
+def test_typed_text_goes_to_its_own_file(arm: Server, page: Page, key: str) -> None:
     """Text that the server has not seen yet is sent before the document is left, or saved."""
     steps.type_at_the_head(page, "# typed\n")
     page.keyboard.press(key)  # Before the pause after which it is sent.

@@ -94,7 +94,7 @@ def marked(picture: np.ndarray) -> np.ndarray:
     return (red > 120) & (green < red / 3) & (blue > red / 4)
 
 
-def test_what_is_chosen_is_marked_everywhere(opened: Serve, page: Page) -> None:
+def test_the_selection_is_marked_in_all_views(opened: Serve, page: Page) -> None:
     opened("robot.yaml", source=steps.ROBOT)
 
     # On the canvas: a body. The tree and the text show it.

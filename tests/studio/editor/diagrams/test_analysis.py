@@ -77,7 +77,7 @@ def test_a_fault_is_shown_at_its_block_and_port(old: str, new: str, path: list[s
         assert ports[port]
 
 
-def test_wires_of_a_block_that_can_not_be_read_are_drawn_and_are_no_faults_of_others() -> None:
+def test_wires_of_an_unreadable_block_are_drawn_without_further_faults() -> None:
     found = drawn(CHAIN.replace("gain: 2", "gain: {x: [y, {}]}"))
     assert found.diagram is not None
     assert len(found.diagram["wires"]) == 3

@@ -149,7 +149,7 @@ def test_frames_may_be_called_like_ports() -> None:
 
 
 @pytest.mark.parametrize("value", ["0,5", "1e999"])
-def test_a_parameter_that_can_not_be_read_stays_in_the_table(value: str) -> None:
+def test_a_parameter_that_cannot_be_read_stays_in_the_table(value: str) -> None:
     text = TEXTS["four_bar"].replace("L: {value: 1.0", f"L: {{value: {value!r}", 1)
     before, found = analyse(FILES["four_bar"], TEXTS["four_bar"]), analyse(FILES["four_bar"], text)
     assert [item["name"] for item in found.parameters] == [item["name"] for item in before.parameters]
@@ -164,7 +164,7 @@ def test_numbers_that_json_lacks_become_texts() -> None:
 
 
 @pytest.mark.parametrize(("unit", "is_one"), [("kg m^2", True), ("N m/rad", True), ("", True), ("bananas", False)])
-def test_a_unit_that_is_none_is_remarked(unit: str, is_one: bool) -> None:
+def test_an_invalid_unit_is_reported(unit: str, is_one: bool) -> None:
     text = TEXTS["four_bar"].replace("unit: m}", f"unit: {unit!r}}}", 1)
     found = {item["name"]: item for item in analyse(FILES["four_bar"], text).parameters}["L"]
     assert found["unit"] == unit and (found["unit_fault"] == "") == is_one

@@ -45,7 +45,7 @@ def test_the_diagram_is_checked_against_the_model_as_it_was_saved(inside: Sessio
     assert any("revolving" in problem["found"] for problem in inside.document.analysis.problems)
 
 
-def test_one_neither_goes_out_of_the_outermost_nor_out_of_the_folder(inside: Session) -> None:
+def test_entering_stays_within_document_and_folder(inside: Session) -> None:
     for path in ("../arm.yaml", "/etc/passwd", "none.yaml", ".hidden.yaml"):
         with pytest.raises(FileError):
             inside.enter({"revision": inside.document.revision, "path": path})

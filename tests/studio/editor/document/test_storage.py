@@ -46,7 +46,7 @@ def now(session: Session) -> dict[str, int]:
     return {"revision": session.document.revision}
 
 
-def test_undo_and_redo_restore_bytes_and_what_is_kept(file: Path) -> None:
+def test_undo_and_redo_restore_the_bytes(file: Path) -> None:
     session = opened(file)
     texts = [session.document.text]
     for value in (2.0, 3.0, 4.0):
@@ -68,7 +68,7 @@ def test_undo_and_redo_restore_bytes_and_what_is_kept(file: Path) -> None:
     assert not session.as_json()["can_redo"]  # A change after undo forgets what was undone.
 
 
-def test_edits_are_applied_all_or_none(file: Path) -> None:
+def test_edits_are_applied_all_or_not_at_all(file: Path) -> None:
     session = opened(file)
     good = {"op": "set", "path": ["parameters", "m", "value"], "value": 2}
     bad = {"op": "remove", "path": ["bodies", "nobody"]}
@@ -77,7 +77,7 @@ def test_edits_are_applied_all_or_none(file: Path) -> None:
     assert session.document.text == TEXT and session.document.revision == 1 and not autosave_of(file).exists()
 
 
-def test_what_is_typed_stays_as_typed(file: Path) -> None:
+def test_typed_values_are_kept_as_typed(file: Path) -> None:
     session = opened(file)
     for typed, text in (("8.0e-4", "8.0e-4"), (" 1.50 ", "1.50"), ("L/2", "L/2"), ("true", "true"), ("a, b", "'a, b'")):
         edit = {"op": "set", "path": ["parameters", "m", "value"], "text": typed}
@@ -206,7 +206,7 @@ def test_the_text_on_disk_can_be_taken_and_given_back(file: Path) -> None:
     assert file.read_text() == ours
 
 
-def test_a_file_that_was_only_touched_or_removed_is_no_conflict(file: Path) -> None:
+def test_a_touched_or_removed_file_is_not_a_conflict(file: Path) -> None:
     session = opened(file)
     change(session)
     os.utime(file, (1, 1))
@@ -277,7 +277,7 @@ def test_files_are_listed_by_path(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("content", "says"), [(b"\xff\xfe", "not UTF-8"), (b"#" * (MAX_TEXT + 1), "too large")])
-def test_files_that_are_no_texts_are_refused(file: Path, content: bytes, says: str) -> None:
+def test_files_that_are_not_text_are_refused(file: Path, content: bytes, says: str) -> None:
     session = opened(file)
     (file.parent / "odd.yaml").write_bytes(content)
     with pytest.raises(FileError, match=says):
@@ -313,7 +313,7 @@ def test_positions_are_kept_beside_the_file_and_follow_a_renaming(file: Path) ->
 @pytest.mark.parametrize(
     "content", ["", "[]", '{"layout": 3}', "[" * 100_000, json.dumps({"layout": {"a": [1e300, 0]}})]
 )
-def test_a_spoilt_side_file_is_as_none(file: Path, content: str) -> None:
+def test_a_damaged_layout_file_is_ignored(file: Path, content: str) -> None:
     layout_of(file).write_text(content)
     assert opened(file).storage.layout == {}
 
@@ -348,7 +348,7 @@ def test_names_that_are_too_long_are_refused(tmp_path: Path, name: str) -> None:
         Workspace(tmp_path).inside(name)
 
 
-def test_what_is_no_file_is_named(tmp_path: Path) -> None:
+def test_paths_that_are_not_files_are_named(tmp_path: Path) -> None:
     (tmp_path / "loop.yaml").symlink_to("loop.yaml")
     json.dumps(Session(Workspace(tmp_path), tmp_path / "loop.yaml").as_json(), allow_nan=False)
     os.mkfifo(tmp_path / "pipe.yaml")

@@ -61,7 +61,7 @@ def test_a_second_server_killed_on_the_way_does_not_make_the_file_known(file: Pa
 
 
 @pytest.mark.parametrize("back", ["discard", "undo", "reload"])
-def test_who_went_back_to_the_newer_file_may_save(file: Path, back: str) -> None:
+def test_saving_is_allowed_after_returning_to_the_newer_file(file: Path, back: str) -> None:
     session = recovered_over(file, THEIRS, "a new server")
     getattr(session, back)(now(session))
     assert session.document.text == THEIRS and not session.as_json()["disk_changed"]
@@ -103,7 +103,7 @@ def test_a_diagram_is_treated_alike(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("stated", [None, "{", "[]", '{"file": "bar.yaml"}'])
-def test_work_that_does_not_say_what_it_was_based_on_asks(file: Path, stated: str | None) -> None:
+def test_recovered_work_without_a_base_asks_before_saving(file: Path, stated: str | None) -> None:
     change(opened(file))
     base_of(file).unlink() if stated is None else base_of(file).write_text(stated)
     session = opened(file)

@@ -29,7 +29,7 @@ DATA = {"symofros": 1, "bodies": BODIES}
         (Edit("set", (), 3), 3),
     ],
 )
-def test_an_edit(edit: Edit, expected: Any) -> None:
+def test_edits_change_a_copy_of_the_data(edit: Edit, expected: Any) -> None:
     assert same(edited(DATA, edit), expected)
     assert same(DATA, {"symofros": 1, "bodies": {"a": {"x": [1, 2, 3]}, "b": None}})
 
@@ -44,5 +44,5 @@ def test_an_edit(edit: Edit, expected: Any) -> None:
         ({}, [], False),
     ],
 )
-def test_what_is_the_same(a: Any, b: Any, equal: bool) -> None:
+def test_data_values_are_compared_by_type_and_content(a: Any, b: Any, equal: bool) -> None:
     assert same(a, b) is equal

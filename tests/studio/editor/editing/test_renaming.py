@@ -182,7 +182,7 @@ REFERENCES = {
 
 
 @pytest.mark.parametrize("renamed", REFERENCES)
-def test_all_that_refers_to_it_follows(renamed: str) -> None:
+def test_references_follow_a_renaming(renamed: str) -> None:
     section, name, new = renamed.split("/")
     wanted = DIAGRAM
     for old, after in REFERENCES[renamed]:
@@ -192,6 +192,6 @@ def test_all_that_refers_to_it_follows(renamed: str) -> None:
 
 
 @pytest.mark.parametrize("new", ["pdx", "left", "1x", "a.b", ""])
-def test_a_name_that_is_taken_or_none_is_refused(new: str) -> None:
+def test_taken_and_empty_names_are_refused(new: str) -> None:
     with pytest.raises(EditError):
         with_references(DIAGRAM, [Edit("rename", ("blocks", "pd"), key=new)])

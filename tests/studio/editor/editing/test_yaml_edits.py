@@ -76,7 +76,7 @@ def test_an_edit_of_text_is_the_edit_of_its_data_and_of_nothing_else(case: tuple
 
 
 @pytest.mark.parametrize("name", sorted(TEXTS))
-def test_setting_what_is_there_changes_no_byte(name: str) -> None:
+def test_setting_the_present_value_changes_no_byte(name: str) -> None:
     text, data = TEXTS[name], DATA[name]
     for path in PATHS[name][:: max(1, len(PATHS[name]) // 8)]:
         assert apply(text, Edit("set", path, at(data, path))) == text
@@ -90,7 +90,9 @@ EXAMPLES = YAML(typ="safe").load(Path(__file__).with_name("written.yaml"))
 
 
 @pytest.mark.parametrize(("op", "path", "more", "old", "new"), EXAMPLES)
-def test_what_is_written(op: str, path: list[str | int], more: dict[str, Any], old: str, new: str) -> None:
+def test_edits_write_the_expected_text(
+    op: str, path: list[str | int], more: dict[str, Any], old: str, new: str
+) -> None:
     done = apply(ODD, edit(op, *path, **more))
     assert ODD.count(old) == 1
     assert done == ODD.replace(old, new)
@@ -132,7 +134,7 @@ def test_an_edit_without_sense_is_refused(wrong: Edit, says: str) -> None:
     assert says in problem.found and problem.rule and problem.remedy
 
 
-def test_what_surgery_does_not_foresee_is_written_anew_in_the_smallest_entry() -> None:
+def test_other_edits_rewrite_the_smallest_enclosing_entry() -> None:
     text = "symofros: 1\n# kept\nbodies:\n  a: {joint: [kind: fixed, 2]}\n  b: {}  # kept too\n"
     done, anew = trace(text, Edit("insert", ("bodies", "a", "joint", 0), 3, "x"))
     assert anew == ("bodies", "a", "joint", 0)

@@ -67,7 +67,7 @@ def test_a_text_keeps_its_quotes_and_a_key_is_a_name_whatever_it_looks_like() ->
     assert scalar("a, b", flow=False) == "a, b" and scalar("a, b", flow=True) == "'a, b'"
 
 
-def test_what_is_long_goes_on_lines_of_its_own() -> None:
+def test_long_entries_are_written_on_separate_lines() -> None:
     long = {f"entry{i}": "x" * 20 for i in range(6)}
     body = {"joint": {"kind": "fixed"}, "frames": long}
     lines = block({"bodies": {"a": body}}, (), 0)

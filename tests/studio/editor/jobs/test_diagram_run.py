@@ -71,7 +71,7 @@ def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
 
 
 @pytest.mark.slow
-def test_a_run_in_pace_with_the_clock_pauses_and_stops_when_it_is_told(jobs: Jobs, told: Told, tmp_path: Path) -> None:
+def test_a_real_time_run_pauses_and_stops_on_request(jobs: Jobs, told: Told, tmp_path: Path) -> None:
     job = started(jobs, tmp_path, TEXT.replace("t_end: 1", "t_end: 60"), realtime=1.0)
 
     def wait_until(holds: Callable[[], bool]) -> None:
@@ -96,9 +96,7 @@ def test_a_run_in_pace_with_the_clock_pauses_and_stops_when_it_is_told(jobs: Job
     assert before < job.result["t"][-1] < 60.0
 
 
-def test_what_can_not_run_says_so_in_four_parts_and_orders_that_are_none_are_refused(
-    jobs: Jobs, tmp_path: Path
-) -> None:
+def test_failed_runs_report_four_parts_and_invalid_orders_are_refused(jobs: Jobs, tmp_path: Path) -> None:
     job = started(jobs, tmp_path, TEXT.replace("u2: wave.rate", "u2: wave.fish"))
     assert job.over.wait(60.0)
     assert job.state == "failed" and job.error is not None

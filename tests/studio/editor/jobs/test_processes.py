@@ -25,7 +25,7 @@ from tests.studio.editor.conftest import finished
 from tests.studio.editor.texts import FILES
 
 
-def test_simulate(client: TestClient) -> None:
+def test_a_job_simulates_the_closed_loop(client: TestClient) -> None:
     """The loop is closed first; its energy stays."""
     start = {"q1": 1.2, "q2": -1.2, "q3": 1.2}
     job = finished(client, "simulate", t_end=0.5, method="dop853", points=50, q0=start, parameters={"m": 2.0})
@@ -45,7 +45,7 @@ def simulated(text: str, **options: Any) -> dict[str, Any]:
     return operations.simulate({"file": "model.yaml", "text": text, "options": options}, lambda *_: None)
 
 
-def test_what_is_typed_of_a_loop_s_start_is_held_or_refused(client: TestClient) -> None:
+def test_typed_loop_starts_are_kept_or_refused(client: TestClient) -> None:
     text = client.get("/api/document").json()["text"]
     found = simulated(text, t_end=0.01, q0={"q1": 1.0}, v0={"dq1": 1.0})
     first = {series["name"]: series["values"][0] for series in found["series"]}
@@ -63,7 +63,7 @@ def test_a_loop_that_was_just_drawn_is_simulated(client: TestClient) -> None:
     assert found["outcome"]["ok"], found["outcome"]
 
 
-def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:
+def test_a_document_that_cannot_be_simulated_is_refused_with_a_reason(client: TestClient) -> None:
     """In this process; a worker sends the same words."""
     text = client.get("/api/document").json()["text"]
     refused: list[tuple[dict[str, Any], str]] = [
@@ -81,7 +81,7 @@ def test_what_can_not_be_simulated_says_why(client: TestClient) -> None:
         assert says in error["object"] and error["remedy"], options
 
 
-def test_a_faulty_document_is_told_not_compiled(client: TestClient) -> None:
+def test_a_faulty_document_is_reported_without_compiling(client: TestClient) -> None:
     text = client.get("/api/document").json()["text"].replace("parent: crank", "parent: crnk")
     client.post("/api/text", json={"revision": 1, "text": text})
     error = finished(client, "compile")["error"]
@@ -109,7 +109,7 @@ def test_an_unknown_job_is_refused(client: TestClient) -> None:
     assert client.get("/api/jobs/99").status_code == 422
 
 
-def test_import(client: TestClient, folder: Path) -> None:
+def test_a_job_imports_a_file(client: TestClient, folder: Path) -> None:
     inertia = '<mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
     link = f'<link name="{{}}"><inertial>{inertia}</inertial></link>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>'
@@ -131,7 +131,7 @@ def test_import(client: TestClient, folder: Path) -> None:
     assert client.get("/api/document").json()["path"] == "r.yaml"
 
 
-def test_a_cross_check_needs_the_harness_and_says_so(
+def test_a_cross_check_without_the_harness_is_reported(
     client: TestClient, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In this process: the worker's finds it."""
@@ -204,16 +204,14 @@ def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tup
         ("print('[' * 100000)", "exit code 0"),
     ],
 )
-def test_a_worker_that_crashes_is_told_and_the_next_one_runs(
-    monkeypatch: pytest.MonkeyPatch, code: str, says: str
-) -> None:
+def test_a_crashed_worker_is_reported_and_replaced(monkeypatch: pytest.MonkeyPatch, code: str, says: str) -> None:
     jobs, job, told = run(monkeypatch, code)
     assert job.over.wait(30)
     assert job.state == "failed" and says in job.error["found"] and told[-1][1]["state"] == "failed"
     assert jobs.start("x", {}).over.wait(30)
 
 
-def test_progress_is_told_as_it_comes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_is_reported_during_the_job(monkeypatch: pytest.MonkeyPatch) -> None:
     code = """if True:
         import json
         for i in range(3):
@@ -252,7 +250,7 @@ def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_p
     raise AssertionError("a child outlives its worker")
 
 
-def test_a_worker_serves_one_job_after_the_other_and_orders_to_one_do_not_reach_the_next(
+def test_a_worker_serves_jobs_in_turn_and_orders_reach_only_their_job(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     code = """if True:

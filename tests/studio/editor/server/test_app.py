@@ -28,7 +28,7 @@ KEYS = set(
 )
 
 
-def test_a_document_carries_what_the_contract_says(client: TestClient) -> None:
+def test_a_document_has_the_fields_of_the_contract(client: TestClient) -> None:
     found = client.get("/api/document").json()
     assert set(found) == KEYS
     assert found["path"] == "four_bar.yaml" and found["text"] == TEXTS["four_bar"]
@@ -49,7 +49,7 @@ def test_edit_undo_redo_save(client: TestClient, folder: Path) -> None:
     assert not saved["dirty"] and (folder / "four_bar.yaml").read_text() == saved["text"]
 
 
-def test_an_edit_without_sense_or_of_a_text_that_is_not_yaml_is_refused(client: TestClient) -> None:
+def test_meaningless_edits_and_edits_of_invalid_yaml_are_refused(client: TestClient) -> None:
     edit = {"op": "remove", "path": ["bodies", "nobody"]}
     answer = client.post("/api/edit", json={"revision": 1, "edits": [edit]})
     assert answer.status_code == 422 and answer.json()["error"]["found"] == "no 'nobody'"
@@ -182,7 +182,7 @@ def test_the_document_can_be_changed_while_a_field_is_checked(
     assert in_time == [True]
 
 
-def test_shape_functions(client: TestClient) -> None:
+def test_shape_functions_are_served(client: TestClient) -> None:
     found = client.post("/api/shapes", json={"family": "polynomial", "modes": 2, "direction": "bend_y"}).json()
     assert found["curves"][0]["values"] == [x * x for x in found["xi"]] and found["curves"][0]["length"]
     user = {"family": "user", "modes": 1, "direction": "twist", "shapes": ["sin(xi)"]}
@@ -195,7 +195,7 @@ def test_shape_functions(client: TestClient) -> None:
         assert answer.status_code == 422 and answer.json()["error"]["remedy"], wrong
 
 
-def test_parts(client: TestClient) -> None:
+def test_parts_are_stored_and_listed(client: TestClient) -> None:
     assert client.get("/api/parts").json() == {"parts": []}
     kept = client.post("/api/parts", json={"name": "bar", "bodies": ["rocker"]}).json()
     assert kept["parts"][0]["bodies"] == ["rocker"]
@@ -206,7 +206,9 @@ def test_parts(client: TestClient) -> None:
     assert client.post("/api/parts/insert", json={"revision": put["revision"], "name": "no"}).status_code == 422
 
 
-def test_a_fault_of_the_server_s_own_is_told_and_it_goes_on(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_internal_fault_of_the_server_is_reported_and_the_server_continues(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
     with TestClient(application(session, TOKEN, PORT), BASE, raise_server_exceptions=False, headers=GRANTED) as client:
         with monkeypatch.context() as broken:
             broken.setattr(session.storage, "place", lambda _: 1 // 0)

@@ -75,7 +75,7 @@ def test_each_mechanism_of_a_run_is_shown_at_a_time(client: TestClient, folder: 
 
 
 @pytest.mark.slow
-def test_blocks_that_move_nothing_are_refused_in_words(client: TestClient) -> None:
+def test_blocks_that_move_nothing_are_refused(client: TestClient) -> None:
     answer = client.get("/api/view", params={"block": "ramp"})
     assert answer.status_code == 422 and "arm, hoist" in answer.json()["error"]["rule"]
     look(client)

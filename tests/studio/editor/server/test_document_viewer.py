@@ -40,7 +40,7 @@ def edit(client: TestClient, *path: str | int, value: Any) -> None:
     assert answer.status_code == 200, answer.text
 
 
-def test_a_pose_says_which_beams_it_bends_how_far(client: TestClient, folder: Path) -> None:
+def test_a_pose_lists_the_bending_of_its_beams(client: TestClient, folder: Path) -> None:
     shutil.copy(FILES["double_pendulum"].parents[1] / "flexible" / "flexible_pendulum.yaml", folder)
     assert client.post("/api/open", json={"path": "flexible_pendulum.yaml"}).status_code == 200
     (straight,) = look(client)["beams"]
@@ -50,7 +50,7 @@ def test_a_pose_says_which_beams_it_bends_how_far(client: TestClient, folder: Pa
     assert pose(client, reset=True)["beams"] == [straight]
 
 
-def test_loops_close_around_what_is_moved(client: TestClient) -> None:
+def test_loops_close_around_the_moved_coordinate(client: TestClient) -> None:
     view = look(client)
     assert view["address"].startswith("/view/") and TOKEN not in view["address"]
     assert view["fault"] is None and not view["flexible"]
@@ -82,9 +82,7 @@ def test_a_parameter_moves_it_before_the_document_changes(crank: TestClient) -> 
 
 
 @pytest.mark.parametrize(("ground", "gap"), [("0.7*L", 0.0), ("5*L", 4.0)], ids=["closes", "out of reach"])
-def test_a_loop_that_was_just_drawn_is_shown_closed_or_says_by_how_much_it_is_open(
-    client: TestClient, ground: str, gap: float
-) -> None:
+def test_a_loop_just_drawn_is_shown_closed_or_with_its_gap(client: TestClient, ground: str, gap: float) -> None:
     """A four-bar whose links lie in one line, at a distance of its pivots."""
     text = client.get("/api/document").json()["text"]
     text = text.replace("position: [L, 0, 0], axis", f"position: [{ground}, 0, 0], axis")
@@ -94,14 +92,14 @@ def test_a_loop_that_was_just_drawn_is_shown_closed_or_says_by_how_much_it_is_op
     assert any(abs(value) > 0.1 for value in view["q"].values()) or gap
 
 
-def test_where_loops_can_not_be_closed_it_stays(crank: TestClient) -> None:
+def test_where_loops_cannot_be_closed_it_stays(crank: TestClient) -> None:
     view = look(crank)
     found = pose(crank, q={"turn": 1.57}, par={"L2": 0.1})  # The crank's end is 0.15 m above the slider's axis.
     assert found["why"] and found["q"] == view["q"] and found["gap"] < 1e-9
     assert pose(crank, q={"turn": 1.57})["why"] == ""  # The rod is as long as it was.
 
 
-def test_it_follows_the_document_and_keeps_the_last_that_was_sound(client: TestClient) -> None:
+def test_the_view_follows_the_document_and_keeps_the_last_valid_model(client: TestClient) -> None:
     first = look(client)
     moved = pose(client, q={first["coordinates"][0]["name"]: first["q"][first["coordinates"][0]["name"]] + 0.2})
     edit(client, "bodies", "crank", "inertia", "mass", value="nobody")
@@ -114,7 +112,7 @@ def test_it_follows_the_document_and_keeps_the_last_that_was_sound(client: TestC
     assert set(look(client)["q"]) != set(first["q"])
 
 
-def test_nothing_is_shown_of_a_model_that_never_was_sound(client: TestClient) -> None:
+def test_a_model_that_was_never_valid_has_no_view(client: TestClient) -> None:
     edit(client, "bodies", "crank", "inertia", "mass", value="nobody")
     answer = client.get("/api/view")
     assert answer.status_code == 422 and answer.json()["error"]["object"] == "the model has problems"
@@ -145,7 +143,7 @@ def address(bare: TestClient) -> str:
     return found
 
 
-def test_its_page_is_kept_apart_from_ours(bare: TestClient, address: str) -> None:
+def test_the_view_page_is_isolated_from_the_editor_page(bare: TestClient, address: str) -> None:
     answer = bare.get(address)
     assert answer.status_code == 200 and b"<title>" in answer.content and b"<title>Viser</title>" not in answer.content
     policies = [value for name, value in answer.headers.multi_items() if name == "content-security-policy"]
@@ -155,7 +153,7 @@ def test_its_page_is_kept_apart_from_ours(bare: TestClient, address: str) -> Non
     assert answer.headers["cache-control"] == "no-store"
 
 
-def test_its_page_needs_its_own_token(bare: TestClient, address: str) -> None:
+def test_the_view_page_needs_its_own_token(bare: TestClient, address: str) -> None:
     others = (f"/view/{end}" for end in ("", "wrong/", "../view/wrong/", f"{TOKEN}/"))
     for path in (*others, address[:-2] + "/", address + "more", address[:-1] + "x/"):
         answer = bare.get(path)
@@ -164,20 +162,20 @@ def test_its_page_needs_its_own_token(bare: TestClient, address: str) -> None:
     assert bare.get("/view/wrong/page/99").status_code == 401
 
 
-def test_its_token_opens_nothing_else(bare: TestClient, address: str) -> None:
+def test_the_view_token_opens_nothing_else(bare: TestClient, address: str) -> None:
     token = address.split("/")[2]
     for path in ("document", "view", f"events?token={token}"):
         assert bare.get(f"/api/{path}", headers={"Authorization": f"Bearer {token}"}).status_code == 401
     assert bare.post("/api/pose", json={}, headers={"Authorization": f"Bearer {token}"}).status_code == 401
 
 
-def test_its_page_is_for_ours_only(bare: TestClient, address: str) -> None:
+def test_the_view_page_accepts_only_requests_of_the_editor(bare: TestClient, address: str) -> None:
     foreign = [{"Host": host} for host in ("evil.example", f"evil.example:{PORT}")]
     for headers in (*foreign, {"Sec-Fetch-Site": "cross-site"}, {"Origin": "https://evil.example"}):
         assert bare.get(address, headers=headers).status_code == 403, headers
 
 
-def test_the_socket_is_for_who_has_its_address(bare: TestClient, address: str) -> None:
+def test_the_view_socket_needs_its_address(bare: TestClient, address: str) -> None:
     """And hands on what the viewer says, to more in turn than may be open at once."""
     own = address[:-1]
     refused = [(own, origin, OWN) for origin in ("https://evil.example", "http://127.0.0.1:1", None)]

@@ -16,7 +16,7 @@ async def next_of(stream: AsyncIterator[str]) -> str:
     return await asyncio.wait_for(anext(stream), 10)
 
 
-def test_everybody_is_told_in_order_from_any_thread() -> None:
+def test_all_listeners_receive_events_in_order_from_any_thread() -> None:
     async def scene() -> None:
         events = Events()
         events.publish("lost", {})  # Nobody listens yet.
@@ -31,7 +31,7 @@ def test_everybody_is_told_in_order_from_any_thread() -> None:
     asyncio.run(scene())
 
 
-def test_who_does_not_listen_misses_the_oldest(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_slow_listeners_lose_the_oldest_events(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(events_module, "MAX_WAITING", 2)
 
     async def scene() -> None:

@@ -42,7 +42,7 @@ def bare(session: Session) -> Iterator[TestClient]:
         yield found
 
 
-def test_nothing_is_done_without_the_token(bare: TestClient, session: Session) -> None:
+def test_requests_without_the_token_are_refused(bare: TestClient, session: Session) -> None:
     wrong = ("Bearer no", TOKEN, f"Basic {TOKEN}", "Bearer ", f"Bearer {TOKEN}x")
     for method, address in addresses(bare.app):
         for headers in ({}, *({"Authorization": each} for each in wrong)):
@@ -80,7 +80,7 @@ def test_the_token_in_the_address_opens_events_only(bare: TestClient) -> None:
     assert bare.get("/api/events?token=wrong").status_code == 401
 
 
-def test_a_form_can_not_post(bare: TestClient, session: Session) -> None:
+def test_a_form_cannot_post(bare: TestClient, session: Session) -> None:
     """What a page can send elsewhere without asking: forms and plain text."""
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data", ""):
         answer = bare.post("/api/discard", content=b"{}", headers={**GRANTED, "Content-Type": kind})
@@ -182,7 +182,7 @@ HOSTILE = {
 
 
 @pytest.mark.parametrize("name", sorted(HOSTILE))
-def test_hostile_texts_are_told_and_nothing_is_run(client: TestClient, tmp_path: Path, name: str) -> None:
+def test_hostile_texts_are_reported_and_not_executed(client: TestClient, tmp_path: Path, name: str) -> None:
     mark = tmp_path / "mark"
     answer = client.post("/api/text", json={"revision": 1, "text": HOSTILE[name].replace("MARK", str(mark))})
     assert answer.status_code == 200 and answer.json()["problems"]

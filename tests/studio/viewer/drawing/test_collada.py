@@ -59,7 +59,7 @@ def test_polygons_become_triangles(pieces: str) -> None:
     assert np.array_equal(corners(document(pieces)), places[[[0, 1, 2], [0, 2, 3], [0, 1, 4]]])
 
 
-def test_nodes_place_what_is_in_them() -> None:
+def test_nodes_transform_their_contents() -> None:
     inner = f"<node><rotate>0 0 1 90</rotate><scale>2 2 2</scale>{SHOWN}</node>"
     placed = corners(document(nodes=f"<node><translate>10 0 0</translate>{inner}</node>"))
     expected = np.stack([10 - 2 * PLAIN[..., 1], 2 * PLAIN[..., 0], 2 * PLAIN[..., 2]], axis=-1)
@@ -129,6 +129,6 @@ def zipped(data: bytes) -> bytes:
         (zipped(document()), "not well-formed"),
     ],
 )
-def test_others_are_refused(data: bytes, expected: str) -> None:
+def test_invalid_collada_files_are_refused(data: bytes, expected: str) -> None:
     with pytest.raises(ValueError, match=expected):
         read_collada(data, 100)

@@ -129,7 +129,7 @@ def test_links_are_where_the_whole_model_has_them(name: str, rng: np.random.Gene
         assert np.allclose(posture.R[triad.link] @ triad.rotation, R, atol=1e-12)
 
 
-def test_exaggeration_multiplies_elastic_coordinates_alone_and_what_a_beam_carries_stays_on_its_tip() -> None:
+def test_exaggeration_scales_elastic_coordinates_only_and_attached_bodies_stay_on_the_tip() -> None:
     it = mechanism("planar_robot")
     posture = it.posture(np.full(it.model.nq, 0.01), exaggeration=7.0)
     elastic = np.array(["[" in name for name in it.model.names.q])
@@ -149,7 +149,7 @@ def test_parameters_change_the_drawing_where_it_depends_on_them() -> None:
     assert it.drawing(longer).beams[0].length == pytest.approx(1.0)
 
 
-def test_loops_that_can_not_be_closed_are_said_to_be() -> None:
+def test_loops_that_cannot_close_are_reported() -> None:
     it = mechanism("four_bar")
     state, why = it.closed(it.state([0.5, -2.0, 2.5]), held=("q1", "q2"))
     assert "can't be assembled" in why and np.array_equal(state.q, [0.5, -2.0, 2.5])

@@ -24,7 +24,7 @@ def body(inertia: sf.Inertia | None) -> sf.RigidBody:
 
 
 @pytest.mark.parametrize("name", INERTIAS)
-def test_it_has_the_inertia_of_the_body(name: str) -> None:
+def test_the_box_has_the_inertia_of_the_body(name: str) -> None:
     inertia, numbers = INERTIAS[name], Numbers(sf.System("s"))
     found = inertia_box(body(inertia), numbers)
     assert found is not None
@@ -37,7 +37,7 @@ def test_it_has_the_inertia_of_the_body(name: str) -> None:
 
 
 @pytest.mark.parametrize("inertia", [None, sf.Inertia(0.0), sf.Inertia(0.0, moments=(0.1, 0.1, 0.1))])
-def test_what_has_no_mass_has_no_box(inertia: sf.Inertia | None) -> None:
+def test_massless_bodies_have_no_box(inertia: sf.Inertia | None) -> None:
     assert inertia_box(body(inertia), Numbers(sf.System("s"))) is None
 
 
@@ -46,7 +46,7 @@ def test_an_impossible_inertia_has_a_flat_box() -> None:
     assert found is not None and found.edges.min() == 0.0 and np.all(np.isfinite(found.edges))
 
 
-def test_parameters_count() -> None:
+def test_parameters_change_the_box() -> None:
     system = sf.System("s", [body(sf.Inertia("m", moments=("m/6",) * 3))], [sf.Parameter("m", 2.0)])
     found = inertia_box(system.bodies[0], Numbers(system, {"m": 8.0}))
     assert found is not None and np.allclose(found.edges, 1.0)  # A cube of edge one, whatever its mass.

@@ -72,7 +72,7 @@ def test_standing_still_and_turning_back_are_drawn() -> None:
         (("a", SQUARE, (0, 0)), r"color \(0, 0\)"),
     ],
 )
-def test_what_is_no_path_is_refused(path: tuple[Any, ...], expected: str) -> None:
+def test_invalid_paths_are_refused(path: tuple[Any, ...], expected: str) -> None:
     with pytest.raises(ShapeError, match=expected):
         tracks_of([path])
     with pytest.raises(ShapeError, match="names of paths are different"):

@@ -92,7 +92,7 @@ def test_a_file_that_was_changed_is_read_again(tmp_path: Path) -> None:
         ("m.ply", b"ply\nformat ascii 1.0\nelement vertex 99999999\nend_header\n", "not a .ply file|0 triangles"),
     ],
 )
-def test_what_is_no_mesh_is_said_and_left_out(name: str, content: bytes, expected: str, tmp_path: Path) -> None:
+def test_unreadable_meshes_are_reported_and_left_out(name: str, content: bytes, expected: str, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(content)
     with pytest.warns(UserWarning, match=expected):
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / name))) is None
@@ -146,7 +146,7 @@ def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_draw
 
 
 @pytest.mark.parametrize("place", ["pipe", "device", "loop", "folder"])
-def test_meshes_that_are_no_files_are_not_waited_for(place: str, tmp_path: Path) -> None:
+def test_pipes_and_devices_are_not_read_as_meshes(place: str, tmp_path: Path) -> None:
     """A pipe would be read until somebody writes, a device without end."""
     file = tmp_path / "m.stl"
     if place == "pipe":
@@ -159,7 +159,7 @@ def test_meshes_that_are_no_files_are_not_waited_for(place: str, tmp_path: Path)
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file))) is None
 
 
-def test_what_a_mesh_is_not_is_said_once(
+def test_an_invalid_mesh_is_reported_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """No traceback of the library's own readers beside the warning, where nobody handles what they log."""

@@ -61,7 +61,7 @@ def pages() -> Pages:
     return Pages()
 
 
-def test_a_camera_that_is_not_in_its_place_yet_is_not_told(pages: Pages) -> None:
+def test_a_camera_before_its_placement_is_not_reported(pages: Pages) -> None:
     watch = CameraWatch(pages, pages.heights.append)
     page = pages.open(1, 5.0)
     assert watch.height is None and pages.heights == []
@@ -70,7 +70,7 @@ def test_a_camera_that_is_not_in_its_place_yet_is_not_told(pages: Pages) -> None
     assert pages.heights == pytest.approx([4.0, 6.0]) and watch.height == pytest.approx(6.0)
 
 
-def test_a_page_that_begins_elsewhere_is_told_after_a_while(pages: Pages, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_page_that_starts_elsewhere_is_reported_after_a_delay(pages: Pages, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(camera_watch, "_PLACING", 0.01)
     CameraWatch(pages, pages.heights.append)
     pages.open(1, 5.0)
@@ -80,7 +80,7 @@ def test_a_page_that_begins_elsewhere_is_told_after_a_while(pages: Pages, monkey
     assert pages.heights == pytest.approx([10.0])
 
 
-def test_of_two_pages_there_is_no_one_height(pages: Pages) -> None:
+def test_two_pages_have_no_common_view_height(pages: Pages) -> None:
     watch = CameraWatch(pages, pages.heights.append)
     pages.open(1, 2.0)
     pages.open(2, 2.0)

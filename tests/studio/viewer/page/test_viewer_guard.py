@@ -32,7 +32,7 @@ def status(viewer: sf.Viewer, path: str, **headers: str) -> tuple[int, bytes]:
     return answer.status, answer.read()
 
 
-def test_its_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
+def test_the_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
     path = urlsplit(viewer.url).path
     assert len(path) > 20
     for host in (f"127.0.0.1:{viewer.port}", f"localhost:{viewer.port}", "localhost:9000"):  # The last: by a tunnel.
@@ -40,7 +40,7 @@ def test_its_page_is_at_the_address_with_the_token(viewer: sf.Viewer) -> None:
         assert code == 200 and b"<title>pendulum - SYMOFROS</title>" in page and b"<title>Viser" not in page
 
 
-def test_the_first_page_says_which_colours_its_reader_prefers() -> None:
+def test_the_first_page_asks_for_the_preferred_colours() -> None:
     with sf.Viewer(MODELS["pendulum"], port=0) as viewer:
         path = urlsplit(viewer.url).path
         assert b'fetch("colours/"' in status(viewer, path)[1] and not viewer._dark
@@ -56,7 +56,7 @@ def test_the_first_page_says_which_colours_its_reader_prefers() -> None:
         assert b"colours/" not in status(viewer, urlsplit(viewer.url).path)[1]
 
 
-def test_without_the_token_and_for_other_hosts_and_pages_there_is_no_page(viewer: sf.Viewer) -> None:
+def test_requests_without_token_or_from_other_hosts_get_no_page(viewer: sf.Viewer) -> None:
     own = urlsplit(viewer.url).path
     for path in ("/", own[:-2] + "/", "/index.html", "/wrong/", "/../"):
         code, page = status(viewer, path)
@@ -67,7 +67,7 @@ def test_without_the_token_and_for_other_hosts_and_pages_there_is_no_page(viewer
         assert code == 403 and b"Viser" not in page, headers
 
 
-def test_its_socket_is_for_its_own_page(viewer: sf.Viewer) -> None:
+def test_the_socket_accepts_only_its_own_page(viewer: sf.Viewer) -> None:
     """The reproduction: a page of another origin read the scene, and moved it. Two may look at once."""
     connect = partial(
         import_module("websockets.sync.client").connect, subprotocols=[f"viser-v{import_module('viser').__version__}"]

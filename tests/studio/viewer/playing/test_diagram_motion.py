@@ -40,7 +40,7 @@ def test_the_chosen_mechanism_moves_as_it_did(two: DiagramRun) -> None:
         assert states.q[0, 0] == 0.5 + i and states.par[2] == 0.6 + i
 
 
-def test_parameters_are_those_of_the_run() -> None:
+def test_parameters_match_those_of_the_run() -> None:
     d = sf.Diagram("arm")
     d.add_model("arm", MODELS["double_pendulum"], {"q1": 0.5})
     d.add(blocks.ForwardDynamics(name="plant", model="arm"))
@@ -50,7 +50,7 @@ def test_parameters_are_those_of_the_run() -> None:
         assert np.linalg.norm(elbow) == pytest.approx(0.9)
 
 
-def test_inputs_that_prescribe_motion_are_those_of_the_run() -> None:
+def test_prescribed_inputs_match_those_of_the_run() -> None:
     t = np.array([0.0, 1.0])
     d = sf.Diagram("spin")
     d.add_model("beam", MODELS["spinning_beam"])
@@ -77,7 +77,7 @@ def test_a_run_is_played(one: DiagramRun) -> None:
         assert np.allclose(viewer.state.q, one["plant.q"][-1])
 
 
-def test_what_is_neither_is_refused(one: DiagramRun) -> None:
+def test_arguments_that_are_neither_motion_nor_run_are_refused(one: DiagramRun) -> None:
     system = MODELS["double_pendulum"]
     for given in ((system, (one.t, one["plant.q"])), (system, "r.png"), (one, (one.t, one["plant.q"]), "r.png")):
         with pytest.raises(SymofrosError, match="a system, its motion and a path; or a diagram's run and a path"):

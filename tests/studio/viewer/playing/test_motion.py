@@ -132,7 +132,7 @@ def test_pickles_in_archives_are_not_opened(pendulum: sf.Model, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".csv", ".parquet"])
-def test_archives_are_not_unpacked_beyond_what_is_shown(
+def test_archives_are_unpacked_only_up_to_the_display_limit(
     pendulum: sf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
 ) -> None:
     """A few kilobytes can stand for gigabytes."""
@@ -207,7 +207,7 @@ def test_there_and_back(name: str, rng: np.random.Generator) -> None:
         assert np.allclose(m.difference(q, again), 0.0, atol=1e-12)
 
 
-def test_they_are_named_and_bounded_and_units_are_those_of_coordinates_and_of_turns() -> None:
+def test_sliders_are_named_bounded_and_have_units() -> None:
     m = model("joint_zoo")
     sliders = sliders_of(m, (False,) * m.nq)
     assert tuple(slider.speed for slider in sliders) == m.names.v

@@ -46,7 +46,7 @@ def test_a_sphere_covers_its_disc() -> None:
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_what_is_nearer_hides_what_is_farther(order: int) -> None:
+def test_nearer_bodies_hide_farther_ones(order: int) -> None:
     near, far = (at(box(np.full(3, 0.6)), 0, -3, 0), RED, "bodies"), (box(np.full(3, 2.0)), BLUE, "bodies")
     image = drawn(*(near, far)[::order])
     assert reddish(image)[150, 200] and image[110, 160, 2] > image[110, 160, 0] + 60
@@ -64,13 +64,13 @@ def test_surfaces_that_cross_hide_each_other_where_they_should() -> None:
     assert left.all() and not right.any()
 
 
-def test_boxes_of_inertia_let_through_what_is_behind() -> None:
+def test_inertia_boxes_are_translucent() -> None:
     image = drawn((box(np.full(3, 0.6)), RED, "bodies"), (at(box(np.full(3, 1.5)), 0, -2, 0), BLUE, "inertias"))
     through, beside = image[150, 200], image[110, 160]
     assert through[0] > through[2] and beside[2] > beside[0] > 100
 
 
-def test_right_is_right_up_is_up_and_what_is_behind_the_camera_is_not_seen() -> None:
+def test_picture_axes_are_right_and_points_behind_the_camera_are_hidden() -> None:
     rows, columns = np.nonzero(reddish(drawn((at(box(np.full(3, 0.4)), 1.0, 0, 1.5), RED, "bodies"))))
     assert rows.mean() < 130 and columns.mean() > 220
     assert np.all(drawn((at(box(np.full(3, 1.0)), 0, -20, 0), RED, "bodies")) == 255)
@@ -136,7 +136,7 @@ def test_a_bar_has_a_round_length_and_takes_that_much_of_the_picture(height: flo
     assert bar.share == pytest.approx(length / height, rel=1e-12) and 0.3 / 2.5 < bar.share <= 0.3
 
 
-def test_a_bar_at_the_target_is_as_long_as_what_is_there() -> None:
+def test_the_scale_bar_has_the_length_of_the_scene() -> None:
     """Two points at the target, a bar's length apart across the picture, are that many pixels apart (pinhole)."""
     camera = Camera.of(Mechanism(MODELS["planar_robot"]).drawing())
     height = picture_height(camera.position, camera.target, camera.fov)

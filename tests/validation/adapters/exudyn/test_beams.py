@@ -118,7 +118,7 @@ def test_exudyns_own_weight_forgets_the_displacement() -> None:
     ],
     ids=lambda x: x if isinstance(x, str) else "",
 )
-def test_what_it_cannot_represent_is_named(changed: dict[str, Any], word: str) -> None:
+def test_unsupported_features_are_named(changed: dict[str, Any], word: str) -> None:
     subject = floating()
     beam = replace(subject.system.bodies[0], **changed)
     answer = exudyn_frf.build(replace(subject, system=replace(subject.system, bodies=(beam,))))

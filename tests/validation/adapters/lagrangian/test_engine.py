@@ -104,7 +104,7 @@ def test_functions_of_the_user_agree_to_rounding(case: str) -> None:
         assert row.tolerance == ROUNDING and row.error is not None and row.error < 1e-13
 
 
-def test_all_that_a_model_may_have() -> None:
+def test_all_features_of_lagrangian_models_agree() -> None:
     """Bodies on root and tip, rotors, armature, springs, a general and a driven joint, loads by formula, a taper."""
     drive = sf.Joint("d", "revolute", axis=(0, 0, 1), prescribed=True)
     spring = (sf.Spring(20.0, 0.1, 3.0), sf.Damper(0.4), sf.Stop(50.0, 1.0, -0.2, 0.2))
@@ -178,7 +178,7 @@ def test_another_beam_is_found(change: dict[str, Any], quantity: str) -> None:
     assert quantity in {row.quantity for row in result.comparisons if row.status == "disagree"}
 
 
-def test_what_it_is_not_asked_for() -> None:
+def test_models_outside_its_scope_are_refused() -> None:
     built = lagrangian.build(floating_arm())
     assert isinstance(built, Unsupported) and built.reason.startswith("no beams")
     result = check(floating_arm(), Settings(states=5))
@@ -217,7 +217,7 @@ def test_few_states_where_each_takes_long(monkeypatch: pytest.MonkeyPatch) -> No
     assert np.isfinite(row.error)
 
 
-def test_a_truncated_model_that_is_not_a_number_disagrees() -> None:
+def test_a_nan_in_the_truncated_model_disagrees() -> None:
     """Engines are compared with the model of every term, so this comparison alone sees the truncated one."""
 
     class NotANumber(SymofrosEngine):

@@ -45,7 +45,7 @@ def compared(result: ModelResult) -> set[str]:
         ("several_joints_on_a_body", "ball_joint", "free_joint", "nameless"), ("several_joints_on_a_body", "free_joint")
     ),
 )
-def test_it_agrees_in_everything_it_offers(tmp_path: Path, name: str) -> None:
+def test_all_offered_quantities_agree(tmp_path: Path, name: str) -> None:
     result = check(subject(tmp_path, MODELS[name]), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert compared(result) == MJCF_ROUTE | {"motion_energy"}
@@ -61,7 +61,7 @@ def test_it_agrees_in_everything_it_offers(tmp_path: Path, name: str) -> None:
         ('axis="0 0 1"', 'axis="0 0.1 1"', "bias"),
     ],
 )
-def test_it_finds_another_mechanism(tmp_path: Path, before: str, after: str, quantity: str) -> None:
+def test_a_changed_mechanism_is_detected(tmp_path: Path, before: str, after: str, quantity: str) -> None:
     """The file is changed behind our importer's back."""
     text = MODELS["several_joints_on_a_body"]
     ours = subject(tmp_path, text)
@@ -82,7 +82,7 @@ IGNORED = """
 
 
 @pytest.mark.slow
-def test_what_the_importer_ignores_is_no_disagreement(tmp_path: Path) -> None:
+def test_features_ignored_by_the_importer_are_not_disagreements(tmp_path: Path) -> None:
     result = check(subject(tmp_path, IGNORED), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert compared(result) >= MJCF_ROUTE
@@ -97,12 +97,12 @@ def test_what_the_importer_ignores_is_no_disagreement(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_what_it_can_t_be_asked(tmp_path: Path, text: str, reason: str) -> None:
+def test_files_that_it_cannot_represent_are_refused(tmp_path: Path, text: str, reason: str) -> None:
     built = mujoco_mjcf.build(subject(tmp_path, text))
     assert isinstance(built, Unsupported) and reason in built.reason
 
 
-def test_a_file_that_it_can_t_read_any_more(tmp_path: Path) -> None:
+def test_a_file_that_became_unreadable_is_reported(tmp_path: Path) -> None:
     ours = subject(tmp_path, MODELS["radian"])
     write(tmp_path, "<worldbody><bdy/></worldbody>")
     built = mujoco_mjcf.build(ours)
@@ -113,7 +113,7 @@ def test_a_file_that_it_can_t_read_any_more(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_is_for_mjcf_only() -> None:
+def test_only_mjcf_files_are_accepted() -> None:
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
     pendulum = subject_of(sf.System("pendulum", [rod]))
     assert isinstance(mujoco_mjcf.build(pendulum), Unsupported)

@@ -62,7 +62,7 @@ def test_only_the_gyroscope_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("name", sampled(TREES, SMALL))
-def test_against_pinocchio(name: str) -> None:
+def test_derivatives_match_pinocchio(name: str) -> None:
     """computeRNEADerivatives and computeABADerivatives, in our coordinates."""
     system = without_forces(MODELS[name])
     engine = trees.build(Subject(name, system))

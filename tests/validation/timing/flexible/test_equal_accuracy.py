@@ -31,13 +31,13 @@ def test_both_sides_are_one_robot() -> None:
 
 
 @pytest.mark.slow
-def test_sides_that_are_not_one_robot_are_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_robots_that_differ_are_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(equal_accuracy, "SAME_ROBOT", 1e-3)
     with pytest.raises(NotTheSameError, match="3 functions: frequencies err by 2.8e-02"):
         list(pairs([3]))
 
 
-def test_the_loop_computes_what_the_model_does(rng: np.random.Generator) -> None:
+def test_the_timed_loop_matches_the_model(rng: np.random.Generator) -> None:
     system = robot(3)
     model = sf.compile(system, sf.Options(("dynamics", "bias"), backend="interpreter"))
     q, v = 0.01 * rng.standard_normal((4, model.nq)), rng.standard_normal((4, model.nv))

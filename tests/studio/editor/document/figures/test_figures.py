@@ -42,7 +42,7 @@ def test_moments_about_the_body_frame_are_moved_to_the_mass_centre_and_turned_to
         {"inertia": {"mass": "1 +"}},
     ],
 )
-def test_what_is_not_complete_has_none(stated: dict[str, Any]) -> None:
+def test_incomplete_inertias_have_no_figures(stated: dict[str, Any]) -> None:
     with pytest.raises(EditError, match="the inertia is not complete"):
         inertia_figures(stated, {"p": 0.0})
 

@@ -16,7 +16,7 @@ from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import DATA, FILES, TEXTS
 
 
-def test_a_part_holds_what_its_bodies_use_and_what_is_between_them() -> None:
+def test_a_part_holds_its_bodies_parameters_and_inner_constraints() -> None:
     part = extracted(DATA["four_bar"], ["rocker", "coupler"])
     assert list(part) == ["symofros", "parameters", "bodies", "closures"]
     assert list(part["bodies"]) == ["coupler", "rocker"]  # In the document's order.
@@ -44,7 +44,7 @@ def test_a_part_put_in_twice_is_still_a_mechanism(name: str) -> None:
     assert found.data.get("parameters", {}) == data.get("parameters", {})  # Equal ones are shared.
 
 
-def test_unequal_parameters_are_told_apart() -> None:
+def test_unequal_parameters_get_different_names() -> None:
     part = extracted(DATA["four_bar"], ["rocker"])
     part["parameters"] = {**part["parameters"], "L": 2.0}
     text = with_references(TEXTS["four_bar"], insertion(DATA["four_bar"], part, "crank", "end"))
