@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import count
+from functools import partial
+from threading import Lock
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
@@ -22,16 +24,16 @@ from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.simulate import prepare_run, run_to_its_end
+from symofros.simulation.stepped import Stepped, options_by_hand, owner_of, refusal
 from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
 from symofros.simulation.stepping.fast_step import fast_step
 from symofros.simulation.stepping.status import Status
 
-_numbers = count()
 # Times of steps are known to the step up to here.
 MOST_STEPS = 1 << 53
 
 
-class Stepper:
+class Stepper(Stepped):
     """A model that is stepped by hand: for controllers, learning, sampling, hardware in the loop.
 
     Steps are those of `simulate`, by the same C: with the same inputs held over the same fixed steps, q and v are the
@@ -78,8 +80,9 @@ class Stepper:
         options: SimulationOptions | None = None,
         **changes: Any,
     ) -> None:
-        chosen = (options or SimulationOptions()).changed(changes)
+        chosen = options_by_hand(options, changes, ("u", "par", "events"))
         self._given: dict[str, Any] = {"u": u, "events": events, "options": chosen}
+        self._stepping = Lock()
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
         values = np.array(model.parameter_values)
@@ -88,13 +91,15 @@ class Stepper:
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
-        self._kind = f"stepper {next(_numbers)} of '{model.record.name}'"
+        self._kind = owner_of("stepper", model.record.name)
         self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         self.reset()
-        fast = fast_step(self._hand, self._made, self._plain_step)
+        if type(self).step is not Stepper.step:  # A class of the caller's has its own.
+            return
+        fast = fast_step(self._hand, self._made, partial(Stepper.step, self))
         if fast is not None:  # Found before the class's own, it costs a fifth of it.
             vars(self)["step"] = fast
 
@@ -140,15 +145,19 @@ class Stepper:
         Raises:
             ShapeError: The inputs do not fit or are not finite; no step is made then.
             AssemblyError: The state of the reset does not meet the constraints.
-            SymofrosError: The motion has ended before, or the number of steps is none.
+            SymofrosError: The motion has ended before, the number of steps is none, or another thread makes steps.
         """
-        return self._plain_step(u, steps)
-
-    def _plain_step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
         values = None if u is None else checked_inputs(self.model, self.inputs, u)
         if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
             raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+        self._begin_alone()
+        try:
+            return self._step(values, int(steps))
+        finally:
+            self._stepping.release()
+
+    def _step(self, values: Array | None, steps: int) -> bool:
         hand = self._hand
         if not hand.started:
             inputs = hand.begin(values)
@@ -161,16 +170,22 @@ class Stepper:
         elif hand.status != Status.RUNNING:
             rule = "steps are made while step() returns True"
             raise refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
-        return hand.step(values, int(steps)) == Status.RUNNING
+        return hand.step(values, steps) == Status.RUNNING
 
-    def _made(self, status: int) -> bool:
-        """After a fast call that did not just make its steps."""
+    def _made(self, status: int | None) -> bool:
+        """After a fast call that did not just make its steps; None: another thread was within one."""
+        if status is None:
+            raise self._occupied()
         return self._hand.settled(status) == Status.RUNNING
+
+    def __repr__(self) -> str:
+        method, state = self._hand.settings.method.name, "" if self.running else ", ended"
+        return f"<Stepper of '{self.model.record.name}' by {method}: dt = {self.dt:g} s, t = {self.t:g} s{state}>"
 
     @property
     def par(self) -> Array:
-        """Run-time parameters (npar)."""
-        return self._hand.run.par
+        """Run-time parameters (npar), a view that can't be written."""
+        return read_only(self._hand.run.par)
 
     @property
     def running(self) -> bool:
@@ -260,8 +275,9 @@ class Stepper:
         """
         if not isinstance(state, HandState) or state.owner != self._kind:
             found = f"a state of {state.owner}" if isinstance(state, HandState) else repr(state)[:60]
-            rule = "a state goes back to the stepper that it was saved of, or to a copy"
-            raise refusal("restore: no state of this stepper", found, rule, "make other steppers by copy()")
+            rule = "a state goes back to the stepper that it was saved of, or to a copy, in the same process"
+            remedy = "make other steppers by copy(); elsewhere reset one at the state's t, q, v"
+            raise refusal("restore: no state of this stepper", found, rule, remedy)
         self._hand.restore(state)
 
     def copy(self) -> Stepper:
@@ -301,8 +317,13 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
         return np.ascontiguousarray(array)
     found = f"{type(u).__name__} {u!r:.60}"
     if array is not None:
-        found = "a number that is not finite" if fits else str(array.shape)
-    listed = ", ".join(names[:8]) or "there are no inputs"
+        found = str(array.shape)
+        if fits:
+            *row, i = np.argwhere(~np.isfinite(array))[0]
+            found = f"a number that is not finite: {array[*row, i]} for '{names[i]}'"
+            found += f" of motion {row[0]}" if row else ""
+    listed = ", ".join(names[:8]) or ("all inputs are laws and numbers" if model.nu else "there are no inputs")
+    listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
     raise ShapeError(
         Problem(f"model '{model.record.name}': u does not fit", found, rule, "one number for each of `inputs`")
@@ -324,6 +345,8 @@ def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
     return replace(settings, dt=options.dt or 1e-3, every=0, t_end=math.inf)
 
 
-def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
-    """What is not done, in four parts."""
-    return SymofrosError(Problem(what, found, rule, remedy))
+def read_only(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """A view that can't be written."""
+    view = array.view()
+    view.flags.writeable = False
+    return view

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from itertools import count
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -22,15 +22,14 @@ from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import check_fit
 from symofros.simulation.simulate import prepare_run
 from symofros.simulation.simulate_batch import starts_off
-from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, refusal, settings_by_hand
+from symofros.simulation.stepped import Stepped, options_by_hand, owner_of, refusal
+from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, read_only, settings_by_hand
 from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
 
-_numbers = count()
 
-
-class Steppers:
+class Steppers(Stepped):
     """Motions of one model that are stepped by hand together, several in the lanes of a vector, shared by threads.
 
     Each takes the steps that `simulate_batch` would take, and does not depend on the others. One that ends stays at its
@@ -53,7 +52,7 @@ class Steppers:
 
     Attributes:
         model: Model that is stepped.
-        par: Run-time parameters, as given.
+        par: Run-time parameters (npar) of all, or of each motion (n, npar), a view that can't be written.
         dt: Length of a step [s].
         inputs: Names of the inputs that `step` takes, in order.
         t: Present times (n) [s], a view that steps change: copy it to keep it.
@@ -78,7 +77,7 @@ class Steppers:
         options: SimulationOptions | None = None,
         **changes: Any,
     ) -> None:
-        chosen = (options or SimulationOptions()).changed(changes)
+        chosen = options_by_hand(options, changes, ("n", "u", "par", "threads"))
         settings = settings_by_hand(model, chosen)
         if not settings.method.family.batched or settings.adaptive:
             explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
@@ -89,20 +88,21 @@ class Steppers:
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
                 raise refusal(what, str(number), rule, "give a whole number of that range")
+        self._stepping = Lock()
         self.model, self.n, self.dt = model, n, settings.dt
-        self.par = model.parameter_values if par is None else model.checked_parameters(par)
-        if self.par.shape not in ((model.npar,), (n, model.npar)):
-            raise self._misfit("par", self.par, model.npar, "parameters of each motion, or one set for all")
+        self._par = np.array(model.parameter_values if par is None else model.checked_parameters(par))
+        if self._par.shape not in ((model.npar,), (n, model.npar)):
+            raise self._misfit("par", self._par, model.npar, "parameters of each motion, or one set for all")
         plan = plan_inputs(model, u)
         check_fit(model, settings, plan)
         prepare_run(model, settings)
-        self._settings, self._kind = settings, f"steppers {next(_numbers)} of '{model.record.name}'"
-        rows = np.atleast_2d(np.array(self.par))
+        self._settings, self._kind = settings, owner_of("steppers", model.record.name)
+        rows = np.atleast_2d(self._par.copy())
         self._hand = HandBatch(model, settings, plan, fixed_inputs(u), rows, n, threads)
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         results = self._hand.results
         self.t, self.q, self.v, self._status = (
-            _read_only(array) for array in (results.t_last, results.q_last, results.v_last, results.status)
+            read_only(array) for array in (results.t_last, results.q_last, results.v_last, results.status)
         )
         self.reset()
 
@@ -139,8 +139,7 @@ class Steppers:
                 rule = "steppers have one set of parameters for all, or one each"
                 raise refusal("reset: parameters", "one set for all", rule, "make them with par of shape (n, npar)")
             values = np.asarray(model.checked_parameters(self._rows("par", par, model.npar)[chosen]))
-            self.par = np.array(self.par)
-            self.par[chosen] = values
+            self._par[chosen] = values
         time = np.full(len(chosen), self._settings.t0 if t is None else float(t))
         self._hand.reset(chosen, time, first, speeds, values)
 
@@ -157,7 +156,7 @@ class Steppers:
 
         Raises:
             ShapeError: The inputs do not fit or are not finite; no step is made then.
-            SymofrosError: The number of steps is none.
+            SymofrosError: The number of steps is none, or another thread makes steps.
         """
         hand, size = self._hand, len(self.inputs)
         values = None
@@ -167,10 +166,14 @@ class Steppers:
         if not 1 <= steps <= MOST_STEPS:
             rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
             raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
-        if self.model.nc and hand.begins.any():
-            self._check_starts(values)
-        hand.step(values, steps)
-        return self.running
+        self._begin_alone()
+        try:
+            if self.model.nc and hand.begins.any():
+                self._check_starts(values)
+            hand.step(values, steps)
+            return self.running
+        finally:
+            self._stepping.release()
 
     def _check_starts(self, u: Array | None) -> None:
         """Motions that would begin off the constraints end before."""
@@ -179,6 +182,15 @@ class Steppers:
         inputs, par = hand.inputs_at_start(chosen, u), self.par if self.par.ndim == 1 else self.par[chosen]
         off = starts_off(self.model, self._settings, hand.q0[chosen], hand.v0[chosen], inputs, par, hand.t0[chosen])
         hand.results.status[chosen[off]] = Status.PROJECTION_FAILED
+
+    def __repr__(self) -> str:
+        name, ended = self.model.record.name, self.n - int(self.running.sum())
+        return f"<{self.n} Steppers of '{name}' by {self._settings.method.name}: dt = {self.dt:g} s, {ended} ended>"
+
+    @property
+    def par(self) -> Array:
+        """Run-time parameters (npar) of all, or (n, npar)."""
+        return read_only(self._par)
 
     @property
     def running(self) -> npt.NDArray[np.bool_]:
@@ -213,6 +225,10 @@ class Steppers:
     @checked
     def outcome(self, i: int) -> Outcome:
         """Why motion i ended, or what is worth knowing of its present state; its steps are not examined."""
+        if not 0 <= i < self.n:
+            raise refusal(
+                "outcome: no such motion", str(i), f"0 <= i < {self.n}", "steppers.running tells which can go on"
+            )
         results = self._hand.results
         status = np.where(results.status == Status.RUNNING, Status.FINISHED, results.status)
         arrays: dict[str, Any] = {**results.shaped((self.n,)), "status": status}
@@ -232,7 +248,7 @@ class Steppers:
 
     def save(self) -> BatchState:
         """The present states, with all that later steps depend on."""
-        return self._hand.save(self._kind)
+        return self._hand.save(self._kind, self._par)
 
     def restore(self, state: BatchState) -> None:
         """Go on from saved states, bit by bit as from there.
@@ -245,9 +261,10 @@ class Steppers:
         """
         if not isinstance(state, BatchState) or state.owner != self._kind:
             found = f"a state of {state.owner}" if isinstance(state, BatchState) else repr(state)[:60]
-            rule = "a state goes back to the steppers that it was saved of"
+            rule = "a state goes back to the steppers that it was saved of, in the same process"
             raise refusal("restore: no state of these steppers", found, rule, "reset others at its t, q, v")
-        self._hand.restore(state)
+        self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
+        self._par[...] = state.par
 
     def _rows(self, name: str, values: ArrayLike, size: int) -> Array:
         array = real_array(self.model.by_name(name, values))
@@ -261,7 +278,7 @@ class Steppers:
         mask = np.asarray(which)
         if mask.dtype != bool or mask.shape != (self.n,):
             found = f"{mask.dtype} of shape {mask.shape}"
-            raise refusal("reset: which does not fit", found, f"one bool for each of {self.n}", "leave it out for all")
+            raise refusal("reset: which does not fit", found, f"one bool for each of {self.n}", _MASK)
         return np.flatnonzero(mask)
 
     def _misfit(self, name: str, found: Any, size: int, remedy: str) -> ShapeError:
@@ -274,11 +291,7 @@ class Steppers:
         return ShapeError(Problem(what, fault, rule, remedy))
 
 
+# How a mask is made.
+_MASK = "leave it out for all; np.isin(np.arange(n), numbers) is a mask of numbers"
 # More than any memory holds.
 _MOST = 1 << 31
-
-
-def _read_only(array: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    view = array.view()
-    view.flags.writeable = False
-    return view

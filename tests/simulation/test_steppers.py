@@ -116,13 +116,19 @@ def test_a_finished_member_stays_until_it_is_reset() -> None:
     np.testing.assert_array_equal(steppers.q[2], sf.simulate_batch(model, q, v, 4 * DT, dt=DT).q_last[2])
 
 
-def test_motions_off_their_constraints_do_not_begin() -> None:
+@pytest.mark.parametrize("gap", [0.1, 1e-4])
+@pytest.mark.parametrize("went_before", [False, True])
+def test_motions_off_their_constraints_do_not_begin(gap: float, went_before: bool) -> None:
     model, (q, v) = compiled("slider_crank"), starts("slider_crank")
-    q[5, 0] += 0.1
     steppers = sf.Steppers(model, N, dt=DT)
+    if went_before:
+        steppers.reset(q, v)
+        assert steppers.step().all()
+    q[5, 0] += gap
     steppers.reset(q, v)
     assert np.flatnonzero(~steppers.step()).tolist() == [5]
-    assert steppers.outcome(5).kind == "constraints lost"
+    assert steppers.outcome(5).kind == "constraints lost" and "off the constraints" in str(steppers.outcome(5))
+    assert steppers.t[5] == 0.0 and np.array_equal(steppers.q[5], q[5])
 
 
 def test_a_beam_that_was_beyond_its_theory_is_judged_again() -> None:

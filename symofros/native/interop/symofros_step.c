@@ -2,7 +2,8 @@
  *
  * Step(function, hand, n, made, plain, kept) is made by symofros/simulation/stepping/fast_step.py. A call takes inputs, an
  * array (n) or None, and a number of steps, and gives True where all were made; made(status) says what else comes of
- * steps. Calls with other arguments, or where no step is made, go to plain, with the same arguments.
+ * steps, made(None) where another thread is within a call. Calls with other arguments, or where no step is made, go to
+ * plain, with the same arguments.
  */
 
 typedef int32_t (*step_function)(void *hand, const double *u, int64_t steps);
@@ -17,6 +18,7 @@ typedef struct {
     void *hand;
     npy_intp n;
     int no_step; /* status of a call that made none */
+    int busy;    /* a thread makes steps, without the interpreter's lock; read and written with it */
     PyObject *made, *plain, *kept;
 } step_object;
 
@@ -44,10 +46,13 @@ static PyObject *step_call(PyObject *callable, PyObject *const *args, size_t nar
         steps = PyLong_AsLongAndOverflow(args[1], &overflow);
         if (overflow != 0 || steps < 1 || steps > SYM_MOST_STEPS) goto plain;
     }
+    if (self->busy) return PyObject_CallOneArg(self->made, Py_None);
     held = n_args > 0 ? Py_NewRef(args[0]) : NULL;
+    self->busy = 1;
     Py_BEGIN_ALLOW_THREADS
     status = self->step(self->hand, u, steps);
     Py_END_ALLOW_THREADS
+    self->busy = 0;
     Py_XDECREF(held);
     if (status == 0) Py_RETURN_TRUE;
     if (status == self->no_step) goto plain;

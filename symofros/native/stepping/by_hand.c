@@ -69,12 +69,12 @@ static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const 
     }
 }
 
-/* A trajectory begins, or begins anew. */
+/* A trajectory begins, or begins anew; one whose status says that it can't keeps that. */
 static void sym_hand_batch_begin(const sym_hand_batch *hand, sym_batch *b, int64_t k, const double *u) {
     double *constant = hand->u + k * b->prototype->system->nu;
     int32_t i;
     for (i = 0; i < b->n_active && b->trajectory_of_slot[i] != k; ++i) {}
-    if (i < b->n_active) sym_batch_retire(b, i, 0);
+    if (i < b->n_active) sym_batch_retire(b, i, b->final_status[k]);
     for (i = 0; u != NULL && i < hand->n_held; ++i) constant[hand->held[i]] = u[k * hand->n_held + i];
     b->next = k;
     sym_batch_activate_next(b);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
 
@@ -29,6 +29,7 @@ class BatchState:
         t: Times (n) [s].
         q: Configurations (n, nq).
         v: Speeds (n, nv).
+        par: Run-time parameters (npar), or (n, npar).
         arrays: The arrays that C writes.
     """
 
@@ -36,7 +37,8 @@ class BatchState:
     t: Array
     q: Array
     v: Array
-    arrays: tuple[npt.NDArray[Any], ...]
+    par: Array = field(repr=False)
+    arrays: tuple[npt.NDArray[Any], ...] = field(repr=False)
 
 
 class _Part(BatchStepper):
@@ -144,13 +146,23 @@ class HandBatch:
         pointer = ffi.NULL if u is None else ffi.from_buffer("double[]", u)
         together([partial(part.step, pointer, steps) for part in self._parts])
 
-    def save(self, owner: object) -> BatchState:
-        """All that C has written."""
+    def save(self, owner: object, par: Array) -> BatchState:
+        """All that C has written, and the parameters."""
         results = self.results
         arrays = tuple(array.copy() for array in self._written)
-        return BatchState(owner, results.t_last.copy(), results.q_last.copy(), results.v_last.copy(), arrays)
+        return BatchState(
+            owner, results.t_last.copy(), results.q_last.copy(), results.v_last.copy(), par.copy(), arrays
+        )
 
-    def restore(self, state: BatchState) -> None:
-        """Go on from a state that `save` gave, bit by bit as from there."""
+    def restore(self, state: BatchState, par: Array | None) -> None:
+        """Go on from a state that `save` gave, bit by bit as from there.
+
+        Args:
+            state: The state.
+            par: Its parameters (n, npar) where motions have others now.
+        """
+        if par is not None:
+            for part in self._parts:
+                part.set_parameters(np.arange(len(par)), par)
         for to, array in zip(self._written, state.arrays, strict=True):
             to[...] = array

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -86,12 +86,12 @@ class HandState:
     t: float
     q: Array
     v: Array
-    numbers: tuple[npt.NDArray[np.uint8], ...]
-    arrays: tuple[npt.NDArray[Any], ...]
-    start: Start
-    noted: Noted | None
-    events: Events
-    par: Array
+    numbers: tuple[npt.NDArray[np.uint8], ...] = field(repr=False)
+    arrays: tuple[npt.NDArray[Any], ...] = field(repr=False)
+    start: Start = field(repr=False)
+    noted: Noted | None = field(repr=False)
+    events: Events = field(repr=False)
+    par: Array = field(repr=False)
 
 
 class HandRun:

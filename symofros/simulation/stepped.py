@@ -1,0 +1,100 @@
+"""What Stepper and Steppers have alike as objects of Python: what is set, copied and pickled, and what is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from secrets import token_hex
+from threading import Lock
+from typing import Any, NoReturn
+
+from symofros.errors import Problem, SymofrosError
+from symofros.simulation.options import SimulationOptions
+
+# Attributes and what changes them.
+_STATE, _MADE = (
+    "reset(q, v, t) begins a motion at another state",
+    "make another one, and reset it at this one's t, q, v",
+)
+_CHANGED_BY = dict.fromkeys(("t", "q", "v"), _STATE) | dict.fromkeys(("model", "n", "dt", "inputs"), _MADE)
+_CHANGED_BY |= {"u": "step(u) holds inputs", "par": "reset(q, v, t, par=...) begins with other parameters"}
+# Arguments of other calls.
+_ELSEWHERE = {
+    "t_end": ("the loop that makes the steps decides when the motion ends", "leave it out"),
+    "q0": ("a motion begins at a reset", "reset(q, v, t)"),
+    "v0": ("a motion begins at a reset", "reset(q, v, t)"),
+    "events": ("motions that are stepped together have no events", "an sf.Stepper for each motion has them"),
+}
+
+
+class Stepped:
+    """Refuses what would silently do nothing, or share the memory that C steps in."""
+
+    _stepping: Lock
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Refuse to replace what only looks like the state or the settings."""
+        if name in _CHANGED_BY and (name in vars(self) or hasattr(type(self), name)):
+            what, rule = f"{type(self).__name__}: {name} is not assigned", "attributes tell what C steps with"
+            raise refusal(what, repr(value)[:60], rule, _CHANGED_BY[name])
+        super().__setattr__(name, value)
+
+    def _begin_alone(self) -> None:
+        """Before steps, after which `_stepping` is released; another thread that calls meanwhile is refused."""
+        if not self._stepping.acquire(blocking=False):
+            raise self._occupied()
+
+    def _occupied(self) -> SymofrosError:
+        what, found = f"{type(self).__name__}: step", "another thread is within a step of the same one"
+        return refusal(
+            what, found, "one thread at a time makes steps", "one for each thread, or a lock around the calls"
+        )
+
+    def __copy__(self) -> Any:
+        """As copy() does: two never share the memory that is stepped in."""
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Any:
+        """As copy() does; the model, which nothing changes, is shared."""
+        return self.copy()
+
+    def copy(self) -> Any:
+        """Refused, where a class has none."""
+        rule = "motions that are stepped together are not copied"
+        raise refusal(f"{type(self).__name__}: no copy", repr(self), rule, "make others, and reset them at its t, q, v")
+
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        """Refuse to pickle memory of C."""
+        rule = "a stepper is compiled code and memory of one process"
+        remedy = "send t, q, v and par as arrays; there sf.compile, make one and reset it at them"
+        raise refusal(f"{type(self).__name__}: not pickled", repr(self), rule, remedy)
+
+
+def owner_of(what: str, name: str) -> str:
+    """A name that no other one has, in no other process either: states go back to where they are of."""
+    return f"{what} {token_hex(8)} of '{name}'"
+
+
+def options_by_hand(
+    options: SimulationOptions | None, changes: Mapping[str, Any], arguments: Sequence[str]
+) -> SimulationOptions:
+    """Options of stepping by hand.
+
+    Args:
+        options: Options to begin with; those by default if None.
+        changes: Fields that replace theirs.
+        arguments: Names of the other arguments of the call.
+
+    Raises:
+        SymofrosError: A name is that of an argument of another call.
+        UnknownNameError: A name is no field.
+    """
+    for name in changes:
+        if name in _ELSEWHERE:
+            rule, remedy = _ELSEWHERE[name]
+            raise refusal(f"stepper: no option '{name}'", name, rule, remedy)
+    return (options or SimulationOptions()).changed(changes, arguments)
+
+
+def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
+    """What is not done, in four parts."""
+    return SymofrosError(Problem(what, found, rule, remedy))
