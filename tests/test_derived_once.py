@@ -47,7 +47,7 @@ def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
     count(Equations, "__init__", "derivations")
     count(programs, "form_program", "programs")
     count(build, "call_compiler", "compilations")
-    count(graph, "_look_for_problems", "checks")
+    count(graph, "_collect_problems", "checks")
     return done
 
 

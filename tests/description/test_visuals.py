@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import symofros as sf
-from symofros.description.visual import MOST_VISUALS, Visual
+from symofros.description.visual import MAX_VISUALS, Visual
 
 ROBOT = """<robot name="arm"><material name="sky"><color rgba="0 0.5 1 1"/></material>
 <link name="base"/>
@@ -84,7 +84,7 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
 
 
 def test_visuals_beyond_the_limit_are_dropped(tmp_path: Path) -> None:
-    assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
+    assert len(shapes(tmp_path, visual(BOX) * (MAX_VISUALS + 5))) == MAX_VISUALS
 
 
 def test_looks_change_nothing_that_is_computed(tmp_path: Path) -> None:

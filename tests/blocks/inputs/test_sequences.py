@@ -84,11 +84,11 @@ def test_large_and_foreign_files_are_not_read(tmp_path: Path, csv: Path, monkeyp
     assert "no NPZ file" in refused(tmp_path / "objects.npz")
     (tmp_path / "text.npz").write_text("not an archive")
     assert "no NPZ file" in refused(tmp_path / "text.npz")
-    monkeypatch.setattr(sequences, "MOST_NUMBERS", 4)
+    monkeypatch.setattr(sequences, "MAX_NUMBERS", 4)
     np.savez_compressed(tmp_path / "bomb.npz", t=np.zeros(5, dtype=np.int8))
     assert "at most 4 numbers" in refused(tmp_path / "bomb.npz")
     assert "at most 4 numbers" in refused(csv)
-    monkeypatch.setattr(sequences, "MOST_BYTES", 10)
+    monkeypatch.setattr(sequences, "MAX_BYTES", 10)
     assert "at most 10" in refused(csv)
 
 

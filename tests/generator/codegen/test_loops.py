@@ -137,9 +137,9 @@ def test_loops_compute_the_bits_of_the_graph(
         for output in outputs
     ]
     with pytest.MonkeyPatch.context() as patch:
-        for name, least in {"FEWEST": 2, "LEAST_SPARED": 1, "SEED": 2}.items():
+        for name, least in {"FEWEST": 2, "MIN_SPARED": 1, "SEED": 2}.items():
             patch.setattr(loops, name, least)
-        patch.setattr(routes, "LEAST_REPEATED", 1)
+        patch.setattr(routes, "MIN_REPEATED", 1)
         patch.setattr(routes, "REPEATED_SHARE", 0.0)
         patch.setattr(function, "MAX_STATEMENTS", 20)
         text = FunctionWriter(program, "f", ["q"], outputs, False).text()

@@ -35,7 +35,7 @@ _DIFFERENCE = 1e-5
 _AT_LIMIT = 1e-12
 # Curvature of f along the solutions, in the objective's own unit, below which its size is not trusted; and what is
 # negative.
-_LEAST_CURVATURE, _NEGATIVE = 1e-3, -1e-4
+_MIN_CURVATURE, _NEGATIVE = 1e-3, -1e-4
 
 
 def coordinate_limits(model: Model) -> list[tuple[int, int, float, float]]:
@@ -220,7 +220,7 @@ class NearestPosture:
                 return fallback
             curvature, V = np.linalg.eigh(self._curvature(q, Z))
             slope = V.T @ (Z.T @ self.objective.pull(q))
-            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _LEAST_CURVATURE * self.objective.curvature)))
+            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _MIN_CURVATURE * self.objective.curvature)))
             pushed = self._pushed(q, newton)
             if not pushed.size:
                 break

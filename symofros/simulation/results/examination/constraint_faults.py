@@ -6,7 +6,7 @@ import numpy as np
 
 from symofros.errors import SymofrosError
 from symofros.simulation.analysis.kinematics.postures import (
-    MOST_BETWEEN,
+    MAX_BETWEEN,
     Jump,
     Violation,
     jump_ahead,
@@ -68,7 +68,7 @@ def near_singular(run: ExaminedRun) -> tuple[float, float] | None:
     def motion(first: int, last: int) -> States | None:
         if run.settings.realtime or not run.same_inputs_again:
             return None
-        part = float(t[last] - t[first]) / MOST_BETWEEN
+        part = float(t[last] - t[first]) / MAX_BETWEEN
         status, along = run.in_short_steps((t[first], q[first], v[first]), float(t[last]), part)
         return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along
 
