@@ -116,7 +116,7 @@ def test_a_finished_member_stays_until_it_is_reset() -> None:
     np.testing.assert_array_equal(steppers.q[2], sf.simulate_batch(model, q, v, 4 * DT, dt=DT).q_last[2])
 
 
-def test_motions_off_their_constraints_do_not_begin() -> None:
+def test_motions_off_their_constraints_do_not_start() -> None:
     model, (q, v) = compiled("slider_crank"), starts("slider_crank")
     q[5, 0] += 0.1
     steppers = sf.Steppers(model, N, dt=DT)
@@ -151,7 +151,7 @@ def test_what_batches_cannot_do_is_refused(case: str) -> None:
         sf.Steppers(**({"model": compiled("cart_pole"), "n": 4} | options))
 
 
-def test_what_does_not_fit_is_refused_and_no_step_is_made() -> None:
+def test_wrong_inputs_of_steppers_are_refused_without_a_step() -> None:
     steppers = sf.Steppers(compiled("cart_pole"), 4, dt=DT)
     for u in (np.zeros((3, 1)), np.zeros((4, 2)), np.full((4, 1), np.nan)):
         with pytest.raises(sf.ShapeError, match=r"u does not fit[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"):

@@ -206,7 +206,7 @@ def test_the_text_does_not_grow_with_the_row() -> None:
     assert lines(80) == lines(40)
 
 
-def test_straight_code_stays_where_little_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_loops_are_not_formed_where_little_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
     """M of a chain: rows of different lengths."""
     stated = Compilation(chain(13, symbolic=False), sf.Options(functions=("mass_matrix",)))
     text = stated.source()

@@ -38,7 +38,7 @@ def test_closed_forms_are_periodic_and_start_right() -> None:
     assert psi[0] == pytest.approx(np.pi) and (psi[2] - psi[0]) / 1e-4 == pytest.approx(0.3, rel=1e-6)
 
 
-def test_closed_form_of_the_four_bar_against_its_equation() -> None:
+def test_the_closed_form_of_the_four_bar_satisfies_its_equation() -> None:
     solved = four_bar.four_bars.exact(1, tuple(four_bar.TIMES.tolist()))[0]
     assert four_bar.far(solved) < 1e-9 and four_bar.far(solved + 1e-3) == pytest.approx(1e-3, rel=1e-6)
 
