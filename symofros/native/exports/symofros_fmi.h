@@ -10,9 +10,11 @@ static const char *fmi_message(int found) {
     case FMU_SINGULAR: return "no finite acceleration, or constraints that can't be met";
     case FMU_WRONG_MODE: return "the call is not allowed in this mode";
     case FMU_START_NOT_CONSISTENT: return "no state near the start meets the constraints";
-    case FMU_STOP_BEFORE_START: return "the stop time is before the start time";
+    case FMU_STOP_BEFORE_START: return "the start time is no finite number, or the stop time is before it or no number";
     case FMU_NO_ROTATION: return "start values of a quaternion are no rotation: they are of unit length";
     case FMU_INPUT_NO_ROTATION: return "inputs that prescribe a motion hold a quaternion that is no rotation: they are of unit length";
+    case FMU_WRONG_SIZE: return "an array has another length than the call needs";
+    case FMU_NULL: return "an array or a result that the call needs is NULL";
     case FMU_NO_MEMORY: return "no memory";
     case FMU_OTHER_MODEL: return "the state is of another model or kind";
     case FMU_BUFFER_TOO_SMALL: return "too few bytes";
@@ -22,12 +24,15 @@ static const char *fmi_message(int found) {
 
 static int fmi_require(int condition) { return condition ? FMU_OK : FMU_WRONG_MODE; }
 
+static int fmi_missing(const void *array, size_t n) { return n > 0 && array == NULL; }
+
 /* Times and tolerance of the run to come. */
 static int fmi_prepare(fmu *f, int has_tolerance, double tolerance, double start, int has_stop, double stop) {
     if (f->phase != FMU_INSTANTIATED) return FMU_WRONG_MODE;
-    if (has_stop && !(stop >= start)) return FMU_STOP_BEFORE_START;
-    if (has_tolerance && tolerance > 0.0 && f->instance->run.adaptive) f->instance->run.rtol = tolerance;
-    f->instance->t = start, f->has_stop = has_stop, f->stop = stop;
+    if (!(start - start == 0.0) || (has_stop && !(stop >= start))) return FMU_STOP_BEFORE_START;
+    if (has_tolerance && tolerance > 0.0 && tolerance < HUGE_VAL && f->instance->run.adaptive)
+        f->instance->run.rtol = tolerance;
+    f->instance->t = start, f->has_stop = has_stop && stop < HUGE_VAL, f->stop = stop;
     return FMU_OK;
 }
 
@@ -52,6 +57,7 @@ static int fmi_reset(fmu *f) {
 static int fmi_get(fmu *f, const uint32_t *references, size_t n, double *values) {
     size_t i;
     int found = fmi_require(f->phase != FMU_INSTANTIATED);
+    if (fmi_missing(references, n) || fmi_missing(values, n)) return FMU_NULL;
     for (i = 0; i < n && found == FMU_OK; ++i) found = fmu_get(f, references[i], &values[i]);
     return found;
 }
@@ -59,11 +65,13 @@ static int fmi_get(fmu *f, const uint32_t *references, size_t n, double *values)
 static int fmi_set(fmu *f, const uint32_t *references, size_t n, const double *values) {
     size_t i;
     int found = FMU_OK;
+    if (fmi_missing(references, n) || fmi_missing(values, n)) return FMU_NULL;
     for (i = 0; i < n && found == FMU_OK; ++i) found = fmu_set(f, references[i], values[i]);
     return found;
 }
 
 static int fmi_save(fmu *f, void **state) {
+    if (state == NULL) return FMU_NULL;
     if (*state == NULL) *state = malloc(fmu_snapshot_size(f));
     if (*state == NULL) return FMU_NO_MEMORY;
     fmu_save(f, *state);
@@ -71,7 +79,7 @@ static int fmi_save(fmu *f, void **state) {
 }
 
 static int fmi_load(fmu *f, const void *state) {
-    if (state == NULL) return FMU_WRONG_MODE;
+    if (state == NULL) return FMU_NULL;
     return fmu_load(f, state) ? FMU_OK : FMU_OTHER_MODEL;
 }
 
@@ -81,20 +89,23 @@ static int fmi_forget(void **state) {
 }
 
 static int fmi_size(const fmu *f, const void *state, size_t *size) {
-    if (state == NULL) return FMU_WRONG_MODE;
+    if (state == NULL || size == NULL) return FMU_NULL;
+    if (!fmu_owns(f, state)) return FMU_OTHER_MODEL;
     *size = fmu_snapshot_size(f);
     return FMU_OK;
 }
 
 static int fmi_pack(const fmu *f, const void *state, void *bytes, size_t size) {
-    if (state == NULL) return FMU_WRONG_MODE;
+    if (state == NULL || bytes == NULL) return FMU_NULL;
+    if (!fmu_owns(f, state)) return FMU_OTHER_MODEL;
     if (size < fmu_snapshot_size(f)) return FMU_BUFFER_TOO_SMALL;
     memcpy(bytes, state, fmu_snapshot_size(f));
     return FMU_OK;
 }
 
 static int fmi_unpack(const fmu *f, const void *bytes, size_t size, void **state) {
-    if (size != fmu_snapshot_size(f)) return FMU_OTHER_MODEL;
+    if (bytes == NULL || state == NULL) return FMU_NULL;
+    if (size != fmu_snapshot_size(f) || !fmu_owns(f, bytes)) return FMU_OTHER_MODEL;
     if (*state == NULL) *state = malloc(size);
     if (*state == NULL) return FMU_NO_MEMORY;
     memcpy(*state, bytes, size);
@@ -104,6 +115,8 @@ static int fmi_unpack(const fmu *f, const void *bytes, size_t size, void **state
 static int fmi_differentiate(fmu *f, const uint32_t *unknown, size_t n_unknown, const uint32_t *known, size_t n_known,
                              const double *seed, double *found) {
     if (f->phase == FMU_INSTANTIATED || f->phase == FMU_TERMINATED) return FMU_WRONG_MODE;
+    if (fmi_missing(unknown, n_unknown) || fmi_missing(found, n_unknown)) return FMU_NULL;
+    if (fmi_missing(known, n_known) || fmi_missing(seed, n_known)) return FMU_NULL;
     return fmu_differentiate(f, n_unknown, unknown, n_known, known, seed, found);
 }
 
@@ -123,15 +136,24 @@ static int fmi_continuous_mode(fmu *f) {
 
 static int fmi_set_time(fmu *f, double t) {
     if (f->cosim || (f->phase != FMU_CONTINUOUS && f->phase != FMU_EVENT)) return FMU_WRONG_MODE;
+    if (!(t - t == 0.0)) return FMU_NOT_ALLOWED;
     f->instance->t = t, f->rates_valid = 0;
     return FMU_OK;
 }
 
 static size_t fmi_states(const fmu *f) { return (size_t)f->instance->model->nq + (size_t)f->instance->model->nv; }
 
+/* Whether the call is allowed, and its array has a number for each state. */
+static int fmi_check_states(const fmu *f, int allowed, const double *array, size_t n) {
+    if (f->cosim || !allowed) return FMU_WRONG_MODE;
+    if (n != fmi_states(f)) return FMU_WRONG_SIZE;
+    return fmi_missing(array, n) ? FMU_NULL : FMU_OK;
+}
+
 static int fmi_set_states(fmu *f, const double *x, size_t n) {
     const size_t nq = (size_t)f->instance->model->nq;
-    if (f->cosim || f->phase != FMU_CONTINUOUS || n != fmi_states(f)) return FMU_WRONG_MODE;
+    const int found = fmi_check_states(f, f->phase == FMU_CONTINUOUS, x, n);
+    if (found != FMU_OK || n == 0) return found;
     memcpy(f->instance->q, x, nq * sizeof *x), memcpy(f->instance->v, x + nq, (n - nq) * sizeof *x);
     f->rates_valid = 0;
     return FMU_OK;
@@ -139,22 +161,23 @@ static int fmi_set_states(fmu *f, const double *x, size_t n) {
 
 static int fmi_get_states(const fmu *f, double *x, size_t n) {
     const size_t nq = (size_t)f->instance->model->nq;
-    if (f->cosim || f->phase < FMU_INITIALISING || n != fmi_states(f)) return FMU_WRONG_MODE;
+    const int found = fmi_check_states(f, f->phase >= FMU_INITIALISING, x, n);
+    if (found != FMU_OK || n == 0) return found;
     memcpy(x, f->instance->q, nq * sizeof *x), memcpy(x + nq, f->instance->v, (n - nq) * sizeof *x);
     return FMU_OK;
 }
 
 static int fmi_get_rates(fmu *f, double *rates, size_t n) {
-    int found;
-    if (f->cosim || f->phase < FMU_INITIALISING || n != fmi_states(f)) return FMU_WRONG_MODE;
+    int found = fmi_check_states(f, f->phase >= FMU_INITIALISING, rates, n);
+    if (found != FMU_OK || n == 0) return found;
     found = fmu_refresh(f);
     if (found == FMU_OK) memcpy(rates, f->rates, n * sizeof *rates);
     return found;
 }
 
 static int fmi_nominals(const fmu *f, double *nominals, size_t n) {
+    const int found = fmi_check_states(f, 1, nominals, n);
     size_t i;
-    if (f->cosim || n != fmi_states(f)) return FMU_WRONG_MODE;
-    for (i = 0; i < n; ++i) nominals[i] = 1.0;
-    return FMU_OK;
+    for (i = 0; i < n && found == FMU_OK; ++i) nominals[i] = 1.0;
+    return found;
 }

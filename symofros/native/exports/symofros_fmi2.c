@@ -37,12 +37,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (functions == NULL || functions->allocateMemory == NULL || functions->freeMemory == NULL) return NULL;
     if (name == NULL || name[0] == '\0' || guid == NULL || strcmp(guid, SYM_FMU_TOKEN) != 0) {
         if (functions->logger != NULL)
-            functions->logger(functions->componentEnvironment, name, fmi2Error, "logStatusError", "%s",
-                              "the GUID is another one, or the name is empty");
+            functions->logger(functions->componentEnvironment, name == NULL ? "" : name, fmi2Error, "logStatusError",
+                              "%s", "the GUID is another one, or the name is empty");
         return NULL;
     }
     f = fmu_new(type == fmi2CoSimulation, name, functions->allocateMemory, functions->freeMemory);
-    if (f == NULL) return NULL;
+    if (f == NULL) {
+        if (functions->logger != NULL)
+            functions->logger(functions->componentEnvironment, name, fmi2Error, "logStatusError", "%s",
+                              fmi_message(FMU_NO_MEMORY));
+        return NULL;
+    }
     f->environment = functions->componentEnvironment;
     memcpy(&f->logger, &functions->logger, sizeof f->logger);
     fmu_reset(f);
@@ -95,6 +100,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     fmu *f = c;
     ALLOWED(!f->cosim && f->phase == FMU_EVENT);
+    NEEDED(info);
     info->newDiscreteStatesNeeded = info->terminateSimulation = info->nominalsOfContinuousStatesChanged = fmi2False;
     info->valuesOfContinuousStatesChanged = fmi2False;
     info->nextEventTime = 0.0;
@@ -143,6 +149,7 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2DoStepStatus);
+    NEEDED(value);
     *value = fmi2OK; /* no step is ever pending */
     return fmi2OK;
 }
@@ -150,6 +157,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2LastSuccessfulTime);
+    NEEDED(value);
     *value = f->instance->t;
     return fmi2OK;
 }
@@ -164,6 +172,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2Terminated);
+    NEEDED(value);
     *value = fmi2False;
     return fmi2OK;
 }
@@ -171,6 +180,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2PendingStatus);
+    NEEDED(value);
     *value = "";
     return fmi2OK;
 }

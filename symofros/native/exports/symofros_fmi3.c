@@ -35,7 +35,10 @@ static fmi3Instance instantiate(int cosim, fmi3String name, fmi3String token, fm
         return NULL;
     }
     f = fmu_new(cosim, name, calloc, free);
-    if (f == NULL) return NULL;
+    if (f == NULL) {
+        if (logger != NULL) logger(environment, fmi3Error, "logStatusError", fmi_message(FMU_NO_MEMORY));
+        return NULL;
+    }
     f->environment = environment;
     memcpy(&f->logger, &logger, sizeof f->logger);
     fmu_reset(f);
@@ -84,19 +87,19 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance
 }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, fmi3Float64 value[], size_t nv) {
-    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_get(f, vr, n, value));
+    ANSWER(n != nv ? FMU_WRONG_SIZE : fmi_get(f, vr, n, value));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t n, const fmi3Float64 value[],
                           size_t nv) {
-    ANSWER(n != nv ? FMU_WRONG_MODE : fmi_set(f, vr, n, value));
+    ANSWER(n != nv ? FMU_WRONG_SIZE : fmi_set(f, vr, n, value));
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
                                         const fmi3ValueReference known[], size_t n_known, const fmi3Float64 seed[],
                                         size_t n_seed, fmi3Float64 sensitivity[], size_t n_sensitivity) {
     ANSWER(n_seed != n_known || n_sensitivity != n_unknown
-               ? FMU_WRONG_MODE
+               ? FMU_WRONG_SIZE
                : fmi_differentiate(f, unknown, n_unknown, known, n_known, seed, sensitivity));
 }
 
@@ -120,6 +123,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
                                     fmi3Boolean *states, fmi3Boolean *has_next, fmi3Float64 *next) {
     fmu *f = c;
     ALLOWED(f->phase == FMU_EVENT);
+    NEEDED(again && terminate && nominals && states && has_next && next);
     *again = *terminate = *nominals = *states = fmi3False;
     *next = 0.0;
     *has_next = fmu_next_event(f, next) ? fmi3True : fmi3False;
@@ -135,6 +139,7 @@ fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 derivat
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) {
     fmu *f = c;
     ALLOWED(!f->cosim);
+    NEEDED(n);
     *n = 0;
     return fmi3OK;
 }
@@ -142,6 +147,7 @@ fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t *n) {
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) {
     fmu *f = c;
     ALLOWED(!f->cosim);
+    NEEDED(n);
     *n = fmi_states(f);
     return fmi3OK;
 }
@@ -168,6 +174,7 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     int found;
     (void)final;
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
+    NEEDED(event && terminate && early && last);
     *event = *terminate = *early = fmi3False;
     found = fmu_step(f, t, h);
     *last = f->instance->t;

@@ -9,7 +9,7 @@ static const char *category(FMI(Status) status) {
 static FMI(Status) outcome(const fmu *f, int found) {
     if (found == FMU_OK) return FMI(OK);
     if (found == FMU_BEYOND_THEORY) return say(f, FMI(Discard), f->message);
-    if (found == FMU_NOT_DIFFERENTIATED) return say(f, FMI(Error), f->message);
+    if (found == FMU_NOT_DIFFERENTIATED || found == FMU_STEP_REFUSED) return say(f, FMI(Error), f->message);
     return say(f, found == FMU_SINGULAR ? FMI(Discard) : FMI(Error), fmi_message(found));
 }
 
@@ -19,6 +19,8 @@ static FMI(Status) outcome(const fmu *f, int found) {
 #define ALLOWED(condition) \
     if (f == NULL) return FMI(Error); \
     if (!(condition)) return outcome(f, FMU_WRONG_MODE)
+#define NEEDED(results) \
+    if (!(results)) return outcome(f, FMU_NULL)
 
 void FMI(FreeInstance)(FMI_INSTANCE c) {
     fmu *f = c;
@@ -73,6 +75,7 @@ FMI(Status) FMI(CompletedIntegratorStep)(FMI_INSTANCE c, FMI(Boolean) final, FMI
     fmu *f = c;
     (void)final;
     ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
+    NEEDED(event && terminate);
     *event = *terminate = FMI(False);
     if (sym_instance_judge_beams(f->instance) != 0) *terminate = FMI(True);
     if (fmu_note_bending(f)) say(f, FMI(Warning), f->message);

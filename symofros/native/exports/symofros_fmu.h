@@ -10,7 +10,8 @@ typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FM
 enum {
     FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
     FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NOT_DIFFERENTIATED,
+    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NULL, FMU_WRONG_SIZE,
+    FMU_NOT_DIFFERENTIATED, FMU_STEP_REFUSED, /* said in f->message */
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
@@ -37,7 +38,7 @@ typedef struct fmu {
     void *environment, *logger;
     char *name;
     int bending_noted;  /* whether the log already says that a beam bends much */
-    char message[256]; /* on the beam that bends most, or on a derivative that there is none of */
+    char message[256]; /* on the beam that bends most, a derivative that there is none of, or a step that is refused */
     void (*release)(void *);
 } fmu;
 
@@ -128,6 +129,7 @@ static void fmu_reset(fmu *f) {
     if (!f->cosim)
         for (i = 0; i < 2 * nc; ++i) f->instance->gains[i] = FMU_GAIN;
     f->phase = FMU_INSTANTIATED, f->rates_valid = 0, f->has_stop = 0, f->parameters_valid = 1;
+    f->instance->run.rtol = f->instance->plant->rtol;
     f->bending_noted = 0;
 }
 
@@ -241,13 +243,21 @@ static int fmu_note_bending(fmu *f) {
     return !f->bending_noted++;
 }
 
+static int fmu_refuse_step(fmu *f, double t, double h, const char *rule, double limit) {
+    sprintf(f->message, "step of %.9g s from t = %.9g s refused: %.100s %.9g s", h, t, rule, limit);
+    return FMU_STEP_REFUSED;
+}
+
 /* One communication step. */
 static int fmu_step(fmu *f, double t, double h) {
     const double slack = 1e-9 * (fabs(t) + h);
     const int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
-    if (!(h > 0.0) || !(fabs(t - f->instance->t) <= slack)) return FMU_NOT_ALLOWED;
-    if (f->has_stop && t + h > f->stop + slack) return FMU_NOT_ALLOWED;
+    if (!(h > 0.0 && h < HUGE_VAL)) return fmu_refuse_step(f, t, h, "it has to be finite and longer than", 0.0);
+    if (!(fabs(t - f->instance->t) <= slack))
+        return fmu_refuse_step(f, t, h, "it has to begin at the present time, t =", f->instance->t);
+    if (f->has_stop && t + h > f->stop + slack)
+        return fmu_refuse_step(f, t, h, "it leads beyond the stop time, t =", f->stop);
     f->rates_valid = 0;
     switch (sym_instance_advance(f->instance, t + h, 0.0)) {
     case SYM_FINISHED: return FMU_OK;
@@ -329,6 +339,7 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
     memset(f->du, 0, (size_t)m->nu * sizeof(double)), memset(f->dpar, 0, (size_t)m->npar * sizeof(double));
     for (k = 0; k < n_known; ++k) {
         const int what = fmu_find_variable(f, known[k], &i);
+        if (!(seed[k] - seed[k] == 0.0)) return fmu_not_differentiated(f, known[k], "seeds are finite numbers");
         if (what == FMU_Q) f->dq[i] += seed[k];
         else if (what == FMU_V) f->dv[i] += seed[k];
         else if (what == FMU_U) f->du[i] += seed[k];
@@ -384,6 +395,13 @@ static void fmu_save(const fmu *f, void *into) {
     }
 }
 
+/* Whether a snapshot is of this model, and thus as long as this unit's are. */
+static int fmu_owns(const fmu *f, const void *snapshot) {
+    fmu_snapshot head;
+    memcpy(&head, snapshot, sizeof head);
+    return strncmp(head.hash, f->instance->model->hash, sizeof head.hash - 1) == 0;
+}
+
 /* Returns 0 where the snapshot is of another model or kind. */
 static int fmu_load(fmu *f, const void *from) {
     sym_instance *instance = f->instance;
@@ -394,8 +412,7 @@ static int fmu_load(fmu *f, const void *from) {
     fmu_snapshot head;
     int i;
     memcpy(&head, from, sizeof head);
-    head.hash[sizeof head.hash - 1] = '\0';
-    if (strncmp(head.hash, m->hash, sizeof head.hash - 1) != 0 || head.cosim != f->cosim) return 0;
+    if (!fmu_owns(f, from) || head.cosim != f->cosim) return 0;
     if (head.phase < 0 || head.phase > (int32_t)FMU_TERMINATED) return 0;
     instance->t = head.t, instance->run.h = head.h, f->stop = head.stop;
     f->phase = (fmu_phase)head.phase, f->has_stop = head.has_stop;

@@ -23,6 +23,7 @@ import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
 from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
+from tests.exports.fmi.logs import heard
 from tests.models import sampled
 from tests.simulation.beam_models import at_rest, cantilever_system
 
@@ -53,15 +54,11 @@ OWN = {"floating": FLOATING, "driven": DRIVEN, "planar": PLANAR, "turned": TURNE
 
 def simulated(path: str, **options: Any) -> tuple[Any, list[str]]:
     """What FMPy's simulator returns, or None where the unit refuses to go on, and the unit's log."""
-    log: list[str] = []
-
-    def logger(*given: Any) -> None:
-        log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
-
-    try:
-        return fmpy.simulate_fmu(path, logger=logger, **options), log
-    except FMICallException:
-        return None, log
+    with heard() as (logger, log):
+        try:
+            return fmpy.simulate_fmu(path, logger=logger, **options), log
+        except FMICallException:
+            return None, log
 
 
 def system_called(name: str) -> sf.System:

@@ -12,6 +12,7 @@ from fmpy.simulation import FMICallException, instantiate_fmu
 
 import symofros as sf
 from tests.exports.cases import PLANAR
+from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import LIMP, Unit, quickly
 
 SAME = 1e-12
@@ -102,20 +103,16 @@ def test_no_step_exceeds_the_stop_time(made: Any) -> None:
 def test_a_beam_is_judged_again_after_a_reset(made: Any, kind: str) -> None:
     """A run with a remark, after a reset one without, after another one again with it."""
     path = str(made(LIMP, True, method="dopri5").path)
-    about, log = fmpy.read_model_description(path), list[str]()
-
-    def logger(*given: Any) -> None:
-        log.append(" ".join(x.decode() if isinstance(x, bytes) else str(x) for x in given))
-
-    unit = instantiate_fmu(fmpy.extract(path), about, fmi_type=kind, logger=logger)
-    told = []
-    for g in (0.5, 0.1, 0.5):
-        log.clear()
-        given: Any = {"start_values": {"par.g": g}, "fmu_instance": unit, "fmi_type": kind}
-        fmpy.simulate_fmu(path, stop_time=1.0, output_interval=0.02, logger=logger, **given)
-        told.append([line for line in log if "second-order theory errs" in line])
-        unit.reset()
-    unit.freeInstance()
+    about, told = fmpy.read_model_description(path), []
+    with heard() as (logger, log):
+        unit = instantiate_fmu(fmpy.extract(path), about, fmi_type=kind, logger=logger)
+        for g in (0.5, 0.1, 0.5):
+            log.clear()
+            given: Any = {"start_values": {"par.g": g}, "fmu_instance": unit, "fmi_type": kind}
+            fmpy.simulate_fmu(path, stop_time=1.0, output_interval=0.02, logger=logger, **given)
+            told.append([line for line in log if "second-order theory errs" in line])
+            unit.reset()
+        unit.freeInstance()
     assert told[0] == told[2] and len(told[0]) == 1 and not told[1]
 
 
