@@ -228,7 +228,7 @@ def test_a_mesh_of_an_ambiguous_package_is_left_out_with_a_note(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("folder", ["a\0b", "x" * 5000])
-def test_folders_that_cannot_be_are_refused_in_few_words(tmp_path: Path, folder: str) -> None:
+def test_impossible_folders_are_refused_with_short_messages(tmp_path: Path, folder: str) -> None:
     (tmp_path / "a.urdf").write_text(ROBOT.format(FINGER))
     text = str(refused(tmp_path / "a.urdf", packages={"n" * 5000: folder}))
     assert "is not there" in text and "\0" not in text and len(text) < 1000

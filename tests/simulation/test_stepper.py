@@ -177,7 +177,7 @@ def test_laws_and_manual_inputs_combine() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "planar_robot", "random_tree1"])
-def test_what_is_asked_on_demand_matches_that_of_a_trajectory(name: str) -> None:
+def test_quantities_on_demand_match_a_trajectory(name: str) -> None:
     model, (q, v) = compiled(name), start(name)
     u = pushes(model)[0]
     stepper = sf.Stepper(model, dt=DT)
@@ -195,7 +195,7 @@ def test_what_is_asked_on_demand_matches_that_of_a_trajectory(name: str) -> None
     assert not np.array_equal(before[0], stepper.q)
 
 
-def test_what_went_wrong_is_reported_as_simulate_tells_it() -> None:
+def test_failures_are_reported_as_by_simulate() -> None:
     model = compiled("cart_pole")
     stepper, push = sf.Stepper(model, dt=0.5, method="euler"), np.array([1e7])
     while stepper.step(push):

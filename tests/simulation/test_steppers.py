@@ -75,7 +75,7 @@ def test_saved_states_go_on_to_the_same_bits() -> None:
         sf.Steppers(model, N, dt=DT).restore(saved)
 
 
-def test_some_begin_again_with_parameters_of_their_own_and_the_others_go_on() -> None:
+def test_a_partial_reset_with_parameters_leaves_the_others_running() -> None:
     model, (q, v) = compiled("cart_pole"), starts("cart_pole")
     par = np.tile(np.asarray(model.parameter_values), (N, 1)) * np.linspace(0.9, 1.1, N)[:, np.newaxis]
     steppers = sf.Steppers(model, N, par=par, dt=DT)
@@ -145,7 +145,7 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_batches_cannot_do_is_refused(case: str) -> None:
+def test_unsupported_options_of_batches_are_refused(case: str) -> None:
     options, said = REFUSED[case]
     with pytest.raises(sf.SymofrosError, match=said):
         sf.Steppers(**({"model": compiled("cart_pole"), "n": 4} | options))

@@ -249,7 +249,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
 
 
 def changed_beam(name: str, **changed: Any) -> Callable[[System], System]:
-    """A reduction that changes entries of a beam of a system."""
+    """A function that changes entries of a beam of a system."""
 
     def apply(system: System) -> System:
         body = system.body(name)

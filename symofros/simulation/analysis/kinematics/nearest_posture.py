@@ -109,7 +109,7 @@ class FromRest:
         return 0.5 * self.distance(q) ** 2
 
     def flat(self, q: Array) -> float:
-        """Configurations over which the distance changes only by rounding."""
+        """Norm of a gradient at q that counts as zero: the rounding of the distance."""
         return OPTIMALITY * (1.0 + self.distance(q))
 
 

@@ -77,7 +77,7 @@ def test_unreachable_postures_name_the_condition() -> None:
         sf.assemble(m, [1.5, -1.5, 0.0], held=["turn"])
 
 
-def test_speeds_that_cannot_be() -> None:
+def test_impossible_speeds_are_refused() -> None:
     m = sf.compile(MODELS["four_bar"], FUNCTIONS)
     with pytest.raises(sf.AssemblyError, match="no speeds keep it closed"):
         sf.assemble(m, [1.2, -1.2, 1.2], [1.0, 0.0, 0.0], held=["q1", "q3"])
