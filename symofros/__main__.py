@@ -32,15 +32,15 @@ _COMMANDS = {
     "validation": ("symofros.commands.harness", "validation"),
     "cache": ("symofros.commands.cache", "cache"),
 }
-_OF_THE_HARNESS = ("check", "validation")
-_AS_THEY_ARE = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
+_HARNESS_COMMANDS = ("check", "validation")
+_PASS_THROUGH = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
 
 
 @cache
 def _command(name: str) -> Any:
     module, function = _COMMANDS[name]
     single = program()
-    settings = _AS_THEY_ARE if name in _OF_THE_HARNESS else None
+    settings = _PASS_THROUGH if name in _HARNESS_COMMANDS else None
     single.command(name, context_settings=settings)(getattr(import_module(module), function))
     return typer.main.get_group(single).commands[name]
 
@@ -77,7 +77,7 @@ class Commands(TableGroup):
 app = program(cls=Commands, no_args_is_help=True, help="Symbolic multibody models as fast C code.")
 
 
-def _tell_version(wanted: bool) -> None:
+def _print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"symofros {sf.__version__}")
         raise typer.Exit()
@@ -86,7 +86,7 @@ def _tell_version(wanted: bool) -> None:
 @app.callback()
 def main(
     version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, is_eager=True, help="Show the version and exit.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Show the version and exit.")
     ] = False,
 ) -> None:
     """Symbolic multibody models as fast C code."""

@@ -153,7 +153,7 @@ class Compilation:
 
     @cached_property
     def programs(self) -> ProgramBuilder:
-        """The former of programs for the tree."""
+        """The builder of programs for the tree."""
         return ProgramBuilder(self.tree, self.options)
 
     @property

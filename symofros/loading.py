@@ -34,7 +34,7 @@ _IMPORTED = (*_URDF, *_SDF, ".xml", *USD_SUFFIXES)
 _ALL_IMPORTED = "URDF, xacro, SDF, MJCF and USD"
 _UNASKED: tuple[Any, ...] = (None, False, {}, "data")
 # Argument -> formats that have a use for it, their suffixes, what to do about another.
-_OF_FORMATS = {
+_FORMAT_OPTIONS = {
     "floating_base": (_ALL_IMPORTED, _IMPORTED, "give the base a free joint in the file"),
     "dissipation": (_ALL_IMPORTED, _IMPORTED, "state dampers and friction among the elements of the joints"),
     "limits": (_ALL_IMPORTED, _IMPORTED, "state stops among the elements of the joints"),
@@ -204,7 +204,7 @@ def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
     Raises:
         DescriptionError: There is one.
     """
-    for name, (formats, suffixes, remedy) in _OF_FORMATS.items():
+    for name, (formats, suffixes, remedy) in _FORMAT_OPTIONS.items():
         if getattr(asked, name) not in _UNASKED and suffix not in suffixes:
             rule = "other descriptions state it themselves, or have no such thing"
             argument = Argument(name, key="NAME" if name in ("arguments", "packages") else "")

@@ -47,7 +47,7 @@ def work(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Counter[str]:
     count(Equations, "__init__", "derivations")
     count(programs, "form_program", "programs")
     count(build, "call_compiler", "compilations")
-    count(graph, "_look_for_problems", "checks")
+    count(graph, "_collect_problems", "checks")
     return done
 
 
@@ -89,7 +89,7 @@ bodies:
 """
 
 
-def test_from_a_file_to_the_energy_of_a_closed_loop(work: Counter[str], tmp_path: Path) -> None:
+def test_an_energy_call_on_a_loop_from_a_file_derives_once(work: Counter[str], tmp_path: Path) -> None:
     """Compiled: M, h and Q; the constraints; forward dynamics with the projection; the energies; and the stepper."""
     file = tmp_path / "slider_crank.yaml"
     sf.save(MODELS["slider_crank"], file)

@@ -95,7 +95,7 @@ def tells(text: str, note: str) -> bool:
     return any(len(part) >= TELLING and (part.strip() in text or text in part) for part in note.split(HOLE))
 
 
-def test_each_note_is_heard_by_a_test() -> None:
+def test_each_note_is_triggered_by_a_test() -> None:
     assert len(register()) > 80, "the scan finds no notes"
     unheard = (note for note in register() if not any(tells(text, note) for text in expected()))
     missing = [f"{register()[note]}: {note}" for note in unheard]

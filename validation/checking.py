@@ -15,7 +15,7 @@ from . import references
 from .adapters import ROUTES, compiled, has_beams
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
-from .comparison.loops import of_unique_multipliers
+from .comparison.loops import with_unique_multipliers
 from .comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
 from .comparison.participants import (
     EPS,
@@ -264,7 +264,7 @@ def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
             continue
         states = one.states
         if one.route.loops and quantity.name == "multipliers":
-            states = of_unique_multipliers(one.model, states)
+            states = with_unique_multipliers(one.model, states)
             if not len(states):
                 reason = "conditions repeat each other, so multipliers are not unique; compared: Gᵀ lam"
                 yield Comparison(bench.label, one.name, quantity.name, "unsupported", note=reason)

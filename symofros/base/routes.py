@@ -26,12 +26,12 @@ MOST_STEPS = 96000
 # Products of full matrices that one by tables may take the time of, with margin for what is gained by neither.
 TABLE_PRODUCT = 8
 # Packs are judged in functions of up to SHORT operations; longer ones gain on AVX2, and lose 4 % at most on AVX-512.
-# They don't pay where the ratio of efforts, packs over scalars, is above MOST_STORED (above 1 where no lanes are stored
-# together); on 512-bit vectors, where it is above LEAST_DOUBT. From 21 functions of eight models (code.md, section 2).
-SHORT, MOST_STORED, LEAST_DOUBT = 1500, 1.03, 0.9
+# They don't pay where the ratio of efforts, packs over scalars, is above MAX_STORED (above 1 where no lanes are stored
+# together); on 512-bit vectors, where it is above MIN_DOUBT. From 21 functions of eight models (code.md, section 2).
+SHORT, MAX_STORED, MIN_DOUBT = 1500, 1.03, 0.9
 # Loops of a function leave out so many statements, and at least this share of all: where little repeats, they only cut
 # straight code in pieces (M of a chain of 52 joints, of which 2 % was spared, took 15 % longer).
-LEAST_REPEATED, REPEATED_SHARE = 200, 0.5
+MIN_REPEATED, REPEATED_SHARE = 200, 0.5
 # Vectors of equal limbs are formed where they spare this share of a function's operations.
 LIMB_SHARE = 0.08
 
@@ -82,15 +82,15 @@ def table_pays(products: float, full: float) -> bool:
 
 
 def _packs_pay(f: Mapping[str, float]) -> bool:
-    return bool(f["by_routine"]) or f["operations"] > SHORT or f["effort_ratio"] <= LEAST_DOUBT
+    return bool(f["by_routine"]) or f["operations"] > SHORT or f["effort_ratio"] <= MIN_DOUBT
 
 
 def _packs_cost(f: Mapping[str, float]) -> bool:
-    return f["vectors"] == 0 or f["effort_ratio"] > (MOST_STORED if f["stored_together"] else 1.0)
+    return f["vectors"] == 0 or f["effort_ratio"] > (MAX_STORED if f["stored_together"] else 1.0)
 
 
 def _loops_pay(f: Mapping[str, float]) -> bool:
-    return f["repeated_statements"] >= max(LEAST_REPEATED, REPEATED_SHARE * f["statements"])
+    return f["repeated_statements"] >= max(MIN_REPEATED, REPEATED_SHARE * f["statements"])
 
 
 def _never(_: Mapping[str, float]) -> bool:
@@ -243,7 +243,7 @@ _quantity(
     Route(
         "packs",
         f"a routine finishes the function, it has more than {SHORT} operations, or effort by packs is at most "
-        f"{LEAST_DOUBT} of that by scalars",
+        f"{MIN_DOUBT} of that by scalars",
         _BITS,
         "code.md, 2, (3)",
         _SHARING,
@@ -252,7 +252,7 @@ _quantity(
     ),
     Route(
         "scalars",
-        f"nothing shares vectors, or packs take more than {MOST_STORED} of the effort by scalars (than 1, where no "
+        f"nothing shares vectors, or packs take more than {MAX_STORED} of the effort by scalars (than 1, where no "
         "lanes are stored together)",
         _BITS,
         "code.md, 2",
@@ -272,7 +272,7 @@ _quantity(
     "equal parts",
     Route(
         "loops",
-        f"loops leave out at least {LEAST_REPEATED} statements and {REPEATED_SHARE:.0%} of all",
+        f"loops leave out at least {MIN_REPEATED} statements and {REPEATED_SHARE:.0%} of all",
         _BITS,
         "code.md, 9",
         "parts of a mechanism repeat in the text",

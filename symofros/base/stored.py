@@ -40,7 +40,7 @@ def stored_text(path: Path, make: Callable[[str], T], errors: str = "strict") ->
             return None
         _warn(path, "a link that leads nowhere")
     except _DAMAGE as error:
-        _warn(path, _in_a_line(error))
+        _warn(path, _single_line(error))
     return None
 
 
@@ -101,7 +101,7 @@ def keep(path: Path, content: str) -> None:
     try:
         write_atomically(path, content)
     except OSError as error:
-        _warn(path, _in_a_line(error), "it is not kept")
+        _warn(path, _single_line(error), "it is not kept")
 
 
 def _content(path: Path) -> bytes:
@@ -110,7 +110,7 @@ def _content(path: Path) -> bytes:
     return path.read_bytes()
 
 
-def _in_a_line(error: BaseException) -> str:
+def _single_line(error: BaseException) -> str:
     return f"{type(error).__name__}: {' '.join(str(error).split()):.200}"
 
 

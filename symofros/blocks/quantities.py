@@ -44,7 +44,7 @@ def entry_units(record: ModelRecord, quantity: Quantity) -> tuple[str, ...]:
     return tuple(units)
 
 
-def of_units(port: Port, units: Sequence[str]) -> Port:
+def with_units(port: Port, units: Sequence[str]) -> Port:
     """A port whose entries have these units: one unit where they are all alike."""
     if len(set(units)) <= 1:
         return replace(port, unit=units[0] if units else "", units=())
@@ -54,7 +54,7 @@ def of_units(port: Port, units: Sequence[str]) -> Port:
 def motion_port(name: str, record: ModelRecord, quantity: Quantity, default: Any = None) -> Port:
     """A port for a model's q (nq), v, a, efforts (nv) or inputs u (nu), with the units of their entries."""
     units = entry_units(record, quantity)
-    return of_units(Port(name, (len(units),), "", default), units)
+    return with_units(Port(name, (len(units),), "", default), units)
 
 
 def passed_units(environment: Environment, stated: str, names: Sequence[str]) -> tuple[str, ...]:
@@ -67,7 +67,7 @@ def passed_units(environment: Environment, stated: str, names: Sequence[str]) ->
 def passing(environment: Environment, shape: Shape | None, stated: str) -> Ports:
     """An input u and an output y of one shape and one unit: the stated unit, or that of the connected signal."""
     units = passed_units(environment, stated, ("u",))
-    return Ports((of_units(Port("u", shape), units),), (of_units(Port("y", shape), units),))
+    return Ports((with_units(Port("u", shape), units),), (with_units(Port("y", shape), units),))
 
 
 def common_shape(environment: Environment, names: Sequence[str]) -> Shape | None:

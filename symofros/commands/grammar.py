@@ -85,16 +85,16 @@ class TableGroup(Group, ABC):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """The list of all commands in the help."""
-        with self._names_alone():
+        with self._names_only():
             super().format_commands(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> Any:
         """Names of commands that begin so."""
-        with self._names_alone():
+        with self._names_only():
             return super().shell_complete(ctx, incomplete)
 
     @contextmanager
-    def _names_alone(self) -> Iterator[None]:
+    def _names_only(self) -> Iterator[None]:
         """Commands are asked for to be listed, which imports none."""
         self._listing = True
         try:

@@ -14,7 +14,7 @@ from symofros.base.functions import DEFAULT_FRAME_FUNCTIONS, DEFAULT_FUNCTIONS, 
 from symofros.base.routes import ROUTES, Choice
 from symofros.commands.details import details, frames_line, tables
 from symofros.commands.reading import ReadingOptions, reads_models
-from symofros.commands.shared import OF_A_DIAGRAM, AsJson, FilePath, Network, load, refuse
+from symofros.commands.shared import NOT_FOR_DIAGRAMS, AsJson, FilePath, Network, load, refuse
 from symofros.commands.terminal import out
 from symofros.diagrams.files.kind import is_diagram
 from symofros.mechanics.topology import BASE, SpanningTree, build_tree
@@ -39,11 +39,11 @@ def info(
 ) -> None:
     """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
     if is_diagram(model):
-        reading.require_none(OF_A_DIAGRAM)
+        reading.require_none(NOT_FOR_DIAGRAMS)
         from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
 
         try:
-            diagrams.tell_diagram(sf.load_diagram(model, network=network), as_json, out)
+            diagrams.print_diagram(sf.load_diagram(model, network=network), as_json, out)
         except sf.SymofrosError as error:
             raise refuse(error) from None
         return

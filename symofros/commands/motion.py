@@ -14,7 +14,7 @@ import symofros as sf
 from symofros.commands import view_options
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import (
-    OF_A_DIAGRAM,
+    NOT_FOR_DIAGRAMS,
     AsJson,
     FilePath,
     Network,
@@ -33,7 +33,7 @@ from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.progress import pace_of
-from symofros.simulation.results.plots import MOST_CURVES
+from symofros.simulation.results.plots import MAX_CURVES
 from symofros.simulation.stepping.methods import METHODS
 
 
@@ -99,7 +99,7 @@ def simulate(
     viewing = view_options.ViewOptions(view, view_block, record_view, exaggeration, interactive)
     try:
         if is_diagram(model):
-            reading.require_none(OF_A_DIAGRAM)
+            reading.require_none(NOT_FOR_DIAGRAMS)
             if inputs:
                 raise sf.SymofrosError(
                     sf.Problem(
@@ -117,7 +117,7 @@ def simulate(
             diagram, live = view_options.with_live_view(diagram, viewing, bool(pace or diagram.simulation.realtime))
             diagram_run = diagrams.run_diagram(diagram, request, wanted)
             files = diagrams.write_files(diagram_run, request) + view_options.record_run(diagram_run, viewing)
-            diagrams.tell_run(diagram_run, files, as_json, out)
+            diagrams.print_run(diagram_run, files, as_json, out)
             view_options.show_run(diagram_run, viewing, live=live)
             ok = diagram_run.outcome.ok
         else:
@@ -177,8 +177,8 @@ def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
     """Write a picture of a run and report the signals that it leaves out."""
     run.plot(*names).savefig(picture, dpi=120)
     count = len(names or run.model.names.q)
-    if count > MOST_CURVES:
-        told = f"{picture} shows the first {MOST_CURVES} of {count} coordinates: --signals NAME,... chooses others"
+    if count > MAX_CURVES:
+        told = f"{picture} shows the first {MAX_CURVES} of {count} coordinates: --signals NAME,... chooses others"
         err.print(told, markup=False, highlight=False, soft_wrap=True)
     return picture
 

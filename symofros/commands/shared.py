@@ -24,7 +24,7 @@ Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
 # Why options of reading are refused.
-OF_A_DIAGRAM = "the file is a diagram, which states how its models are read"
+NOT_FOR_DIAGRAMS = "the file is a diagram, which states how its models are read"
 
 
 def load(path: Path, reading: ReadingOptions) -> System:

@@ -12,7 +12,7 @@ import typer
 import symofros as sf
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import (
-    OF_A_DIAGRAM,
+    NOT_FOR_DIAGRAMS,
     AsJson,
     FilePath,
     ModelPath,
@@ -93,7 +93,7 @@ def export_command(
     start = {key: number(key, text) for key, text in assignments(given, "--set").items()}
     try:
         if is_diagram(model):
-            reading.require_none(OF_A_DIAGRAM)
+            reading.require_none(NOT_FOR_DIAGRAMS)
         described = sf.load_diagram(model) if is_diagram(model) else load(model, reading)
         done = sf.export(
             described,

@@ -13,7 +13,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.page.viser_server import load_viser
-from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_of
+from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_system_and_states
 from symofros.studio.viewer.record import check_suffix, record
 from symofros.studio.viewer.view import view
 
@@ -107,7 +107,7 @@ def show_run(
         return
     if live is not None and live.viewer is not None and isinstance(run, DiagramRun):
         viewer = live.viewer
-        viewer.play(shown_of(run, options.block)[1])
+        viewer.play(shown_system_and_states(run, options.block)[1])
     elif isinstance(run, DiagramRun):
         viewer = view(run, block=options.block, exaggeration=options.exaggeration, port=0)
     else:

@@ -17,7 +17,7 @@ from symofros.expr.expression import Expression
 
 _Class = TypeVar("_Class", bound=type)
 # Numbers of which their classes say in words of their own which are meant.
-_JUDGED_BY_THEIR_CLASS = frozenset(
+_CHECKED_BY_CLASS = frozenset(
     {"at", "segments", "sections", "bend_y", "bend_z", "twist", "stretch", "shear_y", "shear_z"}
 )
 _ANCHOR = tuple[str, str | None]
@@ -99,7 +99,7 @@ def _conversion(entry: str, annotation: Any) -> _Convert | None:
         return partial(_collect, _check_load if entry == "loads" else _check_of(parts[0]))
     if origin is Mapping:
         return _mapping
-    check = _check_scalar if entry in _JUDGED_BY_THEIR_CLASS else _check_of(annotation)
+    check = _check_scalar if entry in _CHECKED_BY_CLASS else _check_of(annotation)
     return None if check is None else partial(_convert, check)
 
 

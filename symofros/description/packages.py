@@ -22,15 +22,15 @@ Folders = Mapping[str, str | os.PathLike[str]]
 _MANIFEST = "package.xml"
 _DECLARE_A_MODEL = ("model.config", "model.sdf")
 # Names beside a package that are looked at; bytes of one manifest, and of all together, that are read for their names.
-_MOST_NEIGHBOURS = 1000
-_MOST_OF_ONE, _MOST_BYTES = 64 << 10, 4 << 20
+_MAX_NEIGHBOURS = 1000
+_MAX_OF_ONE, _MAX_BYTES = 64 << 10, 4 << 20
 # Parts of the path of a folder that a remedy may open: / and /etc are everybody's.
-_LEAST_PARTS = 3
+_MIN_PARTS = 3
 # Characters of a name that a message shows.
-MOST_SHOWN = 200
+MAX_SHOWN = 200
 NEIGHBOURS = (
-    f"those beside it, {_MOST_NEIGHBOURS} at most, by the <name> in the first {_MOST_OF_ONE >> 10} kB of their "
-    f"package.xml, {_MOST_BYTES >> 20} MB of all together"
+    f"those beside it, {_MAX_NEIGHBOURS} at most, by the <name> in the first {_MAX_OF_ONE >> 10} kB of their "
+    f"package.xml, {_MAX_BYTES >> 20} MB of all together"
 )
 
 
@@ -51,17 +51,17 @@ class Packages:
         self._bytes = 0
         for name, folder in (stated or {}).items():
             if "\0" in os.fspath(folder):
-                shown, rule = f"{os.fspath(folder)!r:.{MOST_SHOWN}}", "the path of a folder holds no NUL character"
+                shown, rule = f"{os.fspath(folder)!r:.{MAX_SHOWN}}", "the path of a folder holds no NUL character"
                 raise DescriptionError(
-                    Problem(f"package '{name:.{MOST_SHOWN}}' is not there", shown, rule, "check the path")
+                    Problem(f"package '{name:.{MAX_SHOWN}}' is not there", shown, rule, "check the path")
                 )
         self.stated = {name: resolved(Path(folder)) for name, folder in (stated or {}).items()}
         for name, folder in self.stated.items():
             if not os.path.isdir(folder):
                 raise DescriptionError(
                     Problem(
-                        f"package '{name:.{MOST_SHOWN}}' is not there",
-                        f"'{str(folder):.{MOST_SHOWN}}'",
+                        f"package '{name:.{MAX_SHOWN}}' is not there",
+                        f"'{str(folder):.{MAX_SHOWN}}'",
                         "a package is a folder",
                         "check the path",
                     )
@@ -111,7 +111,7 @@ class Packages:
     def _name_of(self, folder: Path) -> str:
         """Name that a package's manifest states; "" where there is none, or it can't be read within the bounds."""
         if folder not in self._names:
-            text = _beginning(folder / _MANIFEST, min(_MOST_OF_ONE, _MOST_BYTES - self._bytes))
+            text = _beginning(folder / _MANIFEST, min(_MAX_OF_ONE, _MAX_BYTES - self._bytes))
             self._bytes += len(text)
             self._names[folder] = _name_in(text)
         return self._names[folder]
@@ -153,7 +153,7 @@ class Packages:
             path: The folder, or a file in it.
         """
         folder = Path(os.path.normpath(path if os.path.isdir(path) else path.parent))
-        shared = len(folder.parts) < _LEAST_PARTS or not folder.is_relative_to(self.folder.parent.parent)
+        shared = len(folder.parts) < _MIN_PARTS or not folder.is_relative_to(self.folder.parent.parent)
         if shared or not os.path.isdir(folder) or self.allows(resolved(folder)):
             return None
         return Argument("packages", str(folder), folder.name)
@@ -161,7 +161,7 @@ class Packages:
 
 def told(folders: Iterable[Path]) -> str:
     """Folders as messages name them."""
-    return " and ".join(f"'{str(folder):.{MOST_SHOWN}}'" for folder in islice(folders, 2))
+    return " and ".join(f"'{str(folder):.{MAX_SHOWN}}'" for folder in islice(folders, 2))
 
 
 def _is_plain(name: str) -> bool:
@@ -178,9 +178,7 @@ def _beside(folder: Path) -> Iterator[Path]:
     """Folders beside one, which are no links, in the order of their names."""
     try:
         with os.scandir(folder.parent) as entries:
-            yield from sorted(
-                Path(e.path) for e in islice(entries, _MOST_NEIGHBOURS) if e.is_dir(follow_symlinks=False)
-            )
+            yield from sorted(Path(e.path) for e in islice(entries, _MAX_NEIGHBOURS) if e.is_dir(follow_symlinks=False))
     except OSError:
         return
 

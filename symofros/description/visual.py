@@ -10,7 +10,7 @@ from symofros.description.values import IDENTITY, Rotation
 
 VisualKind = Literal["box", "sphere", "cylinder", "capsule", "ellipsoid", "mesh"]
 
-MOST_VISUALS = 10_000  # That are kept of one file.
+MAX_VISUALS = 10_000  # That are kept of one file.
 
 
 @dataclass(frozen=True)

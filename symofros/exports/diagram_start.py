@@ -61,7 +61,7 @@ def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping)
         compiled, lambda model: part_settings(options, model, until), par, Start.of(resolved, options.t0)
     )
     run = run_compiled(compiled, until, options)
-    noted = [*_of_models(resolved, placed), *(note for part in placed for note in part.notes)]
+    noted = [*_mechanism_notes(resolved, placed), *(note for part in placed for note in part.notes)]
     if run.outcome.kind != "finished":
         noted.append(f"a run of the first {until:g} s ends at t = {run.outcome.t:g} s: {run.outcome.reason}")
     noted += [f"in the first {until:g} s: {note}" for note in run.outcome.notes if note not in noted]
@@ -73,7 +73,7 @@ def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping)
     )
 
 
-def _of_models(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[str]:
+def _mechanism_notes(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[str]:
     """Notes on the mechanisms: their descriptions, unenforced limits, singular first postures."""
     layout, models = resolved.layout, resolved.wired.models
     for part, at in zip(layout.parts, placed, strict=True):

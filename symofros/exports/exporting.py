@@ -60,7 +60,7 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
-_OF_CHOSEN_FUNCTIONS = ("c", "wasm")
+_TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
 _UNKNOWN_INSTANTS = (
@@ -134,12 +134,12 @@ def export(
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
-    if functions and target not in _OF_CHOSEN_FUNCTIONS:
+    if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(
                 f"export: '{target}' has functions of its own",
                 ", ".join(functions),
-                f"functions are chosen for {' and '.join(_OF_CHOSEN_FUNCTIONS)}",
+                f"functions are chosen for {' and '.join(_TARGETS_WITH_CHOSEN_FUNCTIONS)}",
                 "leave `functions` out",
             )
         )

@@ -44,19 +44,19 @@ def check_folder(folder: Path) -> dict[str, str]:
     if not folder.exists():
         return {}
     if not folder.is_dir():
-        raise _not_ours(folder, "a file")
+        raise _foreign_file_error(folder, "a file")
     manifest = folder / MANIFEST
     if not manifest.is_file():
         names = sorted(path.name for path in folder.iterdir())
         if names:
-            raise _not_ours(folder, f"{len(names)} entries without {MANIFEST}: {', '.join(names[:6])}")
+            raise _foreign_file_error(folder, f"{len(names)} entries without {MANIFEST}: {', '.join(names[:6])}")
         return {}
     try:
         stated = json.loads(manifest.read_text(encoding="utf-8"))
         files = stated["files"]
         known = {str(name): str(digest) for name, digest in files.items()}
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
-        raise _not_ours(folder, f"a {MANIFEST} that we did not write") from None
+        raise _foreign_file_error(folder, f"a {MANIFEST} that we did not write") from None
     # A manifest is input, too: names that lead out of the folder are not ours.
     return {name: digest for name, digest in known.items() if Path(name).name == name}
 
@@ -86,7 +86,7 @@ def check_same(folder: Path, target: str, name: str) -> None:
         )
 
 
-def _not_ours(folder: Path, found: str) -> ExportError:
+def _foreign_file_error(folder: Path, found: str) -> ExportError:
     return ExportError(
         Problem(
             f"'{folder}' is not overwritten",
@@ -128,7 +128,7 @@ def write_folder(
     contents = {name: text.encode() if isinstance(text, str) else text for name, text in files.items()}
     for new in contents:
         if new not in earlier and (folder / new).exists():
-            raise _not_ours(folder, f"'{new}', which no export wrote")
+            raise _foreign_file_error(folder, f"'{new}', which no export wrote")
     try:
         folder.mkdir(parents=True, exist_ok=True)
         # Both generations are ours until the new one is complete, so that a broken export can be repeated.

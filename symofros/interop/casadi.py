@@ -252,7 +252,7 @@ def _externals(
     starts = {x: sum(sizes[before] for before in f.inputs[:i]) for i, x in enumerate(f.inputs)}
     unread_slopes = (Input(f"out_{each.label}", like=each) for each in slopes)
     yield External(
-        f"jac_jac_{own}", (*inputs, unread, *unread_slopes), _slopes_of_slopes(f, slopes, starts, sizes, sources)
+        f"jac_jac_{own}", (*inputs, unread, *unread_slopes), _second_derivatives(f, slopes, starts, sizes, sources)
     )
     inputs = (*inputs, unread, Input(f"adj_{value}", f.size, f.cotangent))
     # CasADi takes gradients of the shape of their inputs, which are dense.
@@ -269,7 +269,7 @@ def _externals(
     yield External(f"jac_adj1_{own}", (*inputs, *unread_gradient), tuple(curvature))
 
 
-def _slopes_of_slopes(
+def _second_derivatives(
     f: _Differentiable, slopes: Sequence[Output], starts: Mapping[str, int], sizes: Mapping[str, int], sources: Sources
 ) -> tuple[Output, ...]:
     """The derivatives of the Jacobian, of which integrators of stiff equations make sensitivities."""

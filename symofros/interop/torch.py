@@ -107,13 +107,13 @@ class _Value(_Function):  # type: ignore[misc]
     @staticmethod
     def backward(ctx: Any, grad: Any) -> tuple[Any, ...]:
         needs = ctx.needs_input_grad[2:]
-        slopes = iter(_Slopes.apply(ctx.of, ctx.name, needs, *ctx.saved_tensors))
+        slopes = iter(_Derivatives.apply(ctx.of, ctx.name, needs, *ctx.saved_tensors))
         return None, None, *(_times(next(slopes).mT, grad) if need else None for need in needs)
 
     @staticmethod
     def jvp(ctx: Any, _model: None, _name: None, *tangents: Any) -> Any:
         needs = tuple(tangent is not None for tangent in tangents)
-        slopes = _Slopes.apply(ctx.of, ctx.name, needs, *ctx.saved_tensors)
+        slopes = _Derivatives.apply(ctx.of, ctx.name, needs, *ctx.saved_tensors)
         moved = [tangent for tangent in tangents if tangent is not None]
         return sum(_times(slope, tangent) for slope, tangent in zip(slopes, moved, strict=True))
 
@@ -122,7 +122,7 @@ class _Value(_Function):  # type: ignore[misc]
         return _Value.apply(of, name, *_batched(info, in_dims[2:], tensors)), 0
 
 
-class _Slopes(_Function):  # type: ignore[misc]
+class _Derivatives(_Function):  # type: ignore[misc]
     """The derivatives of a function by those inputs that are needed."""
 
     @staticmethod
@@ -157,5 +157,5 @@ class _Slopes(_Function):  # type: ignore[misc]
     def vmap(
         info: Any, in_dims: tuple[Any, ...], of: Dynamics, name: str, needs: tuple[bool, ...], *tensors: Any
     ) -> tuple[Any, Any]:
-        slopes = _Slopes.apply(of, name, needs, *_batched(info, in_dims[3:], tensors))
+        slopes = _Derivatives.apply(of, name, needs, *_batched(info, in_dims[3:], tensors))
         return slopes, (0,) * len(slopes)

@@ -20,7 +20,7 @@ RANK = 1e-6
 # SYM_WEAK_LEAST and so on.
 WEAK_LEAST, WEAK_WORTH, WEAK_SIZE = 1e-14, 1e-3, 1e-8
 # An entry of a row with a unit: a smaller one is rounding; SYM_LEAST_SIZE in C.
-LEAST_SIZE = 1e-9
+MIN_SIZE = 1e-9
 # Rows of G of larger ratios are brought to one size before a least-squares problem is solved: an SVD would lose digits.
 UNLIKE = 1e3
 # What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
@@ -46,7 +46,7 @@ def natural_sizes(G: Array, measures: Measures) -> Array:
     group, unit, speed = (np.array(table, dtype=np.intp) for table in measures)
     np.maximum.at(sizes, (group[:, None], speed), np.where(np.isnan(G), 0.0, np.abs(G)))
     with_unit = group[unit != FORMULA]
-    sizes[with_unit] = np.maximum(sizes[with_unit], LEAST_SIZE)
+    sizes[with_unit] = np.maximum(sizes[with_unit], MIN_SIZE)
     for kind, own in ((LENGTH, TRANSLATION), (ANGLE, ROTATION)):
         groups = group[unit == kind]
         sizes[groups, own] = np.maximum(sizes[groups, own], 1.0)
@@ -57,7 +57,7 @@ def residual_weights(G: Array, measures: Measures) -> Array:
     """Weights of phi (nc): 1, and more for mechanisms smaller than SMALL_REACH (docs/theory/constraints.md, (22))."""
     sizes = np.where(np.array(measures.speed, dtype=np.intp) == TRANSLATION, 0.0, natural_sizes(G, measures))
     reach = sizes.max(axis=1, initial=0.0)
-    small = (np.array(measures.unit, dtype=np.intp) == LENGTH) & (reach > LEAST_SIZE) & (reach < SMALL_REACH)
+    small = (np.array(measures.unit, dtype=np.intp) == LENGTH) & (reach > MIN_SIZE) & (reach < SMALL_REACH)
     return np.where(small, SMALL_REACH / np.where(small, reach, 1.0), 1.0)
 
 
@@ -110,10 +110,10 @@ class Ranking(NamedTuple):
     most: int | None = None
 
 
-ANEW = Ranking()
+DEFAULT_RANKING = Ranking()
 
 
-def eliminate(G: Array, measures: Measures, inertia: Array, ranking: Ranking = ANEW) -> Eliminated:
+def eliminate(G: Array, measures: Measures, inertia: Array, ranking: Ranking = DEFAULT_RANKING) -> Eliminated:
     """Eliminate G by complete pivoting; a pivot costs what the rows take that it changes, few of many loops.
 
     Args:
@@ -205,7 +205,7 @@ def pseudo_inverse(G: Array, measures: Measures) -> Array:
 
 
 def solve(
-    M: Array, r: Array, G: Array, c: Array, measures: Measures, ranking: Ranking = ANEW
+    M: Array, r: Array, G: Array, c: Array, measures: Measures, ranking: Ranking = DEFAULT_RANKING
 ) -> tuple[Array, Array, int]:
     """The solution for one state, of one or several right-hand sides, by a = a_p + Z w.
 
@@ -271,7 +271,7 @@ def deviation(G: Array, measures: Measures, phi: Array) -> float:
     """Distance of a state from phi = 0, in rad or fractions of the reach (docs/theory/constraints.md, (11a))."""
     speeds, unit = np.array(measures.speed, dtype=np.intp), np.array(measures.unit, dtype=np.intp)
     reach = np.where(speeds == TRANSLATION, 0.0, natural_sizes(G, measures)).max(axis=1, initial=0.0)
-    scaled = (unit != ANGLE) & (reach > LEAST_SIZE)
+    scaled = (unit != ANGLE) & (reach > MIN_SIZE)
     return float((np.abs(phi) / np.where(scaled, reach, 1.0)).max(initial=0.0))
 
 

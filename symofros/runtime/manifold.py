@@ -35,7 +35,7 @@ from symofros.base.rotations import (
 from symofros.base.rotations import normalized as unit_quaternion
 from symofros.errors import Problem, ShapeError
 from symofros.native import native_number
-from symofros.runtime.calls.extension import UNIT_ROUNDING, begin, type_at_hand
+from symofros.runtime.calls.extension import UNIT_ROUNDING, available_type, begin
 from symofros.runtime.calls.kernel import Numbers
 from symofros.runtime.record import ModelRecord, Segment
 
@@ -248,7 +248,7 @@ def are_unit(numbers: Numbers, firsts: tuple[int, ...]) -> bool:
         numbers: Arrays of coordinates or inputs (..., n).
         firsts: First index of each quaternion.
     """
-    by_extension = type_at_hand()
+    by_extension = available_type()
     if by_extension is not None and numbers.dtype == np.float64:
         return bool(by_extension.are_unit(numbers, firsts))
     if numbers.size >= _MANY:

@@ -152,7 +152,7 @@ def _compared(
     intervals: Sequence[tuple[float, float]],
     tolerance: float,
 ) -> Contradiction | None:
-    """Interval over which the mean rate differs most from the rate in its middle, if that is too much."""
+    """The largest difference of a mean rate over an interval from the rate in its middle, if that is too much."""
     middles = [0.5 * (a + b) for a, b in intervals]
     # Inputs share their memory.
     ends = [(inputs_at(a).copy(), inputs_at(b).copy()) for a, b in intervals]

@@ -237,7 +237,7 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
 
 
 # Of `output`: its times alone are 1.6 GB.
-MOST_RECORDS = 200_000_000
+MAX_RECORDS = 200_000_000
 # Beyond, a first state is a mistake and not what drift leaves.
 CLOSED = 1e-6
 
@@ -279,8 +279,8 @@ def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Arra
         if not (math.isfinite(interval) and interval > 0):
             raise _wrong("the output interval is not positive", interval, "output > 0", "give an interval in seconds")
         count = (t_end - t0) / interval * (1 + 1e-12)
-        if not count < MOST_RECORDS:
-            rule, remedy = f"a run records at most {MOST_RECORDS} states", "a longer interval, or a shorter run"
+        if not count < MAX_RECORDS:
+            rule, remedy = f"a run records at most {MAX_RECORDS} states", "a longer interval, or a shorter run"
             raise _wrong("too many states to record", f"{count:.3g} of them", rule, remedy)
         count = math.floor(count)
         return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)

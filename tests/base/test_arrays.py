@@ -63,7 +63,7 @@ def test_values_that_are_not_numbers_are_refused(taker: str, values: str) -> Non
 
 
 @pytest.mark.parametrize("value", [1, True, 1.5, np.float32(1.5), np.int8(3), Fraction(3, 2)])
-def test_numbers_of_any_kind_are_numbers(value: Any) -> None:
+def test_any_numeric_type_is_accepted(value: Any) -> None:
     array = real_array([value])
     assert array is not None and array.dtype == np.float64 and array[0] == float(value)
     assert real_array(value) is not None

@@ -59,7 +59,7 @@ def test_functions_have_the_inputs_and_shapes_of_the_table(name: str, function: 
     assert [(label, array.shape) for label, array in bound.outputs.items()] == outputs
 
 
-def test_any_function_is_evaluated_by_its_name(rng: np.random.Generator) -> None:
+def test_any_function_can_be_evaluated_by_name(rng: np.random.Generator) -> None:
     m = sf.compile(MODELS["double_pendulum"], sf.Options(backend="interpreter"))
     q, v = m.random_state(rng)
     np.testing.assert_array_equal(m.evaluate("mass_matrix", q=q)[0], m.mass_matrix(q))
@@ -120,7 +120,7 @@ def test_functions_that_are_zero_for_a_tree_share_one_unit() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "double_pendulum"])
-def test_the_stiffness_at_rest_is_the_derivative_of_the_residual_there(name: str, rng: np.random.Generator) -> None:
+def test_stiffness_at_rest_is_the_residual_derivative(name: str, rng: np.random.Generator) -> None:
     m, (q, _) = model(name), model(name).random_state(rng)
     u, lam, still = rng.normal(size=m.nu), rng.normal(size=m.nc), np.zeros(m.nv)
     (K,) = m.evaluate("rest_stiffness", q=q, u=u, lam=lam)

@@ -11,7 +11,7 @@ import symofros as sf
 
 
 @pytest.mark.parametrize(("name", "value"), [("tune", True), ("processors", "any")])
-def test_an_option_without_effect_warns_where_it_is_asked_for(name: str, value: Any) -> None:
+def test_an_option_without_effect_warns_if_given(name: str, value: Any) -> None:
     with pytest.warns(FutureWarning, match=f"{name}={value!r}.* has no effect") as caught:
         sf.Options(**{name: value})
     assert caught[0].filename == __file__

@@ -25,7 +25,7 @@ def row(value: Any) -> int:
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_damage_counts_as_absent_with_a_warning(tmp_path: Path, damage: bytes) -> None:
+def test_damaged_files_count_as_absent_with_a_warning(tmp_path: Path, damage: bytes) -> None:
     file = tmp_path / "state.json"
     file.write_bytes(damage)
     with pytest.warns(StoredStateWarning, match=r"state\.json: .*taken for absent"):
@@ -53,7 +53,7 @@ def test_absent_files_are_not_reported_as_damaged(tmp_path: Path) -> None:
 
 
 @given(st.lists(st.one_of(st.integers(-5, 5), st.binary(max_size=12).filter(lambda b: b"\n" not in b)), max_size=8))
-def test_sound_lines_are_read_whatever_lies_between(tmp_path_factory: pytest.TempPathFactory, parts: list[Any]) -> None:
+def test_valid_lines_are_read_despite_damaged_ones(tmp_path_factory: pytest.TempPathFactory, parts: list[Any]) -> None:
     file = tmp_path_factory.mktemp("lines") / "journal.jsonl"
     for part in parts:
         if isinstance(part, int):

@@ -29,14 +29,14 @@ def panda() -> sf.Model:
     return sf.compile(named(["panda"])[0].load().system, sf.Options(functions=("mass_matrix",)))
 
 
-def test_one_mass_matrix(benchmark: BenchmarkFixture) -> None:
+def test_time_of_one_mass_matrix(benchmark: BenchmarkFixture) -> None:
     """The method: arguments of any kind and shape are checked, the result is a new array."""
     model = panda()
     assert benchmark(model.mass_matrix, model.neutral()).shape == (model.nv, model.nv)
 
 
 @pytest.mark.parametrize("copied", [False, True], ids=["call", "copy_and_call"])
-def test_one_mass_matrix_bound(benchmark: BenchmarkFixture, copied: bool) -> None:
+def test_time_of_one_bound_mass_matrix(benchmark: BenchmarkFixture, copied: bool) -> None:
     """On fixed memory; with and without writing a configuration into it."""
     model = panda()
     bound, q = model.bind("mass_matrix"), model.neutral()

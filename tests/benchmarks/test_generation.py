@@ -19,12 +19,12 @@ FUNCTIONS = ("mass_matrix", "bias")
 
 
 @pytest.mark.parametrize("links", sampled((7, 22, 52), [7]))
-def test_description_to_c_text(benchmark: BenchmarkFixture, links: int) -> None:
+def test_time_from_description_to_c_text(benchmark: BenchmarkFixture, links: int) -> None:
     benchmark.extra_info["bytes"] = len(benchmark(_text, chain(links)))
 
 
 @pytest.mark.parametrize("model", sampled(("mss", "flexible_arm", "flexible_mss"), ["mss"]))
-def test_reference_model_to_c_text(benchmark: BenchmarkFixture, model: str) -> None:
+def test_time_from_reference_model_to_c_text(benchmark: BenchmarkFixture, model: str) -> None:
     benchmark.extra_info["bytes"] = len(benchmark.pedantic(_text, args=(MODELS[model],), rounds=3))
 
 
@@ -53,7 +53,7 @@ def test_time_of_generation_and_compilation_without_cache(
         ("rx90", "planar_robot"),
     ),
 )
-def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
+def test_counts_of_operations(benchmark: BenchmarkFixture, model: str) -> None:
     system = chain(52) if model == "chain52" else MODELS[model]
     functions = ("mass_matrix", "bias", "inverse_dynamics", "forward_dynamics")
     program = benchmark.pedantic(sf.program_of, args=(system, functions), rounds=1)
@@ -63,7 +63,7 @@ def test_operation_counts(benchmark: BenchmarkFixture, model: str) -> None:
 
 
 @pytest.mark.parametrize("functions", [pytest.param(4, marks=pytest.mark.slow), 1])
-def test_beams_of_many_functions_to_first_modes(
+def test_time_to_first_modes_of_beams_with_many_functions(
     benchmark: BenchmarkFixture, functions: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Three beams in series that keep every term: description, rest, modes, nothing cached; 36 elastic coordinates."""

@@ -118,7 +118,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.tools
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="counts by valgrind")
 @pytest.mark.parametrize("name", SCENES)
-def test_the_share_of_judging_beams(benchmark: BenchmarkFixture, name: str, folder: Path) -> None:
+def test_cost_share_of_judging_beams(benchmark: BenchmarkFixture, name: str, folder: Path) -> None:
     need("valgrind")
     scene = SCENES[name]
     program, model = package(scene.system, folder)

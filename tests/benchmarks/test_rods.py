@@ -49,7 +49,7 @@ class Loop:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_rod_beside_a_beam_of_first_order(benchmark: BenchmarkFixture, case: str) -> None:
+def test_time_of_a_rod_and_a_first_order_beam(benchmark: BenchmarkFixture, case: str) -> None:
     inertia = {"rhoI_y": 0.0, "rhoI_z": 0.0}
     first, exact = (
         Loop(

@@ -49,7 +49,7 @@ def test_time_of_import(benchmark: BenchmarkFixture, code: str) -> None:
 
 
 @pytest.mark.parametrize("functions", FUNCTIONS, ids="+".join)
-def test_generation_and_compilation(
+def test_time_of_generation_and_compilation(
     benchmark: BenchmarkFixture,
     panda: sf.System,
     functions: tuple[str, ...],

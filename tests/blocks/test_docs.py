@@ -45,12 +45,12 @@ def ports_seen() -> dict[str, set[str]]:
     return found
 
 
-def test_the_code_runs() -> None:
+def test_the_code_of_the_blocks_page_runs() -> None:
     assert ports_seen().keys() <= BLOCKS.keys()
 
 
 @pytest.mark.parametrize("name", BLOCKS)
-def test_every_block_is_there_with_its_ports(name: str) -> None:
+def test_every_block_is_documented_with_its_ports(name: str) -> None:
     section = re.search(rf"^### {name}\n(.*?)(?=^##|\Z)", PAGE, re.DOTALL | re.MULTILINE)
     assert section, f"docs/blocks.md has no section '{name}'"
     ports = ports_seen().get(name)

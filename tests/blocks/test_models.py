@@ -105,7 +105,7 @@ also_flexible = pytest.mark.parametrize("name", sampled(tuple(CASES), (*SMALL, "
 
 
 @everywhere
-def test_kinematics(name: str) -> None:
+def test_kinematics_blocks_match_the_model(name: str) -> None:
     """Of one frame and of all, their Jacobians, and wrenches in their axes."""
     (q, v, a), m, at = states(name), model(name), frame(name)
     frames = [item for item in m.names.frames if item != "world"]
@@ -207,7 +207,7 @@ def test_cartesian_control_forces(name: str) -> None:
 
 
 @everywhere
-def test_inverse_kinematics(name: str) -> None:
+def test_inverse_kinematics_reaches_the_pose(name: str) -> None:
     m, at = model(name), frame(name)
     q0 = states(name)[0][0]
     if m.nc:

@@ -72,12 +72,12 @@ def ports_of(block: Block) -> tuple[Port, ...]:
     return (*found.inputs, *found.outputs)
 
 
-def test_every_block_of_the_library_is_spoken_for() -> None:
+def test_every_library_block_has_a_unit_test_case() -> None:
     assert library() == set(MAKE) | OF_THE_USER | BY_WIRE | ELSEWHERE
 
 
 @pytest.mark.parametrize("name", MAKE)
-def test_every_port_with_a_meaning_has_a_unit(name: str) -> None:
+def test_every_physical_port_has_a_unit(name: str) -> None:
     for port in ports_of(getattr(lib, name)(name="b", **MAKE[name])):
         assert all(port.entry_units), f"{name}.{port.name}"
         assert len(port.units) in (0, (port.shape or (0,))[-1])
@@ -155,7 +155,7 @@ def test_pick_keeps_the_unit_of_its_entries(of: str, port: str, unit: str) -> No
     assert draft(diagram).problems
 
 
-def test_entries_of_mixed_vectors_are_compared_one_by_one() -> None:
+def test_entries_of_mixed_vectors_are_compared_individually() -> None:
     diagram = sf.Diagram("mixed")
     diagram.add_model("m", MECHANISM)
     diagram.add(lib.ForwardDynamics(name="plant", model="m"))

@@ -51,7 +51,7 @@ WITHOUT = {
 
 
 @pytest.mark.parametrize(("command", "without"), WITHOUT.items())
-def test_a_command_loads_nothing_that_it_does_not_need(command: str, without: str, tmp_path: Path) -> None:
+def test_a_command_imports_only_what_it_needs(command: str, without: str, tmp_path: Path) -> None:
     """`compile` where the model is in the cache, as it is the second time."""
     arguments = [command, str(ROOT / "reference_models/arm.urdf")]
     arguments += ["--functions", "kinetic_energy"] if command == "compile" else []
@@ -79,7 +79,7 @@ def test_commands_are_listed_and_completed(monkeypatch: pytest.MonkeyPatch) -> N
     assert CliRunner().invoke(app, [], prog_name="symofros").output.split() == ["simulate"]
 
 
-def test_the_help_of_all_commands_imports_none_of_them() -> None:
+def test_the_help_imports_no_command() -> None:
     code = (
         "import sys, symofros.__main__ as m; from typer.testing import CliRunner; "
         "print(CliRunner().invoke(m.app, ['--help']).output); print(*sys.modules)"
@@ -101,7 +101,7 @@ def test_the_help_of_all_commands_imports_none_of_them() -> None:
     assert invoke("--version").output == f"symofros {sf.__version__}\n"
 
 
-def test_info_tells_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
+def test_info_lists_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
     data = json.loads(invoke("info", CART_POLE, "--json").output)
     assert {item["name"]: item["value"] for item in data["parameters"]}["m_cart"] > 0.0
     assert data["bodies"][0]["mass"] > 0.0 and "tip" in data["frames"]
@@ -112,14 +112,14 @@ def test_info_tells_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
     assert any(item["lower"] is not None for item in limits.values())
 
 
-def test_info_tells_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
+def test_info_lists_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
     beam = sf.Beam("boom", sf.Joint("slew", "revolute"), "L", "3 - x", EI_z=1.0, bend_y=1)
     sf.save(sf.System("crane", (beam,), (sf.Parameter("L", 2.0),)), tmp_path / "crane.yaml")
     (body,) = json.loads(invoke("info", tmp_path / "crane.yaml", "--json").output)["bodies"]
     assert body["mass"] == pytest.approx(4.0)
 
 
-def test_info_tells_which_methods_were_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_info_lists_the_chosen_methods(monkeypatch: pytest.MonkeyPatch) -> None:
     """All in JSON, what was chosen among several in a table of 80 columns."""
     told = json.loads(invoke("info", CART_POLE, "--routes", "--json").output)["routes"]
     (acceleration, *_) = told["forward_dynamics"]
@@ -132,7 +132,7 @@ def test_info_tells_which_methods_were_chosen(monkeypatch: pytest.MonkeyPatch) -
     assert "│ inertia forces:" not in table and max(map(len, table.splitlines())) == 80 and table.rstrip().endswith("┘")
 
 
-def test_info_derives_no_function_unasked(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_info_derives_only_requested_functions(monkeypatch: pytest.MonkeyPatch) -> None:
     def derived(*_: Any) -> None:
         raise AssertionError("info derived a function")
 
@@ -182,7 +182,7 @@ def test_the_editor_names_the_extra_to_install(monkeypatch: pytest.MonkeyPatch) 
     assert all(part in result.output for part in _PARTS)
 
 
-def test_tables_show_no_sign_before_zero() -> None:
+def test_tables_show_no_negative_zero() -> None:
     assert [shown(value) for value in (-0.0, 0.0, -1.5)] == ["0", "0", "-1.5"]
     assert [pace_of(*span) for span in ((1.0, 7e-4), (1.0, 0.5))] == ["1429 times real time", "2 times real time"]
 
@@ -231,7 +231,7 @@ def test_the_list_of_harness_commands_needs_no_optional_package(
 
 
 @pytest.mark.slow
-def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with(
+def test_the_first_readme_command_installs_all_that_the_harness_needs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """As after `pip install -e '.[validation]'`: what other extras bring can't be imported."""
@@ -243,7 +243,7 @@ def test_the_first_command_of_the_readme_brings_all_that_the_harness_starts_with
     assert status == 0 and "--problem" in said, said
 
 
-def test_kernels_tell_registers_and_the_bound_of_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernels_lists_registers_and_the_memory_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a graphics processor, and so without times."""
     require("nvidia.cuda_nvrtc", "cuda")
     monkeypatch.setattr("symofros.commands.kernels.present", lambda: None)
@@ -286,7 +286,7 @@ def test_a_closed_pipe_ends_the_command_silently() -> None:
     assert done.returncode == 1 and not done.stderr
 
 
-def test_names_of_any_signs_are_stated_in_the_shell(tmp_path: Path) -> None:
+def test_names_with_any_characters_can_be_given_in_the_shell(tmp_path: Path) -> None:
     inertial = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     joint = (
         '<joint name="{0}" type="revolute"><parent link="b"/><child link="l{0}"/><limit lower="-9" upper="9"/></joint>'

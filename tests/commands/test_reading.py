@@ -39,7 +39,7 @@ def invoke(*arguments: object) -> Any:
 
 
 @pytest.mark.parametrize("command", LOADERS)
-def test_every_command_that_loads_a_model_takes_the_options(command: str) -> None:
+def test_every_command_that_loads_a_model_has_the_reading_options(command: str) -> None:
     told = invoke(command, "--help").output
     for option in ("--floating-base", "--mimic", "--waive", "--package", "--argument"):
         assert option in told
@@ -56,7 +56,7 @@ def test_the_waiver_named_in_the_remedy_is_accepted(tmp_path: Path) -> None:
     assert wrong.exit_code == 2 and "did you mean 'massless_tip'" in wrong.output
 
 
-def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compile_caches_models_by_their_reading_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
     path = kinematic(tmp_path, 1)
     asked = "compile", path, "--functions", "frame_pose"
@@ -66,7 +66,7 @@ def test_compile_knows_models_by_how_they_are_read(tmp_path: Path, monkeypatch: 
     assert "ask for other functions, such as frame_pose" in said
 
 
-def test_an_export_which_steps_proposes_no_other_functions(tmp_path: Path) -> None:
+def test_an_export_with_stepping_suggests_no_other_functions(tmp_path: Path) -> None:
     path = kinematic(tmp_path, 1)
     asked = "--target", "c", "--functions", "frame_pose", "--waive", "massless_tip"
     told = invoke("export", path, "--output", tmp_path / "out", *asked)
@@ -75,7 +75,7 @@ def test_an_export_which_steps_proposes_no_other_functions(tmp_path: Path) -> No
     assert "other functions" not in said
 
 
-def test_diagrams_and_native_files_have_no_options_of_reading(tmp_path: Path) -> None:
+def test_diagrams_and_native_files_accept_no_reading_options(tmp_path: Path) -> None:
     diagram = tmp_path / "d.yaml"
     diagram.write_text("symofros_diagram: 1\nblocks: {}\n")
     for command in ("info", "simulate"):
@@ -134,7 +134,7 @@ PAIRS = (("a", "1"), ("b", "2"), ("c", "3"), ("d", "3"))
         (Argument("floating_base"), "load(…, floating_base=True)", "--floating-base"),
     ],
 )
-def test_an_argument_is_an_option_in_the_shell(argument: Argument, call: str, option: str) -> None:
+def test_remedies_name_shell_options_for_arguments(argument: Argument, call: str, option: str) -> None:
     problem = Problem("x", "y", "z", f"or {argument.call}", argument=argument)
     assert problem.remedy == f"or {call}" and problem.in_shell().remedy == f"or {option}"
     assert problem.in_shell("--symofros-").remedy == f"or --symofros-{option.removeprefix('--')}"
@@ -143,7 +143,7 @@ def test_an_argument_is_an_option_in_the_shell(argument: Argument, call: str, op
         assert option == "--package" and reading_of(packages=[pair]).keywords == {"packages": {key: "/x y"}}
 
 
-def test_tables_in_a_pipe_keep_their_lines(tmp_path: Path) -> None:
+def test_tables_in_a_pipe_are_not_wrapped(tmp_path: Path) -> None:
     name = "a_body_of_a_name_that_is_as_long_as_names_of_robots_are"
     inertia = sf.Inertia(1.23456789, (0.123456, 0.234567, 0.345678), (1, 1, 1))
     loaded = [
@@ -184,7 +184,7 @@ _STATED: dict[type, Any] = {bool: True, str: "all", tuple: (("a", "b"),)}
 @pytest.mark.parametrize(
     "item", [item for item in OPTIONS if item.name not in ("waive", "limits")], ids=lambda i: i.name
 )
-def test_options_are_left_out_where_load_refuses_them(item: Field[Any], tmp_path: Path) -> None:
+def test_options_that_load_refuses_are_not_passed(item: Field[Any], tmp_path: Path) -> None:
     stated = ReadingOptions(**{item.name: _STATED[type(item.default)]})
     for suffix in (".yaml", ".urdf", ".xacro", ".sdf", ".world", ".xml", ".usda"):
         path = tmp_path / f"a{suffix}"

@@ -29,20 +29,20 @@ def seen(monkeypatch: pytest.MonkeyPatch) -> list[sf.Viewer]:
     return found
 
 
-def test_a_model_is_recorded(tmp_path: Path) -> None:
+def test_view_records_a_model(tmp_path: Path) -> None:
     found = run(ARM, "0.1", "--set", "q1=0.5", "--record-view", tmp_path / "r.gif", "-o", tmp_path / "r.npz")
     said = "".join(found.output.split())  # Long names of folders are folded.
     assert found.exit_code == 0 and f"wrote{tmp_path / 'r.gif'}" in said, found.output
     assert (tmp_path / "r.gif").read_bytes().startswith(b"GIF89a") and (tmp_path / "r.npz").exists()
 
 
-def test_a_diagram_is_recorded(tmp_path: Path) -> None:
+def test_view_records_a_diagram(tmp_path: Path) -> None:
     found = run(folder_with(tmp_path), "--record-view", tmp_path / "r.png", "--json")
     assert found.exit_code == 0 and str(tmp_path / "r.png") in found.stdout, found.output
     assert (tmp_path / "r.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_model_is_played(seen: list[sf.Viewer]) -> None:
+def test_view_plays_a_model(seen: list[sf.Viewer]) -> None:
     found = run(ARM, "0.1", "--set", "q1=0.5", "--view", "--exaggeration", "2")
     (viewer,) = seen
     assert found.exit_code == 0 and f"it plays at {viewer.url} (Ctrl-C ends)" in found.output, found.output
@@ -50,7 +50,7 @@ def test_a_model_is_played(seen: list[sf.Viewer]) -> None:
     assert viewer.exaggeration == 2.0 and viewer.is_closed
 
 
-def test_a_diagram_in_real_time_is_shown_as_it_goes(seen: list[sf.Viewer], tmp_path: Path) -> None:
+def test_a_real_time_diagram_is_shown_while_it_runs(seen: list[sf.Viewer], tmp_path: Path) -> None:
     found = run(folder_with(tmp_path), "--view", "--realtime")
     (viewer,) = seen
     assert found.exit_code == 0, found.output

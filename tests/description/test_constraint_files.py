@@ -7,7 +7,7 @@ from pathlib import Path
 import symofros as sf
 
 
-def test_conditions_by_formula(tmp_path: Path) -> None:
+def test_conditions_by_formula_are_read_and_written(tmp_path: Path) -> None:
     body = sf.RigidBody("b", sf.Joint("p", "planar"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     edge = sf.Nonholonomic("n", {"dp.x": "-sin(p.angle)", "dp.y": "cos(p.angle)"}, "0.1*t")
     system = sf.System(

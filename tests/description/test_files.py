@@ -23,7 +23,7 @@ ARM = HEAD + "bodies:\n" + LINK
 load, faults = (partial(of, name="arm.yaml") for of in (reading.load, reading.faults_of))
 
 
-def test_yaml_1_2_numbers(tmp_path: Path) -> None:
+def test_yaml_1_2_numbers_are_read(tmp_path: Path) -> None:
     arm = load(tmp_path, HEAD + "parameters: {a: 1e-3, b: {value: -2.5E+2, constant: true}}\nbodies:\n" + LINK)
     assert arm.parameter_values() == {"a": 1e-3, "b": -250.0}
 
@@ -53,7 +53,7 @@ def test_all_faults_of_a_file_are_reported_together(tmp_path: Path) -> None:
     assert "parent 'a'" not in message
 
 
-def test_not_text_too_big_missing(tmp_path: Path) -> None:
+def test_empty_large_binary_and_missing_files_are_refused(tmp_path: Path) -> None:
     assert "the file is empty" in faults(tmp_path, "")
     assert "UTF-8" in faults(tmp_path, ARM.encode("utf-16"))
     assert "MiB" in faults(tmp_path, "# " + "x" * (5 << 20)) or "large" in faults(tmp_path, "# " + "x" * (5 << 20))
@@ -82,7 +82,7 @@ class TestInclude:
         message = faults(inside, ARM + f"include: [{target}]\n")
         assert "leaves the main file's folder" in message and "arm.yaml:5" in message
 
-    def test_cycles_and_missing_files(self, tmp_path: Path) -> None:
+    def test_include_cycles_and_missing_files_are_refused(self, tmp_path: Path) -> None:
         (tmp_path / "b.yaml").write_text("symofros: 1\ninclude: [arm.yaml]\n")
         assert "cycle" in faults(tmp_path, ARM + "include: [b.yaml]\n")
         assert "none.yaml" in faults(tmp_path, ARM + "include: [none.yaml]\n")
@@ -132,7 +132,7 @@ def test_unsaved_text_is_read_as_if_it_were_saved(tmp_path: Path) -> None:
     assert "too large" in read_yaml(tmp_path / "a.yaml", "#" * (MAX_BYTES + 1)).problems[0].what
 
 
-def test_nodes_know_their_place_in_the_text() -> None:
+def test_nodes_know_their_line_and_column() -> None:
     text = "a: 1  # c\nb c: {x: 'y', z: [1, 2]}\nd: |\n  e\nf:\n  - g\n"
     root, _ = compose_text(text, "x")
     places = {

@@ -154,9 +154,9 @@ def readers() -> Iterator[Callable[[Path], tuple[str, float]]]:
         server.stdin.close()
 
 
-# 220 000 values take four seconds; `test_values_are_counted` has the same limit, smaller.
+# 220 000 values take four seconds; `test_documents_with_too_many_values_are_refused` has the same limit, smaller.
 @pytest.mark.parametrize("name", sampled(tuple(CASES), [name for name in CASES if name != "parameters without number"]))
-def test_refused_in_bounded_time_and_memory(name: str, readers: Any, tmp_path: Path) -> None:
+def test_hostile_files_are_refused_in_bounded_time_and_memory(name: str, readers: Any, tmp_path: Path) -> None:
     suffix, content, part = CASES[name]
     path = tmp_path / f"hostile.{suffix}"
     path.write_text(content())
@@ -228,7 +228,7 @@ def test_loops_of_links_are_refused(suffix: str, tmp_path: Path) -> None:
             sf.load_diagram(loop)
 
 
-def test_values_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_documents_with_too_many_values_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(yaml_nodes, "MAX_NODES", 100)
     (tmp_path / "a.yaml").write_text("symofros: 1\nsystem: [" + "1, " * 200 + "]\n")
     assert "too many values" in faults(tmp_path / "a.yaml")

@@ -84,7 +84,7 @@ def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
 
 
 @pytest.mark.parametrize("suffix", FILES)
-def test_limits_become_stops_by_the_inertia_that_they_meet(tmp_path: Path, suffix: str) -> None:
+def test_limits_become_stops_scaled_by_the_apparent_inertia(tmp_path: Path, suffix: str) -> None:
     path = written(tmp_path, suffix)
     data = sf.load(path)
     assert not any(isinstance(element, sf.Stop) for element in hinge(data).elements)
@@ -146,7 +146,7 @@ def test_a_root_that_cannot_float_is_refused(tmp_path: Path, found: str) -> None
         sf.load(path, floating_base=True)
 
 
-def test_passive_forces_are_mujocos(tmp_path: Path) -> None:
+def test_passive_forces_match_mujoco(tmp_path: Path) -> None:
     mujoco = pytest.importorskip("mujoco")
     inner = (
         f'<body name="b" pos="0.2 0 0.1">{INERTIAL}<joint name="s" type="slide" axis="1 1 0" damping="3" range="-1 1"/>'
@@ -199,7 +199,7 @@ def test_apparent_inertias_match_the_mass_matrix() -> None:
     np.testing.assert_allclose(list(found.values()), [expected[first[name]] for name in found], rtol=1e-11)
 
 
-def test_no_stop_follows_from_a_mass_matrix_that_is_singular(tmp_path: Path) -> None:
+def test_a_singular_mass_matrix_gives_no_stop(tmp_path: Path) -> None:
     tip = (
         '<link name="tip"/><joint name="t" type="continuous"><parent link="arm"/><child link="tip"/><axis xyz="1 0 0"/>'
     )
@@ -216,13 +216,13 @@ def test_no_stop_follows_from_a_mass_matrix_that_is_singular(tmp_path: Path) -> 
         ('damping="0" friction="0.0" K="0"', ""),
     ],
 )
-def test_entries_of_dynamics_of_a_urdf(tmp_path: Path, dynamics: str, said: str) -> None:
+def test_urdf_dynamics_entries_are_read(tmp_path: Path, dynamics: str, said: str) -> None:
     text = URDF.replace('damping="0.5" friction="0.2"', dynamics)
     notes = sf.load(written(tmp_path, ".urdf", text), dissipation="all").notes
     assert [note for note in notes if "<dynamics>" in note or "friction" in note] == [said] * bool(said)
 
 
-def test_damping_of_a_floating_joint_is_noted_whatever_is_asked_for(tmp_path: Path) -> None:
+def test_damping_of_a_floating_joint_is_always_noted(tmp_path: Path) -> None:
     text = URDF.replace('type="revolute"', 'type="floating"')
     notes = sf.load(written(tmp_path, ".urdf", text), dissipation="all").notes
     assert any(n.startswith("damping and friction of fixed, planar and floating joints ignored") for n in notes)
@@ -239,7 +239,7 @@ def test_invalid_coefficients_are_refused_if_dissipation_is_read(
 
 
 @pytest.mark.parametrize("asked", [{"floating_base": True}, {"dissipation": "all"}, {"limits": "stops"}])
-def test_native_files_state_it_themselves(tmp_path: Path, asked: dict[str, Any]) -> None:
+def test_native_files_accept_no_import_options(tmp_path: Path, asked: dict[str, Any]) -> None:
     sf.save(sf.load(written(tmp_path, ".urdf")), tmp_path / "r.yaml")
     with pytest.raises(sf.DescriptionError, match=f"{next(iter(asked))} applies to URDF, xacro, SDF, MJCF and USD"):
         sf.load(tmp_path / "r.yaml", **asked)

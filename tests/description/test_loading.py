@@ -21,7 +21,7 @@ def test_a_missing_file_suggests_its_neighbours(tmp_path: Path) -> None:
         sf.load(tmp_path / "robt.yaml")
 
 
-def test_save_is_atomic_and_particular(tmp_path: Path) -> None:
+def test_save_replaces_files_atomically_and_refuses_other_suffixes(tmp_path: Path) -> None:
     with pytest.raises(sf.DescriptionError, match="written"):
         sf.save(MODELS["pendulum"], tmp_path / "p.urdf")
     sf.save(MODELS["pendulum"], tmp_path / "p.yaml")
@@ -30,7 +30,7 @@ def test_save_is_atomic_and_particular(tmp_path: Path) -> None:
     assert sf.load(tmp_path / "p.yaml") == MODELS["double_pendulum"]
 
 
-def test_waivers_by_name(tmp_path: Path) -> None:
+def test_checks_are_waived_by_name(tmp_path: Path) -> None:
     path = tmp_path / "arm.yaml"
     path.write_text("symofros: 1\nbodies:\n  finger: {joint: {name: q, kind: revolute}}\n")
     with pytest.raises(sf.DescriptionError, match="moves no mass"):

@@ -111,7 +111,7 @@ def test_mujoco_has_the_same_equations(tmp_path: Path, name: str) -> None:
             close(R, d.site_xmat[site].reshape(3, 3))
 
 
-def test_names_and_places(tmp_path: Path) -> None:
+def test_mjcf_names_and_placements_are_read(tmp_path: Path) -> None:
     system = sf.load(write(tmp_path, MODELS["several_joints_on_a_body"]))
     assert system.name == "test"
     names = ["world", "a_at_x", "a_at_z", "a_at_turn", "a", "b_at_q1", "b_at_q2", "b_at_q3", "b"]
@@ -120,7 +120,7 @@ def test_names_and_places(tmp_path: Path) -> None:
     assert system.origin["body", "b"].endswith("model.xml:7")
 
 
-def test_rounded_numbers_are_made_exact_unless_asked_not_to(tmp_path: Path) -> None:
+def test_rounded_numbers_become_exact_unless_disabled(tmp_path: Path) -> None:
     path = write(tmp_path, world(f'<frame euler="90 0 0">{PENDULUM}</frame>'))
 
     def entries(system: sf.System) -> list[float]:
@@ -156,7 +156,7 @@ def test_a_mesh_gives_a_body_its_inertia(tmp_path: Path) -> None:
 # Includes.
 
 
-def test_includes_stand_in_their_places(tmp_path: Path) -> None:
+def test_includes_are_expanded_in_place(tmp_path: Path) -> None:
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts" / "arm.xml").write_text('<mujocoinclude><include file="deeper.xml"/></mujocoinclude>')
     (tmp_path / "parts" / "deeper.xml").write_text(f"<mujocoinclude>\n{PENDULUM}</mujocoinclude>")
@@ -164,11 +164,11 @@ def test_includes_stand_in_their_places(tmp_path: Path) -> None:
     assert system.origin["body", "a"].endswith("deeper.xml:2")
 
 
-def test_an_include_of_itself(tmp_path: Path) -> None:
+def test_a_recursive_include_is_refused(tmp_path: Path) -> None:
     assert "included twice" in faults(write(tmp_path, '<include file="model.xml"/>'))
 
 
-def test_an_include_that_is_missing(tmp_path: Path) -> None:
+def test_a_missing_include_is_named(tmp_path: Path) -> None:
     assert "'gone.xml' can't be included" in faults(write(tmp_path, '<include file="gone.xml"/>'))
 
 
@@ -188,13 +188,13 @@ def test_mujoco_errors_are_reported_with_their_line(tmp_path: Path, text: str, s
     assert said in message and "model.xml:2" in message, message
 
 
-def test_a_urdf_by_another_name(tmp_path: Path) -> None:
+def test_a_urdf_named_xml_is_recognised(tmp_path: Path) -> None:
     path = tmp_path / "robot.xml"
     path.write_text('<robot name="r"/>')
     assert "name a URDF file .urdf" in faults(path)
 
 
-def test_a_line_of_an_included_file(tmp_path: Path) -> None:
+def test_faults_name_the_line_of_an_included_file(tmp_path: Path) -> None:
     (tmp_path / "part.xml").write_text('<mujocoinclude>\n\n<body pos="x"/></mujocoinclude>')
     assert "part.xml:3" in faults(write(tmp_path, world('<include file="part.xml"/>')))
 
@@ -234,18 +234,18 @@ def test_nothing_outside_of_the_folder_is_read(cage: Path, where: str, kind: str
     assert "leaves the model's folder" in faults(write(cage, text))
 
 
-def test_attributes_can_t_bring_in_elements(tmp_path: Path) -> None:
+def test_attributes_cannot_add_elements(tmp_path: Path) -> None:
     text = world(PENDULUM.replace('name="a"', 'name="a&quot;/>&lt;include file=&quot;x.xml"'))
     assert sf.load(write(tmp_path, text)).bodies[1].name == 'a"/><include file="x.xml'
 
 
-def test_a_default_can_t_name_a_file(cage: Path) -> None:
+def test_a_default_cannot_name_a_file(cage: Path) -> None:
     asset = f'<default><mesh file="{cage.parent}/secret.obj"/></default><asset><mesh name="part"/></asset>'
     message = faults(write(cage, asset + world(MESH_BODY.format(inertial="", extra=""))))
     assert "MuJoCo refuses" in message and "secret" not in message
 
 
-def test_includes_can_t_nest_without_end(tmp_path: Path) -> None:
+def test_deeply_nested_includes_are_refused(tmp_path: Path) -> None:
     for i in range(60):
         inner = f'<frame><frame><include file="part{i + 1}.xml"/></frame></frame>'
         (tmp_path / f"part{i}.xml").write_text(f"<mujocoinclude>{inner}</mujocoinclude>")
@@ -259,7 +259,7 @@ def test_document_types_are_refused(tmp_path: Path) -> None:
     assert "document types are refused" in faults(path)
 
 
-def test_sizes_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sizes_of_mjcf_models_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write(tmp_path, '<size memory="1000G"/>' + world(PENDULUM))
     assert sf.load(path).bodies
     monkeypatch.setattr(mjcf_files, "MAX_ELEMENTS", 4)

@@ -42,7 +42,7 @@ DEFAULT = (
 
 
 @pytest.mark.parametrize("name", ACTUATORS)
-def test_actuators_push_as_mujoco_s(tmp_path: Path, name: str) -> None:
+def test_actuator_forces_match_mujoco(tmp_path: Path, name: str) -> None:
     limits = 'actuatorfrclimited="true" actuatorfrcrange="-4 3"' if name == "two on a joint" else ""
     path = write(tmp_path, f"{DEFAULT}{ARM.format(q1=limits)}<actuator>{ACTUATORS[name]}</actuator>")
     model = sf.compile(sf.load(path), sf.Options(backend="interpreter"))
@@ -58,7 +58,7 @@ def test_actuators_push_as_mujoco_s(tmp_path: Path, name: str) -> None:
         close(model.generalized_force(q, v, u), force, 1.0)
 
 
-def test_actuators_and_constraints_are_written_and_read(tmp_path: Path) -> None:
+def test_actuators_and_constraints_survive_writing_and_reading(tmp_path: Path) -> None:
     text = ARM.format(q1="") + f"<actuator>{ACTUATORS['general']}{ACTUATORS['ball']}</actuator>"
     system = sf.load(write(tmp_path, text + f"<equality>{EQUALITIES['joint'][0]}{EQUALITIES['weld'][0]}</equality>"))
     sf.save(system, tmp_path / "model.yaml")
@@ -97,7 +97,7 @@ def assembled(model: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np
 
 
 @pytest.mark.parametrize("name", EQUALITIES)
-def test_equalities_bind_the_speeds_that_mujoco_s_bind(tmp_path: Path, name: str) -> None:
+def test_equalities_constrain_the_same_speeds_as_in_mujoco(tmp_path: Path, name: str) -> None:
     text, rows = EQUALITIES[name]
     path = write(tmp_path, ARM.format(q1="") + f"<equality>{text}</equality>")
     model = sf.compile(sf.load(path), sf.Options(backend="interpreter"))

@@ -62,7 +62,7 @@ def test_nonsense_is_refused_or_taken_whole(noun: Any, entry: str) -> None:
 
 
 @pytest.mark.parametrize("maker", ["rpy", "axis_angle", "quaternion", "matrix"])
-def test_rotations_refuse_nonsense(maker: str) -> None:
+def test_invalid_rotations_are_refused(maker: str) -> None:
     make = getattr(sf.Rotation, maker)
     names = list(inspect.signature(make).parameters)
     sound = {"axis": (0, 0, 1), "rows": np.eye(3)}
@@ -102,7 +102,7 @@ def test_rotors_among_joint_elements_are_refused() -> None:
         sf.Joint("j", "revolute", elements=[sf.Rotor(1.0)])  # type: ignore[list-item]
 
 
-def test_limits_of_sizes_are_not_negative() -> None:
+def test_negative_limits_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="velocity is negative"):
         sf.Limits(velocity=-1.0)
     assert sf.Limits(-2.0, -1.0, 0.0, float("inf")).lower == -2.0

@@ -30,14 +30,14 @@ def package(folder: Path, name: str, **files: str) -> Path:
     return folder / "arm.xacro"
 
 
-def test_packages_of_a_workspace_find_each_other_by_their_manifests(tmp_path: Path) -> None:
+def test_packages_of_a_workspace_are_found_by_their_manifests(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     main = package(tmp_path / "src/arm", "arm_description", arm=INCLUDE)
     package(tmp_path / "src/other_name", "hand_description", hand=FINGER)
     assert [body.name for body in sf.load(main).bodies] == ["base", "finger"]
 
 
-def test_a_package_elsewhere_is_named(tmp_path: Path) -> None:
+def test_a_package_in_another_folder_is_named(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     main = package(tmp_path / "src/arm", "arm_description", arm=INCLUDE)
     package(tmp_path / "elsewhere", "hand_description", hand=FINGER)
@@ -51,7 +51,7 @@ def test_a_package_elsewhere_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("how", ["link", "manifest", "above", "unnamed"])
-def test_no_package_is_found_outside_of_the_workspace(tmp_path: Path, how: str) -> None:
+def test_packages_outside_the_workspace_are_not_found(tmp_path: Path, how: str) -> None:
     """A link beside the package, or one for its manifest; a path that leaves a package that was found."""
     pytest.importorskip("xacro")
     include = INCLUDE if how != "above" else INCLUDE.replace("/hand.xacro", "/../../secret/hand.xacro")
@@ -83,7 +83,7 @@ def test_packages_that_find_does_not_name_are_not_opened(tmp_path: Path) -> None
     assert sf.load(main).body("finger")
 
 
-def test_relative_includes_of_xacro_open_folders_that_are_named(tmp_path: Path) -> None:
+def test_relative_xacro_includes_open_named_folders(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     main = package(tmp_path / "arm", "arm", arm='<xacro:include filename="../parts/hand.xacro"/>')
     package(tmp_path / "parts", "parts", hand=FINGER)
@@ -111,7 +111,7 @@ def test_meshes_of_packages_are_found(tmp_path: Path) -> None:
     assert sf.load(main).visuals["finger"][0].file == str((tmp_path / "src/hand/a.stl").resolve())
 
 
-def test_mjcf_reads_folders_that_are_named(tmp_path: Path) -> None:
+def test_mjcf_reads_named_folders(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
     for folder in ("arm", "common", "secret"):
         (tmp_path / folder).mkdir()
@@ -134,7 +134,7 @@ def test_mjcf_reads_folders_that_are_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("file", ["/etc/passwd", "C:/x.xml", "..\\..\\x.xml", "../" * 40 + "etc/passwd", "x" * 5000])
-def test_mjcf_leaves_no_folder(tmp_path: Path, file: str) -> None:
+def test_mjcf_does_not_leave_its_folder(tmp_path: Path, file: str) -> None:
     pytest.importorskip("mujoco")
     (tmp_path / "arm.xml").write_text(MODEL.format(file))
     assert len(refused(tmp_path / "arm.xml", packages={"here": tmp_path}).problems) == 1
@@ -167,7 +167,7 @@ def test_arguments_that_a_format_has_no_use_for_are_refused(
     assert "files only" in str(refused(tmp_path / name, **given))
 
 
-def test_manifests_are_read_when_a_name_needs_them_and_no_further_than_bounded(tmp_path: Path) -> None:
+def test_manifests_are_read_only_on_demand_and_within_bounds(tmp_path: Path) -> None:
     """Neighbours of 1 MB each: 60 of them took a minute of a file that names none."""
     main = package(tmp_path / "src/arm", "arm_description", arm=FINGER)
     for i in range(70):
@@ -205,14 +205,14 @@ def test_two_neighbours_of_one_name_are_refused_unless_a_folder_decides(tmp_path
         ("<name>a</name>", ""),
     ],
 )
-def test_names_are_read_from_beginnings_of_manifests(tmp_path: Path, text: str, name: str) -> None:
+def test_package_names_are_read_from_the_start_of_manifests(tmp_path: Path, text: str, name: str) -> None:
     package(tmp_path / "arm", "arm_description")
     package(tmp_path / "folder", "")
     (tmp_path / "folder/package.xml").write_text(text)
     assert [*Packages(tmp_path / "arm/arm.xacro").neighbours] == [name] * bool(name)
 
 
-def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> None:
+def test_a_mesh_of_an_ambiguous_package_is_left_out_with_a_note(tmp_path: Path) -> None:
     mesh = '<visual><geometry><mesh filename="package://hand_description/a.stl"/></geometry></visual>'
     main = package(tmp_path / "src/arm", "arm_description").with_name("arm.urdf")
     main.write_text(ROBOT.format(FINGER.replace(INERTIAL, INERTIAL + mesh)))
@@ -228,7 +228,7 @@ def test_a_mesh_of_one_of_two_packages_is_left_out_in_words(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("folder", ["a\0b", "x" * 5000])
-def test_folders_that_cannot_be_are_refused_in_few_words(tmp_path: Path, folder: str) -> None:
+def test_impossible_folders_are_refused_with_short_messages(tmp_path: Path, folder: str) -> None:
     (tmp_path / "a.urdf").write_text(ROBOT.format(FINGER))
     text = str(refused(tmp_path / "a.urdf", packages={"n" * 5000: folder}))
     assert "is not there" in text and "\0" not in text and len(text) < 1000

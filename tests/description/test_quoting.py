@@ -45,7 +45,7 @@ def test_a_quoted_name_is_that_name(name: str) -> None:
 
 
 @given(NAMES, NAMES)
-def test_names_are_looked_up_with_quotes_and_without(name: str, other: str) -> None:
+def test_names_are_found_with_and_without_quotes(name: str, other: str) -> None:
     assume(name != other and f"d{name}" != other)
     known = [name, other]
     assert coordinate_of(name, known) == name and speed_of(name, known) == name
@@ -80,13 +80,13 @@ def hips() -> sf.System:
     return sf.System("hips", bodies, inputs=[sf.Input("sin"), sf.Input("u/1")])
 
 
-def test_the_same_is_refused_in_a_description() -> None:
+def test_an_ambiguous_formula_is_refused_in_a_description() -> None:
     joint = sf.Joint("c", "revolute", effort=("2*a-b",))
     with pytest.raises(sf.DescriptionError, match="could also mean 'a-b'"):
         sf.compile(hips().with_bodies(sf.RigidBody("l9", joint, sf.Inertia(1, (0, 0, 0), (1, 1, 1)))))
 
 
-def test_clear_formulas_are_taken() -> None:
+def test_unambiguous_formulas_are_accepted() -> None:
     texts = ["`left-hip` + 10*d`left-hip`", "`a-b`", "a - b", "`a`-`b`", "`door`", "d`oor`", "t + `t`", "`sin` + `u/1`"]
     model = sf.compile(hips(), sf.Options(backend="interpreter"))
     q, u, v = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0], [1.5, 2.5], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
@@ -98,14 +98,14 @@ def test_clear_formulas_are_taken() -> None:
     np.testing.assert_allclose(values[0], expected, rtol=1e-15)
 
 
-def test_an_undeclared_symbol_is_to_be_corrected_or_declared() -> None:
+def test_the_remedy_for_an_undeclared_symbol_is_to_correct_or_declare_it() -> None:
     body = sf.RigidBody("a", sf.Joint("q1", "revolute"), sf.Inertia("m*L1", (0, 0, 0), (1, 1, 1)))
     with pytest.raises(sf.DescriptionError) as caught:
         sf.compile(sf.System("s", [body], parameters=[sf.Parameter("m", 1.0), sf.Parameter("p1", 1.0)]))
     assert caught.value.problem.remedy == "did you mean 'p1'? Otherwise declare it under parameters: L1"
 
 
-def test_speeds_of_conditions_and_of_virtual_power_are_written_as_formulas_write_them() -> None:
+def test_speeds_in_conditions_and_virtual_power_use_formula_syntax() -> None:
     joints = [sf.Joint(name, "revolute") for name in ("oor", "door", "left-hip")]
     bodies = [sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0, (1, 0, 0))) for i, joint in enumerate(joints)]
     for key in ("d`oor`", "d`left-hip`"):

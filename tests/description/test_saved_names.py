@@ -65,7 +65,7 @@ def test_reference_models_survive_saving(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("file", corpus(), ids=lambda file: str(file.relative_to(ROOT)))
-def test_files_of_other_formats(file: Path, tmp_path: Path) -> None:
+def test_files_of_other_formats_survive_saving(file: Path, tmp_path: Path) -> None:
     same_meaning(sf.load(file), tmp_path)
 
 

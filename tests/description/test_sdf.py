@@ -86,7 +86,7 @@ def test_joints_that_close_loops_become_closures_that_the_file_satisfies(
     assert any("joints that close loops" in note for note in system.notes)
 
 
-def test_springs_dampers_limits_and_mimics(tmp_path: Path) -> None:
+def test_springs_dampers_limits_and_mimics_are_read(tmp_path: Path) -> None:
     inside = (
         "<dynamics><damping>0.3</damping><spring_stiffness>5</spring_stiffness><spring_reference>0.2</spring_reference>"
         "</dynamics><limit><lower>-1</lower><upper>1e16</upper><effort>-1</effort><velocity>3</velocity></limit>"

@@ -36,7 +36,7 @@ class Counting(dict[str, Any]):
         return super().__getitem__(key)
 
 
-def test_look_ups_grow_as_the_number_of_frames(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_frame_look_ups_grow_linearly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = sdf_frames.Frames.__init__
 
     def counted(self: sdf_frames.Frames, *arguments: Any) -> None:

@@ -126,7 +126,7 @@ def test_included_models_are_found_below_beside_and_in_given_folders(tmp_path: P
 
 
 @pytest.mark.parametrize("link_to", ["folder", "file", "config"])
-def test_links_lead_nowhere_else(tmp_path: Path, link_to: str) -> None:
+def test_links_out_of_the_folder_are_not_followed(tmp_path: Path, link_to: str) -> None:
     """What a link beside the model's folder, or in it, leads to is not read."""
     outside = write(tmp_path / "secret", WHEEL.format(link("w", "", 1)))
     main = write(tmp_path / "home/cart", including("<uri>model://wheel</uri>"))
@@ -146,7 +146,7 @@ def test_links_lead_nowhere_else(tmp_path: Path, link_to: str) -> None:
 @pytest.mark.parametrize(
     "uri", ["../../secret", "/etc", "file:///etc", "http://x/y", "model://..", "", "a\\0b", "x" * 5000]
 )
-def test_no_uri_leaves_the_folders(tmp_path: Path, uri: str) -> None:
+def test_uris_out_of_the_folders_are_refused(tmp_path: Path, uri: str) -> None:
     write(tmp_path / "secret", WHEEL.format(link("w", "", 1)))
     main = write(tmp_path / "home/cart", including(f"<uri>{uri}</uri>"))
     assert len(refused(main).problems) == 1
@@ -178,7 +178,7 @@ def test_consequences_of_a_fault_are_not_reported(
     assert len(error.problems) == 1 and said in str(error), str(error)
 
 
-def test_how_much_is_included_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_number_of_includes_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each file includes the next one twice: a billion models after thirty files."""
     monkeypatch.setattr(includes, "MAX_INCLUDES", 50)
     for i in range(12):
@@ -188,7 +188,7 @@ def test_how_much_is_included_is_bounded(tmp_path: Path, monkeypatch: pytest.Mon
     assert "includes too much" in str(refused(tmp_path / "m0/model.sdf"))
 
 
-def test_refused_includes_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_refused_includes_count_towards_the_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(includes, "MAX_INCLUDES", 50)
     many = "<include><uri>gone</uri></include>" * 51
     assert "includes too much" in str(
@@ -242,7 +242,7 @@ def test_included_files_are_sources(tmp_path: Path) -> None:
     assert names == ["cart", "wheel"]
 
 
-def test_older_files_keep_their_rules(tmp_path: Path) -> None:
+def test_older_sdf_versions_keep_their_rules(tmp_path: Path) -> None:
     """A pose of 1.6 names its frame by `frame`, in a file that one of 1.11 includes."""
     old = document(link("a", "<pose>0 0 1 0 0 0</pose>", 1) + link("b", '<pose frame="a">0 1 0 0 0 0</pose>', 1), "1.6")
     write(

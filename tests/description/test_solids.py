@@ -84,7 +84,7 @@ def in_ellipsoid(semi: tuple[float, float, float], hole: float) -> Callable[[flo
     ],
     ids=["cylinder", "tube", "sphere", "shell", "ellipsoid"],
 )
-def test_integrals_over_all_points(
+def test_solids_match_integrals_over_points(
     solid: Inertia, volume: Callable[[float, float, float], tuple[Array, float]]
 ) -> None:
     mass, _, matrix = numbers(solid)
@@ -97,7 +97,7 @@ size = st.floats(1e-3, 1e3)
 
 
 @given(x=size, y=size, z=size, share=st.floats(0.05, 0.95))
-def test_a_box_is_made_of_two(x: float, y: float, z: float, share: float) -> None:
+def test_two_half_boxes_make_a_box(x: float, y: float, z: float, share: float) -> None:
     parts = [
         solids.box(RHO, share * x, y, z, center=((share - 1) * x / 2, 0, 0)),
         solids.box(RHO, (1 - share) * x, y, z, center=(share * x / 2, 0, 0)),
@@ -109,7 +109,7 @@ def test_a_box_is_made_of_two(x: float, y: float, z: float, share: float) -> Non
     np.testing.assert_allclose(sum(J + about(m, c) for m, c, J in stated), matrix, rtol=1e-9, atol=1e-12 * matrix.max())
 
 
-def test_an_axis_turns_a_cylinder_and_a_thin_shell_keeps_its_digits() -> None:
+def test_cylinders_turn_with_their_axis_and_thin_shells_keep_accuracy() -> None:
     along = {axis: numbers(solids.cylinder(RHO, 0.1, 2.0, axis=axis))[2].diagonal() for axis in ("x", "y", "z")}
     assert along["x"][0] == along["y"][1] == along["z"][2] < along["z"][0]
     assert sorted(along["x"]) == sorted(along["y"]) == sorted(along["z"])

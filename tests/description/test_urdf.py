@@ -27,7 +27,7 @@ def robots_folder() -> Path:
 load = partial(reading.load, name="arm.urdf")
 
 
-def test_links_and_joints(tmp_path: Path) -> None:
+def test_urdf_links_and_joints_are_read(tmp_path: Path) -> None:
     arm = load(tmp_path, ROBOT)
     assert [body.name for body in arm.bodies] == ["base", "upper", "hand"]
     assert arm.body("base").joint is None
@@ -44,7 +44,7 @@ def test_links_and_joints(tmp_path: Path) -> None:
     assert joint is not None and joint.limits == sf.Limits(-1.0, 1.0)  # Negative sizes are no limits.
 
 
-def test_snapping_is_by_default_below_rounding(tmp_path: Path) -> None:
+def test_snapping_only_removes_rounding_by_default(tmp_path: Path) -> None:
     rough = ROBOT.replace("1.5707963267948966", "1.5708")
     for tolerance, expected in ((1e-14, 1.5708), (1e-4, np.pi / 2)):
         joint = load(tmp_path, rough, snap_tol=tolerance).body("upper").joint
@@ -77,7 +77,7 @@ def test_every_robot_of_the_package_loads_or_is_refused_with_a_reason() -> None:
     assert sf.load(robots_folder() / "romeo_description/urdf/romeo.urdf", waive=["massless_tip"]).bodies
 
 
-def test_mimic_joints_move_as_pinocchio_s(tmp_path: Path) -> None:
+def test_mimic_joints_move_as_in_pinocchio(tmp_path: Path) -> None:
     arm = load(tmp_path, MIMIC, mimic=True)
     model = sf.compile(arm, sf.Options(backend="interpreter"))
     assert model.names.u == ("q1",)

@@ -40,7 +40,7 @@ def load(folder: Path, text: str) -> sf.System:
 ORIGIN = '<origin xyz="0.3 -0.2 0.5" rpy="0.4 -0.3 0.7"/>'
 
 
-def test_planar_joints_are_pinocchios(tmp_path: Path) -> None:
+def test_planar_joints_match_pinocchio(tmp_path: Path) -> None:
     """Pinocchio's plane is across z; its speeds are those of the body along its own axes."""
     hinge = joint("q", "continuous", "a", "b", '<origin xyz="0.5 0 0.1"/><axis xyz="0 1 0"/>')
     text = robot(joint("p", "planar", "base", "a", f'{ORIGIN}<axis xyz="0 0 1"/>') + hinge)
@@ -111,7 +111,7 @@ def four_bar() -> str:
     )
 
 
-def test_the_remedy_for_two_parents_closes_the_loop(tmp_path: Path) -> None:
+def test_the_remedy_for_two_parents_yields_a_closed_loop(tmp_path: Path) -> None:
     """What it says, done: the call as it stands, and the two frames."""
     last = joint("q4", "continuous", "c", "b", '<origin xyz="0 0 1"/><axis xyz="0 1 0"/>')
     with pytest.raises(sf.DescriptionError, match="two parents") as caught:

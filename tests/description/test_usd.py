@@ -75,7 +75,7 @@ def test_a_joint_stated_from_child_to_parent_is_the_same_joint(load: Load, kind:
     np.testing.assert_allclose(k, -h, atol=1e-13)
 
 
-def test_a_body_that_turns_about_another_point_than_its_origin_has_the_pose_that_is_stated(load: Load) -> None:
+def test_a_body_pivoting_off_its_origin_has_the_stated_pose(load: Load) -> None:
     turned = (HALF, 0.0, 0.0, HALF)  # About z by a right angle.
     text = stage(
         body("arm", at=(0.5, -0.25, 0), **ARM),
@@ -101,7 +101,7 @@ KINDS: dict[str, set[str]] = {
 }
 
 
-def test_degrees_of_freedom_name_the_joint(load: Load) -> None:
+def test_free_directions_select_the_joint_kind(load: Load) -> None:
     names = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
     bodies, joints = [body(kind, **ARM) for kind in KINDS], []
     for kind, free in KINDS.items():
@@ -117,7 +117,7 @@ def test_degrees_of_freedom_name_the_joint(load: Load) -> None:
     assert p[1] == pytest.approx(0.0, abs=1e-15) and R[1, 1] == pytest.approx(1.0)
 
 
-def test_a_joint_outside_of_the_articulation_closes_the_loop(load: Load) -> None:
+def test_a_joint_outside_the_articulation_closes_the_loop(load: Load) -> None:
     """A parallelogram: the closure holds where it stands, and leaves one freedom."""
     light = {"mass": 1.0, "centerOfMass": (0, 0, 0), "diagonalInertia": (0.1, 0.1, 0.1)}
     text = stage(
@@ -164,7 +164,7 @@ def test_omitted_mass_properties_follow_from_collision_shapes(
     assert made.inertia.moments == pytest.approx(solid.moments, rel=1e-14)
 
 
-def test_the_density_of_a_shape_comes_before_that_of_its_body_and_a_mass_before_both(load: Load) -> None:
+def test_mass_takes_precedence_over_density_of_shape_and_body(load: Load) -> None:
     own, both = "float physics:density = 20", {"density": 10.0}
     stated: list[tuple[float, tuple[str, ...], dict[str, float]]] = [
         (1000.0, (), {}),
@@ -182,7 +182,7 @@ def test_the_density_of_a_shape_comes_before_that_of_its_body_and_a_mass_before_
 
 @pytest.mark.parametrize("axis", "XYZ")
 @pytest.mark.parametrize("kind", ["Cylinder", "Capsule", "Cone"])
-def test_integrals_over_bodies_of_revolution_are_those_over_their_slices(kind: str, axis: str) -> None:
+def test_integrals_of_revolution_match_sums_over_slices(kind: str, axis: str) -> None:
     r, h, n = 0.3, 0.8, 200_001
     half = h / 2 + (r if kind == "Capsule" else 0.0)
     z = np.linspace(-half, half, n)
@@ -213,7 +213,7 @@ def test_shapes_scale_shift_and_add_up(load: Load) -> None:
     assert made.inertia.mass == pytest.approx(whole.mass) and made.inertia.moments == pytest.approx(whole.moments)
 
 
-def test_bodies_that_stand_still_or_float(load: Load) -> None:
+def test_bodies_without_joints_are_fixed_or_floating(load: Load) -> None:
     text = stage(
         body("table", at=(0, 0, 1), kinematicEnabled=True, **ARM),
         body("ball", at=(0, 0, 2), velocity=(1, 0, 0), **ARM),
@@ -227,7 +227,7 @@ def test_bodies_that_stand_still_or_float(load: Load) -> None:
         assert words in notes
 
 
-def test_names_are_the_shortest_that_tell_prims_apart() -> None:
+def test_names_are_the_shortest_unique_ones() -> None:
     paths = ("/a/arm/link", "/b/arm/link", "/b/hand", "/world")
     assert names_of(paths) == dict(zip(paths, ("a_arm_link", "b_arm_link", "hand", "world_"), strict=True))
 
@@ -274,7 +274,7 @@ def test_a_crashed_or_missing_usd_reader_is_reported(tmp_path: Path, monkeypatch
         sf.load(file)
 
 
-def test_visuals_are_solids_where_they_are(load: Load) -> None:
+def test_visuals_are_placed_solids(load: Load) -> None:
     color = "color3f[] primvars:displayColor = [(1, 0, 0)]"
     ball = prim("Sphere", "s", "double radius = 0.5", color, *placed((1, 2, 3)))
     system = load(stage(body("arm", ball, at=(5, 5, 5), **ARM)))

@@ -66,7 +66,7 @@ def test_each_missing_part_is_reported(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["[x", "x[y", "x[y]", "part.usda[y]", "[x]", "[x]y", "x]"])
 @pytest.mark.parametrize("suffix", [".usda", ""])
-def test_no_name_of_a_link_leads_outside(folder: Path, name: str, suffix: str) -> None:
+def test_link_names_cannot_leave_the_folder(folder: Path, name: str, suffix: str) -> None:
     inside = folder / "model"
     inside.mkdir()
     (inside / "part.usda").write_text(stage(body("own", **ARM)))
@@ -78,7 +78,7 @@ def test_no_name_of_a_link_leads_outside(folder: Path, name: str, suffix: str) -
 
 
 @pytest.mark.parametrize("name", ["[robots]", "a[b", "a]b", "x.usdz[y]"])
-def test_folders_have_any_name(folder: Path, name: str) -> None:
+def test_folders_may_have_any_name(folder: Path, name: str) -> None:
     inside = folder / name
     inside.mkdir()
     (inside / "part.usda").write_text(stage(body("arm", **ARM)))
@@ -107,7 +107,7 @@ def test_openusd_warnings_become_notes(folder: Path) -> None:
     assert warnings_of(printed) == ["In </a>: odd.", "b"]
 
 
-def test_a_worker_that_prints_without_end_does_not_wait(tmp_path: Path) -> None:
+def test_endless_output_of_a_worker_ends_the_wait(tmp_path: Path) -> None:
     script = tmp_path / "worker.py"
     script.write_text("import sys\nsys.stderr.write('\\x1bxy' * 400_000)\nprint('{\"text\": 1}')\n")
     answer = answer_of(str(script), {}, 60.0, "too much")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import symofros as sf
-from symofros.description.visual import MOST_VISUALS, Visual
+from symofros.description.visual import MAX_VISUALS, Visual
 
 ROBOT = """<robot name="arm"><material name="sky"><color rgba="0 0.5 1 1"/></material>
 <link name="base"/>
@@ -72,7 +72,7 @@ def test_meshes_are_found_in_the_folder_and_the_package(stated: str, where: str,
         "package://a//etc/passwd",
     ],
 )
-def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
+def test_meshes_outside_the_folder_are_not_read(stated: str, tmp_path: Path) -> None:
     for place in (tmp_path / "secret.stl", tmp_path / "robot" / "secret.stl"):
         place.parent.mkdir(exist_ok=True)
         place.write_bytes(b"secret")
@@ -84,10 +84,10 @@ def test_meshes_elsewhere_are_left_alone(stated: str, tmp_path: Path) -> None:
 
 
 def test_visuals_beyond_the_limit_are_dropped(tmp_path: Path) -> None:
-    assert len(shapes(tmp_path, visual(BOX) * (MOST_VISUALS + 5))) == MOST_VISUALS
+    assert len(shapes(tmp_path, visual(BOX) * (MAX_VISUALS + 5))) == MAX_VISUALS
 
 
-def test_looks_change_nothing_that_is_computed(tmp_path: Path) -> None:
+def test_visuals_do_not_affect_the_mechanics(tmp_path: Path) -> None:
     plain, dressed = load(tmp_path, ""), load(tmp_path, visual(BOX))
     assert plain == dressed and repr(plain) == repr(dressed) and dressed.visuals and not plain.visuals
     models = [sf.compile(system, sf.Options(backend="interpreter")) for system in (plain, dressed)]

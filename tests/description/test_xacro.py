@@ -37,7 +37,7 @@ def write(folder: Path, inside: str, name: str = "arm.urdf.xacro") -> Path:
     return path
 
 
-def test_macros_properties_conditions_arguments_and_files(tmp_path: Path) -> None:
+def test_xacro_macros_properties_conditions_arguments_and_files_are_expanded(tmp_path: Path) -> None:
     (tmp_path / "values.yaml").write_text("scale: 3")
     write(tmp_path, MACRO, "macros.xacro")
     text = (
@@ -86,7 +86,7 @@ REFUSED += [
 
 
 @pytest.mark.parametrize(("text", "said"), REFUSED)
-def test_expressions_compute_and_do_nothing_else(tmp_path: Path, text: str, said: str) -> None:
+def test_expressions_have_no_side_effects(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "inner").mkdir()
     (tmp_path / "secret.yaml").write_text("a: 1")
     quoted = text.replace("&", "&amp;").replace('"', "&quot;")
@@ -111,7 +111,7 @@ def test_entities_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_memory_and_time_are_bounded(tmp_path: Path) -> None:
+def test_memory_and_time_of_xacro_are_bounded(tmp_path: Path) -> None:
     assert "more than 16777216" in faults(write(tmp_path, '<link name="${len([0]*10**10)}"/>'))
     lists = "+".join(["[[0]*10**7]"] * 30)  # 80 MB each
     assert "Memory" in faults(write(tmp_path, f'<link name="${{len({lists})}}"/>'))
@@ -132,7 +132,7 @@ def test_without_xacro_the_remedy_names_the_extra(tmp_path: Path, monkeypatch: p
     ("name", "value"),
     [("abs", "python.type"), ("len", "python.vars"), ("str", "python.map"), ("load_yaml", "xacro.load_yaml")],
 )
-def test_no_name_of_a_file_becomes_a_function(tmp_path: Path, name: str, value: str) -> None:
+def test_property_names_do_not_become_functions(tmp_path: Path, name: str, value: str) -> None:
     """A property with the name of a function neither holds a function nor replaces it."""
     text = f'<xacro:property name="{name}" value="${{{value}}}"/><link name="${{{name}}}"/>'
     assert "is no value of an expression" in faults(write(tmp_path, text))
@@ -168,7 +168,7 @@ def test_expressions_are_arithmetic(expression: str, value: object) -> None:
 
 
 @pytest.mark.parametrize("expression", ["'%(a)99999s' % {'a': 1}", "'%*d' % (9999, 1)", "round(1, -10**9)", "1 << 9"])
-def test_no_operation_makes_much_of_little(expression: str) -> None:
+def test_operations_with_huge_results_are_refused(expression: str) -> None:
     with pytest.raises(xacro_expressions.Refusal):
         xacro_expressions.Evaluator({}, {}, frozenset)(expression)
 
@@ -179,7 +179,7 @@ def test_optional_files_may_be_missing(tmp_path: Path) -> None:
     assert "No such file" in faults(write(tmp_path, f"{include}/>{text}"))
 
 
-def test_constants_stand_before_arguments_in_eval(tmp_path: Path) -> None:
+def test_constants_take_precedence_over_arguments_in_eval(tmp_path: Path) -> None:
     """As xacro does: an argument called `e` is not the `e` of $(eval ...)."""
     text = '<xacro:arg name="e" default="7"/><xacro:arg name="m" default="2"/><xacro:property name="scale" value="1"/>'
     bar = '<xacro:bar name="a" parent="base" mass="$(eval m*e)"/>'
@@ -187,7 +187,7 @@ def test_constants_stand_before_arguments_in_eval(tmp_path: Path) -> None:
     assert inertia is not None and inertia.mass == 2 * math.e
 
 
-def test_warnings_take_no_memory_of_the_reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_warnings_use_bounded_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each call of the macro warns of an attribute with a name of 10^5 letters."""
     kept: list[int] = []
     run = subprocess.run
@@ -210,7 +210,7 @@ def worker(code: str) -> str:
     return subprocess.run([sys.executable, "-I", "-c", load + code], capture_output=True, text=True).stdout
 
 
-def test_bounds_that_are_set_are_kept() -> None:
+def test_existing_resource_limits_are_kept() -> None:
     """A process that has less memory than the worker's bound can't raise it, and is to work all the same."""
     pytest.importorskip("resource")
     code = "import resource\nresource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30))\nworker['bound']()\n"
@@ -218,7 +218,7 @@ def test_bounds_that_are_set_are_kept() -> None:
 
 
 @pytest.mark.parametrize("attempt", ["open(0)", "os.open(here + '/a', os.O_WRONLY)", "open(here + '/a', 'r+')"])
-def test_guard_refuses_descriptors_and_writing(tmp_path: Path, attempt: str) -> None:
+def test_the_guard_blocks_descriptors_and_writing(tmp_path: Path, attempt: str) -> None:
     (tmp_path / "a").write_text("a")
     code = (
         f"import os; here = {str(tmp_path.resolve())!r}; os.chdir(here); worker['guard']([here]); open('a').close()\n"
@@ -231,7 +231,7 @@ LIBRARY = Path(__file__).with_name("library.xacro").read_text()
 USES = Path(__file__).with_name("uses.xacro").read_text()
 
 
-def test_trusted_files_expand_as_by_xacro_itself(tmp_path: Path) -> None:
+def test_trusted_files_expand_as_in_xacro(tmp_path: Path) -> None:
     """Macros, blocks, defaults, forwarding, scopes, lazy properties, namespaces, conditions, YAML with units."""
     (tmp_path / "library.xacro").write_text(LIBRARY)
     (tmp_path / "values.yaml").write_text("arm: {length: 0.7, joints: [{limit: !degrees 90}]}\nangle: !degrees pi*10")
@@ -254,7 +254,7 @@ def test_an_argument_that_no_file_has_is_refused(tmp_path: Path) -> None:
         sf.load(path, arguments={"length": "2"})
 
 
-def test_pipes_are_not_waited_for(tmp_path: Path) -> None:
+def test_pipes_are_not_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     path = tmp_path / "robot.xacro"
     for inside in ('<xacro:include filename="pipe"/>', '<xacro:property name="a" value="${load_yaml(\'pipe\')}"/>${a}'):
@@ -264,7 +264,7 @@ def test_pipes_are_not_waited_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["a: &a [*a]", "a0: &a0 [1, 2]\n{}"])
-def test_aliases_stand_for_a_bounded_number_of_entries(tmp_path: Path, text: str) -> None:
+def test_expansion_of_aliases_is_bounded(tmp_path: Path, text: str) -> None:
     more = "".join(f"a{k + 1}: &a{k + 1} [{', '.join([f'*a{k}'] * 10)}]\n" for k in range(9))
     (tmp_path / "data.yaml").write_text(text.format(more))
     path = tmp_path / "robot.xacro"

@@ -70,12 +70,12 @@ def agree(text: str) -> None:
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
-def test_reference_models_read_alike(file: Path) -> None:
+def test_reference_models_parse_equally_in_pieces(file: Path) -> None:
     agree(file.read_text())
 
 
 @given(st.lists(st.sampled_from(LINES), max_size=12), st.sampled_from(["\n", "\r\n"]))
-def test_any_lines_read_alike(lines: list[str], newline: str) -> None:
+def test_any_lines_parse_equally_in_pieces(lines: list[str], newline: str) -> None:
     agree(newline.join(lines))
 
 
@@ -96,7 +96,7 @@ def test_only_the_entry_that_changed_is_read_again(monkeypatch: pytest.MonkeyPat
     assert root.at(("bodies", f"b{count - 1}", "mass")).line == 2 + 2 * count
 
 
-def test_as_many_characters_are_kept_as_two_texts_have(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_cache_of_parsed_pieces_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     kept = yaml_pieces._Kept()
     monkeypatch.setattr(yaml_pieces, "MAX_KEPT", 30)
     read: list[str] = []

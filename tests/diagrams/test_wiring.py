@@ -76,7 +76,7 @@ class Liar(Block):
         return {"y": context.t}
 
 
-def test_accelerations_under_constraints_are_for_samples() -> None:
+def test_constrained_accelerations_are_available_at_samples_only() -> None:
     system = sf.load(Path(__file__).parents[2] / "reference_models" / "closed" / "slider_crank.yaml")
     diagram = moving(system)
     diagram.add(blocks.Formula(name="norm", formulas="abs(x[0])"), x="plant.lam")

@@ -24,7 +24,7 @@ def test_the_environments_page_matches_its_source_lists(made: Any) -> None:
     assert made.rendered(page) == page, "run: python -m docs.site_extensions.environments"
 
 
-def test_environments_have_functions_of_the_table_and_tests_that_are_there(made: Any) -> None:
+def test_environments_cite_existing_functions_and_tests(made: Any) -> None:
     for environment in made.environments():
         assert environment.functions and environment.functions <= FUNCTIONS.keys(), environment.name
         assert all((ROOT / test).exists() for test in environment.tests), environment.name

@@ -115,7 +115,7 @@ def test_the_code_of_a_page_runs(page: str, folder: Path, capsys: pytest.Capture
         pytest.skip(needs_extra(absent, absent))
 
 
-def test_the_commands_of_all_reports_are_understood(tmp_path: Path) -> None:
+def test_report_commands_in_the_readme_are_valid(tmp_path: Path) -> None:
     table = (ROOT / "reports/README.md").read_text(encoding="utf-8")
     stated = re.findall(r"^\| \[\w+\]\(.*?\) \| `(.*?)` \|", table, re.MULTILINE)
     assert len(stated) == len(TOPICS)
@@ -124,7 +124,7 @@ def test_the_commands_of_all_reports_are_understood(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("page", sorted(ELSEWHERE))
-def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -> None:
+def test_pages_run_by_other_tests_are_read_there(page: str, folder: Path) -> None:
     assert Path(page).name in (ROOT / ELSEWHERE[page]).read_text(encoding="utf-8")
     assert {block.language for block in blocks(page)} <= TAKEN[page]
     for block in blocks(page, "sh"):
@@ -133,7 +133,7 @@ def test_pages_that_other_tests_run_are_read_by_those(page: str, folder: Path) -
 
 
 @pytest.mark.parametrize("page", ["docs/howto/gravity_compensation.md"])
-def test_the_loop_of_the_guide_holds_the_weight(page: str, folder: Path) -> None:
+def test_the_guides_control_loop_holds_the_weight(page: str, folder: Path) -> None:
     if shutil.which("gcc") is None:
         pytest.skip("needs gcc")
     names: dict[str, Any] = {}
@@ -165,7 +165,7 @@ def test_no_block_is_left_out_silently(page: str) -> None:
         "```python\nraise SystemExit\n",
     ],
 )
-def test_a_block_that_would_be_left_out_is_caught(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unmarked_skipped_block_is_detected(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "page.md").write_text(text)
     monkeypatch.setattr("tests.docs.pages.ROOT", tmp_path)
     assert unseen("page.md")
@@ -185,7 +185,7 @@ def test_links_lead_to_files_that_exist(page: str) -> None:
         assert target.startswith(("http", "mailto:")) or (ROOT / page).parent.joinpath(target).exists(), target
 
 
-def test_the_first_example_is_short_and_does_all_that_it_says(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_first_readme_example_is_short_and_complete(capsys: pytest.CaptureFixture[str]) -> None:
     first, *_ = blocks("README.md", "python")
     assert len(first.text.strip().splitlines()) <= 25
     exec(compile(first.text, "README.md", "exec"), {})

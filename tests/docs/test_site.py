@@ -68,7 +68,7 @@ def test_figures_come_from_the_reports(site: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_command_line_is_there_whole(site: Path) -> None:
+def test_the_site_documents_the_whole_command_line(site: Path) -> None:
     page = (site / "reference/commands.html").read_text(encoding="utf-8")
     headings = {re.sub("<[^>]+>", "", heading) for heading in re.findall(r"<h3>(.*?)<a ", page)}
     for app, program in ((symofros, "symofros"), (validation, "python -m validation")):

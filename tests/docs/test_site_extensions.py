@@ -31,13 +31,11 @@ def extension(monkeypatch: pytest.MonkeyPatch) -> Any:
         ("index.md", "https://example.org/a.md", "https://example.org/a.md"),
     ],
 )
-def test_links_out_of_the_pages_lead_to_the_page_or_to_the_file(
-    extension: Any, page: str, link: str, turned: str
-) -> None:
+def test_links_resolve_to_pages_or_files(extension: Any, page: str, link: str, turned: str) -> None:
     assert extension("links").inside(f"[x]({link})", ROOT / "docs" / page, ROOT) == f"[x]({turned})"
 
 
-def test_numbers_of_equations_become_anchors_beside_their_lines(extension: Any) -> None:
+def test_equation_numbers_become_anchors(extension: Any) -> None:
     shown = extension("equations").as_equations("f = m a + U S      (9)\n  with a < b\nn = c    (22a)")
     text, numbers = re.findall(r"<pre[^>]*>(.*?)</pre>", shown, re.DOTALL)
     assert text.split("\n") == ["f = m a + U S", "  with a &lt; b", "n = c"]
@@ -61,7 +59,7 @@ def test_a_figure_is_found_by_its_section_and_position(extension: Any) -> None:
             figure(page, anchor, position)
 
 
-def test_the_gallery_names_figures_that_reports_have(extension: Any) -> None:
+def test_the_gallery_names_existing_figures(extension: Any) -> None:
     """The site's build says so too, but only after minutes."""
     named = re.findall(r"^```\{report-figure\} (\w+) (\w+) (\d)$", (ROOT / "docs/gallery.md").read_text("utf-8"), re.M)
     assert len(named) > 10

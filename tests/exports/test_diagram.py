@@ -113,7 +113,7 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(("shape", "method"), [*((shape, "dopri5") for shape in SHAPES), ("tent", "rk4")])
-def test_a_program_meets_the_pulses_of_a_models_formulas(shape: str, method: str, tmp_path: Path) -> None:
+def test_programs_resolve_pulses_of_model_formulas(shape: str, method: str, tmp_path: Path) -> None:
     """However its run is cut: a part whose steps end at no instants stays at rest."""
     force, impulse = SHAPES[shape]
     diagram = sf.Diagram("cart")
@@ -172,7 +172,7 @@ def test_a_program_uses_the_stated_step_settings_or_notes_others(tmp_path: Path)
         sf.export(pendulum(), "c", tmp_path / "other", dt=-1.0)
 
 
-def test_the_check_of_a_program_can_fail(tmp_path: Path) -> None:
+def test_a_wrong_program_fails_its_check(tmp_path: Path) -> None:
     exported = sf.export(pendulum(), "c", tmp_path / "c")
     program = exported.folder / "arm_program.c"
     program.write_text(program.read_text().replace("u_start[] = {0", "u_start[] = {0, 0", 1))

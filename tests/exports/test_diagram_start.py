@@ -36,7 +36,7 @@ def test_the_stated_start_is_kept(angle: float, tmp_path: Path) -> None:
     assert check.returncode == 0, check.stdout
 
 
-def test_notes_of_limits_and_of_the_first_steps(tmp_path: Path) -> None:
+def test_limits_and_first_steps_are_noted(tmp_path: Path) -> None:
     """Limits are data, as in packages of models; a start outside them is told as a run tells it."""
     joint = sf.Joint("a", "revolute", axis=(0, 1, 0), limits=sf.Limits(-0.5, 0.5, 2.0, 3.0))
     system = sf.System("limited", (sf.RigidBody("b", joint, sf.Inertia(1.0, (0.3, 0, 0))),))

@@ -29,7 +29,7 @@ def test_a_foreign_manifest_is_refused(tmp_path: Path, text: str) -> None:
         sf.export(PENDULUM, "urdf", tmp_path)
 
 
-def test_a_manifest_leads_nowhere_else(tmp_path: Path) -> None:
+def test_a_manifest_cannot_remove_files_elsewhere(tmp_path: Path) -> None:
     (tmp_path / "precious").write_text("x")
     folder = tmp_path / "out"
     folder.mkdir()
@@ -46,7 +46,7 @@ def test_exports_replace_exports(tmp_path: Path) -> None:
     assert done.files == (tmp_path / "pendulum.urdf",)
 
 
-def test_changes_by_hand_are_kept(tmp_path: Path) -> None:
+def test_files_changed_by_hand_are_kept(tmp_path: Path) -> None:
     sf.export(PENDULUM, "c", tmp_path)
     (tmp_path / "main.c").write_text("mine")
     with pytest.raises(sf.ExportError, match="changed since it was exported"):
@@ -65,7 +65,7 @@ def test_a_new_file_never_lands_on_a_users_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["sym", "math", "double", "symofros_model", "fmi2Functions", "end", "CON", "sym_x", "3R"]
 )
-def test_names_that_are_taken(name: str) -> None:
+def test_reserved_names_are_refused(name: str) -> None:
     """Of C, its headers, Windows, FMI, Matlab, and ours."""
     called = identifier(name)
     assert called != name

@@ -34,7 +34,7 @@ a, b, x = sympy.symbols("a b x")
     ],
     ids=str,
 )
-def test_frozen_sympy_evaluates_alike(expression: sympy.Expr) -> None:
+def test_frozen_sympy_expressions_evaluate_equally(expression: sympy.Expr) -> None:
     values = {"a": 0.7, "b": 1.3}
     expected = float(expression.subs(values).evalf())
     assert evaluate(freeze(expression), values) == pytest.approx(expected, rel=1e-14)
@@ -57,7 +57,7 @@ def test_evaluate_refuses_division_by_zero() -> None:
         sf.evaluate(parse("1/(a - a)"), {"a": 1.0})
 
 
-def test_sympy_enters_descriptions() -> None:
+def test_sympy_expressions_are_accepted_in_descriptions() -> None:
     inertia = sf.Inertia(mass=a, center_of_mass=(a / 2, 0, sympy.pi), moments=(1, 1, 1))
     assert str(inertia.mass) == "a"
     assert sf.evaluate(inertia.center_of_mass[0], {"a": 3.0}) == 1.5

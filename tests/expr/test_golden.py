@@ -121,7 +121,7 @@ def test_the_gradient_is_the_weighted_sum_of_the_derivatives(case: Case) -> None
 
 
 @pytest.mark.parametrize("case", golden_cases(__file__, "derivative"))
-def test_derivatives_are_complex_steps_or_differences(case: Case) -> None:
+def test_derivatives_match_complex_steps_or_differences(case: Case) -> None:
     stated, h = parse_program(case.stated), 1e-6
     given, n = state(stated), stated.sizes["x"]
     plain = parse_program(case.stated)

@@ -17,7 +17,7 @@ def g() -> Graph:
     return Graph()
 
 
-def test_zero_and_one_fold(g: Graph) -> None:
+def test_zero_and_one_are_folded(g: Graph) -> None:
     x = g.input("q", 0)
     assert g.add(x, ZERO) == x == g.add(ZERO, x)
     assert g.mul(x, ZERO) == ZERO == g.mul(ZERO, x)
@@ -40,7 +40,7 @@ def test_equal_values_share_a_node(g: Graph) -> None:
     assert len({g.add(x, y), g.sub(x, y), g.mul(x, y), g.div(x, y)}) == 4
 
 
-def test_constants_fold_through_products(g: Graph) -> None:
+def test_constants_are_folded_through_products(g: Graph) -> None:
     x = g.input("q", 0)
     assert g.mul(g.constant(2.0), g.mul(g.constant(3.0), x)) == g.mul(g.constant(6.0), x)
     assert g.add(x, x) == g.mul(g.constant(2.0), x)

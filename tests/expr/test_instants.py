@@ -22,7 +22,7 @@ def instants(model: sf.Model, formula: str, t_end: float = 10.0) -> np.ndarray:
 
 
 @pytest.mark.parametrize("width", [2.0, 1e-2, 1e-4, 1e-6])
-def test_corners_of_pulses_of_any_width(model: sf.Model, width: float) -> None:
+def test_corners_of_pulses_of_any_width_are_found(model: sf.Model, width: float) -> None:
     for at in np.random.default_rng(0).uniform(2.5, 7.5, 10):
         corners = [at - width, at + width]
         tent = instants(model, f"max(0, 1 - abs(t - {at})/{width})")
@@ -35,21 +35,21 @@ def test_corners_of_pulses_of_any_width(model: sf.Model, width: float) -> None:
 
 @pytest.mark.parametrize("width", [1e-1, 1e-3, 1e-5])
 @pytest.mark.parametrize("formula", ["exp(-((t - 4.2)/{})^2)", "1 - tanh((t - 4.2)/{})^2", "1/(1 + ((t - 4.2)/{})^2)"])
-def test_narrow_parts_are_framed(model: sf.Model, formula: str, width: float) -> None:
+def test_narrow_pulses_are_bracketed(model: sf.Model, formula: str, width: float) -> None:
     found = instants(model, formula.format(width))
     assert 8 <= len(found) <= 12 and np.abs(found - 4.2).min() < 1e-3 * width
     gaps = np.diff(found)
     assert 0.4 * width < gaps.min() <= width and found[0] < 4.2 - 7 * width and found[-1] > 4.2 + 7 * width
 
 
-def test_every_kink_of_a_wave(model: sf.Model) -> None:
+def test_every_kink_of_a_wave_is_found(model: sf.Model) -> None:
     found = instants(model, "abs(sin(20*t))")
     zeros = np.arange(1, 64) * np.pi / 20
     assert np.abs(found[found > 0.1][:, np.newaxis] - zeros).min(axis=0).max() < 1e-12
     assert len(instants(model, "cos(t)*max(0, sin(t))")) == 4  # One of them just after the start.
 
 
-def test_parameters_move_them_and_factors_of_the_state_do_not() -> None:
+def test_parameters_shift_instants_and_state_factors_do_not() -> None:
     parameter = sf.Parameter("late", 3.0)
     slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
     body = sf.RigidBody("b", slide, sf.Inertia(1.0, moments=(1, 1, 1)))

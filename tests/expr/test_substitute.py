@@ -38,7 +38,7 @@ def copied(name: str, function: str, fixed: dict[str, float]) -> tuple[Program, 
     "name", sampled(("rx90", "chain22", "mss", "random_tree70", "planar_robot"), ("rx90", "planar_robot"))
 )
 @pytest.mark.parametrize("fixed", [{}, {"q[0]": 0.0, "q[2]": 0.5, "v[1]": 0.0}])
-def test_values_are_the_same(name: str, fixed: dict[str, float]) -> None:
+def test_substituted_graphs_have_the_same_values(name: str, fixed: dict[str, float]) -> None:
     program, other, stated, function = copied(name, "forward_dynamics", fixed)
     rng = np.random.default_rng(1)
     inputs = {group: rng.normal(size=(3, size)) for group, size in program.sizes.items()}
@@ -59,7 +59,7 @@ def test_values_are_the_same(name: str, fixed: dict[str, float]) -> None:
 
 
 @pytest.mark.parametrize("name", ["chain22", "mss"])
-def test_packs_come_along(name: str) -> None:
+def test_packs_are_copied_with_the_graph(name: str) -> None:
     """As many lanes are computed alike as before."""
     program, other, stated, function = copied(name, "mass_matrix", {})
     before, after = lanes(program.graph, stated), lanes(other.graph, function)

@@ -52,7 +52,9 @@ def test_each_row_has_a_case() -> None:
 
 
 @pytest.mark.parametrize("row", CASES, ids=" - ".join)
-def test_a_model_takes_the_route_and_another_does_not(row: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_case_takes_its_route_and_a_contrasting_model_another(
+    row: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Where a quantity has one method there is no other case; elsewhere each case takes none of the other rows."""
     function, name, options = CASES[row]
     if row[1] == "routine":
@@ -71,7 +73,7 @@ def test_the_last_route_of_each_quantity_applies_always() -> None:
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row.quantity} - {row.method}")
-def test_the_theory_is_where_the_row_says(row: Route) -> None:
+def test_cited_theory_sections_exist(row: Route) -> None:
     page, section, *equations = row.theory.split(", ")
     text = (ROOT / "docs/theory" / page).read_text(encoding="utf-8")
     assert re.search(rf"^##+ {re.escape(section)}\.? ", text, re.MULTILINE), row.theory
@@ -167,7 +169,7 @@ def test_reported_routes_match_the_text(name: str, function: str, asked: dict[st
     check_markers(system(name), function, asked)
 
 
-def test_a_model_from_the_cache_tells_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cached_models_report_the_same_routes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cold, warm, and before the first call; a warm model has generated nothing to be called."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
     ahead = sf.compile(MODELS["cart_pole"])

@@ -55,7 +55,7 @@ def test_energy_changes_by_the_power_of_the_inputs(case: str, rng: np.random.Gen
 
 
 @pytest.mark.parametrize("case", sampled(CASES))
-def test_forward_undoes_inverse(case: str, rng: np.random.Generator) -> None:
+def test_forward_dynamics_inverts_inverse_dynamics(case: str, rng: np.random.Generator) -> None:
     m, q, v = states(case, rng)
     u = rng.standard_normal((STATES, m.nu))
     M, h, Q = m.dynamics(q, v, u)

@@ -134,7 +134,7 @@ def _by_name(m: sf.Model, names: tuple[str, ...], kind: str) -> list[int]:
 
 @pytest.mark.parametrize("change", [_turned, _halved, _permuted])
 @pytest.mark.parametrize("case", sampled(CASES, SOME))
-def test_the_same_mechanism_stated_otherwise(case: str, change: Callable[..., sf.System]) -> None:
+def test_equivalent_descriptions_give_the_same_dynamics(case: str, change: Callable[..., sf.System]) -> None:
     stated = system(case)
     anchors = {name for c in stated.constraints for name in _anchored(c)}
     anchors |= {name for c in stated.connections for name in (c.first[0], c.second[0])}

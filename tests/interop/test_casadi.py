@@ -31,7 +31,7 @@ def state(model: sf.Model, third: int) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics"])
-def test_values_and_jacobians_are_the_models(dynamics: Any, model: sf.Model, name: str) -> None:
+def test_casadi_values_and_jacobians_match_the_model(dynamics: Any, model: sf.Model, name: str) -> None:
     given = state(model, model.nu if name == "forward_dynamics" else model.nv)
     right = getattr(model, name)(*given[:3])
     np.testing.assert_allclose(np.array(dynamics.functions[name](*given)).ravel(), right, rtol=1e-12)
@@ -100,7 +100,7 @@ def test_structural_zeros_of_hessians_are_left_out(dynamics: Any) -> None:
     ]
 
 
-def test_loops_have_hessians_too() -> None:
+def test_hessians_are_available_for_loops() -> None:
     system = MODELS["four_bar"]
     model, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
     given = state(model, model.nu)
@@ -182,7 +182,7 @@ def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any]
 
 @pytest.mark.parametrize("method", ["cvodes", "idas"])
 @pytest.mark.parametrize("name", ["cart_pole", "hopper"])
-def test_sensitivities_of_casadis_integrators(method: str, name: str) -> None:
+def test_casadi_integrators_give_correct_sensitivities(method: str, name: str) -> None:
     """The Jacobian of the end by start and inputs, that of `rk` on many elements; quaternions keep their length."""
     system = MODELS[name] if name in MODELS else SYSTEMS[name]()
     m, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)

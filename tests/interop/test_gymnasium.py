@@ -20,7 +20,7 @@ def task() -> Any:
     return sf.interop.gymnasium.cart_pole()
 
 
-def test_gymnasiums_checker_has_nothing_to_say(task: Any) -> None:
+def test_gymnasium_checker_reports_nothing(task: Any) -> None:
     from gymnasium.utils.env_checker import check_env
 
     with warnings.catch_warnings():
@@ -30,7 +30,7 @@ def test_gymnasiums_checker_has_nothing_to_say(task: Any) -> None:
         check_env(sf.interop.gymnasium.MechanismEnv(task), skip_render_check=True)
 
 
-def test_many_move_as_one_does_to_the_last_bit(task: Any) -> None:
+def test_vector_environments_equal_single_ones_bitwise(task: Any) -> None:
     envs = sf.interop.gymnasium.MechanismVectorEnv(task, 5)
     first, _ = envs.reset(seed=4)
     actions = np.linspace(-3.0, 3.0, 5).reshape(5, 1).astype(np.float32)
@@ -77,7 +77,7 @@ def with_masses(task: Any) -> Any:
 
 
 @pytest.mark.parametrize(("seed", "masses"), [(7, False), ([5, None, 3], True)])
-def test_many_are_single_ones_side_by_side(task: Any, seed: Any, masses: bool) -> None:
+def test_vector_environments_match_gymnasiums_own(task: Any, seed: Any, masses: bool) -> None:
     """Gymnasium's own vector environment of single ones gives the same, seed by seed, episode after episode."""
     from gymnasium.vector import SyncVectorEnv
     from gymnasium.wrappers import TimeLimit
@@ -114,7 +114,7 @@ def test_episode_parameters_affect_the_motion(task: Any) -> None:
     assert env.par != 5.0
 
 
-def test_a_mask_resets_some(task: Any) -> None:
+def test_a_mask_resets_selected_environments(task: Any) -> None:
     envs = sf.interop.gymnasium.MechanismVectorEnv(task, 3, max_steps=4)
     first, _ = envs.reset(seed=3)
     moved = envs.step(np.ones((3, 1)))[0]

@@ -57,7 +57,7 @@ def test_jit_and_vmap_give_the_models_numbers(dynamics: Any, model: sf.Model, n:
     np.testing.assert_array_equal(jax.vmap(dynamics.forward_dynamics, (0, None, None))(q, v[0], u[0])[0], right[0])
 
 
-def test_jacobians_are_the_models(dynamics: Any, model: sf.Model) -> None:
+def test_jax_jacobians_match_the_model(dynamics: Any, model: sf.Model) -> None:
     q, v, u, _ = arrays(model, 4, model.nu)
     right = model.forward_dynamics_derivatives(q, v, u)
     for transform in (jax.jacfwd, jax.jacrev):

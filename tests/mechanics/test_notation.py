@@ -67,7 +67,7 @@ def labels(tree: ast.AST) -> Iterator[str]:
             yield re.split(r"[\"'[]", ast.unparse(node.args[0]))[1]
 
 
-def test_a_name_that_begins_like_a_monogram_is_one() -> None:
+def test_names_with_a_monogram_prefix_are_monograms() -> None:
     wrong = {
         f"{path}: {name}"
         for path, tree in trees().items()
@@ -126,7 +126,7 @@ def test_glossary_terms_cite_existing_files() -> None:
     assert not [row[0] for row in rows if "`" not in row[4]]
 
 
-def test_the_code_that_the_glossary_names_stands_where_it_says() -> None:
+def test_glossary_entries_cite_existing_code() -> None:
     missing = []
     for term, _, code, _, where in glossary():
         texts = [source(path) for path in re.findall(r"`([^`]+)`", where)]
@@ -137,7 +137,7 @@ def test_the_code_that_the_glossary_names_stands_where_it_says() -> None:
     assert not missing
 
 
-def test_the_c_that_the_glossary_names_is_written_somewhere() -> None:
+def test_glossary_entries_cite_existing_c() -> None:
     paths = [path for path in (PACKAGE / "native").rglob("*") if path.suffix in (".h", ".c", ".in")]
     paths += [*(PACKAGE / "generator").rglob("*.py"), *(PACKAGE / "mechanics").rglob("*.py")]
     text = "\n".join(path.read_text(encoding="utf-8") for path in paths)

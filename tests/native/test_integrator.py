@@ -81,7 +81,7 @@ def test_the_next_step_is_chosen_from_the_errors_of_the_last_two() -> None:
     assert np.sum(~followed) <= run.statistics.rejected < 5
 
 
-def test_a_run_goes_on_after_the_last_time_of_its_output(cart: sf.Model) -> None:
+def test_a_run_continues_after_its_last_output_time(cart: sf.Model) -> None:
     """These times lie within a step; what follows is not recorded, but stepped."""
     run = sf.simulate(cart, t_end=1.0, u={"F": 1.0}, method="dopri5", output=[0.11, 0.23])
     np.testing.assert_array_equal(run.t, [0.11, 0.23])

@@ -21,7 +21,7 @@ SAME, ADAPTED = 1e-9, 1e-6
 
 
 @pytest.mark.tools
-def test_runs_of_all_methods_under_sanitizers(tmp_path: Path) -> None:
+def test_all_methods_run_under_sanitizers(tmp_path: Path) -> None:
     need("gcc")
     flags = sanitizers("gcc", "address,undefined")
     libraries = [

@@ -45,7 +45,7 @@ def ours(values: Sequence[float] | Array) -> Array:
     return np.array([values[ORDER.index(name)] for name in model().names.q])
 
 
-def test_accelerations_and_forces_at_the_start() -> None:
+def test_initial_accelerations_and_forces_match_the_reference() -> None:
     """y'' and lambda of the IVP test set: only the crank and K2 accelerate, only the loop through K3 is loaded."""
     m, q = model(), ours(START)
     assert np.abs(m.constraint(q)).max() < 1e-16

@@ -29,7 +29,7 @@ def loaded(**changed: object) -> sf.Model:
 
 @pytest.mark.parametrize("modes", range(1, 8))
 @pytest.mark.parametrize("basis", FAMILIES)
-def test_euler_load_function_by_function(basis: str, modes: int) -> None:
+def test_euler_load_matches_ritz_values_per_function(basis: str, modes: int) -> None:
     """The Ritz value of every basis at every number of functions, not only the limit."""
     m = loaded(bend_y=modes, family=FAMILIES[basis])
     K = stiffness(m)
@@ -88,7 +88,7 @@ def lateral_load(functions: int, retain: str = "all") -> float:
 
 
 @pytest.mark.parametrize(("functions", "expected"), [(1, 6.0), (2, 4.485), (3, 4.050), (4, 4.016)])
-def test_lateral_buckling_function_by_function(functions: int, expected: float) -> None:
+def test_lateral_buckling_load_matches_ritz_values(functions: int, expected: float) -> None:
     """4.0126 sqrt(EI GJ)/L^2 (Prandtl 1899; Timoshenko & Gere), by the cubic part of the strain energy."""
     assert lateral_load(functions) == pytest.approx(expected, abs=0.6e-3)
 

@@ -31,7 +31,7 @@ def tip(alpha: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("row", TABLE, ids=lambda row: f"alpha {row['alpha']}")
-def test_second_order_theory_and_its_distance_from_the_elastica(row: dict[str, Any]) -> None:
+def test_second_order_tip_matches_its_known_distance_from_the_elastica(row: dict[str, Any]) -> None:
     alpha = row["alpha"]
     p, R = tip(alpha)
     assert p[1] == pytest.approx(alpha / 3, rel=1e-12)
@@ -42,7 +42,7 @@ def test_second_order_theory_and_its_distance_from_the_elastica(row: dict[str, A
 
 
 @pytest.mark.parametrize("error", ["0.01", "0.05", "0.1"])
-def test_where_the_theory_stops(error: str) -> None:
+def test_theory_errors_grow_with_tip_deflection_as_stated(error: str) -> None:
     """1 % at 0.10 L, 5 % at 0.21 L, 10 % at 0.30 L of tip deflection."""
     limit = THRESHOLDS[error]
     p, _ = tip(limit["alpha_linear_deflection"])

@@ -35,7 +35,7 @@ def frequencies(m: sf.Model, eta: float, delta: float, direction: str) -> np.nda
 
 # What a Ritz solution with polynomials of these degrees gives: 9.8e-6 and 2.4e-7, at the highest speed.
 @pytest.mark.parametrize(("modes", "tolerance"), [(8, 2e-5), (10, 5e-7)])
-def test_frequencies_over_the_whole_table(modes: int, tolerance: float) -> None:
+def test_frequencies_match_the_whole_table(modes: int, tolerance: float) -> None:
     m = spinning(bend_y=modes, bend_z=modes)
     worst = 0.0
     for row in TABLE:
@@ -48,7 +48,7 @@ def test_frequencies_over_the_whole_table(modes: int, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize("eta", range(13))
-def test_the_published_table_to_its_decimals(eta: int) -> None:
+def test_frequencies_match_the_published_table(eta: int) -> None:
     found = np.sqrt(frequencies(spinning(bend_y=10, bend_z=10), eta, 0.0, "bend_z")[:3])
     expected = np.array(PUBLISHED[str(eta)])
     digits = np.array([0.5e-4, 0.5e-4, 0.5e-4])
@@ -56,7 +56,7 @@ def test_the_published_table_to_its_decimals(eta: int) -> None:
 
 
 @pytest.mark.parametrize("delta", [0.0, 1.0])
-def test_divergence_without_foreshortening(delta: float) -> None:
+def test_softening_without_foreshortening_diverges(delta: float) -> None:
     """Softening -eta^2 M without stiffening: divergence at the first natural frequency, whatever the hub ratio."""
     m = spinning(bend_y=5, foreshortening=False, retain="all")
     critical = scipy.optimize.brentq(lambda eta: frequencies(m, eta, delta, "bend_y")[0], 3.0, 4.0)

@@ -55,6 +55,6 @@ def test_three_functions_follow_the_exact_rod() -> None:
     assert error[1] < known["max_abs_err_y"] * 1.01
 
 
-def test_without_foreshortening_the_tip_runs_away() -> None:
+def test_the_tip_diverges_without_foreshortening() -> None:
     (found,) = tip([8.0], 3, foreshortening=False, retain="all")
     assert found[1] < -LENGTH

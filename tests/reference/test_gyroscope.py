@@ -32,7 +32,7 @@ def test_rotor_moments_equal_momentum_rates(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("speed", [20.0, -35.0])
-def test_precession_under_a_weight(speed: float) -> None:
+def test_precession_under_a_weight_matches_theory(speed: float) -> None:
     """With the axis level, yaw' = W l / H keeps it level: m g l = H yaw' (H the whole momentum along the axis)."""
     model = reference("gyroscope")
     p = model.parameters

@@ -82,7 +82,7 @@ class TestFourBars:
         np.testing.assert_allclose(run["dcrank0"], [rate for _, rate in motion], atol=1e-5)
 
     @pytest.mark.parametrize("n", sampled((10, 40), [10]))
-    def test_many_windows_pass_their_flat_posture(self, n: int) -> None:
+    def test_many_loops_pass_their_flat_posture(self, n: int) -> None:
         run = self.run(n, 1.0, 1e-2, "projection")
         cranks = [i for i, name in enumerate(run.model.names.q) if name.startswith("crank")]
         # All stay parallel: none takes the other branch.
@@ -156,7 +156,7 @@ class TestGovernor:
         assert run.outcome.ok
         np.testing.assert_allclose(run["s"], GOVERNOR, atol=1e-6)
 
-    def test_explicit_methods_pay_or_diverge(self) -> None:
+    def test_explicit_methods_need_many_steps_or_diverge(self) -> None:
         stiff, explicit = self.run("rodas4", rtol=1e-5, atol=1e-6), self.run("dopri5", rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(stiff["s"], GOVERNOR, atol=1e-3)
         assert explicit.statistics.evaluations > 20 * stiff.statistics.evaluations

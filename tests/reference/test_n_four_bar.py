@@ -80,7 +80,7 @@ def test_accelerations_are_the_pendulums(n: int, rng: np.random.Generator) -> No
 
 
 @pytest.mark.parametrize("n", [1, 2])
-def test_two_sets_of_coordinates(n: int, rng: np.random.Generator) -> None:
+def test_two_sets_of_coordinates_give_the_same_accelerations(n: int, rng: np.random.Generator) -> None:
     """The accelerations of every mass centre, by closures at each pin."""
     m, (J, V) = absolute(n), pendulum(n)
     for angle, w in rng.uniform(0.2, 2.9, (5, 2)):
@@ -108,7 +108,7 @@ def test_every_loop_loses_a_condition_when_flat(n: int) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2])
-def test_at_the_flat_posture_itself(n: int) -> None:
+def test_accelerations_exist_at_the_flat_posture(n: int) -> None:
     """N conditions are left; accelerations keep them, and what is not inertia and weight is a force of theirs."""
     m, w = model(n), FLAT[n][1]
     q, v = np.zeros(m.nv), parallel(n, w)[order(n)]

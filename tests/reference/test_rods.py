@@ -49,7 +49,7 @@ def test_a_moment_rolls_a_cantilever_up_to_a_circle() -> None:
 
 
 @pytest.mark.slow
-def test_the_spin_up_has_no_floor() -> None:
+def test_rod_spin_up_errors_keep_decreasing() -> None:
     assert in_motion.spun_up(4, 8.0) < in_motion.SPIN_UP[4] < 0.2 * in_motion.spinup.FLOOR
 
 

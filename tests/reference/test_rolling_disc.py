@@ -78,7 +78,7 @@ def rates(q: Array, v: Array) -> tuple[Array, Array, Array, float]:
     return w, alpha - np.cross(turning, w), a, float(lean)
 
 
-def test_first_integrals_linear_in_the_speeds(rng: np.random.Generator) -> None:
+def test_first_integrals_linear_in_the_speeds_are_constant(rng: np.random.Generator) -> None:
     """d/dt Phi(l)^-1 (w2, w3) = 0, which is (1)."""
     for q, v in states(rng):
         w, rate, _, lean = rates(q, v)
@@ -88,7 +88,7 @@ def test_first_integrals_linear_in_the_speeds(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize(("lean", "turn"), [(0.3, -2.0), (0.8, 1.5), (-0.5, 3.0)])
-def test_steady_motion_on_a_circle(lean: float, turn: float) -> None:
+def test_steady_circular_motion_is_kept(lean: float, turn: float) -> None:
     """The lean stays if w2 W (A + m r^2) cos l = D W^2 sin l cos l - m g r sin l, with W = w3/cos l about the vertical.
 
     Euler's equation along e1, w1 = 0.

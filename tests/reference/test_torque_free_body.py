@@ -44,7 +44,7 @@ def test_an_axisymmetric_body_precesses_regularly() -> None:
 
 
 @pytest.mark.parametrize("spin", [1.5, 0.4], ids=["about the largest moment", "about the smallest"])
-def test_a_triaxial_body_moves_by_elliptic_functions(spin: float) -> None:
+def test_a_triaxial_body_matches_elliptic_functions(spin: float) -> None:
     """Landau and Lifshitz, section 37: w = (w_x cn, w_y sn, w_z dn), if H^2 > 2 T B; else x and z change places."""
     model = reference("torque_free_body")
     moments = np.array([model.parameters[name] for name in "ABC"])

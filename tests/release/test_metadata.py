@@ -27,7 +27,7 @@ def test_the_version_is_stated_in_one_place() -> None:
     assert RECIPE["context"]["version"] == sf.__version__ and "version" not in CITATION
 
 
-def test_the_changelog_is_by_version_and_begins_with_this_one() -> None:
+def test_the_changelog_starts_with_the_present_version() -> None:
     text = (ROOT / "CHANGELOG.md").read_text()
     versions = re.findall(r"^## (\S+) \((?:not released yet|\d{4}-\d{2}-\d{2})\)$", text, re.MULTILINE)
     assert versions[0] == sf.__version__ and len(versions) == text.count("\n## ")
@@ -84,7 +84,7 @@ def test_the_conda_recipe_renders() -> None:
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/installation.md", "docs/tutorial/index.md"])
-def test_pages_that_newcomers_read_take_nothing_from_an_index_that_has_it_not(page: str) -> None:
+def test_newcomer_pages_install_only_released_packages(page: str) -> None:
     if "(not released yet)" not in (ROOT / "CHANGELOG.md").read_text().partition("\n### ")[0]:
         pytest.skip("it has been released")
     text = (ROOT / page).read_text()

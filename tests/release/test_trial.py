@@ -124,7 +124,7 @@ def test_the_source_distribution_is_complete(distributions: Path) -> None:
     assert {"LICENSE", "README.md", "pyproject.toml", "symofros/native/model/symofros_model.h"} <= names
 
 
-def test_the_base_installation_is_light(base: Environment) -> None:
+def test_the_base_installation_is_small(base: Environment) -> None:
     packages = base.packages
     files = [path for path in packages.rglob("*") if path.is_file() and not path.is_symlink()]
     size = sum(path.stat().st_size for path in files) / 1e6
@@ -133,7 +133,7 @@ def test_the_base_installation_is_light(base: Environment) -> None:
     assert not names & {"scipy", "casadi", "pin", "mujoco", "matplotlib", "viser"}
 
 
-def test_first_steps_of_the_readme_from_the_wheel(base: Environment) -> None:
+def test_first_readme_steps_work_from_the_wheel(base: Environment) -> None:
     (base.folder / "reference_models").symlink_to(base.packages / INSTALLED["reference_models"])
     first = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[0]
     assert "(1000, 2, 2) (6, 2)" in base.run("python", "-c", first)
@@ -196,7 +196,7 @@ def repository(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_tests_of_other_people_run_beside_the_wheel(base: Environment, repository: Path) -> None:
+def test_foreign_tests_run_beside_the_wheel(base: Environment, repository: Path) -> None:
     """Their modules are the ones that are imported; without an option, nothing of ours is."""
     base.run("pip", "install", "-q", "pytest")
     assert "1 passed" in base.run("python", "-m", "pytest", folder=repository)
@@ -246,7 +246,7 @@ def tutorial_extras() -> list[str]:
 
 
 @pytest.mark.parametrize(("extras", "steps"), [*zip(tutorial_extras(), (TUTORIAL[:-1], TUTORIAL[-1:]), strict=True)])
-def test_the_tutorial_from_the_wheel(extras: str, steps: tuple[str, ...], wheel: Path, tmp_path: Path) -> None:
+def test_the_tutorial_runs_from_the_wheel(extras: str, steps: tuple[str, ...], wheel: Path, tmp_path: Path) -> None:
     outside = Environment(tmp_path)
     outside.run("pip", "install", "-q", f"{wheel}{extras}")
     for step in steps:

@@ -62,7 +62,7 @@ def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:
         pytest.param("talos", "c", marks=pytest.mark.slow(minutes=3)),
     ],
 )
-def test_forward_dynamics_against_pinocchio(robot: str, backend: str) -> None:
+def test_forward_dynamics_derivatives_match_pinocchio(robot: str, backend: str) -> None:
     """Pinocchio's recursive derivatives of its articulated-body algorithm: another method for the same numbers."""
     subject = robot_case(robot).load()
     bodies = [replace(b, joint=b.joint and replace(b.joint, elements=())) for b in subject.system.bodies]
@@ -86,7 +86,7 @@ def test_forward_dynamics_against_pinocchio(robot: str, backend: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled(CASES, [name for name in CASES if name not in LARGE]))
-def test_c_is_its_twin(name: str) -> None:
+def test_c_derivatives_match_the_interpreter(name: str) -> None:
     q, v, u = state(name)
     c = model(name).forward_dynamics_derivatives(q, v, u)
     twin = model(name, "interpreter").forward_dynamics_derivatives(q, v, u)
@@ -98,7 +98,7 @@ def test_c_is_its_twin(name: str) -> None:
     "name",
     sampled(PARAMETRISED, [name for name in PARAMETRISED if name not in LARGE]),
 )
-def test_by_parameters_against_differences(name: str) -> None:
+def test_parameter_derivatives_match_differences(name: str) -> None:
     m = model(name)
     q, v, u = state(name)
     a, par = np.random.default_rng(1).normal(size=m.nv), np.array(list(m.parameters.values()))
@@ -113,7 +113,7 @@ def test_by_parameters_against_differences(name: str) -> None:
         assert np.abs(exact - numeric).max() < 1e-7 * max(1.0, np.abs(numeric).max())
 
 
-def test_batches_and_parameters() -> None:
+def test_derivatives_accept_batches_and_parameters() -> None:
     m = model("slider_crank")
     many = [state("slider_crank", seed) for seed in range(3)]
     q, v, u = (np.array(x) for x in zip(*many, strict=True))

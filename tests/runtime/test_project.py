@@ -33,7 +33,7 @@ def drifted(name: str, size: float, count: int = 5) -> tuple[np.ndarray, np.ndar
 
 @pytest.mark.parametrize("size", [1e-9, 1e-5])
 @pytest.mark.parametrize("name", sampled(tuple(GUESSES), SMALL))
-def test_drift_is_undone(name: str, size: float) -> None:
+def test_projection_removes_drift(name: str, size: float) -> None:
     m = model(name)
     _, _, q, v = drifted(name, size)
     on_q, on_v, left = m.project(q, v)
@@ -69,7 +69,7 @@ def test_quaternions_are_of_unit_length_after_large_changes(name: str, backend: 
 
 
 @pytest.mark.parametrize("name", sampled(tuple(GUESSES), SMALL))
-def test_c_is_its_twin(name: str) -> None:
+def test_c_projection_matches_the_interpreter(name: str) -> None:
     _, _, q, v = drifted(name, 1e-6, 3)
     for ours, twin in zip(model(name).project(q, v), model(name, "interpreter").project(q, v), strict=True):
         assert np.abs(ours - twin).max() < 1e-11
@@ -85,7 +85,7 @@ def test_prescribed_motion_is_followed() -> None:
 
 
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_a_massless_body(backend: str) -> None:
+def test_projection_handles_a_massless_body(backend: str) -> None:
     bars = (
         sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
         sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (sf.Frame("e", (1, 0, 0)),), ("massless_tip",)),

@@ -48,7 +48,7 @@ def m(request: pytest.FixtureRequest, name: str, monkeypatch: pytest.MonkeyPatch
     if request.param == "extension" and made is None:
         pytest.skip("needs the headers of Python")
     monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: made)
-    monkeypatch.setattr("symofros.runtime.manifold.type_at_hand", lambda: made)
+    monkeypatch.setattr("symofros.runtime.manifold.available_type", lambda: made)
     return model(name, "interpreter" if request.param == "interpreter" else "c").with_parameters()
 
 

@@ -56,7 +56,7 @@ def scipy_end(model: sf.Model, q, v, t_end: float, law) -> np.ndarray:
     return found.y[:, -1]
 
 
-def test_period_of_the_pendulum(pendulum: sf.Model) -> None:
+def test_the_period_of_a_pendulum_matches_theory(pendulum: sf.Model) -> None:
     amplitude, low = 1.2, {"low": sf.Event("q", terminal=True)}
     # A quarter of the period: from rest at the amplitude to the lowest point.
     run = sf.simulate(pendulum, [amplitude], [0.0], 10.0, method="dop853", rtol=1e-12, atol=1e-12, events=low)
@@ -81,7 +81,7 @@ class TestInputs:
         given = [same(*state)[0] for state in zip(run.t, run.q, run.v, strict=True)]
         np.testing.assert_allclose(run.u[:, 0], given, atol=1e-14)
 
-    def test_samples_between_and_beyond_their_ends(self, cart_pole: sf.Model) -> None:
+    def test_signals_interpolate_and_hold_their_ends(self, cart_pole: sf.Model) -> None:
         name = cart_pole.names.u[0]
         signal = sf.Signal([0.1, 0.2, 0.3], [1.0, 3.0, 2.0])
         run = sf.simulate(cart_pole, t_end=0.4, u={name: signal}, dt=0.01)
@@ -89,7 +89,7 @@ class TestInputs:
         held = sf.simulate(cart_pole, t_end=0.4, u={name: sf.Signal([0.1, 0.2], [1.0, 3.0], "hold")}, dt=0.05)
         np.testing.assert_array_equal(held[name][[0, 3, 5]], [1.0, 1.0, 3.0])
 
-    def test_rates_of_a_prescribed_motion(self) -> None:
+    def test_rates_of_a_prescribed_motion_follow_from_its_formula(self) -> None:
         """A hub that is driven by a formula: its rates come by themselves, and as if they were given."""
         hub = sf.RigidBody(
             "hub", sf.Joint("turn", "revolute", axis=(0, 1, 0), prescribed=True), frames=[sf.Frame("end", (1, 0, 0))]
@@ -110,7 +110,7 @@ class TestInputs:
 
 class TestOutput:
     @pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853", "rodas4", "generalized_alpha"])
-    def test_states_between_steps(self, pendulum: sf.Model, method: str) -> None:
+    def test_states_between_steps_are_accurate(self, pendulum: sf.Model, method: str) -> None:
         times = np.linspace(0.0, 1.0, 33)
         run = sf.simulate(pendulum, [1.0], [0.0], 1.0, method=method, dt=2e-3, output=times, rtol=1e-9, atol=1e-9)
         np.testing.assert_array_equal(run.t, times)
@@ -120,12 +120,12 @@ class TestOutput:
         bound = 1e-4 if method == "generalized_alpha" else 1e-6
         np.testing.assert_allclose(run.q[:, 0], exact.y[0], atol=bound)
 
-    def test_interval_and_every(self, pendulum: sf.Model) -> None:
+    def test_interval_and_every_select_the_records(self, pendulum: sf.Model) -> None:
         np.testing.assert_allclose(sf.simulate(pendulum, t_end=1.0, output=0.1).t, np.arange(11) / 10, atol=1e-12)
         every = sf.simulate(pendulum, t_end=1.0, dt=0.01, every=30)
         np.testing.assert_allclose(every.t, [0, 0.3, 0.6, 0.9, 1.0], atol=1e-12)
 
-    def test_energy_and_acceleration(self, four_bar: sf.Model) -> None:
+    def test_energy_and_acceleration_are_recorded(self, four_bar: sf.Model) -> None:
         run = sf.simulate(four_bar, *moving_four_bar(four_bar), 1.0)
         np.testing.assert_allclose(run.energy, run.energy[0], atol=1e-9 * abs(run.energy[0]) + 1e-9)
         np.testing.assert_allclose(run.a, four_bar.forward_dynamics(run.q, run.v, run.u), atol=1e-12)
@@ -135,7 +135,7 @@ class TestOutput:
 
 
 class TestConstraints:
-    def test_projection_keeps_them_exactly_and_nothing_lets_them_drift(self) -> None:
+    def test_projection_keeps_constraints_and_without_it_they_drift(self) -> None:
         """A crank that turns five times: left to accelerations alone, phi drifts as h^4."""
         model = compiled("slider_crank")
         turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
@@ -148,7 +148,7 @@ class TestConstraints:
         assert worst("projection", 0.01) < 1e-12 < worst("baumgarte", 0.01) < drift
         assert np.log2(drift / worst("none", 0.005)) == pytest.approx(4.0, abs=0.2)
 
-    def test_a_first_state_that_is_open(self) -> None:
+    def test_an_open_first_state_is_refused(self) -> None:
         model = compiled("slider_crank")
         turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
         q, v = turning.q, turning.v
@@ -165,7 +165,7 @@ class TestEnds:
         assert run.outcome.kind == "diverged" and not run.outcome.ok
         assert "smaller dt" in run.outcome.advice and np.all(np.isfinite(run.q))
 
-    def test_divergence_of_a_model_that_was_compiled_for_stepping_alone(self) -> None:
+    def test_divergence_is_reported_for_models_with_stepping_functions_only(self) -> None:
         arm = sf.RigidBody("arm", sf.Joint("q", "revolute", actuated=True), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
         model = sf.compile(sf.System("alone", (arm,)), sf.Options(("forward_dynamics",)))
         run = sf.simulate(model, [1.0], [1e200], 1.0, method="euler", u={"q": "1e300*q*q"}, dt=0.1)
@@ -202,7 +202,7 @@ class TestEnds:
         assert light.outcome.ok and limit.outcome.ok
         np.testing.assert_allclose(limit.q[-1], light.q[-1], rtol=1e-7)
 
-    def test_a_jump_of_no_bound(self, pendulum: sf.Model) -> None:
+    def test_an_unbounded_jump_diverges(self, pendulum: sf.Model) -> None:
         run = sf.simulate(pendulum, [0.1], [0.0], 1.0, method="dopri5", u={"q": "1/(0.5 - t)^2"}, rtol=1e-9)
         assert run.outcome.kind in ("step too small", "diverged")
         assert run.t[-1] == pytest.approx(0.5, abs=1e-2)
@@ -232,7 +232,7 @@ class TestEnds:
             ({"method": "rodas4", "u": lambda t, q, v: [0.0]}, "derivatives of the inputs"),
         ],
     )
-    def test_settings_that_contradict(self, pendulum: sf.Model, settings, words: str) -> None:
+    def test_contradictory_settings_are_refused(self, pendulum: sf.Model, settings, words: str) -> None:
         with pytest.raises(sf.SymofrosError, match=words):
             sf.simulate(pendulum, **settings)
 
@@ -247,7 +247,7 @@ class TestEnds:
 CTRL_C = Path(__file__).with_name("ctrl_c.py.in").read_text()
 
 
-def test_a_real_ctrl_c() -> None:
+def test_ctrl_c_interrupts_a_run() -> None:
     """The signal reaches Python between two spells of C, within a tenth of a second or so."""
     with subprocess.Popen([sys.executable, "-c", CTRL_C], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None and child.stdout.readline() == "moving\n"

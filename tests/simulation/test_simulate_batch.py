@@ -56,7 +56,7 @@ def bits(run: sf.Trajectories) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
-def test_company_and_threads_change_no_bit(method: str) -> None:
+def test_batch_size_and_threads_change_no_bit(method: str) -> None:
     m = model("space_arm")
     q, v = starts(m, 50)
     whole = sf.simulate_batch(m, q, v, 0.2, method=method, dt=1e-2)
@@ -102,7 +102,7 @@ def test_inputs_of_batches_match_simulate(kind: str, method: str) -> None:
         assert_same(many[i], sf.simulate(m, q[i], v[i], 0.2, u=alone(i), method=method, dt=1e-2, output=0.05))
 
 
-def test_parameters_of_each() -> None:
+def test_each_trajectory_has_its_parameters() -> None:
     system, n = MODELS["cart_pole"], 34
     free = tuple(sf.Parameter(one.name, one.value) for one in system.parameters)
     m = sf.compile(replace(system, parameters=free))
@@ -116,7 +116,7 @@ def test_parameters_of_each() -> None:
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
-def test_a_bad_one_is_lost_alone(method: str) -> None:
+def test_a_bad_trajectory_affects_no_other(method: str) -> None:
     m = model("cart_pole")
     q, v = starts(m, 40)
     good = sf.simulate_batch(m, q, v, 0.2, method=method, dt=1e-2, output=0.1)
@@ -132,7 +132,7 @@ def test_a_bad_one_is_lost_alone(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
-def test_some_end_on_the_way(method: str) -> None:
+def test_trajectories_may_end_at_different_times(method: str) -> None:
     """Where a law has no value, runs end at different times; places they leave are filled in the middle of a step."""
     m = model("cart_pole")
     q, v = starts(m, 30)
@@ -147,7 +147,7 @@ def test_some_end_on_the_way(method: str) -> None:
         assert all(np.array_equal(a[i], b, equal_nan=True) for a, b in zip(bits(found), bits(alone), strict=True)), i
 
 
-def test_off_the_constraints() -> None:
+def test_trajectories_off_the_constraints_are_refused() -> None:
     m = model("four_bar")
     q, v = starts(m, 4)
     good = sf.simulate_batch(m, q, v, 0.05)

@@ -139,7 +139,7 @@ def test_events_are_found_at_the_same_instants(method: str) -> None:
     assert stepper.step(u[0]) and not stepper.events
 
 
-def test_more_events_in_a_call_than_are_kept_at_once() -> None:
+def test_more_events_in_a_call_than_the_buffer_holds_are_kept() -> None:
     model = compiled("cart_pole")
     stepper = sf.Stepper(model, dt=DT, events={"beat": "sin(500*t)"})
     stepper.step([0.0], 1200)
@@ -148,7 +148,7 @@ def test_more_events_in_a_call_than_are_kept_at_once() -> None:
     assert [event.t for event in stepper.events] == [event.t for event in run.events]
 
 
-def test_adaptive_methods_go_from_mark_to_mark() -> None:
+def test_adaptive_methods_step_between_marks() -> None:
     model = compiled("double_pendulum")
     q, v = start("double_pendulum")
     stepper = sf.Stepper(model, method="dopri5", dt=0.05, rtol=1e-9, atol=1e-12)
@@ -160,7 +160,7 @@ def test_adaptive_methods_go_from_mark_to_mark() -> None:
     assert stepper.outcome.ok
 
 
-def test_laws_beside_inputs_by_hand() -> None:
+def test_laws_and_manual_inputs_combine() -> None:
     model = crane()
     law = {"th": "0.3*sin(2*t)"}
     stepper = sf.Stepper(model, u=law, dt=DT)
@@ -177,7 +177,7 @@ def test_laws_beside_inputs_by_hand() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "planar_robot", "random_tree1"])
-def test_what_is_asked_on_demand_matches_that_of_a_trajectory(name: str) -> None:
+def test_quantities_on_demand_match_a_trajectory(name: str) -> None:
     model, (q, v) = compiled(name), start(name)
     u = pushes(model)[0]
     stepper = sf.Stepper(model, dt=DT)
@@ -195,7 +195,7 @@ def test_what_is_asked_on_demand_matches_that_of_a_trajectory(name: str) -> None
     assert not np.array_equal(before[0], stepper.q)
 
 
-def test_what_went_wrong_is_reported_as_simulate_tells_it() -> None:
+def test_failures_are_reported_as_by_simulate() -> None:
     model = compiled("cart_pole")
     stepper, push = sf.Stepper(model, dt=0.5, method="euler"), np.array([1e7])
     while stepper.step(push):
@@ -217,7 +217,7 @@ def test_beams_beyond_their_theory_end_the_motion_and_a_reset_forgets_them() -> 
     assert max(bending.error for bending in stepper.trajectory().bendings) < 0.002
 
 
-def test_parameters_of_its_own() -> None:
+def test_a_stepper_has_its_own_parameters() -> None:
     model = compiled("double_pendulum")
     par = 1.1 * np.asarray(model.parameter_values)
     q, v = start("double_pendulum")
@@ -331,7 +331,7 @@ def test_without_the_extension_everything_is_the_same(name: str, monkeypatch: py
     assert ends[0] == ends[1]
 
 
-def test_a_stepper_goes_when_nobody_has_it() -> None:
+def test_an_unreferenced_stepper_is_freed() -> None:
     stepper = sf.Stepper(compiled("cart_pole"), dt=DT)
     assert stepper.step([1.0])
     gone = weakref.ref(stepper)
@@ -340,7 +340,7 @@ def test_a_stepper_goes_when_nobody_has_it() -> None:
     assert gone() is None
 
 
-def test_a_long_motion_keeps_its_last_inputs_and_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_motion_keeps_only_its_last_inputs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(by_hand, "MOST_NOTED", 600)
     monkeypatch.setattr(front, "MOST_NOTED", 600)
     model, u = compiled("cart_pole"), pushes(compiled("cart_pole"), 1000)

@@ -75,7 +75,7 @@ def test_saved_states_go_on_to_the_same_bits() -> None:
         sf.Steppers(model, N, dt=DT).restore(saved)
 
 
-def test_some_begin_again_with_parameters_of_their_own_and_the_others_go_on() -> None:
+def test_a_partial_reset_with_parameters_leaves_the_others_running() -> None:
     model, (q, v) = compiled("cart_pole"), starts("cart_pole")
     par = np.tile(np.asarray(model.parameter_values), (N, 1)) * np.linspace(0.9, 1.1, N)[:, np.newaxis]
     steppers = sf.Steppers(model, N, par=par, dt=DT)
@@ -118,7 +118,7 @@ def test_a_finished_member_stays_until_it_is_reset() -> None:
 
 @pytest.mark.parametrize("gap", [0.1, 1e-4])
 @pytest.mark.parametrize("went_before", [False, True])
-def test_motions_off_their_constraints_do_not_begin(gap: float, went_before: bool) -> None:
+def test_motions_off_their_constraints_do_not_start(gap: float, went_before: bool) -> None:
     model, (q, v) = compiled("slider_crank"), starts("slider_crank")
     steppers = sf.Steppers(model, N, dt=DT)
     if went_before:
@@ -151,13 +151,13 @@ REFUSED: dict[str, tuple[dict[str, Any], str]] = {
 
 
 @pytest.mark.parametrize("case", REFUSED)
-def test_what_batches_cannot_do_is_refused(case: str) -> None:
+def test_unsupported_options_of_batches_are_refused(case: str) -> None:
     options, said = REFUSED[case]
     with pytest.raises(sf.SymofrosError, match=said):
         sf.Steppers(**({"model": compiled("cart_pole"), "n": 4} | options))
 
 
-def test_what_does_not_fit_is_refused_and_no_step_is_made() -> None:
+def test_wrong_inputs_of_steppers_are_refused_without_a_step() -> None:
     steppers = sf.Steppers(compiled("cart_pole"), 4, dt=DT)
     for u in (np.zeros((3, 1)), np.zeros((4, 2)), np.full((4, 1), np.nan)):
         with pytest.raises(sf.ShapeError, match=r"u does not fit[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"):

@@ -95,7 +95,7 @@ def test_a_pulse_gives_its_impulse(cart: sf.Model, shape: str, method: str) -> N
 
 
 @pytest.mark.parametrize("method", [*OWN, *SUNDIALS])
-def test_a_push_and_a_pull_leave_a_way(cart: sf.Model, method: str) -> None:
+def test_a_push_and_a_pull_leave_a_displacement(cart: sf.Model, method: str) -> None:
     """Their impulses cancel; the moment about the end of the step does not."""
     if method in SUNDIALS:
         pytest.importorskip("sksundae")

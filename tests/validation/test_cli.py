@@ -61,7 +61,7 @@ def test_missing_files_and_unknown_words_are_errors_in_four_parts(tmp_path: Path
         assert all(part in result.output for part in ("found:", "rule:", "remedy:")), result.output
 
 
-def test_a_file_that_does_not_load(run: Any, arm: Path, tmp_path: Path) -> None:
+def test_a_file_that_does_not_load_fails_the_check(run: Any, arm: Path, tmp_path: Path) -> None:
     broken = tmp_path / "broken.urdf"
     broken.write_text("<robot name='x'><link")
     result = run(broken, arm, "--json", "--workers", 1)

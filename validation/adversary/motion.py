@@ -33,7 +33,7 @@ def claimed_good(run: sf.Trajectory) -> bool:
     return run.outcome.ok and not run.outcome.notes
 
 
-def of_claim(outcome: Any, quantity: str, error: float, bound: float) -> Verdict:
+def claim_verdict(outcome: Any, quantity: str, error: float, bound: float) -> Verdict:
     """An outcome against its relative error: runs without notes must be accurate, accurate runs without notes.
 
     Args:

@@ -82,9 +82,9 @@ def resume(
     """Go on with a campaign: only the batches that are not finished are done."""
     with _refusing():
         from .runner import Pool  # dask is an extra.
-        from .session import go_on  # As the runner: dask is an extra.
+        from .session import continue_campaign  # As the runner: dask is an extra.
 
-        _tell(go_on(folder, Pool(workers, scheduler, dashboard)), folder, report, as_json)
+        _tell(continue_campaign(folder, Pool(workers, scheduler, dashboard)), folder, report, as_json)
 
 
 @app.command()

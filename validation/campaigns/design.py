@@ -13,7 +13,7 @@ from ..mechanics.geometry import Array
 
 Design = Literal["grid", "latin_hypercube", "sobol"]
 
-MOST_POINTS = 10**6
+MAX_POINTS = 10**6
 
 
 class Range(BaseModel):
@@ -30,7 +30,7 @@ class Range(BaseModel):
 
     low: Annotated[float, Field(allow_inf_nan=False)]
     high: Annotated[float, Field(allow_inf_nan=False)]
-    count: Annotated[int, Field(ge=1, le=MOST_POINTS)] | None = None
+    count: Annotated[int, Field(ge=1, le=MAX_POINTS)] | None = None
     log: bool = False
 
     @model_validator(mode="after")
@@ -81,8 +81,8 @@ def _grid(over: Mapping[str, Range], points: int | None) -> Array:
         name = next(name for name, values in over.items() if values.count is None)
         raise ValueError(f"a grid needs the 'count' of '{name}'")
     whole = [count for count in counts if count is not None]
-    if math.prod(whole) > MOST_POINTS:
-        raise ValueError(f"a grid of {math.prod(whole)} points; at most {MOST_POINTS}")
+    if math.prod(whole) > MAX_POINTS:
+        raise ValueError(f"a grid of {math.prod(whole)} points; at most {MAX_POINTS}")
     axes = [np.linspace(0.0, 1.0, count) for count in whole]
     return np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
 

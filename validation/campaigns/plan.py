@@ -21,9 +21,9 @@ from .design import Design, Range, points_of
 from .errors import PlanError
 
 # A plan is a page; whoever sends more wants something else.
-MOST_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
 # Each batch is a file while the campaign runs.
-MOST_BATCHES = 100_000
+MAX_BATCHES = 100_000
 
 Count = Annotated[int, Field(ge=1, le=10**10)]
 Seed = Annotated[int, Field(ge=0, lt=2**63)]
@@ -162,10 +162,10 @@ def read(path: Path) -> Plan:
         OSError: The file can't be read.
     """
     with path.open("rb") as stream:
-        text = stream.read(MOST_BYTES + 1)
-    if len(text) > MOST_BYTES:
+        text = stream.read(MAX_BYTES + 1)
+    if len(text) > MAX_BYTES:
         raise PlanError(
-            path.name, f"more than {MOST_BYTES} bytes", "a plan is a short TOML file", "see docs/campaigns.md"
+            path.name, f"more than {MAX_BYTES} bytes", "a plan is a short TOML file", "see docs/campaigns.md"
         )
     try:
         return make(tomllib.loads(text.decode("utf-8")), path.name)
@@ -187,9 +187,9 @@ def make(data: dict[str, Any], where: str) -> Plan:
             where, "; ".join(lines), "docs/campaigns.md lists what a plan says", "mend these entries"
         ) from None
     batches = -(-plan.size // plan.batch)
-    if batches > MOST_BATCHES:
-        remedy = f"batch = {-(-plan.size // MOST_BATCHES)} or more"
-        raise PlanError(where, f"{batches} batches", f"at most {MOST_BATCHES}: each is a file for a while", remedy)
+    if batches > MAX_BATCHES:
+        remedy = f"batch = {-(-plan.size // MAX_BATCHES)} or more"
+        raise PlanError(where, f"{batches} batches", f"at most {MAX_BATCHES}: each is a file for a while", remedy)
     return plan
 
 

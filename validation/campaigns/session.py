@@ -44,7 +44,7 @@ def begin(plan: Plan, folder: Path, pool: Pool) -> dict[str, Any]:
     return _carry_out(Store.create(folder, _manifest(plan)), plan, pool)
 
 
-def go_on(folder: Path, pool: Pool) -> dict[str, Any]:
+def continue_campaign(folder: Path, pool: Pool) -> dict[str, Any]:
     """Continue an unfinished campaign; returns and raises as `begin`."""
     plan = make(manifest_of(folder)["plan"], str(folder / "plan.json"))
     return _carry_out(Store.agreeing(folder, _manifest(plan)), plan, pool)

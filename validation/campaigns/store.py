@@ -130,7 +130,7 @@ class Store:
         except _UNREADABLE as error:
             rule = "results are as the campaign wrote them, checksums included"
             remedy = f"restore {RESULTS} from a copy, or begin anew in a new folder"
-            raise StoreError(self.folder, f"{RESULTS} is damaged: {_in_a_line(error)}", rule, remedy) from None
+            raise StoreError(self.folder, f"{RESULTS} is damaged: {_single_line(error)}", rule, remedy) from None
 
     def write(self, number: int, part: bytes) -> None:
         """Keep a part."""
@@ -178,7 +178,7 @@ class Store:
             _read(path)
             return ""
         except (*_UNREADABLE, KeyError, ValueError, TypeError) as error:
-            return _in_a_line(error)
+            return _single_line(error)
 
 
 def _noted(line: Any) -> dict[str, Any]:
@@ -220,7 +220,7 @@ def _read(path: Path) -> pa.Table:
     return parquet.read_table(path, page_checksum_verification=True)
 
 
-def _in_a_line(error: Exception) -> str:
+def _single_line(error: Exception) -> str:
     return " ".join(str(error).split())[:200] or type(error).__name__
 
 

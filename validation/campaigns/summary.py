@@ -14,7 +14,7 @@ from .sweep import DONE
 
 _GROUP = ["model", "engine", "quantity"]
 # Of the batch with the largest error.
-_OF_WORST = ("error", "batch", "worst_state", "scale", "tolerance")
+_WORST_COLUMNS = ("error", "batch", "worst_state", "scale", "tolerance")
 _NULLS = pc.ScalarAggregateOptions(skip_nulls=False)
 
 
@@ -52,14 +52,14 @@ def checked(rows: pa.Table) -> dict[str, Any]:
     ranked = judged.append_column("rank", pc.fill_null(judged["error"], math.inf))
     ordered = ranked.sort_by([("rank", "descending"), ("batch", "ascending")])
     sums = ordered.group_by(_GROUP, use_threads=False).aggregate(
-        [("agree", "all"), ("states", "sum"), *((name, "first", _NULLS) for name in _OF_WORST)]
+        [("agree", "all"), ("states", "sum"), *((name, "first", _NULLS) for name in _WORST_COLUMNS)]
     )
     groups = [
         {
             **{name: row[name] for name in _GROUP},
             "agree": row["agree_all"],
             "states": row["states_sum"],
-            **{name: row[f"{name}_first"] for name in _OF_WORST},
+            **{name: row[f"{name}_first"] for name in _WORST_COLUMNS},
         }
         for row in sums.to_pylist()
     ]

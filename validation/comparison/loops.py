@@ -65,7 +65,7 @@ def _assembled(model: sf.Model, states: States, worst: float) -> States:
     return replace(_chosen(states, np.array(kept)[sound]), q=q[sound], v=v[sound])
 
 
-def of_unique_multipliers(engine: SymofrosEngine, states: States) -> States:
+def with_unique_multipliers(engine: SymofrosEngine, states: States) -> States:
     """The states where no condition repeats others."""
     rank = engine.model.constrained_dynamics(states.q, states.v, states.u)[2]
     return _chosen(states, rank == engine.model.nc)

@@ -172,7 +172,7 @@ def smoothness_obstacle(joints: Sequence[sf.Joint]) -> str:
 
 
 def _corner(element: object) -> str:
-    """The corner of a joint element's force, or the rounded corner of dry friction within a step."""
+    """Name of a joint element whose force has a corner, possibly rounded within a step; "" for others."""
     if isinstance(element, sf.Damper):
         return "a quadratic damper" if element.quadratic != 0.0 else ""
     return {sf.Stop: "a stop", sf.Friction: "dry friction"}.get(type(element), "")

@@ -22,7 +22,7 @@ JACOBIAN = QUANTITIES["constraint_jacobian"]
 
 # Share of random states that may be left out. Of the mechanisms at hand Bricard's, whose six hinges leave it movable
 # in spite of the count, loses 3.6 %; the others less than 1 %.
-MOST_OMITTED = 0.05
+MAX_OMITTED = 0.05
 # Standard deviations that the number in a small sample may lie above that share.
 DEVIATIONS = 3.0
 
@@ -74,13 +74,13 @@ def judge_omissions(label: str, regular: RegularStates) -> Comparison | None:
         label: Label of the model.
         regular: The sorted states.
     """
-    expected = MOST_OMITTED * regular.drawn
+    expected = MAX_OMITTED * regular.drawn
     most = expected + DEVIATIONS * math.sqrt(expected)
     if regular.omitted <= most and len(regular.states):
         return None
     reason = (
         f"{regular.omitted} of {regular.drawn} random states left out ({len(regular.undefined)} where our G is not a "
-        f"finite number, the others where its rank is in doubt); singular postures explain {MOST_OMITTED:.0%}"
+        f"finite number, the others where its rank is in doubt); singular postures explain {MAX_OMITTED:.0%}"
     )
     return Comparison(label, "symofros", JACOBIAN.name, "failed", note=reason)
 

@@ -107,7 +107,7 @@ class Chart:
     nv: int
 
     def __post_init__(self) -> None:
-        """Refuse charts that are equal to ours only in name."""
+        """Check that each chart is one of ours or has its conversion."""
         for slot in self.slots:
             assert slot.chart in _OURS or slot.chart in _ENCODE, slot.chart
 

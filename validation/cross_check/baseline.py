@@ -28,7 +28,7 @@ GROWTH = 8.0
 # as a share of the tolerance that is always allowed. So have all procedures, which iterate.
 EXEMPT = {"energy_drift": 1.0, "retained_order": 1.0}
 # Slowdown that is always allowed, and how many times the noise of both runs.
-LEAST_SLOWDOWN, NOISES = 0.10, 2.0
+MIN_SLOWDOWN, NOISES = 0.10, 2.0
 # Slowdown that a comparison is to find; where the noise hides it, the comparison is not decided.
 LOOKED_FOR = 0.25
 # What must be the same for speeds to be compared.
@@ -181,7 +181,7 @@ class Baseline:
 
 def slowest(stored: Speed, fresh: Speed) -> float:
     """The ratio up to which the noise of the two explains a slowdown."""
-    return stored.ratio * (1.0 + max(LEAST_SLOWDOWN, NOISES * (stored.noise + fresh.noise)))
+    return stored.ratio * (1.0 + max(MIN_SLOWDOWN, NOISES * (stored.noise + fresh.noise)))
 
 
 def machine_of(data: Data) -> tuple[str, ...]:

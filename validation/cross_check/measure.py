@@ -31,7 +31,7 @@ from .speed import Speed, YardstickError
 from .speed import measure as measure_speed
 
 # Times that speeds are taken again where they seem lower than in a stored run.
-_AGAIN = 2
+_EXTRA_TIMINGS = 2
 # Models checked at the same time.
 WORKERS = min(os.cpu_count() or 1, 4)
 
@@ -87,14 +87,14 @@ def measure(
     data: Data = as_data(settings, finished, run.seconds, unfinished, speeds)
     regressions: list[Regression] = []
     if stored is not None:
-        data, regressions = _held_to(stored, data)
+        data, regressions = _with_baseline(stored, data)
     if junit is not None:
         junit.parent.mkdir(parents=True, exist_ok=True)
         write_atomically(junit, to_junit(finished, run.seconds, regressions))
     return data
 
 
-def _held_to(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
+def _with_baseline(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
     """A run's data with its baseline and regressions."""
     regressions, notes = stored.judge(Record.of(data), machine_of(data))
     origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
@@ -143,7 +143,7 @@ def _speeds(run: Run, cases: Sequence[Case], stored: Baseline | None) -> list[Sp
         try:
             subject = case.load()
             timed = measure_speed(subject)
-            for _ in range(_AGAIN):
+            for _ in range(_EXTRA_TIMINGS):
                 if not any(_is_slower(before.get((row.model, row.function)), row) for row in timed):
                     break
                 timed = [

@@ -45,7 +45,7 @@ the third power of the deflection, rotary inertia by the second."""
 _PROCEDURES = """Steps of every method are repeated by SciPy's coefficients, matrix exponentials and general solvers;
 what chooses them, records, events, projection, assembly, equilibria, modes, derivatives, inverse kinematics, batches
 and diagrams are compared with their definitions, central differences and closed forms, on a few small models."""
-_NO_SAY = "These engines have no say on these models; nobody else's comparison is weakened."
+_NOT_COMPARED = "These engines have no say on these models; nobody else's comparison is weakened."
 _SPEED = """Times of our functions in batches of 4096 states, as multiples of the time that a fixed program takes for as
 many rows in the same run: what `--baseline` compares. The noise is the range between the quartiles of 25 turns."""
 _METHOD = f"""The error of a state is the largest difference of any entry, divided by the largest entry of the other
@@ -91,7 +91,7 @@ def compose(data: Data) -> Report:
                 (_SPEED, Table.of("model | function | yardsticks | noise | ns a state", speeds)),
                 page_only=True,
             ),
-            Section("What an engine could not represent", (_NO_SAY, Table.of("engine | models | reason", apart))),
+            Section("What an engine could not represent", (_NOT_COMPARED, Table.of("engine | models | reason", apart))),
             _method(),
             Section("Models", tuple(map(_model, record.models)), page_only=True),
         ),

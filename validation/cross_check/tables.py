@@ -199,7 +199,7 @@ def not_installed(record: Record) -> str:
 
 def headline(record: Record) -> str:
     """The verdict in one sentence, what of it is evidence, and what was cut."""
-    silent = f"no engine was asked: {_why_none(record)}; " if _nobody_was_asked(record) else ""
+    silent = f"no engine was asked: {_no_comparison_reason(record)}; " if _no_engine_asked(record) else ""
     models = {row.model for row in record.compared}
     what = f"{counted(len(record.compared), 'comparison')} on {counted(len(models), 'model')}"
     disagreeing = len(record.rows("disagree"))
@@ -216,12 +216,12 @@ def headline(record: Record) -> str:
     return f"{said[0].upper()}{said[1:]}.{apart}{cut}"
 
 
-def _nobody_was_asked(record: Record) -> bool:
+def _no_engine_asked(record: Record) -> bool:
     """Whether models were compared, or could have been, and none of them with an independent engine."""
     return not record.judged and bool(record.compared or any(row.unconfirmed for row in record.rows("failed")))
 
 
-def _why_none(record: Record) -> str:
+def _no_comparison_reason(record: Record) -> str:
     """The reasons why no independent engine was asked."""
     reasons = dict.fromkeys(row.note for row in record.rows("failed") if row.unconfirmed)
     return "; ".join(reasons) or "those that were named are ways of our own"

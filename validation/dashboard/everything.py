@@ -34,7 +34,7 @@ WORK = Path("build/reports")
 # What a process that is interrupted gets to write what it has [s].
 _GRACE = 60.0
 # Between two looks at a process [s].
-_LOOK = 0.5
+_POLL_SECONDS = 0.5
 # Exit codes of reports that are written.
 _WRITTEN = {Exit.GOOD: "written", Exit.MISSED: "written; something in it is missed"}
 _STATE = "state.json"
@@ -139,7 +139,7 @@ def _followed(process: subprocess.Popen[bytes], log: Path, doing: Any) -> int:
     try:
         while True:
             try:
-                return process.wait(_LOOK)
+                return process.wait(_POLL_SECONDS)
             except subprocess.TimeoutExpired:
                 doing(next(iter(_last(log, 1)), ""))
     except KeyboardInterrupt:
@@ -206,7 +206,7 @@ def make_all(
     topics = [TOPICS[name] for name in known(only, TOPICS, "--only", "report")]
     job = Job(output, work, quick)
     if show:
-        entries = gather(output, provenance.versions_now(), names=[topic.name for topic in topics])
+        entries = gather(output, provenance.current_versions(), names=[topic.name for topic in topics])
         typer.echo(markdown.table(listed(job, topics, entries)))
         raise typer.Exit(Exit.GOOD)
     work.mkdir(parents=True, exist_ok=True)
@@ -217,13 +217,13 @@ def make_all(
     made = _all(job, [topic for topic in topics if not missing[topic.name]], resume)
     unable = {name: what for name, what in missing.items() if what}
     if made != Exit.INTERRUPTED:
-        _tell_unable(output, unable)
+        _print_unavailable(output, unable)
     raise typer.Exit(Exit.MISSED if only and unable and made == Exit.GOOD else made)
 
 
-def _tell_unable(output: Path, unable: Mapping[str, str]) -> None:
+def _print_unavailable(output: Path, unable: Mapping[str, str]) -> None:
     """Name what this machine can't make, with what there is of it; where it stays that of a machine that can."""
-    entries = gather(output, provenance.versions_now(), names=unable)
+    entries = gather(output, provenance.current_versions(), names=unable)
     for name, missing in unable.items():
         entry = entries[name]
         age = f"made {entry.provenance.date or 'on an unknown day'}, {entry.standing or 'of this code'}"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..reporting.command import present
-from ..reporting.evidence import said_of
+from ..reporting.evidence import standing_text
 from ..reporting.provenance import Provenance
 from ..reporting.record import Data, Report, Topic
 from .catalogue import TOPICS
@@ -89,7 +89,7 @@ def doubts(origin: Provenance, installed: Mapping[str, str]) -> list[str]:
     """Reasons why a report may not describe the present code, such as changed packages."""
     asked = "when it was made", "on which machine", "with which versions"
     stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
-    said = [said_of(origin.standing)] if origin.standing else []
+    said = [standing_text(origin.standing)] if origin.standing else []
     said += [f"does not say {what}" for what, value in stated if not value]
     changed = [
         f"{name} {version}, now {installed[name]}"

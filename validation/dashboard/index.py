@@ -10,7 +10,7 @@ from symofros.tools import write_atomically
 
 from ..program import PROGRAM
 from ..reporting import html, markdown
-from ..reporting.evidence import revision, said_of
+from ..reporting.evidence import revision, standing_text
 from ..reporting.figures import Figure
 from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
 from .gather import Entry
@@ -23,7 +23,7 @@ QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "tim
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 # Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
-_SAID = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
+_INTRODUCTIONS = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
 _SHOWN = ("pareto", "timing")
 
 
@@ -63,9 +63,9 @@ def index(entries: Mapping[str, Entry]) -> Report:
 
 def _decisions(reports: Mapping[str, Report]) -> tuple[Block, ...]:
     """Sentences that a table would hide; then sentences with their tables; then the tables of the former."""
-    said = {name: reports[name].decisions for name in _SAID if name in reports and reports[name].decisions}
+    said = {name: reports[name].decisions for name in _INTRODUCTIONS if name in reports and reports[name].decisions}
     shown = [block for name in _SHOWN if name in reports for block in reports[name].decisions]
-    tables = [block for name, group in said.items() if group[1:] for block in (_SAID[name], *group[1:])]
+    tables = [block for name, group in said.items() if group[1:] for block in (_INTRODUCTIONS[name], *group[1:])]
     return (*(group[0] for group in said.values()), *shown, *tables)
 
 
@@ -110,7 +110,7 @@ def _section(name: str, entry: Entry) -> Section:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
         blocks += [f"**{entry.report.summary}**", Bullets(facts), Figure("", entry.report.first_chart)]
     for remark in entry.remarks:
-        doubtful = remark == said_of(entry.standing) or any(word in remark for word in ("can't", "layout"))
+        doubtful = remark == standing_text(entry.standing) or any(word in remark for word in ("can't", "layout"))
         blocks.append(Text(f"This report {remark}.", "bad" if doubtful else "soft"))
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
     origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)

@@ -46,7 +46,7 @@ def work(environment: Environment, models: list[str], states: list[int], turns: 
                     say("row", asdict(row))
 
 
-def work_in_node(models: list[str], states: list[int], turns: int, say: Say) -> None:
+def run_node_worker(models: list[str], states: list[int], turns: int, say: Say) -> None:
     """The same of WebAssembly, whose races are run by Node."""
     missing = in_node.missing()
     if missing is not None:
@@ -122,6 +122,6 @@ if __name__ == "__main__":
     job = json.loads(sys.argv[1])
     asked = job["models"], job["states"], job["turns"], say
     if job["environment"] == in_node.NAME:
-        work_in_node(*asked)
+        run_node_worker(*asked)
     else:
         work(ENVIRONMENTS[job["environment"]], *asked)

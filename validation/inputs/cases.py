@@ -14,7 +14,7 @@ from .. import references
 from ..contract.interface import MjcfSource, Subject, UrdfSource
 
 # How files are read unless options say more.
-AS_THEY_ARE = ReadingOptions()
+DEFAULT_READING = ReadingOptions()
 ROBOT_PACKAGE = "example-robot-data"
 # Work of a body, in bytes of a robot's file; of what a beam and a loop add, in bodies.
 BODY, ELASTIC, LOOP = 1500, 8, 4
@@ -35,7 +35,7 @@ class Case:
 
     label: str
     path: Path | None = None
-    reading: ReadingOptions = AS_THEY_ARE
+    reading: ReadingOptions = DEFAULT_READING
 
     @property
     def weight(self) -> int:
@@ -152,7 +152,7 @@ def robot_file(name: str) -> Path:
     raise FileNotFoundError(f"no {name} in package {ROBOT_PACKAGE}")
 
 
-def named(names: list[str], reading: ReadingOptions = AS_THEY_ARE) -> list[Case]:
+def named(names: list[str], reading: ReadingOptions = DEFAULT_READING) -> list[Case]:
     """The models that a user named: paths of files, or names of the standard set, all of which none is.
 
     Args:

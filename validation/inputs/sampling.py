@@ -92,7 +92,7 @@ def _coordinates(mover: Mover, rng: np.random.Generator, count: int) -> Array:
     return np.concatenate([rng.uniform(-SLIDE, SLIDE, (count, 3)), quaternion], axis=1)
 
 
-def _neutral_at_rest(assembly: Assembly, q: Array, v: Array) -> None:
+def _set_neutral_at_rest(assembly: Assembly, q: Array, v: Array) -> None:
     q[:], v[:] = neutral(assembly), 0.0
 
 
@@ -129,7 +129,7 @@ def _fast(assembly: Assembly, q: Array, v: Array) -> None:
 
 
 _SPECIAL: tuple[Callable[[Assembly, Array, Array], None], ...] = (
-    _neutral_at_rest,
+    _set_neutral_at_rest,
     _neutral_moving,
     _at_rest,
     _many_turns,

@@ -37,14 +37,14 @@ def stretched(value: Curve, slope: Curve, curvature: Curve, L: float, factor: fl
     )
 
 
-def of_polynomial(p: np.polynomial.Polynomial, L: float, factor: float = 1.0) -> Shape:
+def shape_of_polynomial(p: np.polynomial.Polynomial, L: float, factor: float = 1.0) -> Shape:
     """Factor times a polynomial of xi."""
     return stretched(p, p.deriv(), p.deriv(2), L, factor)
 
 
 def monomials(first: int, count: int, L: float) -> tuple[Shape, ...]:
     """Powers of xi from `first` on."""
-    return tuple(of_polynomial(np.polynomial.Polynomial.basis(first + k), L) for k in range(count))
+    return tuple(shape_of_polynomial(np.polynomial.Polynomial.basis(first + k), L) for k in range(count))
 
 
 def legendre(first: int, count: int, L: float) -> tuple[Shape, ...]:
@@ -73,7 +73,7 @@ def _jacobi(m: int, k: int, L: float) -> Shape:
 def hermite(L: float) -> tuple[Shape, ...]:
     """Tip displacement, tip slope."""
     one, other = np.polynomial.Polynomial([0, 0, 3, -2]), np.polynomial.Polynomial([0, 0, -1, 1])
-    return of_polynomial(one, L), of_polynomial(other, L, L)
+    return shape_of_polynomial(one, L), shape_of_polynomial(other, L, L)
 
 
 def splines(dropped: int, count: int, L: float) -> tuple[Shape, ...]:

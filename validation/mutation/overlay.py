@@ -17,7 +17,7 @@ from .fault import SourceFault
 
 # What tests read, beside the packages.
 COPIED = ("symofros", "validation", "reference_models", "tests", "docs", "reports", "README.md", "pyproject.toml")
-_COPIED_IF_THERE = ("CHANGELOG.md", "CONTRIBUTING.md", "LICENSE")
+_COPIED_IF_PRESENT = ("CHANGELOG.md", "CONTRIBUTING.md", "LICENSE")
 # Models whose text a fault changes are compiled once and judged once: no optimisation pays.
 _COMPILER = '#!/bin/sh\nexec cc "$@" -O0\n'
 
@@ -143,7 +143,7 @@ class Overlay:
 def _copy_tree(root: Path, tree: Path) -> None:
     """Copies, not links: a fault must never reach the files of the repository."""
     tree.mkdir(parents=True)
-    for name in (*COPIED, *(name for name in _COPIED_IF_THERE if (root / name).exists())):
+    for name in (*COPIED, *(name for name in _COPIED_IF_PRESENT if (root / name).exists())):
         source = root / name
         if source.is_dir():
             shutil.copytree(source, tree / name, symlinks=True)

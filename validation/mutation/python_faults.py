@@ -76,7 +76,7 @@ class _Planter:
         self.names: list[set[str]] = [set()]
 
     def faults(self) -> Iterator[SourceFault]:
-        yield from self._of_children(ast.parse(self.text))
+        yield from self._child_faults(ast.parse(self.text))
 
     def _at(self, line: int, column: int) -> int:
         """Offset of a place as the syntax tree states it: columns are in bytes."""
@@ -97,7 +97,7 @@ class _Planter:
     def _node(self, kind: str, node: ast.expr | ast.stmt, after: str) -> SourceFault:
         return self._replaced(kind, *self._span(node), after)
 
-    def _of_children(self, node: ast.AST) -> Iterator[SourceFault]:
+    def _child_faults(self, node: ast.AST) -> Iterator[SourceFault]:
         for child in ast.iter_child_nodes(node):
             yield from self._of(child)
 
@@ -109,7 +109,7 @@ class _Planter:
         if isinstance(node, ast.If) and "TYPE_CHECKING" in self._source(node.test):
             return
         if isinstance(node, ast.FunctionDef):
-            yield from self._of_function(node)
+            yield from self._function_faults(node)
             return
         if isinstance(node, ast.AnnAssign):
             if node.value is not None:
@@ -120,9 +120,9 @@ class _Planter:
         if isinstance(node, ast.arg):
             return
         yield from self._here(node)
-        yield from self._of_children(node)
+        yield from self._child_faults(node)
 
-    def _of_function(self, node: ast.FunctionDef) -> Iterator[SourceFault]:
+    def _function_faults(self, node: ast.FunctionDef) -> Iterator[SourceFault]:
         if node.returns is not None and re.search(r"\bstr\b|Problem", self._source(node.returns)):
             texts = [x for x in ast.walk(node) if isinstance(x, ast.JoinedStr)]
             if texts:  # It returns a text.
@@ -149,9 +149,9 @@ class _Planter:
             case ast.BoolOp(op=op, values=[first, second, *_]):
                 yield self._between(COMPARISON, first, second, "or" if isinstance(op, ast.And) else "and")
             case _:
-                yield from self._in_names(node)
+                yield from self._name_faults(node)
 
-    def _in_names(self, node: ast.AST) -> Iterator[SourceFault]:
+    def _name_faults(self, node: ast.AST) -> Iterator[SourceFault]:
         match node:
             case ast.AugAssign(op=ast.Add() | ast.Sub()):
                 yield self._node(DROPPED, node, "pass")

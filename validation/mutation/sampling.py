@@ -109,11 +109,11 @@ def drawn(root: Path, seed: int, fresh: Fresh | None = None) -> Iterator[SourceF
                 continue
         rng.shuffle(possible)
         offset, weight = rng.random(), len(possible) ** 0.5
-        queue += [((k + offset) / weight, fault) for k, fault in enumerate(_kinds_in_turn(possible))]
+        queue += [((k + offset) / weight, fault) for k, fault in enumerate(_alternate_kinds(possible))]
     yield from (fault for _, fault in sorted(queue, key=lambda item: (item[0], item[1].id)))
 
 
-def _kinds_in_turn(faults: list[SourceFault]) -> Iterator[SourceFault]:
+def _alternate_kinds(faults: list[SourceFault]) -> Iterator[SourceFault]:
     """A file's faults with the kinds taking turns, so that the frequent ones don't crowd out the others."""
     kinds: dict[str, list[SourceFault]] = {}
     for fault in faults:

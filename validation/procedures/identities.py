@@ -63,12 +63,12 @@ CURVED: Mapping[str, tuple[str, str, str]] = {
 _CURVED = sf.Options((*CURVED, *(f"{gradient}_vjp" for gradient, _, _ in CURVED.values())))
 # Of a direction: beams bend by a few hundredths, and differences take two steps of DIFFERENCE along it.
 _REACH = 0.1
-_OF_CONSTRAINTS = ("constraint", "constraint_rate", "constraint_bias")
+_CONSTRAINT_FUNCTIONS = ("constraint", "constraint_rate", "constraint_bias")
 
 
 def transposed(scene: Scene) -> Iterator[Cell]:
     """Vector-Jacobian products, against the change of the weighted sum of the outputs along one direction."""
-    names = [name for name in TRANSPOSED if scene.model.nc or name not in _OF_CONSTRAINTS]
+    names = [name for name in TRANSPOSED if scene.model.nc or name not in _CONSTRAINT_FUNCTIONS]
     frame = scene.model.names.frames[-1]
     asked = tuple(text for name in names for text in (name, f"{name}_vjp"))
     model, rng = sf.compile(scene.system, sf.Options(asked, (frame,))), np.random.default_rng(SEED)

@@ -121,7 +121,7 @@ def _imported(name: str) -> frozenset[str]:
     return frozenset(one for top in found for one in (top, f"{top}.py") if (HARNESS / one).exists())
 
 
-def said_of(standing: str) -> str:
+def standing_text(standing: str) -> str:
     """Text of a standing after the name of a report."""
     return f"{'is' if standing == OLDER else 'was'} {standing}"
 

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 from .charts import PALETTE, draw
-from .evidence import said_of
+from .evidence import standing_text
 from .figures import Chart, Drawing, Figure
 from .provenance import Provenance
 from .record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
@@ -52,7 +52,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
-        block(Text(f"This report {said_of(standing)}.", "bad")) if standing else "",
+        block(Text(f"This report {standing_text(standing)}.", "bad")) if standing else "",
         *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
         block(Text("**Missed:**", "bad")) + block(Bullets(report.missed)) if report.missed else "",
         f'<div class="tiles">{"".join(map(tile, report.facts))}</div>' if report.facts else "",

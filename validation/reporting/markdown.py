@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .evidence import said_of
+from .evidence import standing_text
 from .provenance import Provenance
 from .record import Block, Bullets, Cell, Code, Report, Section, Table, Text
 
@@ -11,7 +11,7 @@ def page(report: Report, provenance: Provenance, closing: str) -> str:
     """The summary of a report."""
     missed = ("**Missed:**", Bullets(report.missed)) if report.missed else ()
     facts = Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))
-    aged = (Text(f"This report {said_of(provenance.standing)}.", "bad"),) if provenance.standing else ()
+    aged = (Text(f"This report {standing_text(provenance.standing)}.", "bad"),) if provenance.standing else ()
     blocks = [f"**{report.summary}**", *aged, *report.decisions, *missed, facts, *report.blocks]
     for section in report.sections:
         blocks += () if section.page_only else (f"## {section.title}", *section.blocks)

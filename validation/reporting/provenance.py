@@ -100,7 +100,7 @@ def versions() -> dict[str, str]:
     return installed
 
 
-def versions_now() -> dict[str, str]:
+def current_versions() -> dict[str, str]:
     """Versions of now, under every name that a report uses."""
     installed = versions()
     return installed | {alias: installed[name] for alias, name in _ALIASES.items() if name in installed}

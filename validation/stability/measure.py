@@ -15,7 +15,7 @@ from .catalogue import RETIRED, STUDIES
 from .study import Map, ParameterStudy, survey
 
 # Different reasons of ends that are kept of a map.
-_MOST_NOTES = 8
+_MAX_NOTES = 8
 
 
 def measure(
@@ -63,5 +63,5 @@ def _map_data(study: ParameterStudy, one: Map) -> dict[str, Any]:
         "y": [study.y.label(y) if study.y.labels else float(y) for y in one.y],
         "values": [rounded(row) for row in one.values],
         "ended": [[c.ended for c in row] for row in one.cells],
-        "said": notes[:_MOST_NOTES],
+        "said": notes[:_MAX_NOTES],
     }

@@ -35,7 +35,7 @@ KINDS = (*TEXT_KINDS, *FILE_KINDS)
 # A reader that takes longer on some kilobytes has been made to hang.
 SLOWEST = 10.0
 # A reader that needs more than this beyond what all before it did has been made to swell [MiB].
-MOST_MEMORY = 1024
+MAX_MEMORY = 1024
 # Compiling is slower than reading: one accepted file in so many.
 COMPILED = 25
 # Inputs of a whole run.
@@ -143,7 +143,7 @@ def _feed(result: FuzzResult, kind: str, number: int, data: bytes, folder: Path)
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
     taken, grown = time.perf_counter() - start, peak_memory() - before
-    if grown > MOST_MEMORY:
+    if grown > MAX_MEMORY:
         result.faults.append(Fault(kind, number, f"took {grown:.0f} MiB more than any input before", data))
     if taken > answers.slowest:
         answers.slowest, answers.slowest_input = taken, number

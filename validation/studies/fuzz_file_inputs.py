@@ -55,7 +55,7 @@ def mutated_files(kind: str, seed: int) -> Iterator[bytes]:
         elif kind.endswith(".npz") and rng.random() < 0.7:
             yield _lying_archive(rng)
         elif kind.endswith(".parquet") and rng.random() < 0.5:
-            yield _odd_table(rng)
+            yield _malformed_table(rng)
         else:
             data = rng.choice(sound)
             for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
@@ -153,7 +153,7 @@ def _parquet(columns: dict[str, object]) -> bytes:
     return stream.getvalue()
 
 
-def _odd_table(rng: random.Random) -> bytes:
+def _malformed_table(rng: random.Random) -> bytes:
     """Columns of other types and lengths, sound by themselves."""
     columns = _columns()
     name = rng.choice([*columns])

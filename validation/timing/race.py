@@ -21,7 +21,7 @@ _SOLVED = ("forward_dynamics", "forward_dynamics_derivatives", "forward_dynamics
 TOLERANCES = dict.fromkeys(_SOLVED, SOLVE)
 # Of floats, whose last place is so much larger; forward dynamics amplifies it by the condition of M, as it does with
 # doubles.
-OF_FLOATS = 2.0**29
+SINGLE_OVER_DOUBLE_ROUNDING = 2.0**29
 # What a turn takes at least [ns]: whatever the side before has left in the caches, hundreds of kilobytes of code among
 # it, is paid for once a turn. With turns of 1 ms fast sides of large models seemed 40 % slower than they are.
 LEAST = 10_000_000

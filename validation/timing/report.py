@@ -14,7 +14,7 @@ from .measure import measure
 from .models import FUNCTIONS
 from .record import Entry, Record
 from .tables import TARGETS_TEXT, duration, ratios, sections, targets_table
-from .targets import MOST_REVERSE, reverse_costs, verdicts
+from .targets import MAX_REVERSE, reverse_costs, verdicts
 
 LIMITS = (
     """One thread, pinned to one processor, whose time on it is what is measured. All sides of a function run in one
@@ -89,7 +89,7 @@ def compose(data: Data) -> Report:
             if not v.met
         )
         + tuple(
-            f"{cost.title}, {cost.task}: {cost.ratio:.2f} times its function's time, asked is at most {MOST_REVERSE:g}"
+            f"{cost.title}, {cost.task}: {cost.ratio:.2f} times its function's time, asked is at most {MAX_REVERSE:g}"
             for cost in costly
         )
         + tuple(

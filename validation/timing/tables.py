@@ -11,7 +11,7 @@ from ..reporting.record import Section, Table, verdict
 from .growth import Growth, growth
 from .models import FUNCTIONS, REVERSE, TIMED_MODELS
 from .record import Entry, Made, Record, Wait
-from .targets import MOST_REVERSE, Verdict, reverse_costs
+from .targets import MAX_REVERSE, Verdict, reverse_costs
 
 _GENERATORS = ("symofros", "casadi", "sympy")
 _PEERS = ("pinocchio", "mujoco", "casadi", "sympy")
@@ -59,7 +59,7 @@ _NOTES = {
     "step": "Our loop of sf.simulate, mj_step with contacts, constraints and sensors off; free motion.",
 }
 _REVERSE_TEXT = f"""The gradient of w . f by all inputs at once, w held: its time over that of f, medians, one state
-after the other; at most {MOST_REVERSE:g} is asked. No engine has the like; CasADi's reverse mode, by q and v alone,
+after the other; at most {MAX_REVERSE:g} is asked. No engine has the like; CasADi's reverse mode, by q and v alone,
 takes as many times ours as the last column says."""
 _REVERSE = "model | nv | function | the function [ns] | its gradient [ns] | ratio | casadi / ours"
 _TIMES = """model | nv | ours | batch, rows | columns | floats | Pinocchio, gcc | Pinocchio, best | MuJoCo | CasADi |

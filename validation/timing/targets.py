@@ -98,7 +98,7 @@ def verdicts(record: Record) -> list[Verdict]:
 
 
 # A vector-Jacobian product takes at most so many times what its function takes.
-MOST_REVERSE = 4.0
+MAX_REVERSE = 4.0
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ class ReverseCost(Labelled):
     @property
     def met(self) -> bool:
         """Whether it is within the target."""
-        return self.ratio <= MOST_REVERSE
+        return self.ratio <= MAX_REVERSE
 
 
 def reverse_costs(record: Record) -> list[ReverseCost]:

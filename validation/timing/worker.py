@@ -25,7 +25,7 @@ from .contestants.generated import casadi_loops, sympy_loops
 from .contestants.programs import BuildError, Skipped
 from .contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
 from .processes import Say, say
-from .race import OF_FLOATS, DisagreementError, checked, race
+from .race import SINGLE_OVER_DOUBLE_ROUNDING, DisagreementError, checked, race
 from .record import Entry, Made
 from .task import Loop, Task, task
 
@@ -71,7 +71,9 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
     generated = {loop.variant: loop for loop in our_loops(given, [function])}
     expected = generated[NAME].results()
     for name in generated.keys() - {NAME}:
-        checked(function, name, generated[name].results(), expected, OF_FLOATS if name == SINGLE else 1.0)
+        checked(
+            function, name, generated[name].results(), expected, SINGLE_OVER_DOUBLE_ROUNDING if name == SINGLE else 1.0
+        )
     sides = dict(generated)
     errors: dict[str, float] = {}
     peers: dict[str, str] = {}

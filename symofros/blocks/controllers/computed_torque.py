@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.blocks.checks import numbers
 from symofros.blocks.manifold import difference
-from symofros.blocks.quantities import entry_units, motion_port, of_units
+from symofros.blocks.quantities import entry_units, motion_port, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 
 
@@ -51,7 +51,7 @@ class ComputedTorque(Block):
             motion_port("v", record, "v"),
         )
         turns = tuple(unit.removesuffix("/s") for unit in entry_units(record, "v"))
-        return Ports(inputs, (motion_port("tau", record, "effort"), of_units(Port("error", (nv,)), turns)))
+        return Ports(inputs, (motion_port("tau", record, "effort"), with_units(Port("error", (nv,)), turns)))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Inverse dynamics at the acceleration that the errors ask for."""

@@ -11,7 +11,7 @@ from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
 from symofros.blocks.manifold import difference
-from symofros.blocks.quantities import entry_units, motion_port, of_units
+from symofros.blocks.quantities import entry_units, motion_port, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 
@@ -61,7 +61,7 @@ class LQR(Block):
         )
         # Differences of configurations: of rotations, rotation vectors.
         turns = tuple(unit.removesuffix("/s") for unit in entry_units(record, "v"))
-        x = of_units(Port("x", (2 * nv,)), (*turns, *entry_units(record, "v")))
+        x = with_units(Port("x", (2 * nv,)), (*turns, *entry_units(record, "v")))
         return Ports(inputs, (motion_port("u", record, "u"), x))
 
     def _weights(self, field: str, size: int) -> Array:

@@ -22,7 +22,7 @@ from symofros.expr import Expression, lower
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)
-MOST_FORMULAS = 256
+MAX_FORMULAS = 256
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,8 +71,8 @@ class Formula(Block):
         """Output -> formula, or those of its entries."""
         given = dict(self.formulas) if isinstance(self.formulas, Mapping) else {"y": self.formulas}
         count = sum(len(value) if isinstance(value, (list, tuple)) else 1 for value in given.values())
-        if not 0 < count <= MOST_FORMULAS or any(isinstance(v, (list, tuple)) and not v for v in given.values()):
-            raise refuse(self.name, "formulas", f"{count} of them", f"1 to {MOST_FORMULAS}", "state one, or part them")
+        if not 0 < count <= MAX_FORMULAS or any(isinstance(v, (list, tuple)) and not v for v in given.values()):
+            raise refuse(self.name, "formulas", f"{count} of them", f"1 to {MAX_FORMULAS}", "state one, or part them")
         return {
             name: [self._read(name, text) for text in value]
             if isinstance(value, (list, tuple))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from symofros.blocks.checks import choice
-from symofros.blocks.quantities import NO_UNIT, VELOCITY, WRENCH, motion_port, of_units, passed_units
+from symofros.blocks.quantities import NO_UNIT, VELOCITY, WRENCH, motion_port, passed_units, with_units
 from symofros.blocks.rotations import (
     EULER,
     error_vector,
@@ -75,7 +75,7 @@ class Transform(Block):
         of = _units(environment, self.quantity)
         size = _size(self.quantity)
         pose = Port("p", (3,), "m", 0.0), Port("R", (3, 3), NO_UNIT)
-        return Ports((*pose, of_units(Port("u", size), of)), (of_units(Port("y", size), of),))
+        return Ports((*pose, with_units(Port("u", size), of)), (with_units(Port("y", size), of),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Express u in the other frame by the pose (p, R), or by its inverse."""
@@ -111,8 +111,8 @@ class FrameTransform(Block):
             environment.frame(self.model, frame)
         record, size = environment.model(self.model), _size(self.quantity)
         of = _units(environment, self.quantity)
-        inputs = (motion_port("q", record, "q"), of_units(Port("u", size, "", 0.0), of))
-        return Ports(inputs, (of_units(Port("y", size), of), Port("p", (3,), "m"), Port("R", (3, 3), NO_UNIT)))
+        inputs = (motion_port("q", record, "q"), with_units(Port("u", size, "", 0.0), of))
+        return Ports(inputs, (with_units(Port("y", size), of), Port("p", (3,), "m"), Port("R", (3, 3), NO_UNIT)))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Express u in the target frame, by both frames' poses in the world; also outputs the transform (p, R)."""
@@ -185,7 +185,7 @@ class Orientation(Block):
     def ports(self, environment: Environment) -> Ports:
         """Input u, output y."""
         source, target = (Port(name, FORMS[form][0]) for name, form in (("u", self.source), ("y", self.target)))
-        return Ports((of_units(source, _form_units(self.source)),), (of_units(target, _form_units(self.target)),))
+        return Ports((with_units(source, _form_units(self.source)),), (with_units(target, _form_units(self.target)),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Convert the orientation from the source form to the target form, by way of the rotation matrix."""
@@ -212,7 +212,7 @@ class OrientationError(Block):
     def ports(self, environment: Environment) -> Ports:
         """Inputs desired and actual; output error (3)."""
         shape = FORMS[self.kind][0]
-        inputs = (of_units(Port(name, shape), _form_units(self.kind)) for name in ("desired", "actual"))
+        inputs = (with_units(Port(name, shape), _form_units(self.kind)) for name in ("desired", "actual"))
         return Ports(tuple(inputs), (Port("error", (3,), "rad"),))
 
     def compute(self, context: EvaluationContext) -> Values:

@@ -23,7 +23,7 @@ _A12, _A13N, _A21, _A23N = 1403580, 810728, 527612, 1370589
 _FIRST = 12345
 _STREAM, _SUBSTREAM = 127, 76
 # Components of one block, each with a substream.
-MOST_COMPONENTS = 64
+MAX_COMPONENTS = 64
 
 _Matrix = list[list[int]]
 _RECURSIONS: tuple[tuple[_Matrix, int], ...] = (
@@ -81,7 +81,7 @@ class Noise(Block):
     def __post_init__(self) -> None:
         """Numbers that fit the size."""
         whole(self.name, "seed", self.seed, 0, 2**32 - 1)
-        whole(self.name, "size", self.size, 0, MOST_COMPONENTS)
+        whole(self.name, "size", self.size, 0, MAX_COMPONENTS)
         choice(self.name, "kind", self.kind, ("normal", "uniform"))
         for field in self.tunable:
             value = getattr(self, field)

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from symofros.blocks.checks import choice, increasing, numbers, refuse
-from symofros.blocks.quantities import common_shape, of_units, passed_units, passing
+from symofros.blocks.quantities import common_shape, passed_units, passing, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 
 # Of a table, whose formula grows with its points.
-MOST_POINTS = 1000
+MAX_POINTS = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -144,7 +144,7 @@ class Switch(Block):
         """Inputs u1, u2 of one shape, by (scalar); output y."""
         shape = common_shape(environment, ("u1", "u2"))
         units = passed_units(environment, self.unit, ("u1", "u2"))
-        u1, u2, y = (of_units(Port(name, shape), units) for name in ("u1", "u2", "y"))
+        u1, u2, y = (with_units(Port(name, shape), units) for name in ("u1", "u2", "y"))
         return Ports((u1, u2, Port("by", ())), (y,))
 
     def compute(self, context: EvaluationContext) -> Values:
@@ -174,12 +174,12 @@ class LookupTable(Block):
     def __post_init__(self) -> None:
         """Increasing points, as many values."""
         x, y = increasing(self.name, "x", self.x), numbers(self.name, "y", self.y)
-        if y.ndim not in (1, 2) or len(y) != len(x) or y.size > MOST_POINTS:
+        if y.ndim not in (1, 2) or len(y) != len(x) or y.size > MAX_POINTS:
             raise refuse(
                 self.name,
                 "y does not fit x",
                 y.shape,
-                f"({len(x)}) or ({len(x)}, any), {MOST_POINTS} numbers in all",
+                f"({len(x)}) or ({len(x)}, any), {MAX_POINTS} numbers in all",
                 "one row a point",
             )
         choice(self.name, "outside", self.outside, ("hold", "extend"))

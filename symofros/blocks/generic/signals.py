@@ -9,12 +9,12 @@ import numpy as np
 
 from symofros.base.units import parse
 from symofros.blocks.checks import known_name, numbers, refuse, whole
-from symofros.blocks.quantities import actuated_names, common_shape, entry_units, of_units, passed_units
+from symofros.blocks.quantities import actuated_names, common_shape, entry_units, passed_units, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import joined
 
 # Inputs that a block with a free number of them may have.
-MOST_INPUTS = 64
+MAX_INPUTS = 64
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,10 +97,10 @@ class Gain(Block):
         return {"y": product * self.conversion}
 
 
-def _one_an_input(name: str, field: str, given: str, pair: str) -> None:
+def _require_one_per_input(name: str, field: str, given: str, pair: str) -> None:
     """Refuse text that is not one character of a pair for each input."""
-    if not given or set(given) - {*pair} or len(given) > MOST_INPUTS:
-        rule = f"1 to {MOST_INPUTS} {field} {pair[0]} or {pair[1]}, one an input"
+    if not given or set(given) - {*pair} or len(given) > MAX_INPUTS:
+        rule = f"1 to {MAX_INPUTS} {field} {pair[0]} or {pair[1]}, one an input"
         raise refuse(name, field, repr(given), rule, f'write for example "{pair}"')
 
 
@@ -118,13 +118,13 @@ class Sum(Block):
 
     def __post_init__(self) -> None:
         """Signs are plus and minus."""
-        _one_an_input(self.name, "signs", self.signs, "+-")
+        _require_one_per_input(self.name, "signs", self.signs, "+-")
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
         names = [f"u{i + 1}" for i in range(len(self.signs))]
         shape, units = common_shape(environment, names), passed_units(environment, self.unit, names)
-        ports = [of_units(Port(name, shape), units) for name in (*names, "y")]
+        ports = [with_units(Port(name, shape), units) for name in (*names, "y")]
         return Ports(tuple(ports[:-1]), (ports[-1],))
 
     def compute(self, context: EvaluationContext) -> Values:
@@ -148,7 +148,7 @@ class Product(Block):
 
     def __post_init__(self) -> None:
         """Operations multiply or divide."""
-        _one_an_input(self.name, "operations", self.operations, "*/")
+        _require_one_per_input(self.name, "operations", self.operations, "*/")
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y, all of one shape."""
@@ -245,7 +245,7 @@ class Pick(Block):
             )
         units = self._units(environment)
         picked = [units[i] if len(units) > 1 else units[0] for i in indices]
-        return Ports((of_units(Port("u", into), units),), (of_units(Port("y", (len(indices),)), picked),))
+        return Ports((with_units(Port("u", into), units),), (with_units(Port("y", (len(indices),)), picked),))
 
     def _units(self, environment: Environment) -> tuple[str, ...]:
         """Units of the input: the stated one, those that it has, or of a model's q and u those that they have."""
@@ -273,7 +273,7 @@ class Join(Block):
 
     def __post_init__(self) -> None:
         """A number of inputs."""
-        whole(self.name, "count", self.count, 1, MOST_INPUTS)
+        whole(self.name, "count", self.count, 1, MAX_INPUTS)
 
     def ports(self, environment: Environment) -> Ports:
         """Inputs u1, u2, ..., output y."""
@@ -282,10 +282,10 @@ class Join(Block):
         sizes = [int(np.prod(shape)) for shape in shapes if shape is not None]
         out = (sum(sizes),) if len(sizes) == self.count else None
         units = [passed_units(environment, self.unit, [name]) for name in names]
-        inputs = (of_units(Port(name, shape), own) for name, shape, own in zip(names, shapes, units, strict=True))
+        inputs = (with_units(Port(name, shape), own) for name, shape, own in zip(names, shapes, units, strict=True))
         counts = [(own * size)[:size] for own, size in zip(units, sizes, strict=False)]
         joint = [unit for own in counts for unit in own] if out is not None else [self.unit]
-        return Ports(tuple(inputs), (of_units(Port("y", out), joint),))
+        return Ports(tuple(inputs), (with_units(Port("y", out), joint),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """All entries, row by row."""

@@ -20,8 +20,8 @@ from symofros.simulation.results.csv_columns import LineError, read_csv
 from symofros.simulation.results.npz import TooLargeError, read_npz
 
 # A file is read whole.
-MOST_BYTES = 256_000_000
-MOST_NUMBERS = 20_000_000
+MAX_BYTES = 256_000_000
+MAX_NUMBERS = 20_000_000
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -137,17 +137,17 @@ def _read(block: str, path: Path) -> dict[str, Any]:
         ) from None
     if not is_file:  # A pipe would be waited for.
         raise refuse(block, f"file '{path}'", "a folder, a pipe or the like", "samples are in a file", "mend the path")
-    if size > MOST_BYTES:
-        raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MOST_BYTES}", "thin it out")
+    if size > MAX_BYTES:
+        raise refuse(block, f"file '{path}' is too large", f"{size} bytes", f"at most {MAX_BYTES}", "thin it out")
     if path.suffix.lower() not in _READERS:
         raise refuse(
             block, f"file '{path}' of unknown kind", repr(path.suffix), "names end in .csv or .npz", "convert it"
         )
     form, read = _READERS[path.suffix.lower()]
     try:
-        arrays = dict(read(path, MOST_NUMBERS))
+        arrays = dict(read(path, MAX_NUMBERS))
     except TooLargeError as error:
-        what, rule = f"file '{path}' is too large", f"at most {MOST_NUMBERS} numbers in all its arrays"
+        what, rule = f"file '{path}' is too large", f"at most {MAX_NUMBERS} numbers in all its arrays"
         raise refuse(block, what, error, rule, "thin it out") from None
     except LineError as error:
         what, found, rule = "a line of samples", ",".join(error.content)[:120], f"{error.columns} numbers a line"

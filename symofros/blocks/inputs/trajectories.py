@@ -18,7 +18,7 @@ from symofros.diagrams.block import Block, Environment, EvaluationContext, Port,
 from symofros.diagrams.tensor import Tensor, joined
 
 # Formulas grow with the points; tables over time (`Sequence`) take as many as there are.
-MOST_POINTS = 64
+MAX_POINTS = 64
 SPLINE = "spline"
 
 
@@ -141,8 +141,8 @@ def via_points(block: Any, points: Any, times: Any, most: int | None) -> int:
     number(block.name, "accelerating", block.accelerating, 0.0, 0.5, exclusive=True)
     given = increasing(block.name, "times", times)
     array = numbers(block.name, "points", points, (len(given), None))
-    if len(array) > MOST_POINTS:
-        raise refuse(block.name, "too many points", len(array), f"at most {MOST_POINTS}", "use a Sequence over time")
+    if len(array) > MAX_POINTS:
+        raise refuse(block.name, "too many points", len(array), f"at most {MAX_POINTS}", "use a Sequence over time")
     if not array.shape[1] or (most is not None and array.shape[1] > most):
         raise refuse(
             block.name,

@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.blocks.checks import known_name, refuse
-from symofros.blocks.quantities import NO_UNIT, actuated_names, of_units, scalar_coordinates
+from symofros.blocks.quantities import NO_UNIT, actuated_names, scalar_coordinates, with_units
 from symofros.blocks.rotations import error_vector
 from symofros.diagrams.block import Environment, EvaluationContext, Port
 from symofros.diagrams.tensor import Tensor, joined, solved, stacked
@@ -130,7 +130,7 @@ class Task:
 
     def row_port(self, name: str, linear: str, angular: str, default: Any = None) -> Port:
         """A port of one entry a row, in one unit along axes and in another one about them."""
-        return of_units(
+        return with_units(
             Port(name, (len(self.rows),), "", default), [linear if row < 3 else angular for row in self.rows]
         )
 

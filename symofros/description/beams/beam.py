@@ -32,7 +32,7 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 
 Retain = Literal["zeroth_order", "first_order", "all"]
 RETAIN: tuple[Retain, ...] = get_args(Retain)
-MOST_SECTIONS = 64
+MAX_SECTIONS = 64
 # Stations x/L of section forces, where none are stated.
 STATIONS = tuple(k / 8 for k in range(9))
 
@@ -297,12 +297,12 @@ class Beam:
 
     def _check_theory(self, what: str) -> None:
         """Entries that one theory has and the other lacks."""
-        if not _is_count(self.sections, 0) or self.sections > MOST_SECTIONS:
+        if not _is_count(self.sections, 0) or self.sections > MAX_SECTIONS:
             raise DescriptionError(
                 Problem(
                     f"{what}: sections is not a number of sections",
                     repr(self.sections),
-                    f"a whole number from 0, which leaves the choice to the generator, to {MOST_SECTIONS}",
+                    f"a whole number from 0, which leaves the choice to the generator, to {MAX_SECTIONS}",
                     "leave it out",
                 )
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from symofros.description.packages import MOST_SHOWN, Packages
+from symofros.description.packages import MAX_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.xml_nodes import MAX_DEPTH, Element, parse_xml
 from symofros.errors import Argument, DescriptionError, Problem
@@ -62,7 +62,7 @@ class Folder:
             self.fault(
                 user,
                 f"{what}: its file can't be read",
-                f"'{file:.{MOST_SHOWN}}': {reason}",
+                f"'{file:.{MAX_SHOWN}}': {reason}",
                 "a mesh that gives a body its inertia lies in the model's folder",
                 "put the file there, or give the body an <inertial>",
             )
@@ -137,7 +137,7 @@ class Folder:
         if path in self._read:
             self.fault(
                 include,
-                f"'{file:.{MOST_SHOWN}}' is included twice",
+                f"'{file:.{MAX_SHOWN}}' is included twice",
                 f"'{path.name}' again",
                 "a file is included once at most, and never by itself",
                 "remove one <include>",
@@ -149,7 +149,7 @@ class Folder:
             refusal = error.problems[0]
             self.fault(
                 include,
-                f"'{file:.{MOST_SHOWN}}' can't be included",
+                f"'{file:.{MAX_SHOWN}}' can't be included",
                 refusal.found,
                 refusal.rule or "the file exists",
                 refusal.remedy,

@@ -11,7 +11,7 @@ from symofros.description.mjcf.names import Names
 from symofros.errors import Problem
 
 # What the importer computes with: array of the model -> what it is called.
-_OF_BODIES = {
+_BODY_FIELDS = {
     "body_pos": "position",
     "body_quat": "orientation",
     "body_ipos": "mass centre",
@@ -20,15 +20,15 @@ _OF_BODIES = {
     "body_inertia": "inertia",
     "body_gravcomp": "gravcomp",
 }
-_OF_JOINTS = {
+_JOINT_FIELDS = {
     "jnt_pos": "anchor",
     "jnt_axis": "axis",
     "jnt_stiffness": "stiffness",
     "jnt_stiffnesspoly": "stiffness",
 }
-_OF_SPEEDS = {"dof_armature": "armature", "dof_damping": "damping", "dof_dampingpoly": "damping"}
-_OF_COORDINATES = {"qpos0": "ref", "qpos_spring": "springref"}
-_OF_SITES = {"site_pos": "position", "site_quat": "orientation"}
+_SPEED_FIELDS = {"dof_armature": "armature", "dof_damping": "damping", "dof_dampingpoly": "damping"}
+_COORDINATE_FIELDS = {"qpos0": "ref", "qpos_spring": "springref"}
+_SITE_FIELDS = {"site_pos": "position", "site_quat": "orientation"}
 
 
 def infinite_numbers(
@@ -46,11 +46,11 @@ def infinite_numbers(
     """
     coordinates = np.searchsorted(model.jnt_qposadr, np.arange(model.nq), side="right") - 1
     for kind, names, owner, arrays in (
-        ("body", bodies, np.arange(model.nbody), _OF_BODIES),
-        ("joint", joints, np.arange(model.njnt), _OF_JOINTS),
-        ("joint", joints, model.dof_jntid, _OF_SPEEDS),
-        ("joint", joints, coordinates, _OF_COORDINATES),
-        ("site", sites, np.arange(model.nsite), _OF_SITES),
+        ("body", bodies, np.arange(model.nbody), _BODY_FIELDS),
+        ("joint", joints, np.arange(model.njnt), _JOINT_FIELDS),
+        ("joint", joints, model.dof_jntid, _SPEED_FIELDS),
+        ("joint", joints, coordinates, _COORDINATE_FIELDS),
+        ("site", sites, np.arange(model.nsite), _SITE_FIELDS),
     ):
         for array, word in arrays.items():
             rows = np.argwhere(~np.isfinite(getattr(model, array)))[:, 0]

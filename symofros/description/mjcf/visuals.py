@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.description.imported.geometry import rotation_of
 from symofros.description.values import Rotation
-from symofros.description.visual import MOST_VISUALS, Visual, VisualKind, color_of
+from symofros.description.visual import MAX_VISUALS, Visual, VisualKind, color_of
 
 _SEEN = 3  # Groups that MuJoCo's own viewer shows at first are those below.
 # mjtGeom -> our kind, and which of its three sizes that has, by what factor: MuJoCo states half lengths.
@@ -30,7 +30,7 @@ def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual
         name: Name of a body by its index.
     """
     visuals: dict[str, tuple[Visual, ...]] = {}
-    for i in range(min(model.ngeom, MOST_VISUALS)):
+    for i in range(min(model.ngeom, MAX_VISUALS)):
         kind, rgba = int(model.geom_type[i]), np.array(model.geom_rgba[i], dtype=float)
         if kind not in _KINDS or int(model.geom_group[i]) >= _SEEN or rgba[3] <= 0.0:
             continue

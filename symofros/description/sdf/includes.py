@@ -14,7 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from symofros.base.sources import Source
-from symofros.description.packages import MOST_SHOWN, Packages
+from symofros.description.packages import MAX_SHOWN, Packages
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.sdf.frames import MODEL
 from symofros.description.sdf.values import SdfValues
@@ -136,7 +136,7 @@ class Includes:
             root = self.packages.model(model[1])
             place = None if root is None else self.packages.file(model[2] or ".", root)
             if root is None:
-                argument = Argument("packages", "FOLDER", f"{model[1]:.{MOST_SHOWN}}")
+                argument = Argument("packages", "FOLDER", f"{model[1]:.{MAX_SHOWN}}")
         elif uri and "://" not in uri and "\0" not in uri and not Path(uri).is_absolute():
             place, stated = self.packages.file(uri, folder), resolved(folder) / uri
             if place is None and os.path.exists(stated):

@@ -17,7 +17,7 @@ from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
 from symofros.description.values import Rotation
-from symofros.description.visual import MOST_VISUALS, Visual, VisualKind, color_of
+from symofros.description.visual import MAX_VISUALS, Visual, VisualKind, color_of
 from symofros.description.xml_nodes import Element
 
 Color = tuple[int, int, int]
@@ -69,7 +69,7 @@ class Visuals:
 
     def _shapes(self, link: Element, name: str, folder: Path) -> Iterator[Visual]:
         for element in link.all("visual"):
-            shape = self._shape(element, folder) if self.count < MOST_VISUALS else None
+            shape = self._shape(element, folder) if self.count < MAX_VISUALS else None
             if shape is None:
                 self.remarks.add("visual shapes that can't be drawn ignored", "link", name)
             else:

@@ -31,7 +31,7 @@ from symofros.description.usd.placement import affine, turn
 from symofros.description.usd.stage import stage_of
 from symofros.description.usd.tree import Edge, spanning_tree
 from symofros.description.usd.visuals import visual
-from symofros.description.visual import MOST_VISUALS, Visual
+from symofros.description.visual import MAX_VISUALS, Visual
 from symofros.errors import DescriptionError, Problem
 
 # Gravity where none is stated [m/s^2], along the downward axis of the stage.
@@ -261,7 +261,7 @@ class _Importer:
                 continue
             name, count = self.names[shape["body"]], sum(map(len, seen.values()))
             frame, placed = self.placements[shape["body"]].pose, self.placements[shape["path"]]
-            drawn = visual(shape, frame, placed) if count < MOST_VISUALS else None
+            drawn = visual(shape, frame, placed) if count < MAX_VISUALS else None
             if drawn is None:
                 self.remarks.add("visual shapes that can't be drawn ignored", "body", name)
             else:

@@ -18,7 +18,7 @@ Path = tuple[str | int, ...]
 _THINGS = {"bodies": "body", "parameters": "parameter", "inputs": "input", "frames": "frame"}
 
 # What URDF, SDF, MJCF and textbooks call an entry -> its key here.
-_TERMS_OF_OTHERS = {
+_FOREIGN_TERMS = {
     **dict.fromkeys(("com", "cog", "cm", "center", "centre", "centre_of_mass"), "center_of_mass"),
     **dict.fromkeys(("inertia", "diaginertia", "fullinertia", "tensor", "i", "j", "ixx"), "moments"),
     **dict.fromkeys(("pos", "xyz", "origin", "offset", "translation"), "position"),
@@ -216,7 +216,7 @@ def _where_it_belongs(key: str, path: Path, known: list[str], stated: Collection
         known: Entries that the mapping may have.
         stated: Entries that it has: of several that would take the key, one that is there.
     """
-    term = _TERMS_OF_OTHERS.get(key.lower())
+    term = _FOREIGN_TERMS.get(key.lower())
     if term in known:
         return f"write it as '{term}'"
     inside = [entry for entry in known if key in _known_keys((*path, entry))]

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from symofros.description.beams.beam import MOST_SECTIONS, SECTION, STATIONS, Beam, BeamLoad
+from symofros.description.beams.beam import MAX_SECTIONS, SECTION, STATIONS, Beam, BeamLoad
 from symofros.description.beams.elastic import CENTERS, Direction
 from symofros.description.beams.shapes import Samples
 from symofros.description.yaml.derived import NounEntry
@@ -45,7 +45,7 @@ class BeamEntry(NounEntry, noun=Beam, without=("name", "joint", "frames", "waive
     shear_z: Count = 0
     segments: Annotated[int, Field(ge=1, le=200)] = 1
     stations: Annotated[list[Annotated[Number, Field(ge=0.0, le=1.0)]], Field(max_length=200)] = [*STATIONS]
-    sections: Annotated[int, Field(ge=0, le=MOST_SECTIONS)] = 0
+    sections: Annotated[int, Field(ge=0, le=MAX_SECTIONS)] = 0
     shapes: dict[Direction, ShapeList] = {}
     loads: Annotated[list[BeamLoadEntry], Field(max_length=100)] = []
     section: SectionEntry | None = None

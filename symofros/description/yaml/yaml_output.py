@@ -14,13 +14,13 @@ from symofros.description.yaml.yaml_nodes import scalar_of
 
 LINE_WIDTH = 120
 _ENDLESS = 1 << 30
-_SIGNS_OF_YAML = frozenset("?:,[]{}#&*!|>'\"%@`~")
+_YAML_INDICATORS = frozenset("?:,[]{}#&*!|>'\"%@`~")
 _BLANKS_OR_ESCAPES = re.compile(r"  |\\")
 
 
 def key_text(text: str) -> str:
     """A key, in quotes where YAML would take its first sign for its own, or lose blanks at which it breaks lines."""
-    return SingleQuotedScalarString(text) if text[:1] in _SIGNS_OF_YAML or _BLANKS_OR_ESCAPES.search(text) else text
+    return SingleQuotedScalarString(text) if text[:1] in _YAML_INDICATORS or _BLANKS_OR_ESCAPES.search(text) else text
 
 
 def value_text(text: str) -> str:

@@ -86,7 +86,7 @@ def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
     return list(map(str, files))
 
 
-def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
+def print_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
     """Print outcome, cost, jitter, results of blocks and last values."""
     cost, outcome = run.cost, run.outcome
     jitter = jitter_of(cost) if cost.late.size else None
@@ -121,10 +121,10 @@ def tell_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> 
         markup=False,
         soft_wrap=True,
     )
-    _tell_more(run, jitter, counts, files, out)
+    _print_details(run, jitter, counts, files, out)
 
 
-def _tell_more(
+def _print_details(
     run: DiagramRun, jitter: Jitter | None, counts: dict[str, float], files: list[str], out: Console
 ) -> None:
     lines = [str(jitter)] if jitter else []
@@ -135,7 +135,7 @@ def _tell_more(
         out.print(line, markup=False, highlight=False, soft_wrap=True)
 
 
-def tell_diagram(diagram: Diagram, as_json: bool, out: Console) -> None:
+def print_diagram(diagram: Diagram, as_json: bool, out: Console) -> None:
     """Blocks with their ports, rates and states, in the order in which they are evaluated; models; parameters.
 
     Raises:

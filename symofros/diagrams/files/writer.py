@@ -148,7 +148,7 @@ class _Writer:
 
 
 def _replayed(diagram: Diagram) -> Diagram:
-    """Libraries and models used by the parts of a diagram.
+    """A diagram of the parts only, as their files state them.
 
     Raises:
         DescriptionError: A part was changed after it was included.

@@ -18,7 +18,7 @@ from symofros.diagrams.program.layout import Place
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.run.examination.controllers import Again, End, blamed
+from symofros.diagrams.run.examination.controllers import End, Rerun, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
@@ -84,7 +84,7 @@ def run_compiled(
         ended = _drive(task, Start.of(resolved, options.t0), called, progress, observer)
         kept = called.kept()
     bendings = ended.bendings
-    again = _again(task, ended.states, called.given)
+    again = _rerun(task, ended.states, called.given)
     outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if outcome.kind == "finished" and not options.realtime:
@@ -150,7 +150,7 @@ def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
 
 
-def _again(task: _Run, states: Sequence[Array], given: Given) -> Again:
+def _rerun(task: _Run, states: Sequence[Array], given: Given) -> Rerun:
     """Repeats a part of a run, with other records and steps."""
     wired = task.compiled.resolved.wired
 
@@ -164,7 +164,7 @@ def _again(task: _Run, states: Sequence[Array], given: Given) -> Again:
         plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, end.interval, 0.0)], wired.name)
         options = replace(task.options, realtime=False, dt=end.dt)
         finer = replace(task, options=options, plan=plan, t_end=end.stop, threads=1, hold=end.hold)
-        found = _gone_on(finer, states, given, i)
+        found = _continued_run(finer, states, given, i)
         return found and found[1]
 
     return again
@@ -176,7 +176,7 @@ def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Seque
     Raises:
         NotKeptError: What external blocks gave is not known.
     """
-    found = _gone_on(task, states, given, i)
+    found = _continued_run(task, states, given, i)
     if found is None:
         return None
     ended, joined = found
@@ -185,7 +185,7 @@ def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Seque
     return joined if ended.recorded.status == Status.FINISHED else None
 
 
-def _gone_on(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
+def _continued_run(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
     """A run continued from a record, with the later records; None where the part does not move."""
     begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
     try:

@@ -174,7 +174,7 @@ def plant_text(material: Moving) -> str:
 
 
 def _beams(name: str, beams: Sequence[ElasticBeam]) -> list[str]:
-    """Functions that judge the bending of beams."""
+    """Lines of C with the data that judge the bending of beams."""
     if not beams:
         return []
     structs, lines, first = [], [], 0

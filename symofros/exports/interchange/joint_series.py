@@ -11,7 +11,7 @@ from symofros.base.rotations import matrix_product
 from symofros.exports.interchange.rigid import RigidLink
 
 # Axes of the joints of one body, which MuJoCo takes no more of.
-_MOST_AXES = 6
+_MAX_AXES = 6
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def _is_single(link: RigidLink) -> bool:
 def _can_take(link: RigidLink, before: GatheredBody) -> bool:
     """Whether a link can have the joints of a body before it, too."""
     axes = sum(len(place.link.axes) for place in before.carriers) + len(before.link.axes) + len(link.axes)
-    return _is_single(link) and axes <= _MOST_AXES
+    return _is_single(link) and axes <= _MAX_AXES
 
 
 def _carried_on(before: GatheredBody, link: RigidLink) -> GatheredBody:

@@ -52,7 +52,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     for body in bodies:
         assert body.link.parent is not None
         elements[body.link.name] = _body(elements[body.link.parent], body, numbers)
-    notes += _of_carriers(bodies)
+    notes += _carrier_notes(bodies)
     inner = [body.link.name for body in bodies if _is_free(body.link) and body.link.parent != links[0].name]
     if inner:
         notes.append("MuJoCo refuses free joints on bodies other than the world: " + ", ".join(inner))
@@ -85,7 +85,7 @@ def _attached(system: System) -> set[str]:
     }
 
 
-def _of_carriers(bodies: list[GatheredBody]) -> list[str]:
+def _carrier_notes(bodies: list[GatheredBody]) -> list[str]:
     """Notes on bodies without mass: frames of those that are gathered, and those that MuJoCo refuses."""
     frames = [name for body in bodies for place in body.carriers for name, _, _ in place.link.frames]
     notes = ["frames of bodies that only carry dropped: " + ", ".join(frames)] if frames else []
@@ -197,7 +197,7 @@ def _body(into: Tree.Element, gathered_body: GatheredBody, numbers: Numbers) -> 
         _joints(body, place.link, numbers, place)
     if not link.axes and link.joint.traits.mjcf is not None:
         stated = {"name": link.joint.name, "type": link.joint.traits.mjcf}
-        Tree.SubElement(body, "joint", stated | _of_all_speeds(link, numbers))
+        Tree.SubElement(body, "joint", stated | _speed_attributes(link, numbers))
     _joints(body, link, numbers, None)
     _sites(body, link)
     return body
@@ -229,7 +229,7 @@ def _impossible(inertia: Array) -> bool:
     return bool(small + middle < large * (1.0 - 1e-9))
 
 
-def _of_all_speeds(link: RigidLink, numbers: Numbers) -> dict[str, str]:
+def _speed_attributes(link: RigidLink, numbers: Numbers) -> dict[str, str]:
     """Armature and damping of a ball or free joint, for which MJCF has one number each."""
     assert link.joint is not None
     stated = {"armature": numbers.value(link.joint.armature)}

@@ -16,7 +16,7 @@ from symofros.runtime.calls.kernel import LaneOptions
 
 # Doubles of the widest vectors: scratch is laid out for them. As many lanes of floats as of doubles take half of that.
 _WIDEST = 8
-_MOST_LANES = 2 * _WIDEST
+_MAX_LANES = 2 * _WIDEST
 # Vectors of states that a function of several chunks takes at a time, so that each chunk's code is fetched once for
 # all of them; as many as keep what they compute within so much of the second cache [bytes].
 _MOST, _CACHE = 8, 1 << 19
@@ -153,7 +153,7 @@ def scratch(program: Program, function: Function, work: int, lanes: LaneOptions)
     if lanes.in_rows:
         return 2 * (1 + most * work)
     return _WIDEST * (
-        1 + most * work + sum(most * size + max(0, _MOST_LANES - size) for size in _sizes(program, function))
+        1 + most * work + sum(most * size + max(0, _MAX_LANES - size) for size in _sizes(program, function))
     )
 
 

@@ -18,7 +18,7 @@ from symofros.base import routes
 from symofros.generator.codegen.statements import NUMBER, VARIABLE, Leaf, Statement, StatementWriter
 
 # A loop has this many iterations at least, and spares so many variables.
-FEWEST, LEAST_SPARED = 6, 24
+FEWEST, MIN_SPARED = 6, 24
 # Statements of a body at most, statements that a repetition is recognised by, places where it is looked for.
 _LONGEST, SEED, _PLACES = 400, 4, 16
 _MARK = re.compile("@(\\w+)")
@@ -100,7 +100,7 @@ def with_loops(writer: StatementWriter, statements: Sequence[Statement]) -> tupl
         statements: Statements of one function in order.
     """
     weights = [max(1, len(statement.nodes)) for statement in statements]
-    if sum(weights) <= routes.LEAST_REPEATED:
+    if sum(weights) <= routes.MIN_REPEATED:
         return list(statements), 0
     shapes, leaves = _shapes(writer, statements)
     items: list[Item] = []
@@ -156,7 +156,7 @@ def _runs(shapes: Sequence[int], weights: Sequence[int]) -> Iterator[tuple[int, 
         runs = [(period, count) for period in periods if (count := _count(shapes, at, period)) >= FEWEST]
         spared = {run: sums[at + run[0] * run[1]] - sums[at + run[0]] for run in runs}
         period, count = max(runs, key=spared.__getitem__, default=(1, 1))
-        if spared.get((period, count), 0) >= LEAST_SPARED:
+        if spared.get((period, count), 0) >= MIN_SPARED:
             yield at, period, count
             at += period * count
         else:

@@ -30,7 +30,7 @@ _INIT = "init_par"
 # Columns of a comment; stands for a space where a line of it may not break.
 _WIDTH, _SPACE = 112, "\x00"
 # Names of parameters that a value without a name is described by.
-_MOST_NAMES = 4
+_MAX_NAMES = 4
 
 
 class ModelText(NamedTuple):
@@ -223,7 +223,7 @@ def _described_pre(program: Program, record: ModelRecord) -> list[str]:
 
     def described(edge: Edge) -> str:
         names = [record.par_names[i] for i in sorted(parameters.get(abs(edge), ()))]
-        stated = f"of {' '.join(names[:_MOST_NAMES])}{' ...' if len(names) > _MOST_NAMES else ''}"
+        stated = f"of {' '.join(names[:_MAX_NAMES])}{' ...' if len(names) > _MAX_NAMES else ''}"
         return graph.label.get(abs(edge), stated)
 
     entries, first = [], 0

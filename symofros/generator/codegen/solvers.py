@@ -33,12 +33,12 @@ ROUTINES: dict[str, tuple[str, ...]] = {
 
 
 # Routines that solve M a = r + G^T lam, G a = c, with full matrices or with packed ones.
-_OF_SYSTEMS = ("constrained", "project")
+_SYSTEM_SOLVERS = ("constrained", "project")
 
 
 def solves_system(function: Function) -> bool:
     """Whether a function solves for constrained motion, with full matrices or with packed ones."""
-    return function.solver is not None and function.solver.routine in _OF_SYSTEMS
+    return function.solver is not None and function.solver.routine in _SYSTEM_SOLVERS
 
 
 def sparse_systems(program: Program) -> tuple[dict[str, SparseSystem], Choice | None]:
@@ -60,7 +60,7 @@ def sparse_systems(program: Program) -> tuple[dict[str, SparseSystem], Choice | 
 def routines(program: Program, sparse: bool) -> list[str]:
     """The hand-written routines that a program's functions call, and those that they rest on, in order."""
     called = {function.solver.routine for function in program.functions if function.solver is not None}
-    if called.intersection(_OF_SYSTEMS):
+    if called.intersection(_SYSTEM_SOLVERS):
         called.add("sparse_system" if sparse else "dense_system")
     return [native_text(f"model/{name}.c.in") for name in ROUTINES if any(name in ROUTINES[other] for other in called)]
 

@@ -98,12 +98,12 @@ class SparseSystem:
             G: (m, n).
         """
         full = 3 * G.shape[0] ** 2 * G.shape[1]
-        system, products = SparseSystem._worth(M, G, full)
+        system, products = SparseSystem._sparse_if_cheaper(M, G, full)
         route = choose("constrained system", {"table_products": products, "full_products": full})
         return system if route.method == "sparse" else None, route
 
     @staticmethod
-    def _worth(M: Output, G: Output, full: int) -> tuple[SparseSystem | None, int]:
+    def _sparse_if_cheaper(M: Output, G: Output, full: int) -> tuple[SparseSystem | None, int]:
         """The patterns with the products of a solution; without them, a part of the products that is too much."""
         m, n = G.shape
         mass = Pattern.filled(
@@ -118,7 +118,7 @@ class SparseSystem:
         products = sum(map(len, neighbours))
         if not table_pays(products, full):
             return None, products
-        order = _least_degrees(neighbours)
+        order = _minimum_degree_order(neighbours)
         place = {condition: j for j, condition in enumerate(order)}
         schur = Pattern.filled([{place[i] for i in neighbours[c] if place[i] > place[c]} for c in order])
         system = SparseSystem(
@@ -203,7 +203,7 @@ def _neighbours(reach: Sequence[Sequence[int]], n: int) -> list[set[int]]:
     return neighbours
 
 
-def _least_degrees(neighbours: Sequence[set[int]]) -> list[int]:
+def _minimum_degree_order(neighbours: Sequence[set[int]]) -> list[int]:
     """An order of elimination in which little fills in: at each turn a node of least degree."""
     left = {i: set(others) for i, others in enumerate(neighbours)}
     order = []

@@ -224,10 +224,10 @@ class StatementWriter:
             arg = abs(stack.pop())
             if arg in self._inlined:
                 stack.extend(self.graph.args[arg])
-            elif not self._is_at_hand(arg):
+            elif not self._is_available(arg):
                 yield self._vector_of_node[arg].key if arg in self._vector_of_node else arg
 
-    def _is_at_hand(self, node: int) -> bool:
+    def _is_available(self, node: int) -> bool:
         """Whether a node is a number or an entry of an input array."""
         return node == 0 or node in self.given or node in self.graph.value or node in self.graph.slot
 

@@ -23,14 +23,14 @@ from symofros.mechanics.topology.conditions import Condition, Formulas, Sign
 from symofros.mechanics.topology.numbers import Numbers
 
 # Beyond this the mass matrix loses all but four of a double's sixteen digits.
-MOST_CONDITION = 1e12
+MAX_CONDITION = 1e12
 # Relative error of the quadrature of section properties that change along the beam.
 QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
 # Error, between a rod's sections, of what is known at them alone, over its largest value.
 INTERPOLATION_TOLERANCE = 1e-3
 # What rotary inertia may lower a frequency by without a word, where it is stated and left out.
-MOST_ROTARY_INERTIA = 0.01
+MAX_ROTARY_INERTIA = 0.01
 # Stations x/L at which section properties are looked at.
 _STATIONS = np.linspace(0.0, 1.0, 33)
 
@@ -90,7 +90,7 @@ def omitted_rotary_inertia(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, 
         stated = getattr(beam, label), beam.rhoA
         inertia, mass = (section_values(beam, value, middle, numbers.parameters).item() for value in stated)
         share = 1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) / length**2 * inertia / mass)
-        if share > MOST_ROTARY_INERTIA:
+        if share > MAX_ROTARY_INERTIA:
             yield label, mode, float(share)
 
 
@@ -308,11 +308,11 @@ def _conditioning(beam: Beam, where: str) -> Iterator[Problem]:
         if not count:
             continue
         condition = _condition(functions)
-        if not condition < MOST_CONDITION:
+        if not condition < MAX_CONDITION:
             yield Problem(
                 f"beam '{beam.name}': the modal mass matrix of {direction} is ill-conditioned",
                 f"{count} functions of family '{beam.family}', condition {condition:.1e}",
-                f"a condition below {MOST_CONDITION:g}",
+                f"a condition below {MAX_CONDITION:g}",
                 "use fewer functions, or family legendre, spline or clamped_free",
                 where,
             )

@@ -59,7 +59,7 @@ def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]
     """
     if _sound.get(id(system)) is system:
         return []
-    problems = _look_for_problems(system, frozenset(broken))
+    problems = _collect_problems(system, frozenset(broken))
     if not problems and not broken:
         _sound[id(system)] = system
     return problems
@@ -71,7 +71,7 @@ def name_problems(system: System) -> list[Problem]:
 
 
 @np.errstate(all="ignore")  # Numbers that overflow are found as numbers that are not finite.
-def _look_for_problems(system: System, broken: frozenset[str]) -> list[Problem]:
+def _collect_problems(system: System, broken: frozenset[str]) -> list[Problem]:
     checker = _Checker(system, broken)
     formulas = formula_problems(system, checker.broken)
     problems = first_of(chain(checker.names(), checker.structure(), checker.acting(), formulas))

@@ -21,7 +21,7 @@ OTHER_FUNCTIONS = "; or ask for other functions, such as frame_pose"
 # A thin rod or plate meets the triangle inequality with equality; its file's digits may miss it by rounding.
 PHYSICAL_TOLERANCE = 1e-6
 # Moments below this are nothing [kg m^2].
-_LEAST_MOMENT = 1e-12
+_MIN_MOMENT = 1e-12
 _ZERO, _HALF = Term(0.0), Term(0.5)
 
 
@@ -63,7 +63,7 @@ def _physical_margins(stated: tuple[Value, ...], about: str) -> tuple[Value, ...
     """
     mass, J = Term(stated[0]), _central_moments(stated, about)
     size = sum((entry * entry for row in J for entry in row), _ZERO).sqrt()
-    slack = _HALF * Term(PHYSICAL_TOLERANCE) * size.maximum(Term(_LEAST_MOMENT))
+    slack = _HALF * Term(PHYSICAL_TOLERANCE) * size.maximum(Term(_MIN_MOMENT))
     half_trace = _HALF * (J[0][0] + J[1][1] + J[2][2])
     (a, d, e), (_, b, f), (_, _, c) = [
         [half_trace - J[i][i] + slack if i == j else _ZERO - J[i][j] for j in range(3)] for i in range(3)
@@ -71,7 +71,7 @@ def _physical_margins(stated: tuple[Value, ...], about: str) -> tuple[Value, ...
     minor = a * b - d * d
     third = c * minor - a * f * f - b * e * e + Term(2.0) * d * e * f
     # A mass, or moments too small to count.
-    some_mass = mass.maximum(Term(PHYSICAL_TOLERANCE * _LEAST_MOMENT) - size)
+    some_mass = mass.maximum(Term(PHYSICAL_TOLERANCE * _MIN_MOMENT) - size)
     return tuple(term.value for term in (some_mass, a, minor, third))
 
 

@@ -54,7 +54,7 @@ def unit_problems(system: System) -> Iterator[Problem]:
         except DescriptionError as error:
             where, fault = system.origin.get((kind, name), ""), error.problem
             yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
-    known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _of_motion(system)
+    known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _motion_units(system)
     if not any(known.get(symbol_of(name)) for _, name, _ in declared):
         return
     for stated in stated_values(system):
@@ -75,7 +75,7 @@ def unit_problems(system: System) -> Iterator[Problem]:
 _REMEDY = "change the formula, or the unit of a parameter in it; a parameter without a unit fits everywhere"
 
 
-def _of_motion(system: System) -> dict[str, Powers | None]:
+def _motion_units(system: System) -> dict[str, Powers | None]:
     """Units of coordinates, of speeds, and of prescribed rates."""
     known: dict[str, Powers | None] = {}
     rates: dict[str, Powers | None] = {}

@@ -121,11 +121,11 @@ def is_intact(library: Path) -> bool:
         status = library.lstat()
         if not stat.S_ISREG(status.st_mode) or not _is_trusted(status) or _others_write(status):
             return False
-        stated = _statement_of(library).read_text(encoding="utf-8")
+        stated = _digest_path(library).read_text(encoding="utf-8")
         # The size shows a truncated file before it is read.
         intact = stated.startswith(f"{status.st_size} ") and stated == _statement(library.read_bytes())
         if intact:
-            note_use(_statement_of(library))
+            note_use(_digest_path(library))
         return intact
     except (OSError, UnicodeDecodeError):
         return False
@@ -138,7 +138,7 @@ def install(built: Path, library: Path) -> None:
     """
     _flush(built)
     built.chmod(0o755)
-    write_atomically(_statement_of(library), _statement(built.read_bytes()))
+    write_atomically(_digest_path(library), _statement(built.read_bytes()))
     os.replace(built, library)
 
 
@@ -148,7 +148,7 @@ def _flush(path: Path) -> None:
         os.fsync(stream.fileno())
 
 
-def _statement_of(library: Path) -> Path:
+def _digest_path(library: Path) -> Path:
     return library.with_suffix(".digest")
 
 

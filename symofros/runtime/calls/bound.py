@@ -18,7 +18,7 @@ from symofros.runtime.calls.layout import columns
 
 Layout = Literal["rows", "columns"]
 # More than any memory holds; sizes of arrays are computed from it without overflow.
-_MOST_STATES = 1 << 40
+_MAX_STATES = 1 << 40
 
 
 class Bound:
@@ -227,7 +227,7 @@ def _count(signature: Signature, n: object) -> int:
         count = operator.index(n)  # type: ignore[arg-type]  # Whatever is none raises TypeError.
     except TypeError:
         count = 0
-    if not 1 <= count <= _MOST_STATES or isinstance(n, bool):
+    if not 1 <= count <= _MAX_STATES or isinstance(n, bool):
         raise _misfit(
             signature,
             "n",

@@ -54,7 +54,7 @@ def call_type(when_there: Callable[[], None]) -> Any:
     return None
 
 
-def type_at_hand() -> Any:
+def available_type() -> Any:
     """The type `Call`, or None where it is not there, or not yet."""
     return load() if _over.is_set() else None
 

@@ -16,7 +16,7 @@ from symofros.runtime.record import Segment
 # An output: the name of a quantity, or (frame_pose | frame_velocity | frame_acceleration, frame).
 Output = str | tuple[str, str]
 _PLAIN = ("q", "v", "a", "lam")
-_OF_FRAMES = ("frame_pose", "frame_velocity", "frame_acceleration")
+_FRAME_FUNCTIONS = ("frame_pose", "frame_velocity", "frame_acceleration")
 
 
 class FrameDerivatives(NamedTuple):
@@ -84,7 +84,7 @@ def linearize(
     known = {"q": x_rows[..., :nv, :], "v": x_rows[..., nv:, :], "a": both[..., :nv, :], "lam": both[..., nv:, :]}
     rows = [np.zeros((*batch, 0, 2 * nv + nu))]
     for output in outputs:
-        if isinstance(output, tuple) and len(output) == 2 and output[0] in _OF_FRAMES:
+        if isinstance(output, tuple) and len(output) == 2 and output[0] in _FRAME_FUNCTIONS:
             rows.append(_frame_rows(output[0], frame_derivatives(output[1]), known["a"]))
         elif isinstance(output, str) and output in _PLAIN:
             rows.append(known[str(output)])
@@ -95,7 +95,7 @@ def linearize(
 
 
 def _unknown(output: Output) -> UnknownNameError:
-    known = (*_PLAIN, *_OF_FRAMES)
+    known = (*_PLAIN, *_FRAME_FUNCTIONS)
     return UnknownNameError(
         Problem(
             "linearize: no such output",

@@ -68,14 +68,14 @@ def chart_slopes(segments: Sequence[Segment], theta: Array, v: Array) -> ChartSl
     curved = [segment for segment in segments if segment.kind != "linear"]
     rows = tuple(slice(segment.v, segment.v + segment.speeds) for segment in curved)
     found = [
-        (_of_ball if segment.kind == "quaternion" else _of_pose)(theta[..., each], v[..., each])
+        (_ball_derivatives if segment.kind == "quaternion" else _pose_derivatives)(theta[..., each], v[..., each])
         for segment, each in zip(curved, rows, strict=True)
     ]
     columns = [tuple(blocks[i] for blocks in found) for i in range(4)]
     return ChartSlopes(*(BlockDiagonal(float(i != 2), rows, blocks) for i, blocks in enumerate(columns)))
 
 
-def _of_ball(theta: Array, w: Array) -> tuple[Array, Array, Array, Array]:
+def _ball_derivatives(theta: Array, w: Array) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D of a rotation vector theta (..., 3) at the angular velocity w (..., 3)."""
     turned = np.stack([rotate(quaternion_exp(theta), e) for e in np.eye(3)], axis=-2)  # exp([theta])^T
     rate_by_w = np.stack([rotation_vector_rate(theta, e) for e in np.eye(3)], axis=-1)
@@ -83,12 +83,12 @@ def _of_ball(theta: Array, w: Array) -> tuple[Array, Array, Array, Array]:
     return turned, moved, _rate_slopes(theta, w), rate_by_w
 
 
-def _of_pose(theta: Array, v: Array) -> tuple[Array, Array, Array, Array]:
+def _pose_derivatives(theta: Array, v: Array) -> tuple[Array, Array, Array, Array]:
     """A, B, C, D of a displacement and a rotation vector theta (..., 6) at the twist v (..., 6)."""
     A, B, C, D = np.zeros((4, *theta.shape, 6))
     angular = slice(3, 6)
-    A[..., angular, angular], B[..., angular, angular], C[..., angular, angular], D[..., angular, angular] = _of_ball(
-        theta[..., 3:], v[..., 3:]
+    A[..., angular, angular], B[..., angular, angular], C[..., angular, angular], D[..., angular, angular] = (
+        _ball_derivatives(theta[..., 3:], v[..., 3:])
     )
     turned, moved = A[..., angular, angular], B[..., angular, angular]
     A[..., :3, :3] = B[..., :3, :3] = turned

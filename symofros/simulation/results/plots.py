@@ -10,7 +10,7 @@ from typing import Any
 from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 
-MOST_CURVES = 12  # In one panel; more can't be distinguished.
+MAX_CURVES = 12  # In one panel; more can't be distinguished.
 # Matplotlib's ways to draw that have no windows.
 _PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
 
@@ -33,11 +33,11 @@ class Panel:
 
     def draw(self, t: Array, axis: Any) -> None:
         """Draw the first curves over times (n) [s], or over a plane, and say how many there are."""
-        for name, values in list(self.curves.items())[:MOST_CURVES]:
+        for name, values in list(self.curves.items())[:MAX_CURVES]:
             x, y = (values[:, 0], values[:, 1]) if self.xy else (t, values)
             axis.plot(x, y, label=name)
-        left_out = len(self.curves) > MOST_CURVES
-        said = f"the first {MOST_CURVES} of {len(self.curves)}; others by their names" if left_out else ""
+        left_out = len(self.curves) > MAX_CURVES
+        said = f"the first {MAX_CURVES} of {len(self.curves)}; others by their names" if left_out else ""
         axis.set_title(f"{self.title} ({said})" if self.title and said else self.title or said, loc="left")
         axis.set_ylabel(f"y {self.label}" if self.xy else self.label)
         if self.xy:

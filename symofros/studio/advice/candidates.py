@@ -57,7 +57,7 @@ def candidates(seen: Observed) -> Iterator[Reduction]:
     """All but the numbers of functions, which depend on what the others leave."""
     for body in seen.system.bodies:
         if isinstance(body, Beam) and body.modes:
-            yield from _of_beam(seen.beam(body))
+            yield from _beam_candidates(seen.beam(body))
         if body.joint is not None:
             yield from _of_joint(seen, body.name, body.joint)
 
@@ -113,7 +113,7 @@ def _bending(beam: Beam) -> list[Direction]:
     return [direction for direction in _PLANES if getattr(beam, direction)]
 
 
-def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
+def _beam_candidates(loads: BeamLoads) -> Iterator[Reduction]:
     beam, what = loads.beam, f"beam '{loads.beam.name}'"
     flexible = [direction for direction in DIRECTIONS if getattr(beam, direction)]
     by = {direction: _bent(loads, direction) for direction in flexible}
@@ -139,7 +139,7 @@ def _of_beam(loads: BeamLoads) -> Iterator[Reduction]:
     yield from lower_orders(loads)
     given = {d: loads.beam.rhoI_z if d == "bend_y" else loads.beam.rhoI_y for d in bending}
     if beam.rotary_inertia and any(value != 0.0 for value in given.values()):
-        yield _of_rotary(loads, what, bending)
+        yield _rotary_inertia_candidate(loads, what, bending)
 
 
 def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str, float]]:
@@ -189,7 +189,7 @@ def lower_orders(loads: BeamLoads) -> Iterator[Reduction]:
     )
 
 
-def _of_rotary(loads: BeamLoads, what: str, bending: list[Direction]) -> Reduction:
+def _rotary_inertia_candidate(loads: BeamLoads, what: str, bending: list[Direction]) -> Reduction:
     labels = {"bend_y": "rhoI_z", "bend_z": "rhoI_y"}
     beam = loads.beam
     values = [getattr(beam, labels[direction]) for direction in bending]
@@ -249,7 +249,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
 
 
 def changed_beam(name: str, **changed: Any) -> Callable[[System], System]:
-    """A reduction that changes entries of a beam of a system."""
+    """A function that changes entries of a beam of a system."""
 
     def apply(system: System) -> System:
         body = system.body(name)

@@ -112,7 +112,7 @@ class _Search:
             richer = refined(self.current)
             if richer == self.current:
                 reference = described
-                self._note_what_is_not_judged()
+                self._note_unjudged_beams()
                 break
             reference = self.runner.exact(richer)[0]
             changes.append(self.runner.error(described, reference))
@@ -133,7 +133,7 @@ class _Search:
         self.bounds = {output.name: output.bound(reference.values[output.name]) for output in self.scene.outputs}
         return ReferenceSolution(richer, reference)
 
-    def _note_what_is_not_judged(self) -> None:
+    def _note_unjudged_beams(self) -> None:
         """Note beams without a richer model: those with user-defined functions."""
         own = [f"'{b.name}'" for b in self.current.beams if b.modes and b.family == "user"]
         if own:
@@ -171,7 +171,7 @@ class _Search:
     def _reduce(self) -> None:
         pool = sorted(candidates(self.seen), key=lambda one: one.estimate)
         promising = [one for one in pool if one.estimate <= 1.0]
-        taken = self._take_most(promising)
+        taken = self._take_as_many_as_allowed(promising)
         rest = [one for one in pool if one not in promising[:taken]]
         for one in sorted(rest, key=_order):
             if one.kind not in ("foreshortening", "order"):
@@ -224,7 +224,7 @@ class _Search:
         if len(beams) > 1:
             first = [next(iter(self._hopeful(beam)), None) for beam in beams]
             together = [one for one in first if one is not None]
-            if len(together) == len(beams) and self._take_most(together, whole=True):
+            if len(together) == len(beams) and self._take_as_many_as_allowed(together, whole=True):
                 return
         for beam in beams:
             for one in self._hopeful(beam):
@@ -235,7 +235,7 @@ class _Search:
         loads: BeamLoads = self.loads[beam.name]
         return (one for one in fewer_functions(loads, beam) if one.estimate <= HOPELESS)
 
-    def _take_most(self, ordered: Sequence[Reduction], whole: bool = False) -> int:
+    def _take_as_many_as_allowed(self, ordered: Sequence[Reduction], whole: bool = False) -> int:
         """Take as many of the first reductions as the tolerance bears, found by halving; all or none where `whole`.
 
         Returns:

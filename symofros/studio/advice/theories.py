@@ -14,7 +14,7 @@ from symofros.studio.advice.loads import BeamLoads
 # Numbers of beams in series that a rod may be replaced by.
 _SEGMENTS = (2, 4)
 # Families of strain functions; those of displacements become Legendre's, which span the same curvatures or more.
-_OF_STRAINS = ("spline", "polynomial", "legendre")
+_STRAIN_FAMILIES = ("spline", "polynomial", "legendre")
 
 
 def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) -> System:
@@ -33,7 +33,7 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
             replace(
                 beam,
                 theory="strain",
-                family=beam.family if beam.family in _OF_STRAINS else "legendre",
+                family=beam.family if beam.family in _STRAIN_FAMILIES else "legendre",
                 shapes=(),
                 retain="first_order",
                 foreshortening=True,

@@ -20,20 +20,20 @@ from symofros.base.atomic import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
-from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
-from symofros.studio.viewer.playing.diagram_motion import shown_of
+from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
 
-MOST_FRAMES = 20_000  # Eleven minutes at thirty a second.
+MAX_FRAMES = 20_000  # Eleven minutes at thirty a second.
 _INK = (60, 60, 60)
 _SUFFIXES = (".html", ".mp4", ".gif", ".png")
 
@@ -46,12 +46,12 @@ class _Recording:
     ) -> None:
         self.period = period
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
-        if count > MOST_FRAMES:
+        if count > MAX_FRAMES:
             raise SymofrosError(
                 Problem(
                     "record: too long",
                     f"{count} pictures",
-                    f"{MOST_FRAMES} at most",
+                    f"{MAX_FRAMES} at most",
                     "raise the speed, or lower the pictures a second",
                 )
             )
@@ -60,7 +60,7 @@ class _Recording:
         self.drawing = mechanism.drawing(motion.par)
         self.q = q
         self.postures = mechanism.posture(q, u, motion.par, exaggeration)
-        self.layers = shown_at_first(self.drawing)
+        self.layers = initial_layers(self.drawing)
         self.count, self.exaggeration, self.speed = count, exaggeration, speed
 
     def __iter__(self) -> Iterator[Posture]:
@@ -180,7 +180,7 @@ def _asked(
 ) -> tuple[System, Played, Path]:
     """Mechanism, motion and path of a recording."""
     if isinstance(system, DiagramRun) and isinstance(run, (str, Path)) and path is None:
-        return *shown_of(system, block), Path(run)
+        return *shown_system_and_states(system, block), Path(run)
     if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:
         raise SymofrosError(
             Problem(

@@ -13,7 +13,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.loading import load
 from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT
-from symofros.studio.viewer.playing.diagram_motion import shown_of
+from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 from symofros.studio.viewer.playing.motion import Played
 from symofros.studio.viewer.viewer import Viewer
 
@@ -63,7 +63,7 @@ def view(
         SymofrosError: viser is not installed, or the address can't be served at.
     """
     if isinstance(system, DiagramRun):
-        stated, run = shown_of(system, block)
+        stated, run = shown_system_and_states(system, block)
     else:
         stated = system if isinstance(system, System) else load(system)
     viewer = Viewer(stated, host=host, port=port, exaggeration=exaggeration, paths=paths)

@@ -63,7 +63,7 @@ def test_sampled_transfer_functions_and_derivatives_follow_scipys_filter() -> No
         np.testing.assert_allclose(outputs["y"], signal.lfilter(num, den, u), atol=close, err_msg=f"{num} {den}")
 
 
-def test_an_integrator_stands_at_its_limits_and_leaves_them_at_once() -> None:
+def test_an_integrator_stops_at_its_limits_and_leaves_them_immediately() -> None:
     diagram = sf.Diagram("limits")
     diagram.add(Sine(name="u", frequency=1.0, amplitude=2 * math.pi))
     diagram.add(Integrator(name="x", high=1.0, low=-0.5), u="u.y")

@@ -10,7 +10,7 @@ from symofros.blocks import Formula, PythonBlock
 from tests.blocks.support import STEP, run
 
 
-def test_formulas_of_inputs_constants_and_time(rng: np.random.Generator) -> None:
+def test_formulas_use_inputs_constants_and_time(rng: np.random.Generator) -> None:
     u, x = rng.normal(size=(6, 3)), rng.normal(size=6)
     block = Formula(
         name="f",

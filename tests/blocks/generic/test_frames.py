@@ -64,7 +64,7 @@ def back(form: str, value: np.ndarray) -> np.ndarray:
 
 # All go by way of the matrix: into it and out of it in every run.
 @pytest.mark.parametrize("by_matrix", [True, pytest.param(False, marks=pytest.mark.slow)])
-def test_orientations_keep_their_digits_at_every_angle(by_matrix: bool) -> None:
+def test_orientations_keep_accuracy_at_every_angle(by_matrix: bool) -> None:
     pairs = [pair for pair in product(FORMS, FORMS) if ("matrix" in pair) == by_matrix]
     blocks = [Orientation(name=f"{source}_to_{target}", source=source, target=target) for source, target in pairs]
     fed = [(block, {"u": FORMS[source]}) for block, (source, _) in zip(blocks, pairs, strict=True)]
@@ -99,7 +99,7 @@ def test_all_sequences_of_euler_angles_match_scipy(rng: np.random.Generator) -> 
         np.testing.assert_allclose(found, R[sequence].as_euler(sequence.upper()), atol=1e-11, err_msg=sequence)
 
 
-def test_quaternions_have_no_negative_w_and_turns_are_of_at_most_half_a_revolution() -> None:
+def test_quaternions_have_nonnegative_w_and_rotations_are_at_most_half_a_turn() -> None:
     found = run(Orientation(name="o", source="rotation_vector", target="quaternion"), {"u": 2.5 * TURNS})["y"]
     assert found[:, 3].min() >= 0.0
     vectors = run(Orientation(name="o", source="rotation_vector", target="rotation_vector"), {"u": 2.5 * TURNS})["y"]
@@ -116,7 +116,7 @@ def test_the_orientation_error_turns_actual_into_desired(axes: str, rng: np.rand
 
 
 @pytest.mark.parametrize("quantity", ["point", "vector", "velocity", "wrench"])
-def test_transforms_go_forth_and_back_and_keep_power(quantity: str, rng: np.random.Generator) -> None:
+def test_transforms_are_inverted_and_preserve_power(quantity: str, rng: np.random.Generator) -> None:
     p, R = rng.normal(size=(5, 3)), Rotation.random(5, random_state=3).as_matrix()
     u = rng.normal(size=(5, 3 if quantity in ("point", "vector") else 6))
     y = run(Transform(name="x", quantity=quantity), {"p": p, "R": R, "u": u})["y"]
@@ -133,7 +133,7 @@ def test_transforms_go_forth_and_back_and_keep_power(quantity: str, rng: np.rand
         np.testing.assert_allclose(y[:, 3:], np.einsum("nij,nj->ni", R, u[:, 3:]) + np.cross(p, y[:, :3]), atol=1e-14)
 
 
-def test_frames_of_a_model(rng: np.random.Generator) -> None:
+def test_frames_of_a_model_transform_vectors(rng: np.random.Generator) -> None:
     q = rng.normal(size=(4, 6))
     model = sf.compile(MODELS["rx90"])
     block = FrameTransform(name="x", model="m", source="tool", target="link3")

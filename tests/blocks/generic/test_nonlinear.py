@@ -33,12 +33,12 @@ def test_static_nonlinearities(block: sf.blocks.Saturation, expected: np.ndarray
     np.testing.assert_allclose(run(block, {"u": U})["y"], expected, atol=1e-14)
 
 
-def test_a_switch_takes_the_first_from_its_threshold_on() -> None:
+def test_a_switch_selects_the_first_input_from_its_threshold() -> None:
     u = {"u1": np.ones((3, 2)), "u2": np.zeros((3, 2)), "by": [0.4, 0.5, 0.6]}
     assert run(Switch(name="s", threshold=0.5), u)["y"][:, 0].tolist() == [0, 1, 1]
 
 
-def test_a_sampled_relay_remembers() -> None:
+def test_a_sampled_relay_keeps_its_state() -> None:
     u = [0.5, 1.0, 0.5, 0.1, 0.0, 0.5, 2.0, -1.0]
     relay = Relay(name="r", lower=0.0, upper=1.0, on=5.0, off=-5.0, period=STEP)
     assert run(relay, {"u": u})["y"].tolist() == [-5, 5, 5, 5, -5, -5, 5, -5]
@@ -55,7 +55,7 @@ def test_a_continuous_relay_switches_where_thresholds_are_crossed() -> None:
     assert found["x.y"][-1] == pytest.approx(0.5, abs=1e-9)
 
 
-def test_rates_are_limited_both_ways() -> None:
+def test_rates_are_limited_in_both_directions() -> None:
     u = np.array([[1.0, 0.0], [3.0, 0.0], [3.0, -9.0], [3.0, -9.0], [0.0, 5.0]])
     found = run(RateLimit(name="r", rising=[100.0, 50.0], falling=[50.0, 200.0], period=STEP), {"u": u})["y"]
     np.testing.assert_allclose(found, [[1, 0], [2, 0], [3, -2], [3, -4], [2.5, -3.5]], atol=1e-12)

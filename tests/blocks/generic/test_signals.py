@@ -39,19 +39,19 @@ def test_matrix_gain(gain: object, rng: np.random.Generator) -> None:
         ("rev/min", "rad/s", np.pi / 30),
     ],
 )
-def test_units_convert_where_they_measure_the_same(unit_in: str, unit_out: str, factor: float) -> None:
+def test_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
     found = run(Gain(name="g", gain=3.0, unit_in=unit_in, unit_out=unit_out), {"u": [2.0, 5.0]})["y"]
     assert found == pytest.approx([6.0 * factor, 15.0 * factor], rel=1e-14)
 
 
-def test_sum_and_product_go_entry_by_entry(rng: np.random.Generator) -> None:
+def test_sum_and_product_are_elementwise(rng: np.random.Generator) -> None:
     u = {f"u{i}": rng.uniform(1, 2, size=(5, 2)) for i in (1, 2, 3)}
     np.testing.assert_allclose(run(Sum(name="s", signs="+-+"), u)["y"], u["u1"] - u["u2"] + u["u3"], rtol=1e-14)
     found = run(Product(name="p", operations="*/*"), u)["y"]
     np.testing.assert_allclose(found, u["u1"] / u["u2"] * u["u3"], rtol=1e-14)
 
 
-def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
+def test_pick_join_and_reshape_entries(rng: np.random.Generator) -> None:
     u = rng.normal(size=(4, 6))
     np.testing.assert_array_equal(run(Pick(name="p", entries=[4, 0]), {"u": u})["y"], u[:, [4, 0]])
     np.testing.assert_array_equal(run(Reshape(name="r", shape=(2, 3)), {"u": u})["y"], u.reshape(4, 2, 3))
@@ -68,7 +68,7 @@ def test_pick_join_and_reshape(rng: np.random.Generator) -> None:
         ([0, "q3"], "v", [0, 9]),
     ],
 )
-def test_pick_by_the_names_of_a_model(entries: object, of: str, expected: list[int]) -> None:
+def test_entries_are_picked_by_names_of_a_model(entries: object, of: str, expected: list[int]) -> None:
     size = 3 if of == "u" else 10
     found = run(
         Pick(name="p", entries=entries, model="m", of=of),
@@ -79,7 +79,7 @@ def test_pick_by_the_names_of_a_model(entries: object, of: str, expected: list[i
     assert found["y"][0].tolist() == expected
 
 
-def test_delay_and_hold_work_at_their_samples() -> None:
+def test_delay_and_hold_update_at_their_samples() -> None:
     u = np.arange(12.0)
     late = run(UnitDelay(name="d", period=0.03, start=-1.0), {"u": u})["y"]
     assert late.tolist() == [-1, -1, -1, 0, 0, 0, 3, 3, 3, 6, 6, 6]

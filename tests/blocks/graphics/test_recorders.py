@@ -27,7 +27,7 @@ def arm(*blocks: tuple[Block, dict[str, str]]) -> sf.Simulation:
     return sf.Simulation(d)
 
 
-def test_a_store_keeps_samples_of_its_own() -> None:
+def test_a_store_records_at_its_own_samples() -> None:
     store = Store(name="log", signals=("time", "q"), period=0.004, offset=0.001)
     simulation = arm((store, {"time": "ramp.y", "q": "plant.q"}))
     coarse = simulation.run(0.1, dt=1e-3, record=0.05)

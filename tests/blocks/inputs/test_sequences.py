@@ -28,14 +28,14 @@ def lines(t: np.ndarray) -> np.ndarray:
     return np.stack([np.interp(t, T, column) for column in VALUES.T], axis=1)
 
 
-def test_between_samples_there_are_lines_or_steps() -> None:
+def test_values_between_samples_are_linear_or_held() -> None:
     found = run(Sequence(name="s", t=T, values=VALUES, units={"y": "N m"}), t_end=0.3)
     np.testing.assert_allclose(found["y"], lines(found["t"]), atol=1e-15)
     held = run(Sequence(name="s", t=T, values=VALUES, kind="hold"), t_end=0.3)
     np.testing.assert_array_equal(held["y"][[0, 4, 5, 19, 20, 30]], VALUES[[0, 0, 1, 1, 2, 2]])
 
 
-def test_a_trajectory_has_several_outputs(csv: Path, tmp_path: Path) -> None:
+def test_a_trajectory_file_can_have_several_outputs(csv: Path, tmp_path: Path) -> None:
     np.savez(tmp_path / "moves.npz", t=T, q=VALUES, v=2 * VALUES, a=VALUES[:, 0])
     found = run(Sequence(name="s", file=str(tmp_path / "moves.npz"), outputs={"q": "q", "v": "v", "a": "a"}), t_end=0.2)
     np.testing.assert_allclose(found["v"], 2 * lines(found["t"]), atol=1e-15)
@@ -84,11 +84,11 @@ def test_large_and_foreign_files_are_not_read(tmp_path: Path, csv: Path, monkeyp
     assert "no NPZ file" in refused(tmp_path / "objects.npz")
     (tmp_path / "text.npz").write_text("not an archive")
     assert "no NPZ file" in refused(tmp_path / "text.npz")
-    monkeypatch.setattr(sequences, "MOST_NUMBERS", 4)
+    monkeypatch.setattr(sequences, "MAX_NUMBERS", 4)
     np.savez_compressed(tmp_path / "bomb.npz", t=np.zeros(5, dtype=np.int8))
     assert "at most 4 numbers" in refused(tmp_path / "bomb.npz")
     assert "at most 4 numbers" in refused(csv)
-    monkeypatch.setattr(sequences, "MOST_BYTES", 10)
+    monkeypatch.setattr(sequences, "MAX_BYTES", 10)
     assert "at most 10" in refused(csv)
 
 

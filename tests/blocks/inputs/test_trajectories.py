@@ -34,7 +34,7 @@ def is_rate(t: np.ndarray, p: np.ndarray, v: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("law", [*LAWS, "spline"])
-def test_joints_pass_their_points(law: str) -> None:
+def test_joint_trajectories_pass_their_points(law: str) -> None:
     found = run(
         JointTrajectory(name="j", points=POINTS, times=TIMES, law=law, unit="rad"), t_end=1.8, dt=FINE, compare=0
     )
@@ -59,7 +59,9 @@ def test_joints_pass_their_points(law: str) -> None:
     ("law", "speed", "acceleration", "tolerance"),
     [("quintic", 1.875, 5.7735, 1e-4), ("septic", 2.1875, 7.5132, 1e-4), ("trapezoidal", 4 / 3, 16 / 3, 1e-12)],
 )
-def test_peaks_of_the_laws(law: str, speed: float, acceleration: float, tolerance: float) -> None:
+def test_peaks_of_speed_and_acceleration_match_the_laws(
+    law: str, speed: float, acceleration: float, tolerance: float
+) -> None:
     found = run(JointTrajectory(name="j", points=[[0.0], [1.0]], times=[0.0, 1.0], law=law), t_end=1.0, dt=FINE)
     assert found["v"].max() == pytest.approx(speed, abs=tolerance)
     assert abs(found["a"]).max() == pytest.approx(acceleration, abs=tolerance)
@@ -67,7 +69,7 @@ def test_peaks_of_the_laws(law: str, speed: float, acceleration: float, toleranc
 
 
 @pytest.mark.parametrize("law", sampled(("quintic", "septic", "spline"), ("quintic", "spline")))
-def test_frames_turn_as_they_should(law: str) -> None:
+def test_frame_trajectories_interpolate_rotations(law: str) -> None:
     points = np.hstack([POINTS, POINTS[:, :1]])
     block = CartesianTrajectory(name="c", points=points, times=TIMES, quaternions=-2 * QUATERNIONS, law=law)
     found = run(block, t_end=1.8, dt=FINE, compare=0)
@@ -120,7 +122,7 @@ def test_blended_corners_are_rounded_smoothly_and_take_less_time() -> None:
     assert found["p"][-1] == pytest.approx([0.3, 0.0], abs=1e-14)
 
 
-def test_a_square_starts_where_the_model_is() -> None:
+def test_a_square_starts_at_the_initial_pose() -> None:
     system, start = MODELS["planar_robot"], {"q1": -0.1, "q2": 0.1}
     square = Square(name="s", model="m", frame="tool", corner=(0.3, 0.3), first=(0.6, 0), second=(0, -0.6))
     found = run(square, t_end=0.1, models={"m": (system, start)})

@@ -14,7 +14,7 @@ signal = late("scipy.signal")
 T = 0.01 * np.arange(201)
 
 
-def test_step_and_ramp() -> None:
+def test_step_and_ramp_signals() -> None:
     found = run(Step(name="s", time=[0.5, 1.0], before=-1.0, after=[2.0, 3.0], unit="N"), t_end=2.0)["y"]
     np.testing.assert_array_equal(found, np.where(T[:, None] >= [0.5, 1.0], [2.0, 3.0], -1.0))
     ramp = run(Ramp(name="r", time=0.5, slope=4.0, start=1.0, duration=1.0), t_end=2.0)
@@ -22,13 +22,13 @@ def test_step_and_ramp() -> None:
     np.testing.assert_array_equal(ramp["rate"], 4.0 * ((T >= 0.5) & (T < 1.5)))
 
 
-def test_pulses_come_at_their_intervals() -> None:
+def test_pulses_start_at_their_intervals() -> None:
     found = run(Pulse(name="p", time=0.205, every=0.5, width=0.25, high=3.0, low=1.0), t_end=2.0)["y"]
     place = (T - 0.205) % 0.5
     np.testing.assert_array_equal(found, np.where((T >= 0.205) & (place < 0.125), 3.0, 1.0))
 
 
-def test_a_sine_has_its_rates() -> None:
+def test_a_sine_outputs_its_derivatives() -> None:
     found = run(Sine(name="s", amplitude=[1.0, 2.0], frequency=1.5, phase=[0.0, 1.0], mean=0.5, unit="rad"), t_end=2.0)
     angle = 3 * np.pi * T[:, None] + [0.0, 1.0]
     np.testing.assert_allclose(found["y"], 0.5 + [1.0, 2.0] * np.sin(angle), atol=1e-13)

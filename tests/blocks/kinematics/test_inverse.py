@@ -68,7 +68,7 @@ def test_an_arm_follows_a_pose(period: float | None) -> None:
     np.testing.assert_allclose((q[2:] - q[:-2]) / (2 * PERIOD), v[1:-1], atol=5e-3 * np.abs(v).max())
 
 
-def test_off_its_path_the_continuous_form_returns() -> None:
+def test_the_continuous_form_returns_to_its_path() -> None:
     diagram, model, q0 = arm_diagram(None, gain=8.0)
     away = dict(zip(model.names.q, q0 + [0.05, -0.04, 0.06, 0.1, -0.08, 0.05], strict=True))
     diagram.models["m"] = replace(diagram.models["m"], start=away)
@@ -80,7 +80,7 @@ def test_off_its_path_the_continuous_form_returns() -> None:
     np.testing.assert_allclose(angle, angle[0] * decay, atol=1e-9)
 
 
-def test_off_its_path_accelerations_are_still_rates_of_the_speeds() -> None:
+def test_accelerations_off_the_path_are_derivatives_of_speeds() -> None:
     diagram = sf.Diagram("back")
     diagram.add_model("control", MODELS["planar_robot"], {"q1": 0.3, "q2": 0.7, "q3": 0.4}, functions=0)
     diagram.add(CartesianTrajectory(name="path", points=[[0.7, 0.5], [0.5, 0.6]], times=[0.0, 0.5]))
@@ -93,7 +93,7 @@ def test_off_its_path_accelerations_are_still_rates_of_the_speeds() -> None:
     np.testing.assert_allclose((v[2:] - v[:-2]) / 4e-4, a[1:-1], atol=1e-4 * np.abs(a).max())
 
 
-def test_a_redundant_arm_moves_least() -> None:
+def test_a_redundant_arm_moves_with_least_norm() -> None:
     system = MODELS["chain7"]
     model = sf.compile(system)
     frame = model.names.frames[-1]

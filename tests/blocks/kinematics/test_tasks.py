@@ -27,7 +27,7 @@ def jacobian(rng: np.random.Generator, m: int, n: int, least: float) -> np.ndarr
 
 @pytest.mark.parametrize(("m", "n"), [(1, 3), (2, 2), (3, 7), (6, 6), (7, 4)])
 @pytest.mark.parametrize("least", [0.0, 1e-4, 0.01, 0.04, 0.06, 0.5])
-def test_damping_is_there_whenever_a_singular_value_is_small(
+def test_damping_acts_whenever_a_singular_value_is_small(
     m: int, n: int, least: float, rng: np.random.Generator
 ) -> None:
     for _ in range(5):

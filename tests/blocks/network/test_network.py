@@ -61,7 +61,7 @@ def loop_of(*blocks: Block, **inputs: str) -> sf.Simulation:
     return sf.Simulation(d)
 
 
-def test_a_lossy_line_is_survived_and_its_losses_counted() -> None:
+def test_lost_packets_are_tolerated_and_counted() -> None:
     port = free_port()
     relay = Relay(port, 0.05)
     relay.start()

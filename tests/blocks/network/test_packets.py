@@ -23,7 +23,7 @@ def after(*sequences: int, stream: int = 7) -> Reception:
     return r
 
 
-def test_a_packet_is_these_bytes() -> None:
+def test_packets_have_the_documented_bytes() -> None:
     data = pack(0x01020304, 5, 0.5, np.array([1.0]))
     assert data == b"SYMO\x01\x00\x01\x00\x04\x03\x02\x01\x05\x00\x00\x00" + struct.pack("<dd", 0.5, 1.0)
     found = unpack(data, 1)
@@ -47,7 +47,7 @@ def test_a_packet_is_these_bytes() -> None:
         pack(7, 0, 0.0, np.zeros(8000)),
     ],
 )
-def test_malformed_packets_are_counted_and_forgotten(data: bytes) -> None:
+def test_malformed_packets_are_counted_and_dropped(data: bytes) -> None:
     r = after(0)
     r.take(data, 0.0)
     assert (r.malformed, r.received) == (1, 1) and r.values is not None and np.array_equal(r.values, VALUES)
@@ -87,7 +87,7 @@ def test_random_orders_are_counted_exactly(rng: np.random.Generator) -> None:
     assert r.received == len(kept) and r.late > 100 and r.values is not None and r.values[0] == VALUES[0] + kept.max()
 
 
-def test_another_sender_waits_until_the_first_is_silent() -> None:
+def test_another_sender_is_ignored_until_the_first_is_silent() -> None:
     r = after(0, 1)
     r.take(packet(100, stream=8), 0.05)
     assert r.foreign == 1 and r.values is not None and r.values[0] == VALUES[0] + 1
@@ -95,7 +95,7 @@ def test_another_sender_waits_until_the_first_is_silent() -> None:
     assert r.foreign == 1 and r.values[0] == VALUES[0] + 100 and r.lost == 0
 
 
-def test_silence_holds_or_gives_the_fallback() -> None:
+def test_silence_holds_the_value_or_gives_the_fallback() -> None:
     r = Reception(2, 0.1)
     assert r.outputs(0.3, 0.1, "hold", -1.0)["signal"].tolist() == [-1.0, -1.0]
     assert r.outputs(0.3, 0.1, "hold", -1.0)["age"] == pytest.approx(0.2)

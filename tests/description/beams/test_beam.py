@@ -70,7 +70,7 @@ def test_centres_that_the_sections_do_not_follow_are_refused() -> None:
     assert few == pytest.approx(many, rel=1e-4)
 
 
-def test_sections_without_a_sign_are_refused_by_the_model_and_at_run_time() -> None:
+def test_indefinite_sections_are_refused_by_the_model_and_at_run_time() -> None:
     matrix = [[*row] for row in IDENTITY]
     matrix[0][3] = matrix[3][0] = "c"
     for c, ok in ((0.5, True), (1.5, False)):

@@ -58,13 +58,13 @@ def system(**changed: Any) -> sf.System:
         },
     ],
 )
-def test_written_and_read(tmp_path: Path, changed: dict[str, Any]) -> None:
+def test_beams_survive_writing_and_reading(tmp_path: Path, changed: dict[str, Any]) -> None:
     stated = system(**changed)
     sf.save(stated, tmp_path / "arm.yaml")
     assert sf.load(tmp_path / "arm.yaml") == stated
 
 
-def test_the_tip_by_its_own_name(tmp_path: Path) -> None:
+def test_a_tip_can_have_its_own_name(tmp_path: Path) -> None:
     text = """
 symofros: 1
 bodies:

@@ -16,7 +16,7 @@ def beam(**entries: Any) -> sf.Beam:
     return sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0, **entries)
 
 
-def test_every_theory_has_a_row_and_mechanics() -> None:
+def test_every_theory_has_a_row_and_an_implementation() -> None:
     assert tuple(ELASTIC) == tuple(theories.THEORIES) == THEORIES
 
 

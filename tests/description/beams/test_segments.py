@@ -31,7 +31,7 @@ def arm(segments: int, functions: int = 0, **changed: Any) -> sf.System:
 
 
 @pytest.mark.parametrize("segments", [2, 3, 7])
-def test_a_rigid_beam_is_the_same_in_any_number_of_segments(segments: int) -> None:
+def test_a_rigid_beam_does_not_depend_on_its_segments(segments: int) -> None:
     whole, divided = (sf.compile(arm(n), sf.Options(backend="interpreter")) for n in (1, segments))
     q, v = np.array([0.3, -0.8]), np.array([1.1, 0.4])
     for par in (None, np.array([3.0, 10.0])):
@@ -56,7 +56,7 @@ def test_a_tip_of_a_beam_in_segments_matches_that_of_the_last() -> None:
     assert loads == [[None, 0.0], [None, 0.5], [None]]
 
 
-def test_a_divided_system_is_written_and_read(tmp_path: Path) -> None:
+def test_a_divided_system_survives_writing_and_reading(tmp_path: Path) -> None:
     divided = arm(3, 2)
     sf.save(divided, tmp_path / "arm.yaml")
     assert sf.load(tmp_path / "arm.yaml") == divided
@@ -70,7 +70,7 @@ def test_segments_from_yaml_equal_those_from_python(tmp_path: Path) -> None:
     assert sf.load(tmp_path / "arm.yaml") == arm(3, 2)
 
 
-def test_a_fault_of_a_segment_is_at_the_line_of_the_beam(tmp_path: Path) -> None:
+def test_a_fault_of_a_segment_names_the_line_of_the_beam(tmp_path: Path) -> None:
     sf.save(arm(1, 2), tmp_path / "arm.yaml")
     text = (tmp_path / "arm.yaml").read_text().replace("      bend_y: 2\n", "      bend_y: 2\n      segments: 2\n")
     (tmp_path / "arm.yaml").write_text(text.replace("2 - x/L", "0.9 - x/L"))

@@ -19,12 +19,12 @@ def model_of(kind: str) -> sf.Model:
 
 @pytest.mark.parametrize("kind", [kind for kind in DEFINED if kind.coordinates], ids=lambda kind: kind.name)
 class TestKind:
-    def test_has_its_coordinates_and_speeds(self, kind: JointKind) -> None:
+    def test_every_kind_has_the_coordinates_and_speeds_of_the_table(self, kind: JointKind) -> None:
         model = model_of(kind.name)
         assert (model.nq, model.nv) == (len(kind.coordinates), kind.nv)
         assert all(name == "j" or name.startswith("j.") for name in model.names.q + model.names.v)
 
-    def test_comes_around_where_a_coordinate_is_an_angle(self, kind: JointKind) -> None:
+    def test_angular_coordinates_are_periodic(self, kind: JointKind) -> None:
         model = model_of(kind.name)
         for i, coordinate in enumerate(kind.coordinates):
             if coordinate.measure == "component":
@@ -35,7 +35,7 @@ class TestKind:
             returned = np.allclose(R, model.frame_pose("body", model.neutral())[1], atol=1e-12)
             assert returned, "neither a shift nor a whole turn changes the orientation"
 
-    def test_turns_about_the_axis_of_the_table_alone(self, kind: JointKind) -> None:
+    def test_joints_turn_only_about_the_axis_of_the_table(self, kind: JointKind) -> None:
         model = model_of(kind.name)
         q, _ = model.random_state(np.random.default_rng(1))
         spins = model.frame_jacobian("body", q)[3:]

@@ -46,7 +46,7 @@ def test_written_files_contain_the_run(tmp_path: Path) -> None:
         run_.save(tmp_path / "r.xlsx")
 
 
-def test_parameters_are_set(tmp_path: Path) -> None:
+def test_parameters_are_set_on_the_command_line(tmp_path: Path) -> None:
     file = folder_with(tmp_path)
     ends = []
     for values in ("40,20", "[0,0]", "0"):

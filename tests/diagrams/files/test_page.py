@@ -15,7 +15,7 @@ from tests.docs.pages import blocks
 PAGE = (Path(__file__).parents[3] / "docs" / "diagrams.md").read_text(encoding="utf-8")
 
 
-def test_the_example_runs_as_it_says(tmp_path: Path) -> None:
+def test_the_documented_example_runs(tmp_path: Path) -> None:
     example, *_ = blocks("docs/diagrams.md", "yaml")
     run = sf.Simulation(sf.load_diagram(folder_with(tmp_path, example.text))).run()
     assert run.outcome.ok and len(run.t) == 201

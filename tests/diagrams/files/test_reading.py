@@ -98,7 +98,7 @@ class FromFile(Block):
         Path(self.file).read_text()
 
 
-def test_files_of_blocks_lie_in_the_diagrams_folder(tmp_path: Path) -> None:
+def test_files_of_blocks_are_relative_to_the_diagram(tmp_path: Path) -> None:
     text = TEXT.replace("outlets:", "  f: {kind: from_file, file: data/x.csv, units: {y: [N m, s]}}\noutlets:")
     (found,) = problems(tmp_path, text, blocks=[FromFile])
     assert "'data/x.csv' does not exist" in found.what and found.where.endswith(f":{line_of(text, 'from_file')}")
@@ -130,7 +130,7 @@ outlets: {effort: pd.effort}
 """
 
 
-def test_parts_from_files(tmp_path: Path) -> None:
+def test_parts_are_read_from_files(tmp_path: Path) -> None:
     (tmp_path / "part.yaml").write_text(PART)
     text = TEXT[: TEXT.index("  pd:")].replace("pd.effort[0]", "left.effort[0]").replace("pd.effort", "left.effort")
     text += "parts:\n  left:\n    file: part.yaml\n    models: {own: arm}\n    inputs: {q: plant.q, v: plant.v}\n"
@@ -161,7 +161,7 @@ def test_parts_that_multiply_are_bounded(tmp_path: Path) -> None:
         sf.load_diagram(tmp_path / "part0.yaml")
 
 
-def test_other_machines_are_reached_only_if_that_is_wished(tmp_path: Path) -> None:
+def test_network_addresses_need_an_explicit_option(tmp_path: Path) -> None:
     text = TEXT.replace(
         "outlets:",
         "  tx: {kind: udp_transmitter, host: 192.0.2.1, port: 9, period: 0.1, inputs: {signal: plant.q}}\noutlets:",
@@ -179,7 +179,7 @@ class Named(Block):
     inputs: tuple[str, ...] = ()
 
 
-def test_fields_that_are_called_as_entries_have_an_underscore(tmp_path: Path) -> None:
+def test_fields_named_like_entries_get_an_underscore(tmp_path: Path) -> None:
     text = TEXT.replace("outlets:", "  n: {kind: named, kind_: odd, inputs_: [a, b]}\noutlets:")
     d = sf.load_diagram(folder_with(tmp_path, text), blocks=[Named])
     assert d.blocks["n"] == Named(name="n", kind="odd", inputs=("a", "b"))
@@ -188,7 +188,7 @@ def test_fields_that_are_called_as_entries_have_an_underscore(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("kind", sorted(kinds()))
-def test_every_kind_has_fields_of_types_that_are_known(kind: str) -> None:
+def test_fields_of_every_kind_have_supported_types(kind: str) -> None:
     owner = kinds()[kind]
     assert kind == kind_of(owner)
     for name, of in types_of(owner).items():

@@ -33,7 +33,7 @@ def stated() -> sf.Diagram:
     return d
 
 
-def test_a_file_reads_back_as_the_same(tmp_path: Path) -> None:
+def test_a_diagram_survives_saving_and_loading(tmp_path: Path) -> None:
     d = sf.load_diagram(folder_with(tmp_path))
     written = sf.save_diagram(d, tmp_path / "again.yaml")
     assert written == [tmp_path / "again.yaml"]  # The model has its file already.
@@ -93,7 +93,7 @@ def test_a_model_that_was_changed_gets_a_file_of_its_own(tmp_path: Path) -> None
     assert sf.load_diagram(tmp_path / "again.yaml").models["arm"].system.name == "other"
 
 
-def test_a_part_that_was_changed_is_not_written(tmp_path: Path) -> None:
+def test_a_changed_part_is_not_written(tmp_path: Path) -> None:
     d = stated()
     d.blocks["left/pd"] = JointPD(name="left/pd", kp=1.0, kd=0.0, period=0.01)
     with pytest.raises(sf.DescriptionError, match="part 'left' can't be written"):
@@ -108,7 +108,7 @@ class Calls(Block):
     function: Any
 
 
-def test_functions_of_pythons_are_not_written(tmp_path: Path) -> None:
+def test_python_functions_are_not_written(tmp_path: Path) -> None:
     d = sf.Diagram("d")
     d.add(Calls(name="c", function=print))
     with pytest.raises(sf.DescriptionError, match="block 'c' can't be written: function"):

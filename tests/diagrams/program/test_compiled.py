@@ -20,7 +20,7 @@ def rising() -> sf.Diagram:
     return d
 
 
-def test_signals_are_compiled_as_the_diagram_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_signals_are_compiled_with_the_diagrams_options(monkeypatch: pytest.MonkeyPatch) -> None:
     used: list[Any] = []
     build = compiled.build_library
 
@@ -36,7 +36,7 @@ def test_signals_are_compiled_as_the_diagram_is(monkeypatch: pytest.MonkeyPatch)
     assert len(used) == before + 1 and set(used) == {flags}
 
 
-def test_another_backend_is_refused_at_once() -> None:
+def test_another_backend_is_refused_immediately() -> None:
     simulation = sf.Simulation(rising(), Options(backend="interpreter"))
     with pytest.raises(sf.CompileError, match=r"backend 'interpreter'\n(.*\n)*  remedy: interpret it"):
         _ = simulation.compiled

@@ -10,7 +10,7 @@ from symofros.diagrams.run.block_functions import Blocks
 from symofros.runtime.build.toolchain import find_toolchain
 
 
-def test_functions_keep_all_that_they_read() -> None:
+def test_compiled_functions_keep_their_arguments_alive() -> None:
     """C has addresses only: Baumgarte's gains were let go of, and read from what took their place."""
     swing = sf.RigidBody("bob", sf.Joint("slide", "planar"), sf.Inertia(1.0, moments=(1, 1, 1)))
     rod = sf.Rod("rod", ("world", None), ("bob", None), 1.0)

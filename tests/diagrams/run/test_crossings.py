@@ -10,7 +10,7 @@ from symofros import blocks
 from symofros.diagrams.run import loop
 
 
-def test_crossings_beyond_the_records_of_one_call_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_events_beyond_the_capacity_of_one_call_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """Six at a time, so that there is room for more states than for crossings."""
     diagram = sf.Diagram("relays")
     diagram.add(blocks.Sine(name="u", frequency=10.0))

@@ -24,7 +24,7 @@ def sliders(gap: float) -> sf.Diagram:
 
 
 @pytest.mark.parametrize("gap", [2.0 * ENGAGE_TOLERANCE, 0.7, 0.5 * ENGAGE_TOLERANCE, 0.0])
-def test_a_gap_ends_the_run_and_moves_nothing(gap: float) -> None:
+def test_a_large_gap_ends_the_run_without_moving_bodies(gap: float) -> None:
     """With its size and the input that engages; a small one is closed and said, none is closed in silence."""
     simulation = sf.Simulation(sliders(gap))
     for run in (simulation.run(0.05, dt=1e-3, record=0.01), simulation.interpret(0.05, dt=1e-3, record=0.01)):
@@ -38,7 +38,7 @@ def test_a_gap_ends_the_run_and_moves_nothing(gap: float) -> None:
         assert said == [True] * (gap > 0.0) and (gap > 0.0 or not run.outcome.notes)
 
 
-def test_a_weld_that_engages_half_a_turn_off_is_lost() -> None:
+def test_engaging_a_weld_half_a_turn_off_ends_the_run() -> None:
     """Its conditions are fulfilled there, too: without a word it would hold four directions of six."""
     mass = sf.Inertia(1.0, (0, 0, 0), (0.1, 0.2, 0.25))
     bodies = tuple(sf.RigidBody(n, sf.Joint(n, "free"), mass) for n in "ab")

@@ -85,7 +85,7 @@ def test_a_non_finite_first_output_is_named() -> None:
     assert "output 'force' is nan at t = 0 s" in fed_back("sqrt(-x)").interpret(1.0, compiled=False).outcome.reason
 
 
-def test_a_signal_that_spoils_a_state_of_a_block_is_named() -> None:
+def test_a_signal_that_makes_a_state_non_finite_is_named() -> None:
     diagram = sf.Diagram("rate")
     diagram.add(Sine(name="wave", frequency=7.0 / (2.0 * np.pi)))
     diagram.add(Formula(name="root", formulas="sqrt(x)"), x="wave.y")
@@ -108,7 +108,7 @@ def test_an_unstable_step_is_reported() -> None:
 
 @pytest.mark.parametrize("length", [1.0, 0.9])
 @pytest.mark.parametrize("interpreted", [False, True])
-def test_a_wire_prescribes_rotations_alone(length: float, interpreted: bool) -> None:
+def test_a_wire_may_prescribe_unit_quaternions_only(length: float, interpreted: bool) -> None:
     """A quaternion of another length would turn and stretch what it carries, without a word."""
     diagram = moving(turned(), u="turn.u")
     diagram.add(Formula(name="turn", formulas={"u": ["0*t", "0", "0", f"1 + {length - 1.0}*t", *["0"] * 6]}))

@@ -38,5 +38,5 @@ def test_jitter_needs_a_real_time_run() -> None:
         ([], float("inf")),
     ],
 )
-def test_the_shortest_time_between_instants(rates: list[tuple[str, float, float]], spacing: float) -> None:
+def test_schedules_report_the_shortest_interval(rates: list[tuple[str, float, float]], spacing: float) -> None:
     assert schedule(rates, "d").spacing == pytest.approx(spacing)

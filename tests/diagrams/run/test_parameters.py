@@ -34,7 +34,7 @@ def test_runs_refuse_parameters_that_descriptions_refuse(name: str, value: float
         simulation().interpret(0.01, parameters={f"plant.{name}": value})
 
 
-def test_a_model_is_added_with_sound_parameters_only() -> None:
+def test_invalid_parameters_of_a_model_are_refused_when_added() -> None:
     diagram = sf.Diagram("bench")
     diagram.add_model("plant", pendulum(), parameters={"m": -1.0})
     diagram.add(blocks.ForwardDynamics(name="arm", model="plants"))

@@ -56,7 +56,7 @@ def test_a_continuous_controller_matches_that_of_simulate() -> None:
         ("rigid/torque_free_body", "closed/slider_crank"),
     ),
 )
-def test_mechanisms_of_every_kind_move_alike(name: str) -> None:
+def test_mechanisms_of_every_kind_match_plain_simulation(name: str) -> None:
     """Quaternions, loops and beams; the plain simulation is the third witness."""
     system = sf.load(MODELS / f"{name}.yaml")
     model = sf.compile(system)
@@ -71,7 +71,7 @@ def test_mechanisms_of_every_kind_move_alike(name: str) -> None:
     assert np.abs(run["plant.a"][-1] - want.a[-1]).max() < 1e-9 * max(1.0, np.abs(want.a[-1]).max())
 
 
-def test_a_lag_follows_its_closed_form_and_the_order_of_the_method_shows() -> None:
+def test_a_first_order_lag_converges_to_its_closed_form() -> None:
     """s(t) of a lag driven by a sine; errors of rk4 fall by 16 where the step is halved."""
     diagram = sf.Diagram("lag")
     diagram.add(blocks.Sine(name="wave", frequency=7.0 / (2.0 * np.pi)))
@@ -87,7 +87,7 @@ def test_a_lag_follows_its_closed_form_and_the_order_of_the_method_shows() -> No
     assert abs(fine["lag"][-1] - want) < 1e-12
 
 
-def test_samples_of_several_rates() -> None:
+def test_blocks_sample_at_several_rates() -> None:
     """A counter at 0.1 s and holds at 0.2 s, 0.3 s and 0.2 s with an offset of 0.1 s."""
     diagram = sf.Diagram("rates")
     diagram.add(Counter(name="fast", period=0.1))
@@ -104,7 +104,7 @@ def test_samples_of_several_rates() -> None:
     assert np.array_equal(run["late"], np.where(late < 0, 0, 2 * late + 1))
 
 
-def test_blocks_of_pythons_are_called_at_their_samples() -> None:
+def test_python_blocks_are_called_at_their_samples() -> None:
     heard: list[float] = []
     diagram = arm(PENDULUM, 1e-3, q1=0.3)
     diagram.add(Spoken(name="spoken", period=0.01, heard=heard), x="pd.effort")
@@ -118,7 +118,7 @@ def test_blocks_of_pythons_are_called_at_their_samples() -> None:
     assert np.abs(run["after"] - other["after"]).max() < 1e-10
 
 
-def test_a_ball_bounces_where_it_must() -> None:
+def test_a_ball_bounces_at_the_predicted_times() -> None:
     """Bounce n is at t1 (1 + 2 e + ... + 2 e^(n-1)), t1 = sqrt(2 h / g)."""
     diagram = sf.Diagram("ball")
     diagram.add(Ball(name="ball"))
@@ -133,7 +133,7 @@ def test_a_ball_bounces_where_it_must() -> None:
     assert run["ball.height"].min() > -1e-9
 
 
-def test_parts_that_meet_at_samples_move_apart_and_on_any_number_of_threads() -> None:
+def test_separate_parts_give_the_same_bits_on_any_number_of_threads() -> None:
     diagram = sf.Diagram("two")
     for side in ("left", "right"):
         diagram.add_model(side, PENDULUM, start={"q1": 0.3 if side == "left" else -0.4})
@@ -214,7 +214,7 @@ def test_stated_loop_starts_are_kept_or_refused(how: str) -> None:
     assert any("model 'plant': start: q2 = -1.2004 was taken as -1.2001" in note for note in run.outcome.notes)
 
 
-def test_a_coordinate_of_zero_is_kept_although_the_projection_keeps_its_speed() -> None:
+def test_a_zero_coordinate_is_preserved_by_projection() -> None:
     """The bob, 0.8 m and 0.6 m from the pivot, is on a rod of 1.1 m: along the rod both coordinates would change."""
     across = sf.Joint("x", "prismatic", position=(0.8, 0.6, 0.0), axis=(1, 0, 0))
     rail = sf.RigidBody("rail", across, sf.Inertia(1.0))
@@ -265,7 +265,7 @@ def test_constraints_engage_at_samples_only() -> None:
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
 @pytest.mark.parametrize("start", [0.0, -0.3])
-def test_a_held_sequence_jumps_between_steps(method: str, start: float) -> None:
+def test_a_held_sequence_changes_exactly_at_its_instants(method: str, start: float) -> None:
     """A lag behind held samples: each counts from its instant, not in the last stage of the step that ends there."""
     t, values = start + 0.1 * np.arange(6), np.array([1.0, -2.0, 3.0, -1.0, 4.0, 0.0])
     diagram = sf.Diagram("held")
@@ -286,7 +286,7 @@ def test_a_held_sequence_jumps_between_steps(method: str, start: float) -> None:
         assert np.array_equal(np.ravel(other["given"]), values)
 
 
-def test_a_push_by_lines_is_not_stepped_over() -> None:
+def test_adaptive_steps_do_not_skip_a_short_push() -> None:
     """By adaptive steps, from rest: a lag behind a tent of a fiftieth of the run."""
     diagram = sf.Diagram("pushed")
     diagram.add(blocks.Sequence(name="given", t=[0.0, 4.7, 4.75, 4.8, 10.0], values=[0.0, 0.0, 5.0, 0.0, 0.0]))

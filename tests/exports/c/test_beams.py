@@ -34,7 +34,7 @@ def judged(program: Path, rows: list[tuple[int, np.ndarray, np.ndarray, float]])
 
 
 @pytest.mark.slow
-def test_packages_state_the_error_of_rest_at_their_parameters(package: Path) -> None:
+def test_packages_report_the_static_beam_error_at_their_parameters(package: Path) -> None:
     rests = [at_rest(share, L) for share in SHARES for L in (1e-3, 1.0, 30.0)]
     rows = [(1, model.parameter_values, rest.q, 0.2 * model.parameters["L"] ** 2) for model, rest in rests]
     said = judged(package, rows)
@@ -44,7 +44,7 @@ def test_packages_state_the_error_of_rest_at_their_parameters(package: Path) -> 
 
 @pytest.mark.parametrize("name", ["L", "EI", "rho"])
 @pytest.mark.parametrize("value", [0.0, -1.0])
-def test_packages_refuse_parameters_that_descriptions_do(package: Path, name: str, value: float) -> None:
+def test_packages_refuse_the_same_parameters_as_descriptions(package: Path, name: str, value: float) -> None:
     par = np.array([value if key == name else default for key, default in NAMES.items()])
     checked, taken = judged(package, [(checks, par, np.zeros(3), 0.1) for checks in (1, 0)])
     assert int(checked[0]) == -9 and "beam 'blade'" in checked[2]
@@ -54,7 +54,7 @@ def test_packages_refuse_parameters_that_descriptions_do(package: Path, name: st
 
 
 @pytest.mark.slow
-def test_exported_diagrams_state_the_error_of_rest(tmp_path: Path) -> None:
+def test_exported_diagrams_report_the_static_beam_error(tmp_path: Path) -> None:
     model, rest = at_rest(0.9, 2.0)
     diagram = column_diagram(model, rest.q)
     sf.export(diagram, "c", tmp_path, method="rk4", dt=1e-3, outputs=["first.q"])

@@ -90,7 +90,7 @@ def test_invalid_arguments_are_refused(four_bar: Path) -> None:
         assert done.stderr == "usage: four_bar_example [SECONDS [PERIOD]] [--fast]\n"
 
 
-def test_a_wrong_selftest_fails(four_bar: Path) -> None:
+def test_a_sign_error_fails_the_selftest(four_bar: Path) -> None:
     """One sign in the equations, and the package says so."""
     text = (four_bar / "four_bar.c").read_text()
     at = text.index(" - ", text.index("static void four_bar_bias"))
@@ -132,7 +132,7 @@ def test_the_package_writes_no_global_memory(four_bar: Path) -> None:
 
 
 @pytest.mark.tools
-def test_cmake_builds_tests_and_installs(package: tuple[str, Path], tmp_path: Path) -> None:
+def test_cmake_builds_tests_and_installs_the_package(package: tuple[str, Path], tmp_path: Path) -> None:
     need("cmake", "pkg-config")
     name, folder = package
     run("cmake", "-S", folder, "-B", tmp_path / "build", f"-DCMAKE_INSTALL_PREFIX={tmp_path}/usr", cwd=tmp_path)
@@ -149,7 +149,7 @@ def test_cmake_builds_tests_and_installs(package: tuple[str, Path], tmp_path: Pa
 
 @pytest.mark.tools
 @pytest.mark.parametrize("checker", ["address,undefined", "thread", "valgrind"])
-def test_two_models_in_threads_under_checkers(tmp_path: Path, checker: str) -> None:
+def test_two_models_run_in_threads_under_sanitizers_and_valgrind(tmp_path: Path, checker: str) -> None:
     need("clang", "valgrind")
     for name, system in (("planar", PLANAR), ("four_bar", system_of("four_bar"))):
         sf.export(system, "c", tmp_path / name, start=STARTS.get(name), frames=[])
@@ -178,7 +178,7 @@ def test_two_models_in_threads_under_checkers(tmp_path: Path, checker: str) -> N
 
 
 @pytest.mark.tools
-def test_clang_is_as_strict(package: tuple[str, Path]) -> None:
+def test_clang_compiles_without_warnings(package: tuple[str, Path]) -> None:
     need("clang")
     name, folder = package
     run("clang", *STRICT, "-O2", "-o", "../clang", *sources(folder), "-lm", cwd=folder)
@@ -192,7 +192,7 @@ DRIVEN = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=True), sf.Inerti
 @pytest.mark.parametrize(
     ("name", "body"), [pytest.param("no_inputs", BODY, marks=pytest.mark.slow), ("no_states", DRIVEN)]
 )
-def test_models_without_inputs_or_states(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
+def test_models_without_inputs_or_states_are_exported(tmp_path: Path, name: str, body: sf.RigidBody) -> None:
     sf.export(sf.System(name, (body,)), "c", tmp_path)
     flags = (*STRICT, "-O0", "-g", *sanitizers("gcc", "undefined,address"))
     run("gcc", *flags, "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
@@ -208,7 +208,7 @@ def test_other_methods_step_the_four_bar(tmp_path: Path, method: str) -> None:
     assert relative(found["q"], trajectory("four_bar", 0.2).q[-1]) < (1e-2 if "euler" in method else 1e-5)
 
 
-def test_directional_derivatives_under_sanitizers(tmp_path: Path) -> None:
+def test_directional_derivatives_pass_sanitizers(tmp_path: Path) -> None:
     """Along quaternions of a prescribed ball joint, too, whose lengths are taken out of what they change."""
     ball = sf.Joint("ball", "ball", prescribed=True)
     hinge = sf.Joint("hinge", "revolute", "base", "end", axis=(0, 1, 0), actuated=True)

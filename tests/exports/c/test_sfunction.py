@@ -32,7 +32,7 @@ def ports(text: str) -> list[np.ndarray]:
     return [np.array(list(map(float, line.split()))) for line in text.splitlines()]
 
 
-def test_direct_dynamics_integrate(block: tuple[str, Path]) -> None:
+def test_direct_dynamics_can_be_integrated(block: tuple[str, Path]) -> None:
     name, folder = block
     found = ports(run("./block", name, "direct_dynamics", "0.2", str(STEP[name]), cwd=folder))
     wanted = trajectory(name, 0.2)
@@ -69,7 +69,7 @@ def test_s_function_outputs_match_the_model(block: tuple[str, Path]) -> None:
     assert V[0] == pytest.approx(float(model.potential_energy(q)), rel=SAME, abs=SAME)
 
 
-def test_parameters_of_the_model(tmp_path: Path) -> None:
+def test_the_block_accepts_parameters_in_their_order(tmp_path: Path) -> None:
     """In their order, for every function; none are the defaults."""
     system = system_of("four_bar")
     folder = tmp_path / "four_bar"
@@ -95,7 +95,7 @@ def test_parameters_of_the_model(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("words", [("nothing", "direct_dynamics"), ("MODEL", "fly")])
-def test_wrong_parameters_of_the_block(block: tuple[str, Path], words: tuple[str, str]) -> None:
+def test_wrong_block_parameters_are_refused(block: tuple[str, Path], words: tuple[str, str]) -> None:
     name, folder = block
     with pytest.raises(AssertionError, match="no such ModelName or ModelFunction"):
         run("./block", words[0].replace("MODEL", name), words[1], "0", "1", cwd=folder)

@@ -60,7 +60,7 @@ def test_c_calls_functions_with_named_arguments(package: tuple[str, Path]) -> No
     check(name, q, told(folder))
 
 
-def test_cpp_gets_maps_of_eigen(package: tuple[str, Path]) -> None:
+def test_cpp_functions_return_eigen_maps(package: tuple[str, Path]) -> None:
     name, folder = package
     spec = importlib.util.find_spec("cmeel")
     eigen = Path(spec.origin or "").parents[1] / "cmeel.prefix/include/eigen3" if spec else Path("/none")

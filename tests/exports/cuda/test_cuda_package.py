@@ -32,7 +32,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return sf.export(system("double_pendulum"), "cuda", tmp_path_factory.mktemp("package") / "gpu").folder
 
 
-def test_the_example_finds_the_numbers_of_the_c_code(package: Path, tmp_path: Path) -> None:
+def test_the_cuda_example_reproduces_the_c_results(package: Path, tmp_path: Path) -> None:
     """Run with kernels as loops; the launcher that is tested so is declared as in the header."""
     kernels = tmp_path / "kernels.cpp"
     kernels.write_text(f'#include "{SHIM}"\n{PLAIN}\n#include "{package}/double_pendulum_double.cu"\n{LAUNCHER}')
@@ -46,7 +46,7 @@ def test_the_example_finds_the_numbers_of_the_c_code(package: Path, tmp_path: Pa
 
 @pytest.mark.tools
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "heavy_top", "cart_pole"])
-def test_nvcc_warns_of_nothing(name: str, tmp_path: Path) -> None:
+def test_nvcc_compiles_without_warnings(name: str, tmp_path: Path) -> None:
     """Where it is installed; CI's machines need no driver for that."""
     needs_program("nvcc")
     folder = sf.export(MODELS[name], "cuda", tmp_path / name).folder
@@ -99,7 +99,7 @@ def test_notes_say_that_beam_rollouts_are_not_judged(tmp_path: Path, name: str, 
     assert bool([note for note in notes if "rollouts do not judge how far beams bend" in note]) == bends
 
 
-def test_hostile_names_stay_names(tmp_path: Path) -> None:
+def test_hostile_names_are_escaped(tmp_path: Path) -> None:
     """Names reach text as identifiers, or as cells of tables and comments that they can't leave."""
     name = "a */ int x; `| <b> # b"
     body = sf.RigidBody(name, sf.Joint("q1", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (0, 0.1, 0.1)))

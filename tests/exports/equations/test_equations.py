@@ -64,7 +64,7 @@ def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.
             np.testing.assert_allclose(array, right, rtol=0, atol=1e-12 * max(1.0, np.abs(right).max(initial=0.0)))
 
 
-def test_the_double_pendulum_is_the_textbooks() -> None:
+def test_the_double_pendulum_matches_the_textbook() -> None:
     system = sf.System(
         "point_masses",
         bodies=[
@@ -141,6 +141,6 @@ def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> Non
         (["--recursion"], "\\paragraph{Link 3 (rocker)}"),
     ],
 )
-def test_the_command_writes_them(words: list[str], says: str) -> None:
+def test_the_equations_command_writes_its_files(words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["equations", "reference_models/closed/four_bar.yaml", *words])
     assert done.exit_code == 0 and says in done.output

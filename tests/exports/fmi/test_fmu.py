@@ -144,7 +144,7 @@ def test_model_exchange_moves_as_python_does(made: Any, name: str, version: int)
     assert relative(columns(found, "q."), wanted.q[-1]) < MODEL_EXCHANGE
 
 
-def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> None:
+def test_shipped_sources_compile_strictly(made: Any, version: int, tmp_path: Path) -> None:
     """The sources that travel with it, as an importer builds them, under the strictest flags."""
     fmpy.extract(str(made("four_bar", version)), tmp_path)
     headers = Path(fmpy.__file__).parent / "c-code"
@@ -159,7 +159,7 @@ def test_sources_compile_elsewhere(made: Any, version: int, tmp_path: Path) -> N
     )
 
 
-def test_sources_of_two_share_no_name(made: Any, version: int, tmp_path: Path) -> None:
+def test_sources_of_two_units_share_no_symbol(made: Any, version: int, tmp_path: Path) -> None:
     """FMI 3 asks sources to prefix their functions; FMPy's header of FMI 2 knows no prefix."""
     headers = Path(fmpy.__file__).parent / "c-code"
     defined = []
@@ -273,7 +273,7 @@ def test_directional_derivatives_match_the_functions(unit: Any, name: str, rng: 
     assert np.abs(found - wanted).max() < DIFFERENCES * max(1.0, np.abs(wanted).max())
 
 
-def test_states_are_saved_and_restored(unit: Any) -> None:
+def test_fmu_states_are_saved_and_restored(unit: Any) -> None:
     it = unit("four_bar", cosim=True)
     it.start()
     it.fmu.doStep(0.0, 0.01)
@@ -295,7 +295,7 @@ def test_states_are_saved_and_restored(unit: Any) -> None:
         assert np.array_equal(it.get(*names), first)
 
 
-def test_parameters_belong_to_an_instance(unit: Any) -> None:
+def test_parameters_are_separate_per_instance(unit: Any) -> None:
     one, other = unit("four_bar", cosim=True), unit("four_bar", cosim=True)
     one.set("par.m", 5.0)
     for it in (one, other):
@@ -349,7 +349,7 @@ def test_calls_forbidden_by_the_standard_are_refused(unit: Any) -> None:
 
 
 @pytest.mark.parametrize("version", ONE_VERSION)
-def test_units_and_dependencies(made: Any, version: int) -> None:
+def test_units_and_dependencies_are_declared(made: Any, version: int) -> None:
     description = fmpy.read_model_description(str(made("planar", version)))
     units = {variable.name: variable.unit for variable in description.modelVariables}
     assert units["q.q1"] == "rad"
@@ -376,7 +376,7 @@ def test_a_missing_fmpy_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: P
         pytest.param(3, True, marks=pytest.mark.slow),
     ],
 )
-def test_models_without_states_or_inputs(tmp_path: Path, version: int, prescribed: bool) -> None:
+def test_models_without_states_or_inputs_become_fmus(tmp_path: Path, version: int, prescribed: bool) -> None:
     body = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=prescribed), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
     target: Any = f"fmu{version}"
     with quickly():
@@ -403,7 +403,7 @@ def test_beams_beyond_their_theory_are_reported(made: Any, version: int, kind: s
 
 @pytest.mark.parametrize("version", ONE_VERSION)
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_logs_state_the_error_of_rest(made: Any, version: int, kind: str) -> None:
+def test_logs_report_the_static_beam_error(made: Any, version: int, kind: str) -> None:
     """Axial loads count, at the present length."""
     for share, L in ((0.95, 1.0), (0.9, 0.1), (0.8, 1.0), (-5.0, 10.0)):
         model, rest = at_rest(share, L)
@@ -418,7 +418,7 @@ def test_logs_state_the_error_of_rest(made: Any, version: int, kind: str) -> Non
 
 
 @pytest.mark.parametrize("scale", [0.0, 2.0, -1e150, 1.0 + 1e-6])
-def test_start_quaternions_are_rotations(made: Any, scale: float) -> None:
+def test_start_quaternions_are_normalised_or_refused(made: Any, scale: float) -> None:
     """A start of another length is refused in words; one of few digits is a rotation."""
     path = str(made("floating", VERSIONS["floating"]))
     start = {name: scale * value for name, value in quaternion_start(path).items()}
@@ -431,7 +431,7 @@ def test_start_quaternions_are_rotations(made: Any, scale: float) -> None:
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("length", [0.0, 1.01, -1.0])
-def test_quaternions_among_inputs_are_rotations(made: Any, kind: Any, length: float) -> None:
+def test_input_quaternions_are_normalised_or_refused(made: Any, kind: Any, length: float) -> None:
     path = str(made("turned", 3))
     inputs = [v.name for v in fmpy.read_model_description(path).modelVariables if v.causality == "input"]
     (last,) = (name for name in inputs if name.rstrip("'").endswith("qw"))

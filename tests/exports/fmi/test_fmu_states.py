@@ -55,7 +55,7 @@ def continuous(unit: Unit) -> None:
     unit.fmu.enterContinuousTimeMode()
 
 
-def test_rates_are_of_the_input_that_was_set_last(made: Any) -> None:
+def test_rates_use_the_latest_input(made: Any) -> None:
     """Nothing but the input changes between the calls."""
     unit, model = made(PLANAR, False), sf.compile(PLANAR)
     continuous(unit)
@@ -65,7 +65,7 @@ def test_rates_are_of_the_input_that_was_set_last(made: Any) -> None:
         assert unit.get(*unit.named("der(v.")) == pytest.approx(wanted, rel=SAME, abs=SAME)
 
 
-def test_rates_after_a_reset_are_of_the_start(made: Any) -> None:
+def test_rates_after_a_reset_use_the_start(made: Any) -> None:
     """Asked for before anything else is evaluated; the state and the input of before are gone."""
     unit = made(PLANAR, False)
     initialising(unit)
@@ -81,7 +81,7 @@ def test_rates_after_a_reset_are_of_the_start(made: Any) -> None:
     assert np.array_equal(unit.get(*unit.named("der(")), first)
 
 
-def test_no_step_leads_beyond_the_stop_time(made: Any) -> None:
+def test_no_step_exceeds_the_stop_time(made: Any) -> None:
     unit = made(PLANAR, True)
     if unit.version == 2:
         unit.fmu.setupExperiment(startTime=0.0, stopTime=0.025)
@@ -116,7 +116,7 @@ def test_a_beam_is_judged_again_after_a_reset(made: Any, kind: str) -> None:
     assert told[0] == told[2] and len(told[0]) == 1 and not told[1]
 
 
-def test_derivatives_by_parameters_while_it_is_initialised(made: Any) -> None:
+def test_parameter_derivatives_are_available_during_initialisation(made: Any) -> None:
     """FMI counts them among the knowns of initial unknowns. Parameters are what they were afterwards."""
     unit, model = made(TUNED, False, outputs=["tip"]), sf.compile(TUNED)
     initialising(unit)

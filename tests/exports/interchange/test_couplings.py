@@ -22,7 +22,7 @@ def polynomial(residual: str) -> PolynomialCoupling | None:
 
 
 @given(COEFFICIENTS, st.floats(0.1, 10.0), st.sampled_from(["sum", "horner", "negative", "quotient"]))
-def test_any_way_to_state_a_polynomial_gives_its_coefficients(c: list[float], slope: float, form: str) -> None:
+def test_equivalent_polynomials_give_the_same_coefficients(c: list[float], slope: float, form: str) -> None:
     powers = " + ".join(f"({x!r})*b^{i}" for i, x in enumerate(c))
     horner = "0"
     for x in reversed(c):
@@ -52,7 +52,7 @@ def test_any_way_to_state_a_polynomial_gives_its_coefficients(c: list[float], sl
         ("(a - b)^2 - a^2 - b^2 + 2*a*b + a - pi", "a", None, (math.pi,)),
     ],
 )
-def test_the_coordinate_that_can_follow_does(
+def test_the_eligible_coordinate_becomes_the_follower(
     residual: str, follower: str, leader: str | None, coefficients: tuple[float, ...]
 ) -> None:
     coupling = polynomial(residual)

@@ -79,7 +79,7 @@ def _angles(engine: pinocchio.Model, q: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_losses_are_listed(tmp_path: Path) -> None:
+def test_losses_of_an_export_are_listed(tmp_path: Path) -> None:
     urdf = "\n".join(sf.export(system_of("planar_robot"), "urdf", tmp_path / "urdf").notes)
     for words in (
         "beams as rigid bodies, without their elastic coordinates: link1, link2",
@@ -95,7 +95,7 @@ def test_losses_are_listed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("moment", "said"), [(0.1, False), (0.0, True)])
-def test_the_inertia_of_a_line_is_raised_in_words(tmp_path: Path, moment: float, said: bool) -> None:
+def test_a_raised_line_inertia_is_noted(tmp_path: Path, moment: float, said: bool) -> None:
     """MuJoCo refuses it as it is, and reads what is written."""
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0.5, 0, 0), (moment, 0.1, 0.1)))
     done = sf.export(sf.System("rod", (rod,)), "mjcf", tmp_path)
@@ -144,7 +144,7 @@ def test_gears_and_cams_are_joint_equalities_of_mujoco(tmp_path: Path, rng: np.r
     assert back.constraint(q) == pytest.approx(residuals, abs=1e-14)
 
 
-def test_gears_are_mimics_of_urdf(tmp_path: Path, rng: np.random.Generator) -> None:
+def test_gears_become_urdf_mimics(tmp_path: Path, rng: np.random.Generator) -> None:
     """The mass matrix of what is free is G^T M G, in Pinocchio, which eliminates mimics."""
     done = sf.export(_pair(sf.Coupling("gear", "q1 - ratio*q0 - 0.3")), "urdf", tmp_path)
     engine = pinocchio.buildModelFromUrdf(str(done.files[0]), mimic=True)

@@ -74,7 +74,7 @@ def test_exported_mjcf_has_the_same_mass_matrix(
         np.testing.assert_allclose(mass_matrix(engine, model, q), ours, rtol=0, atol=SAME * np.abs(ours).max())
 
 
-def test_a_chain_of_carriers_is_one_body(tmp_path: Path) -> None:
+def test_a_chain_of_massless_carriers_becomes_one_body(tmp_path: Path) -> None:
     """Gimbal rings: three turns about places of their own, one body."""
     bodies = [
         sf.RigidBody("outer", sf.Joint("roll", "revolute", axis=(1, 0, 0), position=(0, 0, 1)), None),

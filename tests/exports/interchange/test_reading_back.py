@@ -44,7 +44,7 @@ def close(found: np.ndarray, wanted: np.ndarray, tolerance: float) -> None:
 
 
 @pytest.mark.parametrize("seed", SAMPLED)
-def test_mjcf_by_mujoco(tmp_path: Path, seed: str) -> None:
+def test_mjcf_is_read_back_by_mujoco(tmp_path: Path, seed: str) -> None:
     system = stated_tree(int(seed[4:]), kinds=WITH_BALLS)
     done = sf.export(system, "mjcf", tmp_path)
     try:
@@ -148,7 +148,7 @@ def _lost(limits: sf.Limits, *measures: str) -> list[str]:
 
 
 @pytest.mark.parametrize("seed", SAMPLED)
-def test_urdf_by_pinocchio_and_our_reader(tmp_path: Path, seed: str) -> None:
+def test_urdf_is_read_back_by_pinocchio_and_our_reader(tmp_path: Path, seed: str) -> None:
     system = stated_tree(int(seed[4:]), kinds=SERIES)
     done = sf.export(system, "urdf", tmp_path)
     engine = pinocchio.buildModelFromUrdf(str(done.files[0]))

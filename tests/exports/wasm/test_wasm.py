@@ -59,7 +59,7 @@ def native() -> dict[str, Any]:
 
 
 @pytest.mark.tools
-def test_the_module_has_the_native_bits(answers: dict[str, Any], native: dict[str, Any]) -> None:
+def test_wasm_results_equal_native_bits(answers: dict[str, Any], native: dict[str, Any]) -> None:
     """Odd numbers of states: one of two lanes is left over at the end."""
     assert answers["selftest"] == 0.0
     for name in "MhQ":
@@ -81,7 +81,7 @@ def test_the_code_of_the_page_on_exports_runs(package: Path, native: dict[str, A
 
 
 @pytest.mark.tools
-def test_a_run_moves_as_strict_native_code_does(answers: dict[str, Any], tmp_path: Path) -> None:
+def test_a_wasm_run_matches_strict_native_code(answers: dict[str, Any], tmp_path: Path) -> None:
     sf.export(PLANAR, "c", tmp_path, start={"q1": 0.4, "dq1": 1.0}, dt=1e-3)
     sources = sorted(path.name for path in tmp_path.glob("*.c"))
     run("gcc", "-std=c99", "-O1", "-ffp-contract=off", *sources, "-lm", "-o", "example", cwd=tmp_path)
@@ -102,13 +102,13 @@ def test_wrong_names_and_sizes_are_refused(answers: dict[str, Any]) -> None:
 
 
 @pytest.mark.tools
-def test_memory_that_is_used_again_does_not_grow(answers: dict[str, Any]) -> None:
+def test_reused_memory_does_not_grow(answers: dict[str, Any]) -> None:
     first, second, third = answers["memory"]
     assert first == second == third < 2**25
 
 
 @pytest.mark.tools
-def test_arrays_of_a_prepared_batch_outlive_memory_that_grows(answers: dict[str, Any]) -> None:
+def test_arrays_of_a_prepared_batch_survive_memory_growth(answers: dict[str, Any]) -> None:
     """An array that memory has left is refused as an input; one that is taken anew has the numbers of before."""
     before, refused, after, freed = answers["grown"]
     assert before == after and "memory has grown since q were taken" in refused and "the batch was freed" in freed
@@ -127,14 +127,14 @@ def test_wasmtime_runs_the_module(package: Path) -> None:
 
 
 @pytest.mark.tools
-def test_the_package_tests_itself_and_is_small(package: Path) -> None:
+def test_the_wasm_package_passes_its_selftest_and_is_small(package: Path) -> None:
     need("node")
     assert run("node", "selftest.mjs", cwd=package).startswith("selftest 0.000e+0")
     assert (package / "planar.wasm").stat().st_size < 200_000
 
 
 @pytest.mark.tools
-def test_other_functions_are_in_the_module_where_they_are_asked_for(tmp_path: Path) -> None:
+def test_requested_functions_are_in_the_module(tmp_path: Path) -> None:
     need("node")
     asked = ["mass_matrix", "forward_dynamics_derivatives", "inverse_dynamics_vjp", "joint_wrenches"]
     sf.export(MODELS["double_pendulum"], "wasm", tmp_path, functions=asked)
@@ -179,7 +179,7 @@ def test_names_cannot_end_the_script_of_the_page() -> None:
     assert "<" not in wasm._json({"name": "</script><!--<script"})
 
 
-def test_each_failure_of_the_stepping_loop_has_words() -> None:
+def test_each_failure_status_has_a_message() -> None:
     """As the header states them, one for each negative status."""
     header = native_text("stepping/symofros_stepper.h")
     codes = re.findall(r"SYM_\w+ = (-\d+)", header)

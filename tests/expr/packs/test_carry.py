@@ -35,7 +35,7 @@ def copied(g: Graph, edges: list[Edge], fixed: dict[Edge, float]) -> tuple[Graph
     return into, edges
 
 
-def test_a_pack_that_becomes_its_operand_is_its_operand() -> None:
+def test_a_pack_equal_to_its_operand_is_its_operand() -> None:
     """With c0 = 0 and c1 = -1, c0 x + c1 y is -y, and what is made of it has y for an operand."""
     g = Graph()
     pack = combination(g)

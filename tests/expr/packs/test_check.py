@@ -47,7 +47,7 @@ def test_a_linear_combination_is_valid() -> None:
     check(g)
 
 
-def test_validity_does_not_rest_on_the_order_of_creation() -> None:
+def test_validity_does_not_depend_on_creation_order() -> None:
     """A factor and operands that are younger than lanes of the pack, and a first node that means nothing."""
     g = Graph()
     x, c = inputs(g, "x"), g.input("c", 0)
@@ -121,7 +121,7 @@ def test_a_dead_lane_is_refused(dead: Edge) -> None:
     assert text == f"pack 0: lane 7 is dead: its edge {dead} is no computed node"
 
 
-def test_an_input_is_a_dead_lane() -> None:
+def test_an_input_is_an_invalid_new_lane() -> None:
     g = Graph()
     x = inputs(g, "x")
     assert "lane 0 is dead" in refusal(g, Pack(x.lanes, ((ONE, x),), exact_lanes=ALL, new_lanes=ALL))

@@ -21,7 +21,7 @@ def test_lanes_are_the_scalar_sums() -> None:
     assert g.packs == [pack]
 
 
-def test_signs_and_single_terms_cost_nothing() -> None:
+def test_sign_changes_and_single_terms_need_no_operation() -> None:
     g = Graph()
     x = inputs(g, "x")
     assert linear_combination(g, [(ONE, (-ONE, x)), (ZERO, (ONE, x))]) == (-ONE, x)
@@ -29,7 +29,7 @@ def test_signs_and_single_terms_cost_nothing() -> None:
     assert not g.packs
 
 
-def test_other_lanes_are_zero() -> None:
+def test_unused_lanes_are_zero() -> None:
     g = Graph()
     _, pack = linear_combination(g, [(g.input("c", 0), (ONE, inputs(g, "x")))], lanes=range(3))
     assert [lane != ZERO for lane in pack.lanes] == [True] * 3 + [False] * 5
@@ -63,7 +63,7 @@ def test_products_that_fold_to_an_operand_are_not_exact_lanes() -> None:
     assert pack.lanes[4] == x and pack.exact_lanes == set(range(WIDTH)) - {4}
 
 
-def test_a_copy_with_another_edge_in_one_lane() -> None:
+def test_one_lane_of_a_copied_pack_can_be_replaced() -> None:
     g = Graph()
     x, edge = inputs(g, "x"), g.input("c", 0)
     pack = x.with_lane(3, edge)

@@ -71,7 +71,7 @@ SMALL = ("double_pendulum", "heavy_top", "gyroscope", "friction_arm", "joint_zoo
 
 
 @pytest.mark.parametrize("case", sampled(CASES, SMALL))
-def test_bitwise_without_contraction(case: str) -> None:
+def test_c_equals_interpreter_bits_without_contraction(case: str) -> None:
     c, twin = built(case, flags=EXACT_FLAGS), built(case, backend="interpreter")
     results = everything(c, np.random.default_rng(1)), everything(twin, np.random.default_rng(1))
     for name, values in results[0].items():
@@ -90,7 +90,9 @@ def test_bitwise_without_contraction(case: str) -> None:
         pytest.param("flexible_arm", marks=pytest.mark.slow),
     ],
 )
-def test_bits_of_either_way_of_forward_dynamics(case: str, way: Literal["articulated", "factors"]) -> None:
+def test_both_forward_dynamics_methods_equal_interpreter_bits(
+    case: str, way: Literal["articulated", "factors"]
+) -> None:
     """One state at a time, by batches in vectors, in NumPy."""
     stated = MODELS[case] if case in MODELS else system(case)
     options = sf.Options(("forward_dynamics",), (), flags=EXACT_FLAGS, forward_dynamics=way)
@@ -105,7 +107,7 @@ def test_bits_of_either_way_of_forward_dynamics(case: str, way: Literal["articul
 
 
 @pytest.mark.parametrize("case", sampled(("tree0", "tree3", "parametrised1"), ("parametrised1",)))
-def test_within_rounding_as_shipped(case: str) -> None:
+def test_c_matches_interpreter_within_rounding_with_default_flags(case: str) -> None:
     c, twin = built(case), built(case, backend="interpreter")
     results = everything(c, np.random.default_rng(2)), everything(twin, np.random.default_rng(2))
     for name, values in results[0].items():

@@ -121,7 +121,7 @@ def test_rollouts_step_as_simulate_does(compiled: tuple[str, DeviceCode, ctypes.
             assert np.abs(ours - theirs).max() <= CLOSE[code.precision] * max(1.0, np.abs(theirs).max())
 
 
-def test_angles_beyond_the_polynomials_are_right(tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_large_angles_use_the_device_library(tmp_path_factory: pytest.TempPathFactory) -> None:
     """The polynomials hold to FAR; the library of the device takes over beyond."""
     made = compilation("double_pendulum")
     code = device_code(made.program, made.record, GENERATOR, "double")

@@ -32,7 +32,7 @@ def spent(p: Program) -> float:
     return effort(p, p.functions[0])
 
 
-def test_a_pack_counts_its_operations_not_its_lanes() -> None:
+def test_a_pack_counts_as_its_operations() -> None:
     g = Graph()
     x, y = (Pack(tuple(g.input(name, i) for i in range(WIDTH))) for name in ("x", "y"))
     _, pack = linear_combination(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])
@@ -44,7 +44,7 @@ def test_a_pack_counts_its_operations_not_its_lanes() -> None:
     ("first", "second", "name"),
     [(100, 100, "articulated"), (104, 100, "articulated"), (107, 100, "factors"), (90, 100, "articulated")],
 )
-def test_the_cheapest_and_ties(first: int, second: int, name: str) -> None:
+def test_the_cheapest_variant_wins_and_ties_keep_scalars(first: int, second: int, name: str) -> None:
     assert 1.04 < TIE < 1.07
     figures = {
         "distant_rotors": 0,
@@ -72,6 +72,6 @@ def repeated(g: Graph, times: int) -> tuple[Edge, ...]:
     return tuple(sign * lane for lane in pack.lanes)
 
 
-def test_packs_pay_where_more_is_computed_than_put_into_lanes() -> None:
+def test_packs_pay_if_more_is_computed_than_inserted() -> None:
     g = Graph()
     assert gain(g, list(repeated(g, 8))) == "packs"

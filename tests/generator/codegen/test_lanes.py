@@ -86,7 +86,7 @@ def test_every_function_agrees_in_lanes(case: str) -> None:
 
 
 @pytest.mark.parametrize("case", sampled(("planar_robot", "friction_arm", "chain7"), ("friction_arm",)))
-def test_within_rounding_as_shipped(case: str) -> None:
+def test_vectors_match_loops_within_rounding(case: str) -> None:
     loops, vectors = (unit(case, batch, DEFAULT_FLAGS, CHEAP) for batch in ("loop", "vector"))
     for key, kernel in loops.kernels.items():
         pre, inputs = kernel.prepare(np.array([parameters(case)])), given(kernel, 40)
@@ -96,14 +96,14 @@ def test_within_rounding_as_shipped(case: str) -> None:
 
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("case", sampled(("chain7", "friction_arm", "heavy_top"), ("heavy_top",)))
-def test_any_number_of_states(case: str, width: str) -> None:
+def test_any_number_of_states_is_evaluated(case: str, width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
     assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
 
 
 @pytest.mark.parametrize("width", sampled(tuple(WIDTHS), FORCED))
-def test_columns_of_any_number_of_states(width: str) -> None:
+def test_columns_hold_any_number_of_states(width: str) -> None:
     """In place, but for fewer states than lanes; entries that are always zero are cleared."""
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
@@ -145,7 +145,7 @@ def test_nothing_is_written_beyond_the_last_state() -> None:
 
 
 @pytest.mark.parametrize("case", sampled(("rx90", "friction_arm", "operations"), ("friction_arm", "operations")))
-def test_parameters_of_each_state(case: str) -> None:
+def test_each_state_may_have_its_parameters(case: str) -> None:
     """One set for each state, and one for all through the same library."""
     model, loop = (sf.compile(stated(case), sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     # Parameters that change one by one are no body's inertia.
@@ -183,7 +183,7 @@ OWN_IN_EVERY_RUN = {(): True, ("-std=gnu99", "-O2"): False, ("-std=gnu99", "-O2"
     ]
     + [pytest.param(("-std=gnu99", "-O2", "-mavx2"), LaneOptions(in_rows=True), id="rows")],
 )
-def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
+def test_vector_code_compiles_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""
     if not any(word in platform.machine() for word in ("x86", "AMD64")) and len(flags) > 1:
         pytest.skip("flags of another processor")
@@ -192,7 +192,7 @@ def test_builds_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp
     compile_strictly(tmp_path, source, COMPILERS[0], *flags)
 
 
-def test_sines_of_sines_wait() -> None:
+def test_sines_of_sines_are_evaluated_later() -> None:
     """The sine of an angle that another sine leads to is not among the first."""
     joint = sf.Joint("x", "prismatic", effort=("sin(2*x + sin(x))*sin(3*x)",))
     system = sf.System("nested", [sf.RigidBody("b", joint, sf.Inertia(1.0))])
@@ -208,7 +208,7 @@ def test_sines_of_sines_wait() -> None:
 
 
 @pytest.mark.parametrize("case", sampled(("friction_arm", "heavy_top", "planar_robot"), ("friction_arm",)))
-def test_lanes_in_rows(case: str) -> None:
+def test_lanes_stored_by_rows_give_the_bits_of_a_loop(case: str) -> None:
     """Two states where they lie, as in modules for WebAssembly: the bits of a loop, odd states at the end."""
     loops = unit(case, "loop", WIDTHS["two"], (*CHEAP, *SCALAR))
     stated = Compilation(MODELS[case], sf.Options((*CHEAP, *SCALAR)))

@@ -137,9 +137,9 @@ def test_loops_compute_the_bits_of_the_graph(
         for output in outputs
     ]
     with pytest.MonkeyPatch.context() as patch:
-        for name, least in {"FEWEST": 2, "LEAST_SPARED": 1, "SEED": 2}.items():
+        for name, least in {"FEWEST": 2, "MIN_SPARED": 1, "SEED": 2}.items():
             patch.setattr(loops, name, least)
-        patch.setattr(routes, "LEAST_REPEATED", 1)
+        patch.setattr(routes, "MIN_REPEATED", 1)
         patch.setattr(routes, "REPEATED_SHARE", 0.0)
         patch.setattr(function, "MAX_STATEMENTS", 20)
         text = FunctionWriter(program, "f", ["q"], outputs, False).text()
@@ -206,7 +206,7 @@ def test_the_text_does_not_grow_with_the_row() -> None:
     assert lines(80) == lines(40)
 
 
-def test_straight_code_stays_where_little_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_loops_are_not_formed_where_little_repeats(monkeypatch: pytest.MonkeyPatch) -> None:
     """M of a chain: rows of different lengths."""
     stated = Compilation(chain(13, symbolic=False), sf.Options(functions=("mass_matrix",)))
     text = stated.source()

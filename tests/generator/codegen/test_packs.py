@@ -135,7 +135,7 @@ def test_vectors_cross_chunks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -
     np.testing.assert_array_equal(model.mass_matrix(q), plain.mass_matrix(q))
 
 
-def test_a_lane_that_another_is_made_of_is_a_scalar() -> None:
+def test_operands_of_folded_lanes_stay_scalar() -> None:
     """Lane 1 is put in from scalars, because d (0.3 z) was folded, and lane 0's c x is a part of it: had lane 0 its
     home in the vector, the vector would wait for itself."""
     g = Graph()

@@ -66,7 +66,7 @@ def angles(kind: str) -> np.ndarray:
 
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("kind", ["of a turn", "next to multiples of pi/2", "near", "tiny", "far"])
-def test_sines_and_cosines(kind: str, width: str) -> None:
+def test_single_precision_sines_and_cosines_are_accurate(kind: str, width: str) -> None:
     """Of floats as they are; doubles are right to 29 digits more, so that they can judge."""
     if not has(width):
         pytest.skip("a processor without these vectors")
@@ -103,7 +103,7 @@ def depth(system: sf.System, function: str) -> int:
 
 @pytest.mark.parametrize("name", sampled(("chain7", "rx90", "planar_robot"), ("planar_robot",)))
 @pytest.mark.parametrize("function", ["mass_matrix", "bias", "inverse_dynamics", "kinetic_energy"])
-def test_within_the_rounding_of_its_depth(name: str, function: str) -> None:
+def test_single_precision_errors_stay_within_the_rounding_bound(name: str, function: str) -> None:
     """Each operation on the way adds eps_32 / 2 of a term; terms are at most some times the largest result."""
     m = sf.compile(MODELS[name])
     rng = np.random.default_rng(3)
@@ -133,7 +133,7 @@ def test_single_precision_error_grows_with_the_condition_of_m() -> None:
 
 
 @pytest.mark.parametrize("width", ["four", "eight", "sixteen"])
-def test_numpys_floats_in_and_out(width: str) -> None:
+def test_single_precision_takes_and_returns_float32(width: str) -> None:
     m = sf.compile(MODELS["friction_arm"], sf.Options(("mass_matrix", "dynamics"), flags=WIDTHS[width]))
     m = m.with_precision("single")
     rng = np.random.default_rng(2)

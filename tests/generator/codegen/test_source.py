@@ -61,7 +61,7 @@ def every_joint() -> sf.System:
 
 @pytest.mark.parametrize("compiler", sampled(COMPILERS, COMPILERS[:1]))
 @pytest.mark.parametrize("case", ["every joint", *sampled(("tree0", "tree5", "parametrised2"), ())])
-def test_builds_as_strict_c99(case: str, compiler: str, tmp_path: Path) -> None:
+def test_source_compiles_as_strict_c99(case: str, compiler: str, tmp_path: Path) -> None:
     compile_strictly(tmp_path, source_of(every_joint() if case == "every joint" else system(case)), compiler)
 
 
@@ -76,7 +76,7 @@ def test_derivatives_and_solvers_build_as_strict_c99(
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("nm") is None, reason="needs binutils")
-def test_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
+def test_the_library_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
     done = compile_strictly(tmp_path, source_of(MODELS["friction_arm"]), COMPILERS[0])
     symbols = subprocess.run(["nm", str(done)], capture_output=True, text=True).stdout.splitlines()
     exported = [line.split()[-1] for line in symbols if re.search(r" [A-TV-Z] ", line)]
@@ -91,7 +91,7 @@ def test_exports_one_symbol_and_keeps_no_state(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["arm", "7dof arm", "int", "größe", "a*/b", 'quote"back\\slash', "x" * 150, "?" + "?/", "main"]
 )
-def test_any_name_makes_legal_c(name: str, tmp_path: Path) -> None:
+def test_any_name_gives_a_legal_c_identifier(name: str, tmp_path: Path) -> None:
     body = sf.RigidBody(
         f"body {name}",
         sf.Joint(f"joint {name}", "revolute"),

@@ -42,7 +42,7 @@ def matrices(draw: st.DrawFn) -> np.ndarray:
 
 
 @given(matrices())
-def test_a_factor_has_no_entries_beside_its_pattern(A: np.ndarray) -> None:
+def test_a_factor_has_no_entries_outside_its_pattern(A: np.ndarray) -> None:
     n = len(A)
     pattern = Pattern.filled([[i for i in range(k + 1, n) if A[i, k]] for k in range(n)])
     C = np.linalg.cholesky(A)
@@ -83,14 +83,14 @@ def test_nonzero_rows_of_a_right_hand_side_are_predicted(A: np.ndarray, support:
 
 
 @pytest.mark.parametrize("family", [n_four_bar, n_four_bar_absolute])
-def test_the_work_grows_as_the_loops_do(family: type) -> None:
+def test_work_grows_linearly_with_the_loops(family: type) -> None:
     few, many = system_of(family(10)), system_of(family(20))
     assert many.operations < 2.1 * few.operations
     assert many.entries < 2.1 * few.entries
 
 
 @pytest.mark.parametrize("name", ["four_bar", "stewart", "andrews_squeezer", "two_arms"])
-def test_few_loops_stay_with_full_matrices(name: str) -> None:
+def test_few_loops_use_full_matrices(name: str) -> None:
     """There their loops over contiguous rows are faster."""
     stated = Compilation(MODELS[name], sf.Options(functions=FORWARD))
     assert sparse_systems(stated.program)[0] == {}

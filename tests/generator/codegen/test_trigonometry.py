@@ -31,7 +31,7 @@ def angles(n: int) -> np.ndarray:
 
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 8, 9, 20])
 @pytest.mark.parametrize("plain", [False, True])
-def test_same_bits_as_the_interpreter(n: int, plain: bool) -> None:
+def test_compiled_sines_equal_interpreter_bits(n: int, plain: bool) -> None:
     u, still = angles(n), np.zeros(n)
     compiled = model(n, (*EXACT, "-D__STRICT_ANSI__") if plain else EXACT)  # As -std=c99 defines it: no vectors.
     twin = model(n, (), backend="interpreter")

@@ -89,7 +89,7 @@ _STEPS = st.lists(
 
 
 @given(_STEPS)
-def test_values_stay_and_instructions_fall(steps: list[tuple[str, int, int, bool, bool]]) -> None:
+def test_chain_sums_keep_values_and_reduce_instructions(steps: list[tuple[str, int, int, bool, bool]]) -> None:
     g = Graph()
     edges: list[Edge] = [g.input("x", i) for i in range(SIZE)]
     for op, i, j, minus, other in steps:
@@ -103,7 +103,7 @@ def test_values_stay_and_instructions_fall(steps: list[tuple[str, int, int, bool
 
 
 @pytest.mark.parametrize("name", ["tree0", "parametrised0", "parametrised1"])
-def test_models_take_fewer_instructions(name: str) -> None:
+def test_models_need_fewer_instructions(name: str) -> None:
     staged = hoist_parameters(form_program(Equations(build_tree(system(name))), [Request("dynamics")]))
     chained = chain_sums(staged)
     check_packs(chained)
@@ -114,7 +114,7 @@ def test_models_take_fewer_instructions(name: str) -> None:
         np.testing.assert_allclose(value, expected, rtol=0, atol=1e-13 * np.max(np.abs(expected), initial=1.0))
 
 
-def test_packs_come_along() -> None:
+def test_packs_survive_chain_sums() -> None:
     """A chain, whose columns of M share vectors, loses no lane, and every pack stays valid."""
     staged = hoist_parameters(
         form_program(Equations(build_tree(chain(16))), [Request("dynamics"), Request("forward_dynamics")])

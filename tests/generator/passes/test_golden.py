@@ -64,7 +64,7 @@ def test_operations_are_counted_by_their_kinds(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", golden_cases(__file__, "chain"))
-def test_chains_of_chains_are_the_same_operations(case: Case) -> None:
+def test_chain_sums_are_idempotent(case: Case) -> None:
     once = chain_sums(parse_program(case.stated))
     assert count_program(chain_sums(once)) == count_program(once)
 

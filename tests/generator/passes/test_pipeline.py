@@ -30,7 +30,7 @@ def with_another_sign(program: Program) -> Program:
     return program
 
 
-def test_packs_outlive_all_passes() -> None:
+def test_packs_survive_all_passes() -> None:
     assert [len(pack.new_lanes) for pack in passes.run_passes(packed()).graph.packs] == [WIDTH]
 
 

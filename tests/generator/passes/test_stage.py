@@ -29,12 +29,12 @@ def test_parameter_work_moves_to_init() -> None:
         )
 
 
-def test_constants_leave_nothing_to_init() -> None:
+def test_constant_parameters_leave_no_init_work() -> None:
     staged = run_passes(form_program(Equations(build_tree(system("tree0"))), [Request("dynamics")]))
     assert staged.init == ()
 
 
-def test_an_output_that_is_a_parameter() -> None:
+def test_an_output_that_is_a_parameter_needs_no_work_per_call() -> None:
     """The mass matrix of a slider is its mass: nothing is left to compute per call."""
     slider = sf.RigidBody("b", sf.Joint("q", "prismatic"), sf.Inertia("m"))
     model = sf.compile(sf.System("s", [slider], [sf.Parameter("m", 3.0)]))

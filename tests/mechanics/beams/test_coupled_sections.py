@@ -47,7 +47,7 @@ def strains_at_the_axis(nv: int) -> np.ndarray:
     ],
     ids=["6 sections", "12 sections", "stretched and sheared"],
 )
-def test_where_the_axis_is_put_does_not_matter(more: dict[str, Any], errors: tuple[float, float]) -> None:
+def test_results_do_not_depend_on_the_reference_axis(more: dict[str, Any], errors: tuple[float, float]) -> None:
     through, beside = on_hub(False, **more), on_hub(True, **more)
     T, rng = strains_at_the_axis(through.nv), np.random.default_rng(0)
     q, v = 0.5 * rng.standard_normal(through.nv), rng.standard_normal(through.nv)
@@ -90,7 +90,7 @@ def test_a_force_through_the_shear_centre_does_not_twist() -> None:
         assert q[4] == pytest.approx(twist * L / GJ, rel=1e-5, abs=1e-6 * P)
 
 
-def test_a_rod_of_the_most_sections_is_judged() -> None:
+def test_a_rod_with_the_maximum_of_sections_is_judged() -> None:
     """Twice as many would be more than there may be: it is compared with half of them."""
     m = sf.compile(sf.System("s", (rod((2, 0, 0), sections=40),), gravity=(0, 0, 0)))
     run = sf.simulate(m, [0.3, 0.1], t_end=0.01)

@@ -50,7 +50,7 @@ def test_sums_and_products_match_those_of_values() -> None:
 
 
 @pytest.mark.parametrize("i", range(3))
-def test_derivative_by_a_coordinate(i: int) -> None:
+def test_fields_are_differentiated_by_coordinates(i: int) -> None:
     for field in (A, B, A.times(B), B.times(B)):
         step = STEP * np.eye(3)[i]
         assert at(field.by(i)) == pytest.approx(
@@ -59,7 +59,7 @@ def test_derivative_by_a_coordinate(i: int) -> None:
         assert field.by(i).power == field.power - LENGTHS[i]
 
 
-def test_derivative_and_integral_over_x() -> None:
+def test_fields_are_differentiated_and_integrated_over_x() -> None:
     x = float(XI) * L
     for field in (A, B):
         slope = (at(field, x=x + STEP) - at(field, x=x - STEP)) / (2 * STEP)
@@ -69,7 +69,7 @@ def test_derivative_and_integral_over_x() -> None:
 
 
 @pytest.mark.parametrize("degree", range(5))
-def test_a_value_is_cut_at_a_degree(degree: int) -> None:
+def test_values_are_truncated_at_a_degree(degree: int) -> None:
     field = A.times(B)
     g, found = form(field)
     kept = Field(field.power, LENGTHS, {mono: f for mono, f in field.terms.items() if len(mono) <= degree})
@@ -89,7 +89,7 @@ def test_rates_are_derivatives_along_the_motion() -> None:
     assert number(g, found.second_rate(speeds)) == pytest.approx(curvature, rel=1e-5)
 
 
-def test_sums_of_forms() -> None:
+def test_forms_are_added() -> None:
     g = Graph()
     coordinates = [g.constant(x) for x in Q]
     one, other = (field.at(g, coordinates, g.constant(L), float(XI)) for field in (A, A.times(unit_field(LENGTHS))))

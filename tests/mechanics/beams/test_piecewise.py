@@ -44,7 +44,7 @@ def test_exact_functions_stay_exact_on_knots_that_are_floats() -> None:
     assert float((fitted_one * OTHER).integral()) == pytest.approx(float((XI * OTHER).integral()), rel=1e-15)
 
 
-def test_zero_is_known_as_zero() -> None:
+def test_cancelled_sums_are_recognised_as_zero() -> None:
     assert (ONE + ONE.scaled(-1)).is_zero
     assert (ONE * polynomial(0)).is_zero
     assert polynomial(3).derivative().is_zero

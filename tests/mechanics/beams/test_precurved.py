@@ -41,7 +41,7 @@ def test_frames_lie_on_the_helix(turns: float, pitch: float) -> None:
         assert np.linalg.norm(p - helix(turns, pitch, LENGTH * i / 8)) < 1e-3 * LENGTH
 
 
-def test_a_coil_without_load_rests_where_it_is() -> None:
+def test_an_unloaded_coil_stays_at_rest() -> None:
     """Without a note."""
     model = sf.compile(coil(3.0, 0.3), sf.Options(backend="interpreter"))
     rest = sf.equilibrium(model)
@@ -50,7 +50,7 @@ def test_a_coil_without_load_rests_where_it_is() -> None:
 
 
 @pytest.mark.parametrize("more", [{}, {"sections": 5}])
-def test_rods_of_little_turn_and_stated_sections_stay_as_they_were(more: dict[str, object]) -> None:
+def test_slightly_curved_rods_keep_their_sections_and_bits(more: dict[str, object]) -> None:
     """Their programs, and so their bits, are the same."""
     for system in (coil(0.02, 0.3, **more), coil(3.0, 0.3, sections=5)):
         (beam,) = (link.tip_of for link in build_tree(system).links if link.tip_of is not None)

@@ -50,7 +50,7 @@ def test_a_rod_in_a_plane_has_the_inertia_of_one_in_space(
         assert ours == pytest.approx(theirs, abs=1e-13 * np.abs(theirs).max())
 
 
-def test_masses_go_by_points_where_pairs_of_sections_are_too_many() -> None:
+def test_mass_matrix_uses_points_if_section_pairs_are_too_many() -> None:
     """Eight splines between knots have 20 sections: by pairs 15234 operations; twelve make sums too long for packs."""
     system = sf.System("s", (rod((8, 0, 0), FREE, family="spline", rhoI_y=0.0, rhoI_z=0.0),))
     assert count_program(program_of(system, ["dynamics"]))["dynamics", ""].total <= 13554

@@ -74,7 +74,7 @@ def test_a_sampled_cubic_is_that_cubic(
 
 @pytest.mark.parametrize("name", GRIDS)
 @pytest.mark.parametrize("direction", ["bend_y", "twist"])
-def test_a_smooth_function_is_met_to_the_fourth_order_of_the_distance(direction: Direction, name: str) -> None:
+def test_sampled_functions_converge_with_the_fourth_order(direction: Direction, name: str) -> None:
     """Values as 1/N^4, curvature as 1/N^2: at the ends as elsewhere."""
 
     def errors(order: int, intervals: int) -> float:
@@ -111,6 +111,6 @@ def test_samples_of_anything_agree_with_an_independent_interpolation(
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_values_are_finite(value: float) -> None:
+def test_non_finite_samples_are_refused(value: float) -> None:
     with pytest.raises(sf.DescriptionError, match=r"at xi = 0.5|values\[2\] is not a number"):
         sf.Samples((0, 0.25, 0.5, 1), (0, 0.1, value, 1))

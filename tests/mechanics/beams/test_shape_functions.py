@@ -108,7 +108,7 @@ def test_values_match_scipy_and_textbooks(family: str, expected: tuple[object, .
 @pytest.mark.parametrize(
     ("family", "count", "error"), [("clamped_free", 3, 1e-12), ("legendre", 8, 1e-5), ("spline", 8, 2e-4)]
 )
-def test_frequencies_of_a_shaft(family: str, count: int, error: float) -> None:
+def test_shaft_frequencies_match_theory(family: str, count: int, error: float) -> None:
     found = frequencies(family, count, "twist")[:3] / ((np.arange(3) + 0.5) * np.pi) - 1.0
     assert np.all(found < error) and np.all(found > -1e-12), found
 

@@ -19,7 +19,7 @@ def assert_rate(m: sf.Model, q: np.ndarray, v: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("name", SAMPLE)
-def test_the_mass_matrix_changes_by_it_and_its_transpose(name: str, rng: np.random.Generator) -> None:
+def test_coriolis_matrix_and_transpose_sum_to_the_mass_matrix_rate(name: str, rng: np.random.Generator) -> None:
     m = model(name)
     assert_rate(m, *m.random_state(rng))
 
@@ -36,7 +36,7 @@ def test_the_coriolis_matrix_gives_the_bias_without_gravity(name: str, rng: np.r
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "chain7"])
-def test_in_coordinates_it_is_symmetric_in_both_motions(name: str, rng: np.random.Generator) -> None:
+def test_coriolis_matrix_is_symmetric_in_both_motions_for_coordinates(name: str, rng: np.random.Generator) -> None:
     """C(v) w = C(w) v for joints of one freedom: no other matrix with C v = h is so and has M' = C + C^T."""
     m = model(name)
     q, v = m.random_state(rng)

@@ -30,7 +30,7 @@ def counts(model: str, function: str) -> Operations:
         ("chain52", "bias", 5100, 4500),
     ],
 )
-def test_operations_are_not_above(model: str, function: str, mul: int, add: int) -> None:
+def test_operation_counts_do_not_exceed_the_record(model: str, function: str, mul: int, add: int) -> None:
     found = counts(model, function)
     assert found.mul <= mul and found.add <= add, found
 
@@ -42,7 +42,7 @@ def test_operations_of_h_grow_like_n_and_of_the_mass_matrix_like_its_square(func
     assert np.log2(large / small) == pytest.approx(exponent, abs=0.1)
 
 
-def test_structure_pays_by_itself() -> None:
+def test_planar_and_axis_structure_reduces_operations() -> None:
     """Planar motion, written in 3-D, costs planar code; an axis at any angle costs what one along z costs."""
     planar = counts("double_pendulum", "mass_matrix")
     assert planar.mul + planar.add <= 8, planar

@@ -71,7 +71,7 @@ def test_the_curvature_is_the_same_on_both_sides_of_the_peak(share: float, ratio
 
 
 @pytest.mark.parametrize("static", [None, 0.7])
-def test_without_a_fall_it_is_the_smoothed_sign_and_stays_at_its_maximum(static: float | None) -> None:
+def test_friction_without_a_peak_is_the_smoothed_sign(static: float | None) -> None:
     m = slider(sf.Friction(0.7, static, 0.01))
     v = np.linspace(-0.05, 0.05, 1001)
     F = forces(m, v)
@@ -80,7 +80,7 @@ def test_without_a_fall_it_is_the_smoothed_sign_and_stays_at_its_maximum(static:
     assert forces(m, np.array([1e-9]))[0] == pytest.approx(0.7 * 1e-7, rel=1e-12)
 
 
-def test_static_below_dynamic_is_friction_that_rises_with_speed() -> None:
+def test_static_below_dynamic_friction_rises_with_speed() -> None:
     F = -forces(slider(sf.Friction(1.0, 0.4, 0.01)), np.linspace(0.0, 1.0, 2001))
     assert np.all(np.diff(F) * np.sign(F[-1]) >= 0.0)
     assert F[-1] == pytest.approx(np.sign(F[-1]), rel=1e-12)

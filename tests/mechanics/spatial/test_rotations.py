@@ -71,7 +71,7 @@ def test_slight_tilts_survive_every_form(tilt: float, form: tuple[float, ...]) -
     np.testing.assert_allclose(numbers(rotation.conjugate(S), g), expected @ numbers(S, g) @ expected.T, atol=1e-13)
 
 
-def test_right_angles_are_exact_and_free() -> None:
+def test_right_angles_are_exact_and_cost_nothing() -> None:
     g = Graph()
     rotation = constant_rotation(stated_rotation(Rotation.rpy(np.pi / 2, 0.0, -np.pi), g, {}))
     v = Vec3(g, *(g.input("q", i) for i in range(3)))
@@ -107,7 +107,7 @@ def test_any_axis_becomes_a_coordinate_axis(x: list[float]) -> None:
     np.testing.assert_allclose(R[:, k] * (-1 if negative else 1), np.array(x) / np.linalg.norm(x), atol=1e-14)
 
 
-def test_snapping_touches_rounding_only() -> None:
+def test_snapping_changes_only_rounding() -> None:
     g = Graph()
     R = Mat3(g, tuple(map(g.constant, (1 - 1e-16, 6e-17, 0, 1e-10, 1, 0, 0, 0, -1 + 2e-16))))
     assert numbers(snapped(R), g).tolist() == [[1, 0, 0], [1e-10, 1, 0], [0, 0, -1]]

@@ -86,13 +86,13 @@ def test_neglected_rotary_inertia_is_warned_of(functions: int, mode: int, inerti
 
 
 @pytest.mark.parametrize("changed", [{"rhoI_z": 1e-4}, {"rhoI_y": 1.0}, {"rhoI_z": 1.0, "rotary_inertia": True}])
-def test_rotary_inertia_that_counts_or_hardly_matters_is_not_mentioned(changed: dict[str, Any]) -> None:
+def test_small_or_included_rotary_inertia_is_not_warned_of(changed: dict[str, Any]) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error", sf.InconsistentModelWarning)
         sf.compile(sf.System("s", [beam(**changed)]), sf.Options(backend="interpreter"))
 
 
-def test_a_clamped_beam_alone_is_a_mechanism() -> None:
+def test_a_single_clamped_beam_is_a_mechanism() -> None:
     model = sf.compile(sf.System("s", [beam()]), sf.Options(functions=("mass_matrix",)))
     assert model.names.q == ("b.bend_y[0]", "b.bend_y[1]") and "tip" in model.names.frames
 
@@ -104,7 +104,7 @@ def test_a_clamped_beam_alone_is_a_mechanism() -> None:
         ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["q*xi^2"]}}, "use xi alone"),
     ],
 )
-def test_sections_and_shapes_do_not_move(changed: dict[str, Any], remedy: str) -> None:
+def test_joints_on_sections_and_elastic_shapes_are_placed_on_the_root(changed: dict[str, Any], remedy: str) -> None:
     carrier = sf.RigidBody("hub", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     plain: dict[str, Any] = {"length": 2.0, "rhoA": 0.5, "EI_z": 3.0, "bend_y": 2}
     with pytest.raises(sf.DescriptionError, match="'q' may not be used here") as caught:

@@ -11,7 +11,7 @@ def body(name: str, parent: str, kind: str = "revolute", frames: tuple[str, ...]
     return sf.RigidBody(name, stated, SOLID, [sf.Frame(frame) for frame in frames])
 
 
-def test_depth_first_in_the_order_of_description() -> None:
+def test_links_are_numbered_depth_first_in_order_of_description() -> None:
     stated = sf.System("s", [body("b", "a"), body("x", "world"), body("a", "world"), body("c", "b"), body("d", "a")])
     assert [link.name for link in build_tree(stated).links] == ["x", "a", "b", "c", "d"]
 

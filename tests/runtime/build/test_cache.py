@@ -41,7 +41,7 @@ def give_away(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(os, "geteuid", lambda: 12345)
 
 
-def test_the_folder_is_this_user_s_alone_whatever_the_umask(cache: Path) -> None:
+def test_the_cache_is_private_whatever_the_umask(cache: Path) -> None:
     umask = os.umask(0)
     try:
         library = build()
@@ -51,7 +51,7 @@ def test_the_folder_is_this_user_s_alone_whatever_the_umask(cache: Path) -> None
     assert not mode(library) & 0o022
 
 
-def test_a_folder_that_others_can_write_to_is_closed(cache: Path) -> None:
+def test_a_cache_writable_by_others_is_closed(cache: Path) -> None:
     library = build()
     cache.chmod(0o777)
     assert build() == library and mode(cache) == 0o755
@@ -139,7 +139,7 @@ def test_leftovers_of_killed_compilations_are_removed_a_day_later(cache: Path, t
     assert (target / "file").exists()
 
 
-def test_the_folder_is_the_stated_one_or_the_user_s(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_the_cache_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.delenv("SYMOFROS_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert cache_folder() == tmp_path / "symofros"

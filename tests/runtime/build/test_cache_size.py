@@ -38,7 +38,7 @@ def names(folder: Path) -> set[str]:
     return {path.name[0] for path in folder.iterdir()}
 
 
-def test_the_least_recently_used_goes_first(folder: Path) -> None:
+def test_the_least_recently_used_library_is_removed_first(folder: Path) -> None:
     for letter, days in (("a", 3), ("b", 9), ("c", 1)):
         held(folder, letter, days)
     assert [entry.files[0].name[0] for entry in entries(folder)] == ["b", "a", "c"]
@@ -57,7 +57,7 @@ def test_foreign_files_and_links_are_never_removed(folder: Path, tmp_path_factor
     assert names(folder) == {"t", "d"} and elsewhere.exists()
 
 
-def test_a_model_that_is_loaded_is_the_last_to_go(folder: Path) -> None:
+def test_a_recently_loaded_model_is_removed_last(folder: Path) -> None:
     old = held(folder, "a", 9)
     held(folder, "b", 3)
     note_use(folder / f"{old}.digest")
@@ -84,7 +84,7 @@ def test_an_invalid_size_limit_is_refused(stated: str, monkeypatch: pytest.Monke
     assert CliRunner().invoke(app, ["cache"]).exit_code == 2
 
 
-def test_the_command_shows_and_removes(folder: Path) -> None:
+def test_the_cache_command_lists_and_removes(folder: Path) -> None:
     held(folder, "a", 3)
     held(folder, "b", 9)
     shown = CliRunner().invoke(app, ["cache"])

@@ -16,7 +16,7 @@ from symofros.runtime.calls import extension
 SCRIPT = Path(__file__).with_name("ending.py.in").read_text()
 
 
-def test_a_script_that_is_over_at_once_leaves_the_extension_built(tmp_path: Path) -> None:
+def test_a_short_script_leaves_the_extension_built(tmp_path: Path) -> None:
     if extension.load() is None or find_toolchain(None) is None:
         pytest.skip("needs a compiler and the headers of Python")
     environment = os.environ | {"SYMOFROS_CACHE": str(tmp_path)}

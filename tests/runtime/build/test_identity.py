@@ -17,7 +17,7 @@ def test_build_products_do_not_change_the_source_digest(tmp_path: Path) -> None:
     assert source_digest(tmp_path) == before
 
 
-def test_other_text_and_another_place_are_other_code(tmp_path: Path) -> None:
+def test_changed_text_or_place_changes_the_digest(tmp_path: Path) -> None:
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
     source = tmp_path / "one" / "code.c"

@@ -73,7 +73,7 @@ def arm(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_known_description_is_not_read_again_and_tells_the_same(compiling: Compiling, arm: Path) -> None:
+def test_a_cached_description_is_not_read_again(compiling: Compiling, arm: Path) -> None:
     first = compiling(arm)
     libraries = {path: path.stat().st_mtime_ns for path in compiling.cache.glob("*.so")}
     assert compiling(arm) == first and compiling.read == 1
@@ -194,7 +194,7 @@ def test_a_damaged_record_is_ignored(compiling: Compiling, arm: Path, content: s
 
 
 @pytest.mark.filterwarnings("ignore::symofros.errors.StoredStateWarning")
-def test_libraries_outside_of_the_folder_are_not_looked_at(compiling: Compiling, arm: Path, tmp_path: Path) -> None:
+def test_libraries_outside_the_cache_are_ignored(compiling: Compiling, arm: Path, tmp_path: Path) -> None:
     compiling(arm)
     (note,) = (path for path in compiling.cache.glob("*.known") if "sources" in path.read_text())
     stated = json.loads(note.read_text())
@@ -216,7 +216,7 @@ def test_a_description_that_went_wrong_or_away_is_refused(compiling: Compiling, 
     assert refused.exit_code == 2 and "does not exist" in refused.output
 
 
-def test_a_model_that_is_warned_of_is_warned_of_each_time(compiling: Compiling, tmp_path: Path) -> None:
+def test_warnings_are_repeated_for_cached_models(compiling: Compiling, tmp_path: Path) -> None:
     beam = sf.Beam("boom", sf.Joint("slew", "revolute"), 1.0, 1.0, EI_z=1.0, bend_y=1, foreshortening=False)
     sf.save(sf.System("crane", (beam,)), tmp_path / "crane.yaml")
     for _ in range(2):

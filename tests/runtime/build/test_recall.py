@@ -61,13 +61,13 @@ def test_a_known_model_is_not_generated_again(cache: Path, written: list[str]) -
         sf.Options(forward_dynamics="articulated"),
     ],
 )
-def test_another_request_is_another_model(cache: Path, written: list[str], options: sf.Options) -> None:
+def test_another_request_gives_another_model(cache: Path, written: list[str], options: sf.Options) -> None:
     compiled(random_tree(31))
     compiled(random_tree(31), options)
     assert len(written) == 2
 
 
-def test_another_system_or_formula_is_another(cache: Path, written: list[str]) -> None:
+def test_another_system_or_formula_gives_another_model(cache: Path, written: list[str]) -> None:
     m = compiled(random_tree(31))
     compiled(random_tree(32))
     assert len(written) == 2

@@ -109,7 +109,7 @@ def test_bound_functions_have_the_bits_of_plain_calls(
         check(bound, *(getattr(one, name)(*frames, *inputs, par=par) for one in (m, twin)))
 
 
-def test_functions_that_a_solver_finishes(rng: np.random.Generator) -> None:
+def test_bound_functions_with_solvers_match_plain_calls(rng: np.random.Generator) -> None:
     n = 5
     m = sf.compile(MODELS[CLOSED])
     bound = m.bind("project", n=n, layout="columns")
@@ -124,7 +124,7 @@ def test_functions_that_a_solver_finishes(rng: np.random.Generator) -> None:
     assert q[:, 0] + q[:, 1] == pytest.approx(np.zeros(n), abs=1e-9)
 
 
-def test_times_of_each_state(rng: np.random.Generator) -> None:
+def test_bound_functions_take_one_time_per_state(rng: np.random.Generator) -> None:
     joint = sf.Joint("j", "revolute", effort=("sin(t)",))
     driven = sf.compile(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(1.0))]))
     bound = driven.bind("generalized_force", n=9)
@@ -136,7 +136,7 @@ def test_times_of_each_state(rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("layout", ["rows", "columns"])
-def test_a_call_keeps_no_memory(layout: Any) -> None:
+def test_bound_calls_allocate_no_memory(layout: Any) -> None:
     bound = sf.compile(MODELS["double_pendulum"]).bind("dynamics", n=4096, layout=layout)
     bound()
     tracemalloc.start()

@@ -52,7 +52,7 @@ def state(m: sf.Model) -> dict[str, Any]:
     return {"q": q, "v": v, "u": None, "t": 0.0}
 
 
-def test_a_model_goes_over_to_it_by_itself(m: sf.Model, call_type: Any) -> None:
+def test_plain_calls_use_the_extension_automatically(m: sf.Model, call_type: Any) -> None:
     q = state(m)["q"]
     before = m.mass_matrix(q)
     end = time.monotonic() + 60.0
@@ -122,7 +122,7 @@ def test_unusual_calls_fall_back_to_python(forward: SingleCall, m: sf.Model, gro
     assert forward(given | {group: given[group].astype(value) if is_kind else value}) is None
 
 
-def test_numbers_may_lie_anywhere(forward: SingleCall, m: sf.Model) -> None:
+def test_inputs_may_have_any_strides(forward: SingleCall, m: sf.Model) -> None:
     given = state(m)
     expected = forward(given)
     assert expected is not None
@@ -169,7 +169,7 @@ def test_no_function_has_more_inputs_than_it_holds() -> None:
     assert most <= native_number("interop/symofros_call.c", "SYM_MOST_INPUTS")
 
 
-def test_without_the_headers_of_python_calls_are_as_they_were(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_calls_work_without_python_headers(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sysconfig, "get_paths", lambda: {"include": str(tmp_path)})
     assert extension.module.__wrapped__() is None
 

@@ -64,7 +64,7 @@ def test_every_layout_gives_the_same_bits(name: str, layout: str) -> None:
 
 @pytest.mark.parametrize("n", [2, 9, library.MANY - 1, N])
 @pytest.mark.parametrize("function", ["mass_matrix", "forward_dynamics_derivatives"])
-def test_results_follow_the_inputs(function: str, n: int) -> None:
+def test_bound_results_follow_changed_inputs(function: str, n: int) -> None:
     """By vectors, in a loop, and where a solver finishes the function."""
     q, v, u = given("friction_arm", n)
     arguments = (q,) if function == "mass_matrix" else (q, v, u)
@@ -78,7 +78,7 @@ def test_results_follow_the_inputs(function: str, n: int) -> None:
     assert is_columns(first) and first.ctypes.data % 64 == 0
 
 
-def test_batches_of_several_dimensions() -> None:
+def test_batches_may_have_several_dimensions() -> None:
     q, v, _ = given("chain7", 600)
     expected = model().bias(q, v).reshape(20, 30, 7)
     shaped = [np.asfortranarray(x).reshape(20, 30, 7) for x in (q, v)]
@@ -106,7 +106,7 @@ def test_arrays_of_supported_layouts_are_not_copied(layout: str) -> None:
     assert seen.address + 8 * (k * seen.step + i * seen.stride) == x[i : i + 1, k].ctypes.data
 
 
-def test_copies_are_made_where_they_must_be() -> None:
+def test_unsupported_layouts_are_copied() -> None:
     x = given("chain7", N)[0]
     record = np.zeros(N, dtype=np.dtype([("flag", "i1"), ("q", "f8", (7,))]))
     record["q"] = x

@@ -15,7 +15,7 @@ from symofros.runtime.calls.sharing import LEAST, share
 
 @pytest.mark.parametrize("n", [0, 1, 1023, 2048, 2049, 8000])
 @pytest.mark.parametrize("threads", [1, 2, 3, 8])
-def test_every_row_once(n: int, threads: int) -> None:
+def test_every_row_is_processed_once(n: int, threads: int) -> None:
     seen, workers = np.zeros(n, dtype=int), set()
 
     def work(first: int, end: int) -> None:
@@ -50,7 +50,7 @@ def test_threads_change_no_bit(name: str) -> None:
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*fork.*:DeprecationWarning")
-def test_after_a_fork() -> None:
+def test_threads_work_after_a_fork() -> None:
     share(8000, 2, lambda first, end: None)
     child = os.fork()
     if child == 0:

@@ -65,7 +65,7 @@ def test_each_call_gives_arrays_of_its_own(m: sf.Model, rng: np.random.Generator
     assert np.array_equal(m.mass_matrix(q0), before)
 
 
-def test_parameters_and_inputs_of_a_call_do_not_stay(m: sf.Model, rng: np.random.Generator) -> None:
+def test_parameters_and_inputs_are_not_remembered(m: sf.Model, rng: np.random.Generator) -> None:
     given = state(m, rng)
     q, v, u = given["q"], given["v"], given["u"]
     default = np.array(m.record.u_default)

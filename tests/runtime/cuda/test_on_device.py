@@ -45,7 +45,7 @@ def late_values(torch: Any, stream: Any) -> tuple[Any, np.ndarray]:
 
 
 @pytest.mark.parametrize("named", [False, True])
-def test_inputs_that_another_stream_writes_are_waited_for(gpu: CudaModel, torch: Any, named: bool) -> None:
+def test_inputs_pending_in_another_stream_are_awaited(gpu: CudaModel, torch: Any, named: bool) -> None:
     stream = torch.cuda.Stream()
     for _ in range(3):
         x, values = late_values(torch, stream)

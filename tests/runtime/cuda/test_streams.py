@@ -43,7 +43,7 @@ def said(device: Driver) -> Any:
     device._library.sym_capture(0)
 
 
-def test_producers_are_waited_for_by_dlpack_where_they_have_both(on_device: CudaModel) -> None:
+def test_producers_with_both_interfaces_are_awaited_by_dlpack(on_device: CudaModel) -> None:
     """PyTorch and JAX give an interface without a stream, and DLPack with one."""
 
     class Both(Exchanged, OnDevice):

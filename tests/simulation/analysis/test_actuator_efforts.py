@@ -138,7 +138,7 @@ def test_a_beam_bent_beyond_its_theory_is_reported() -> None:
 
 
 class TestRefused:
-    def test_a_motion_that_needs_more_actuators(self) -> None:
+    def test_a_motion_that_needs_more_actuators_is_refused(self) -> None:
         m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
         q, v = np.array([0.3, 0.4]), np.zeros(2)
         with pytest.raises(sf.ActuationError, match="1 independent efforts for 2 freedoms; .* is left at speed 'q2'"):
@@ -162,7 +162,7 @@ class TestRefused:
         with pytest.raises(sf.ActuationError, match=words):
             sf.actuator_efforts(m, posture(0.8)[0] + q, v, a, ["q1"])
 
-    def test_an_input_that_acts_by_its_square(self) -> None:
+    def test_an_input_with_quadratic_effect_is_refused(self) -> None:
         joint = sf.Joint("q1", "revolute", effort=("current^2",))
         body = sf.RigidBody("b", joint, sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
         m = sf.compile(sf.System("s", [body], inputs=[sf.Input("current")]), INTERPRETED)

@@ -16,7 +16,7 @@ def state(name: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @pytest.mark.parametrize("name", ["rx90", "space_arm"])
-def test_the_rows_of_q_along_the_flow(name: str) -> None:
+def test_derivatives_by_q_follow_the_flow(name: str) -> None:
     """How a small difference of q changes as both configurations move on with the same speeds."""
     m = model(name)
     q, v, u = state(name)
@@ -33,7 +33,7 @@ def test_the_rows_of_q_along_the_flow(name: str) -> None:
     assert np.array_equal(A[: m.nv, m.nv :], np.eye(m.nv))
 
 
-def test_batches_are_states_one_by_one() -> None:
+def test_batches_equal_single_states() -> None:
     m = model("rx90")
     many = [state("rx90", seed) for seed in range(4)]
     q, v, u = (np.array(x) for x in zip(*many, strict=True))
@@ -44,7 +44,7 @@ def test_batches_are_states_one_by_one() -> None:
 
 
 class TestEquilibrium:
-    def test_a_pendulum_hangs(self) -> None:
+    def test_a_pendulum_hangs_at_equilibrium(self) -> None:
         found = sf.equilibrium(model("flexible_pendulum"), [1.2, 0, 0, 0])
         assert found.q[0] == pytest.approx(np.pi / 2, abs=1e-10) and np.abs(found.q[1:]).max() < 1e-10
 
@@ -71,7 +71,7 @@ class TestEquilibrium:
 
 class TestModes:
     @pytest.mark.parametrize(("eta", "first"), [(0.0, 3.5160152685), (6.0, 4.2632254202)])
-    def test_a_spinning_beam(self, eta: float, first: float) -> None:
+    def test_spinning_beam_frequency_matches_the_benchmark(self, eta: float, first: float) -> None:
         """First frequency in the plane of rotation, of the rotating cantilever (benchmark A1, hub ratio 0)."""
         beam = sf.Beam(
             "b", sf.Joint("hub", "revolute", prescribed=True), 1.0, 1.0, EI_z=1.0, bend_y=6, family="legendre"
@@ -82,14 +82,14 @@ class TestModes:
         found = sf.modes(m, steady.q, u=u)
         assert found.frequencies[0] == pytest.approx(first, rel=1e-6) and abs(found.damping[0]) < 1e-9
 
-    def test_a_damped_oscillator(self) -> None:
+    def test_a_damped_oscillator_has_its_known_modes(self) -> None:
         slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(50.0), sf.Damper(2.0)))
         m = sf.compile(sf.System("s", [sf.RigidBody("b", slide, sf.Inertia(2.0))]))
         found = sf.modes(m, [0.0])
         assert found.frequencies == pytest.approx([5.0]) and found.damping == pytest.approx([0.1])
 
     @pytest.mark.parametrize(("excess", "stable"), [(-1e-3, False), (1e-3, True)])
-    def test_critical_spin_of_a_rolling_disc(self, excess: float, stable: bool) -> None:
+    def test_critical_spin_of_a_rolling_disc_matches_theory(self, excess: float, stable: bool) -> None:
         """A thin disc stays upright above w^2 = I_d m g r / (I_a (I_a + m r^2)) (Appell; Neimark & Fufaev)."""
         critical = np.sqrt(0.25 * 9.81 / (0.5 * 1.5))
         turn, names = sf.Rotation.rpy("lean", 0, "yaw"), ("x", "y", "z", "yaw", "lean")

@@ -47,7 +47,7 @@ def test_a_freely_falling_body_has_no_equilibrium() -> None:
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "flexible_pendulum", "heavy_top"])
-def test_a_rest_is_found_from_itself(name: str) -> None:
+def test_an_equilibrium_is_found_from_itself(name: str) -> None:
     """Where all forces vanish, rounding is no imbalance."""
     found = model(name)
     rest = sf.equilibrium(found)

@@ -37,7 +37,7 @@ def floating(noise: np.ndarray, links: int, stiffness: float, damping: float = 0
     stiffness=st.sampled_from([1e-3, 1.0, 1e9]),
     damping=st.sampled_from([0.0, 1e-3]),
 )
-def test_a_floating_tree_has_six_whatever_the_noise(
+def test_a_floating_tree_has_six_rigid_motions(
     seed: int, links: int, size: float, stiffness: float, damping: float
 ) -> None:
     """Base anywhere and turned; by the way of many speeds and by derivatives in motion."""
@@ -65,7 +65,7 @@ def test_a_soft_mode_is_not_a_rigid_motion(ratio: float) -> None:
     assert found.frequencies[0] == pytest.approx(ratio / np.sqrt(2 * 1.3), rel=1e-3)
 
 
-def test_absolute_coordinates_make_one_of_small_differences() -> None:
+def test_absolute_coordinates_have_one_rigid_motion() -> None:
     """Two bodies joined by a spring, each with a joint to the world: K = k [1, -1; -1, 1], whose zero is rounding."""
     bodies = [
         sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "prismatic", position=(0, float(i), 0)), SOLID, [sf.Frame(f"f{i}")])
@@ -84,7 +84,7 @@ def test_a_damped_free_motion_has_one_zero_and_one_rate() -> None:
     np.testing.assert_allclose(found.eigenvalues, [0.0, -0.2], rtol=1e-12)
 
 
-def test_a_loop_that_turns_freely_has_one() -> None:
+def test_a_freely_turning_loop_has_one_rigid_motion() -> None:
     """A four-bar without weight: one motion, on constraints that repeat each other out of the plane."""
     without = interpreted(replace(MODELS["four_bar"], gravity=(0, 0, 0)))
     q = without.neutral()

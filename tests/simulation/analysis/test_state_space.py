@@ -51,7 +51,7 @@ def state(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize("name", sampled(CASES, [name for name in CASES if name != "rx90"]))
-def test_outputs_against_differences(name: str) -> None:
+def test_output_matrices_match_differences(name: str) -> None:
     m = model(name)
     q, v, u = state(name)
     frame = m.names.frames[-1]
@@ -100,7 +100,7 @@ def test_states_are_reduced_to_admissible_motions(name: str, freedoms: int) -> N
     assert found.basis @ found.A == pytest.approx(A @ found.basis, abs=1e-8)
 
 
-def test_an_accelerometer_on_an_oscillator() -> None:
+def test_an_accelerometer_on_an_oscillator_matches_theory() -> None:
     """On a mass of 2 kg, spring 50 N/m, damper 2 N s/m it reads x'' = -25 x - x' + u/2."""
     joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True, elements=(sf.Spring(50.0), sf.Damper(2.0)))
     m = sf.compile(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(2.0))]))
@@ -109,7 +109,7 @@ def test_an_accelerometer_on_an_oscillator() -> None:
     assert not found.C[1:].any() and not found.D[1:].any()
 
 
-def test_unknown_outputs() -> None:
+def test_unknown_outputs_are_refused() -> None:
     m = model("double_pendulum")
     with pytest.raises(sf.UnknownNameError, match="did you mean 'frame_pose'"):
         m.linearize([0, 0], [0, 0], np.zeros(m.nu), outputs=[("frame_pos", "tip")])

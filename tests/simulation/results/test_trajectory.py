@@ -20,7 +20,7 @@ def run() -> sf.Trajectory:
     return sf.simulate(model, [0.3, 0.1], [0.0, 0.5], 0.1, dt=0.01)
 
 
-def test_columns_by_name(run: sf.Trajectory) -> None:
+def test_columns_are_selected_by_name(run: sf.Trajectory) -> None:
     first = run.model.names.q[0]
     np.testing.assert_array_equal(run[first], run.q[:, 0])
     np.testing.assert_array_equal(run[f"d{first}"], run.v[:, 0])

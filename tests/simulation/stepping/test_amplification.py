@@ -39,7 +39,7 @@ def test_the_factor_matches_that_of_steps(name: str, z: complex) -> None:
     assert np.abs(residual).max() < 1e-8 * max(1.0, np.abs(x).max())
 
 
-def test_limits_of_stability() -> None:
+def test_limits_of_stability_match_the_literature() -> None:
     """Hairer and Wanner II, IV.2: of Runge-Kutta methods; of semi-implicit Euler h omega = 2."""
     limits = {name: (METHODS[name].real_limit, METHODS[name].imaginary_limit) for name in JUDGED}
     assert limits["euler"] == pytest.approx((2.0, 0.0), abs=1e-8)

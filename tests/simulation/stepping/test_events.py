@@ -94,7 +94,7 @@ def test_a_rotor_meets_each_zero_of_a_periodic_formula(rotor: sf.Model, method: 
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_two_zeros_near_each_other(rotor: sf.Model, method: str) -> None:
+def test_two_nearby_zeros_are_both_found(rotor: sf.Model, method: str) -> None:
     """Down to a hundred thousandth of a step: a parabola, and a formula with a kink between them."""
     rng = np.random.default_rng(3)
     for formula in ("(a - level)*(a - other)", "abs(a - (level + other)/2) - (other - level)/2"):
@@ -108,7 +108,7 @@ def test_two_zeros_near_each_other(rotor: sf.Model, method: str) -> None:
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-def test_a_pendulum_that_turns_back_beyond_a_level(pendulum: sf.Model, method: str) -> None:
+def test_a_pendulum_passing_a_level_twice_gives_two_events(pendulum: sf.Model, method: str) -> None:
     top = float(2 * np.arcsin(1.5 / np.sqrt(G * 0.5 / 0.33)))  # where a start at 3 rad/s turns back
     for share in (0.9, 0.9999):
         options: dict[str, Any] = {
@@ -125,7 +125,7 @@ def test_a_pendulum_that_turns_back_beyond_a_level(pendulum: sf.Model, method: s
 
 @pytest.mark.parametrize("method", FIXED)
 @pytest.mark.parametrize("dt", [0.25, 0.1])
-def test_zeros_at_the_ends_of_steps(rotor: sf.Model, method: str, dt: float) -> None:
+def test_zeros_at_the_ends_of_steps_are_counted_once(rotor: sf.Model, method: str, dt: float) -> None:
     """One event exactly at an end of a step, and both zeros of one at the two ends, each met once."""
     events: dict[str, sf.Event | str] = {
         "rising": sf.Event("t - 0.5", "rising"),
@@ -179,7 +179,7 @@ def test_events_come_in_order_and_the_first_terminal_one_ends(rotor: sf.Model, m
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5", *SUNDIALS])
-def test_more_events_in_a_step_than_are_kept_at_once(rotor: sf.Model, method: str) -> None:
+def test_more_events_than_the_buffer_holds_are_kept(rotor: sf.Model, method: str) -> None:
     levels = [0.05 * k for k in range(15)]
     events = {f"e{k}": f"sin(20*a) - {level!r}" for k, level in enumerate(levels)}
     run = sf.simulate(rotor, [0.1], [1.0], 1.0, method=method, dt=0.5, events=events, output=0.25)

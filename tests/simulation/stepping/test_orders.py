@@ -71,7 +71,7 @@ def test_methods_converge_with_their_order(name: str, method: str) -> None:
     assert -np.polyfit(np.log(steps), np.log(errors), 1)[0] == pytest.approx(nominal, abs=0.1)
 
 
-def test_order_of_dop853() -> None:
+def test_dop853_has_its_order() -> None:
     """Double precision leaves a factor of 1.6 in the step between its first asymptotic errors and rounding."""
     steps = np.array([85, 106, 132])
     errors = [error("joint_zoo", "dop853", 2.0, n) for n in steps]

@@ -34,7 +34,7 @@ def test_errors_follow_the_tolerance(name: str, method: str) -> None:
         assert np.abs(model.difference(exact.q[-1], run.q[-1])).max() < 3e3 * tolerance
 
 
-def test_output_events_and_laws() -> None:
+def test_output_events_and_laws_work_with_sundials() -> None:
     model, law = compiled("pendulum"), {"q": "0.1*sin(t)"}
     events = {"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)}
     tight = {"method": "cvode_adams", "rtol": 1e-9, "atol": 1e-10, "output": 0.1}
@@ -47,7 +47,7 @@ def test_output_events_and_laws() -> None:
     np.testing.assert_allclose(run.u[:, 0], 0.1 * np.sin(run.t), atol=1e-15)
 
 
-def test_constraints_by_gains_only() -> None:
+def test_gains_keep_constraints_with_sundials() -> None:
     model = compiled("slider_crank")
     closed = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
     with pytest.raises(sf.SymofrosError, match="stabilisation='baumgarte'"):

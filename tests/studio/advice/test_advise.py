@@ -111,7 +111,7 @@ def test_a_beam_that_may_be_rigid_is_recommended_as_rigid() -> None:
 
 
 @pytest.mark.slow  # In every run: foreshortening, beams and joints that may be rigid.
-def test_second_order_and_rotary_inertia_go_where_they_do_not_matter() -> None:
+def test_second_order_and_rotary_inertia_are_removed_where_negligible() -> None:
     system, scene = crane(retain="all", rotary_inertia=True, bend_z=0, twist=0)
     # Beyond rigid's error, so that the boom bends and the smaller terms are judged by themselves.
     advice = sf.advise(system, scene, 4e-5)
@@ -143,7 +143,7 @@ def test_joints_that_a_controller_reads_are_not_removed() -> None:
         ({"inputs": {"swing": "1e9*exp(swing^2*1e6)"}}, "can't be computed to its tolerance"),
     ],
 )
-def test_scenes_that_do_not_fit(changed: dict[str, object], words: str) -> None:
+def test_scenes_that_do_not_fit_are_refused(changed: dict[str, object], words: str) -> None:
     system, scene = crane()
     with pytest.raises(sf.SymofrosError) as raised:
         sf.advise(system, replace(scene, **changed))  # type: ignore[arg-type]
@@ -223,7 +223,7 @@ def test_two_segments_are_between_one_beam_and_the_rod(absolute: float, names: l
     assert np.linalg.norm(found - right, axis=1).max() <= advice.bounds["end"]
 
 
-def test_segments_that_take_the_place_of_a_rod() -> None:
+def test_segments_can_replace_a_rod() -> None:
     """Of second order, of the rod itself with fewer functions each; of the rod alone where second order lacks terms."""
     system, _ = bowed(1e-3)
     rod = replace(system.body("rod"), bend_y=4, bend_z=3)

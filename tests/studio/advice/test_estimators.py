@@ -42,7 +42,9 @@ def test_residual_vibration_estimates_match_simulation() -> None:
 
 
 @pytest.mark.parametrize(("tolerance", "eta", "eta_hub", "gamma", "load"), THRESHOLDS)
-def test_when_foreshortening_counts(tolerance: float, eta: float, eta_hub: float, gamma: float, load: float) -> None:
+def test_stiffening_decides_whether_foreshortening_counts(
+    tolerance: float, eta: float, eta_hub: float, gamma: float, load: float
+) -> None:
     found = (
         estimators.stiffening(eta),
         estimators.stiffening(eta_hub, eta_hub**2),
@@ -84,14 +86,14 @@ def test_functions_converge_to_the_static_shape(load: estimators.Load) -> None:
     assert errors[5].max() < {"uniform": 1e-4, "rising": 1e-5, "force": 2e-3, "moment": 0.07}[load]
 
 
-def test_period_of_a_load() -> None:
+def test_the_period_of_a_load_is_estimated() -> None:
     t = np.linspace(0.0, 2.5, 4001)
     load = 3.0 * (1 - np.cos(2 * np.pi * t / 2.5))
     assert estimators.characteristic_period(load, float(t[1])) == pytest.approx(2.5, rel=1e-3)
     assert math.isinf(estimators.characteristic_period(np.full(50, 9.81), 0.1))
 
 
-def test_a_light_and_a_heavy_tip() -> None:
+def test_frequencies_with_light_and_heavy_tips_match_limits() -> None:
     """Dunkerley's bound meets both limits, and Rayleigh's 33/140 of the beam's mass between them within two percent."""
     assert estimators.first_frequency(1.0, 1.0, 1.0, 0.0) == pytest.approx(3.51601526850015)
     for mass in (0.5, 5.0):

@@ -34,7 +34,7 @@ def test_a_scene_file_is_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.stem)
-def test_the_reference_scenes_belong_to_models(path: Path) -> None:
+def test_every_reference_scene_fits_its_model(path: Path) -> None:
     scene = sf.load_scene(path)
     assert path.stem in MODELS and scene.outputs
 
@@ -67,7 +67,7 @@ def test_invalid_scene_files_are_refused(tmp_path: Path, text: str, words: str) 
     assert words in str(raised.value)
 
 
-def test_a_file_that_is_too_large(tmp_path: Path) -> None:
+def test_a_file_that_is_too_large_is_refused(tmp_path: Path) -> None:
     with pytest.raises(sf.DescriptionError, match="too large"):
         read(tmp_path, "#" * (1 << 20) + GOOD)
 

@@ -51,7 +51,7 @@ def result(name: str) -> ModelResult:
 
 
 @pytest.mark.parametrize("name", sampled(REPRESENTED, SMALL))
-def test_pinocchios_constrained_dynamics(name: str) -> None:
+def test_constrained_dynamics_match_pinocchio(name: str) -> None:
     rows: dict[str, Comparison] = {row.quantity: row for row in result(name).comparisons}
     assert set(rows) == {*LOOPS, "forward_dynamics", "multipliers"}
     assert (rows["multipliers"].status == "unsupported") == (name in REDUNDANT)
@@ -138,7 +138,7 @@ def test_models_that_exudyn_cannot_represent_are_named(subject: Subject, reason:
 
 
 @pytest.mark.slow
-def test_no_posture_to_compare_at() -> None:
+def test_a_loop_that_cannot_close_is_not_compared() -> None:
     """The frames are a metre apart at the nearest."""
     far = sf.Closure("k", ("world", None), ("b", "e"))
     system = two_balls(far).system
@@ -156,7 +156,7 @@ def test_no_posture_to_compare_at() -> None:
     sampled(((), ("x", "y"), ("y", "z"), ("x", "z"), ("x", "y", "z")), [("x", "y")]),
 )
 @pytest.mark.parametrize("settings", [PINOCCHIO, EXUDYN], ids=["pinocchio", "exudyn"])
-def test_every_kind_of_closure(rotations: tuple[Any, ...], settings: Settings) -> None:
+def test_every_kind_of_closure_agrees(rotations: tuple[Any, ...], settings: Settings) -> None:
     """Between floating bodies with turned frames: no symmetry hides a sign or an axis."""
     turned = (sf.Frame("e", (0.4, 0.1, -0.2), sf.Rotation.rpy(0.3, -0.5, 0.7)),)
     bodies = [

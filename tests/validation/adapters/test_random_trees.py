@@ -97,7 +97,9 @@ def test_random_trees_agree(engine: object, system: sf.System) -> None:
 @pytest.mark.parametrize("way", ["articulated", "factors"])
 @settings(max_examples=25, suppress_health_check=list(HealthCheck), derandomize=True)
 @given(system=trees())
-def test_either_way_of_forward_dynamics(way: Literal["articulated", "factors"], system: sf.System) -> None:
+def test_both_forward_dynamics_methods_match_pinocchio(
+    way: Literal["articulated", "factors"], system: sf.System
+) -> None:
     """Pinocchio's own articulated bodies."""
     subject = Subject("tree", system)
     theirs = pinocchio.build(subject)

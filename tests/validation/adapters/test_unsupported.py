@@ -77,7 +77,7 @@ class TestUrdf:
         return Subject("robot", system, urdf=UrdfSource(text.encode(), sf.load(path, snap_tol=0.0)))
 
     @pytest.mark.parametrize("route", [pinocchio_urdf, mujoco_urdf])
-    def test_not_from_a_file(self, route: object) -> None:
+    def test_models_not_read_from_a_file_are_unsupported(self, route: object) -> None:
         assert isinstance(route.build(subject_of(pendulum())), Unsupported)  # type: ignore[attr-defined]
 
     @pytest.mark.parametrize("route", [pinocchio_urdf, mujoco_urdf])
@@ -98,7 +98,7 @@ class TestUrdf:
         assert [path.name for path in tmp_path.iterdir()] == ["robot.urdf"]
         assert "limit" not in capfd.readouterr().err
 
-    def test_inertia_without_mass(self, tmp_path: object) -> None:
+    def test_inertia_without_mass_is_unsupported(self, tmp_path: object) -> None:
         """MuJoCo drops it when it fuses bodies; its answer would be another mechanism's."""
         foot = '<link name="foot"><inertial><mass value="0"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
         foot += '</inertial></link><joint name="f" type="fixed"><parent link="slider"/><child link="foot"/></joint>'

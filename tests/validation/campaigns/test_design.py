@@ -8,7 +8,7 @@ from validation.campaigns.design import Design, Range, points_of
 OVER = {"a": Range(low=1.0, high=2.0), "b": Range(low=1e-3, high=10.0, log=True)}
 
 
-def test_a_grid_takes_every_value_with_every_other() -> None:
+def test_a_grid_combines_all_values() -> None:
     over = {"a": Range(low=0.0, high=1.0, count=3), "b": Range(low=1.0, high=100.0, count=3, log=True)}
     points = points_of(over, "grid", None, 0)
     assert points[:, 0].tolist() == [0.0] * 3 + [0.5] * 3 + [1.0] * 3

@@ -9,7 +9,7 @@ from validation.contract.quantities import QUANTITIES, SMALL
 ONES = Scales(inertia=1.0, energy=1.0)
 
 
-def test_relative_to_the_largest_entry_of_the_reference() -> None:
+def test_errors_are_relative_to_the_largest_reference_entry() -> None:
     reference = np.array([[[4.0, 1.0], [1.0, 2.0]]])
     value = reference.copy()
     value[0, 1, 1] += 0.1
@@ -68,7 +68,7 @@ def test_nan_disagrees(side: str) -> None:
     assert row.status == "disagree" and row.error is None and row.worst_state == 1 and not row.ok
 
 
-def test_verdict_at_the_tolerance() -> None:
+def test_the_verdict_changes_at_the_tolerance() -> None:
     quantity = QUANTITIES["bias"]
     errors = np.array([0.0, quantity.tolerance])
     assert judge("m", "e", quantity, errors).ok

@@ -32,7 +32,7 @@ def test_steps_are_of_fourth_order_on_rotations_too(model: sf.Model) -> None:
         assert 3.7 < np.log2(coarse / fine) < 4.6
 
 
-def test_energy_and_work_balance(model: sf.Model) -> None:
+def test_energy_and_work_balance_in_a_motion(model: sf.Model) -> None:
     states = states_of(SUBJECT, 12)
     row = judge_drift("m", fall(model, states.q[-2:], states.v[-2:]))
     assert row.ok and row.error is not None and row.error < 1e-9
@@ -70,7 +70,7 @@ def with_drift(coarse: float, fine: float) -> FreeMotion:
         (float("nan"), 1.0, "failed"),
     ],
 )
-def test_verdict_on_drift(coarse: float, fine: float, status: str) -> None:
+def test_drift_decides_the_verdict(coarse: float, fine: float, status: str) -> None:
     assert judge_drift("m", with_drift(coarse, fine)).status == status
 
 

@@ -61,7 +61,9 @@ def ways(monkeypatch: pytest.MonkeyPatch) -> dict[str, str]:
     monkeypatch.setattr(everything, "NEEDS", {})
     known = present(TOPICS["fuzz"])  # Which reads every source: no code changes meanwhile.
     monkeypatch.setattr(everything, "present", lambda topic: known)
-    monkeypatch.setattr(everything, "_LOOK", 0.01)  # Children end at once: nobody waits for another look at them.
+    monkeypatch.setattr(
+        everything, "_POLL_SECONDS", 0.01
+    )  # Children end at once: nobody waits for another look at them.
     return ends
 
 
@@ -110,7 +112,7 @@ from validation.__main__ import app
 from validation.dashboard import everything
 everything.Job.command = faked({"mutation": "endless"} if sys.argv[1] == "endless" else {})
 everything.TOPICS = {name: everything.TOPICS[name] for name in NAMES}
-everything.NEEDS, everything._LOOK = {}, 0.01
+everything.NEEDS, everything._POLL_SECONDS = {}, 0.01
 everything.present = lambda topic: "of this code"
 everything.Job._written = lambda job, topic: (job.output / f"{topic.name}.json").exists()
 app(["all", *sys.argv[2:]])

@@ -7,13 +7,13 @@ from validation.mechanics.assembly import assemble
 ASSEMBLY = assemble(every_kind().system)
 
 
-def test_same_seed_same_states() -> None:
+def test_the_same_seed_gives_the_same_states() -> None:
     a, b, c = sample(ASSEMBLY, 2, 20, 1), sample(ASSEMBLY, 2, 20, 1), sample(ASSEMBLY, 2, 20, 2)
     assert np.array_equal(a.q, b.q) and np.array_equal(a.u, b.u)
     assert not np.allclose(a.q[10:], c.q[10:])
 
 
-def test_on_the_manifold() -> None:
+def test_states_lie_on_the_manifold() -> None:
     states = sample(ASSEMBLY, 3, 200)
     assert states.q.shape == (200, ASSEMBLY.nq) and states.v.shape == (200, ASSEMBLY.nv) and states.u.shape == (200, 3)
     for mover in ASSEMBLY.movers:

@@ -9,7 +9,7 @@ def joint(name: str, kind: str, parent: str, **more: object) -> sf.Joint:
     return sf.Joint(name, kind, parent, **more)
 
 
-def test_depth_first_in_the_order_of_description() -> None:
+def test_joints_are_ordered_depth_first_by_description() -> None:
     system = sf.System(
         "t",
         [
@@ -71,7 +71,7 @@ def test_bodies_fixed_to_the_base_have_no_inertia() -> None:
     assert np.allclose(assembly.movers[0].X_AP.p, [0, 0, 2])
 
 
-def test_inertia_about_the_body_origin_and_turned_axes() -> None:
+def test_inertia_about_the_body_origin_and_turned_axes_is_converted() -> None:
     about_body = sf.Inertia(2.0, (1, 0, 0), (1, 3, 4), about="body")
     turned = sf.Inertia(2.0, (1, 0, 0), (1, 1, 2), rotation=sf.Rotation.rpy(0, 0, np.pi / 2))
     for inertia, moments in ((about_body, (1, 1, 2)), (turned, (1, 1, 2))):
@@ -79,7 +79,7 @@ def test_inertia_about_the_body_origin_and_turned_axes() -> None:
         assert np.allclose(assemble(sf.System("t", [body])).movers[0].merged().J_BC, np.diag(moments))
 
 
-def test_names_of_frames() -> None:
+def test_frames_get_unique_names() -> None:
     frames = [sf.Frame("tip"), sf.Frame("left")]
     system = sf.System(
         "t",

@@ -54,7 +54,7 @@ def test_roll_pitch_yaw_turns_about_fixed_axes() -> None:
     ("kind", "values"),
     [("quaternion", [0, 0, 2, 2]), ("axis_angle", [0, 0, 5, math.pi / 2]), ("matrix", [0, -1, 0, 1, 0, 0, 0, 0, 1])],
 )
-def test_kinds_of_rotation(kind: str, values: list[float]) -> None:
+def test_every_kind_of_rotation_gives_its_matrix(kind: str, values: list[float]) -> None:
     assert np.allclose(rotation_matrix(kind, np.array(values, dtype=float)), about_axis(np.eye(3)[2], math.pi / 2))
 
 

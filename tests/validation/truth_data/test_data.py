@@ -112,7 +112,7 @@ def read_by_python() -> list[list[str]]:
     return lines(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
-def test_the_python_reader_needs_no_package_of_ours(read_by_python: list[list[str]]) -> None:
+def test_the_python_reader_needs_no_package(read_by_python: list[list[str]]) -> None:
     model, state, function, shape, *values = read_by_python[0]
     expected = stored(f"values/{model}.json")["states"][int(state)]["values"][function]
     assert shape == "x".join(map(str, expected["shape"])) and [*map(float, values)] == [*map(float, expected["digits"])]

@@ -97,7 +97,7 @@ def study(quick: bool) -> Study:
         turned[retain] = np.array([t[0] / w[0] for (_, t), (_, w) in zip(tips, rod, strict=True)])
     whole, small, moderate = errors["all"], deflection <= SMALL, deflection <= MODERATE
     low = deflection <= 0.05
-    lost = first_without_rest(m["all"], float(at[0]))
+    lost = first_load_without_equilibrium(m["all"], float(at[0]))
     at_loss = float(np.linalg.norm(rod_tips(lost, at)[0][0, 1:]) / Strip().length)
     findings = _findings(deflection, whole, turned, at_loss)
     answer = (
@@ -170,7 +170,7 @@ def _findings(deflection: Array, whole: Array, turned: Mapping[str, Array], lost
     )
 
 
-def first_without_rest(m: sf.Model, angle: float) -> float:
+def first_load_without_equilibrium(m: sf.Model, angle: float) -> float:
     """The load from which our strip has no equilibrium, to half a newton [N]."""
     for load in np.arange(9.0, 20.0, 0.5).tolist():
         if np.isnan(beam_tips(m, load, np.array([angle]))[1][0]):

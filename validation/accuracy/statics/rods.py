@@ -133,7 +133,7 @@ def strip(functions: int, degrees: float, load: float = HEAVY) -> float:
     return float(np.linalg.norm(spatial(beam.length, functions, stiffness, loads) - known)) / beam.length
 
 
-def parallel_known() -> Array:
+def parallel_reference() -> Array:
     """Joined tips (2) of two upright rods, by shooting for their curvatures at the root and the force between tips."""
 
     def ends(curvature: float, force: Array) -> Array:
@@ -179,7 +179,7 @@ def parallel(functions: int) -> float:
         columns = [residual(x + step) - residual(x - step) for step in 1e-6 * np.eye(n + nc)]
         x = x - np.linalg.solve(np.array(columns).T / 2e-6, residual(x))
     p, _ = m.frame_pose("left.tip", x[:n])
-    return float(np.linalg.norm(p[:2] - parallel_known()))
+    return float(np.linalg.norm(p[:2] - parallel_reference()))
 
 
 def study(quick: bool) -> Study:

@@ -13,7 +13,7 @@ import symofros as sf
 
 from ...mechanics.geometry import Array
 from ..attack import Attack, Mechanism, Scene, Verdict, refused
-from ..motion import of_claim
+from ..motion import claim_verdict
 
 # Twists of the links; lengths are their sines, which makes the linkage move.
 ALPHA, BETA = 0.6, 1.1
@@ -98,7 +98,7 @@ def judge(scene: Scene) -> Verdict:
     twice_T = float(v @ model.mass_matrix(q) @ v)
     exact = solve_ivp(rate, (0.0, scene["span"]), [scene["angle"]], rtol=1e-11, atol=1e-12).y[0, -1]
     error = abs(float(run.q[-1, 0]) - float(exact)) / (scene["speed"] * scene["span"])
-    return of_claim(run.outcome, "error of the first angle", error, STRAYED)
+    return claim_verdict(run.outcome, "error of the first angle", error, STRAYED)
 
 
 ATTACK = Attack(

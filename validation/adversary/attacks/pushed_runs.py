@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import symofros as sf
 
 from ..attack import Attack, Mechanism, Scene, Verdict, decades, inertia
-from ..motion import UNNOTED, of_claim
+from ..motion import UNNOTED, claim_verdict
 
 # Error of an adaptive run at its defaults, relative to the largest speed; fixed steps may err by UNNOTED.
 ADAPTIVE = 1e-2
@@ -122,7 +122,7 @@ def judge(scene: Scene) -> Verdict:
         reached = first * _SPAN + _SPAN - begin - 0.5 * length
         share = max(share, abs(place - reached) / max(1.0, abs(reached)))
     bound = ADAPTIVE if scene["method"] in _ADAPTIVE else UNNOTED
-    return of_claim(outcome, "error of the last state", share, bound)
+    return claim_verdict(outcome, "error of the last state", share, bound)
 
 
 ATTACK = Attack(

@@ -49,7 +49,7 @@ def _body(body: sf.Body, count: int, changed: dict[str, Any]) -> sf.Body:
     return replace(body, joint=replace(body.joint, elements=(sf.Spring(stiffness, rest), sf.Damper(damping))))
 
 
-def of_rods(count: int, stretch: int = 0) -> sf.System:
+def rod_robot(count: int, stretch: int = 0) -> sf.System:
     """The robot with geometrically exact rods for strips, of so many functions of curvature and of stretch."""
     rods = [
         replace(body, stretch=stretch, EA=EA[body.name]) if stretch and isinstance(body, sf.Beam) else body
@@ -112,7 +112,7 @@ def prepare(quick: bool) -> Prepared:
     first_order = (
         judged_model("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
     )
-    rod = far(path(sf.compile(of_rods(6, 2)), method="rodas4", rtol=1e-9, atol=1e-11))
+    rod = far(path(sf.compile(rod_robot(6, 2)), method="rodas4", rtol=1e-9, atol=1e-11))
     all_terms = far(path(sf.compile(system(4, retain="all")), method="rodas4", rtol=1e-8, atol=1e-10))
     contestants = [*_splines(quick), *([] if quick else _richer()), *_by_exudyn(quick)]
     origin = (
@@ -153,7 +153,7 @@ def _richer() -> list[Contestant]:
         contestants += one.by("rodas4", RTOLS[:4]) + one.by("generalized_alpha", (0.02, 0.01, 5e-3))
     for count, stretch in ((2, 0), (3, 0), (4, 0), (4, 1), (5, 2)):
         label = f"rods of {count}{f' + {stretch}' * (stretch > 0)} strains"
-        one = judged_model(label, sf.compile(of_rods(count, stretch)))
+        one = judged_model(label, sf.compile(rod_robot(count, stretch)))
         contestants += one.by("rodas4", RTOLS) + one.by("generalized_alpha", (0.02, 0.01, 5e-3, 2e-3, 1e-3))
         contestants += [] if stretch else one.by("dop853", RTOLS[1:4]) + one.by("dopri5", RTOLS[1:4])
     return contestants + judged_model("rigid strips", sf.compile(system(0))).by("rk4", (0.02, 0.01))

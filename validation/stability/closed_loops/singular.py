@@ -136,7 +136,7 @@ def judge(maps: Maps) -> Verdict:
     always, sometimes, never = rows(maps)
     near, noted = unlucky(), share_of_notes(maps)
     errors = np.concatenate([runs.at(y=WAYS.labels.index("projection")) for runs in maps.values()])
-    findings = (*_of_ways(maps, always, errors, near), *_of_known(noted))
+    findings = (*_method_findings(maps, always, errors, near), *_motion_findings(noted))
     wrong = sum(runs.wrong for runs in maps.values())
     stopped = sum(runs.stopped for runs in maps.values())
     defaults = maps["N = 2"].at(y=WAYS.labels.index("MuJoCo, its defaults"))
@@ -160,7 +160,9 @@ def judge(maps: Maps) -> Verdict:
     return Verdict(statement, see, findings)
 
 
-def _of_ways(maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str, float]) -> tuple[Finding, ...]:
+def _method_findings(
+    maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str, float]
+) -> tuple[Finding, ...]:
     """Findings on each method of keeping constraints.
 
     Args:
@@ -206,7 +208,7 @@ def _of_ways(maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str
     )
 
 
-def _of_known(noted: float) -> tuple[Finding, ...]:
+def _motion_findings(noted: float) -> tuple[Finding, ...]:
     """Findings on the known motion, and on notes of runs; `noted` is the share of our runs with one."""
     known = data("four_bars")
     exact = max(

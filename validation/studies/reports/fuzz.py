@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from ...reporting.numbers import counted
 from ...reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
-from ..fuzz import COMPILED, MOST_MEMORY, SLOWEST, measure
+from ..fuzz import COMPILED, MAX_MEMORY, SLOWEST, measure
 
 _FAULTS_SHOWN = 20
 _TEXT = f"""An input is one of the package's own descriptions with one to four random changes: of bytes, words, numbers,
 pieces, lines, or a hostile snippet (code, bombs, document types, endless numbers) put in. A fault is any exception but
-the refusal, a warning, an input that takes longer than {SLOWEST:g} s or {MOST_MEMORY} MiB, or an accepted one that is
+the refusal, a warning, an input that takes longer than {SLOWEST:g} s or {MAX_MEMORY} MiB, or an accepted one that is
 another after it was written and read again. Of the accepted files, one in {COMPILED} is also compiled, to the
 interpreter, and its mass matrix evaluated. Meshes, recorded motions, samples of blocks, and the editor's documents with
 their side files and parts are given to what reads them for the viewer and the editor; mutations are also of bits,

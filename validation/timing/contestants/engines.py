@@ -61,7 +61,7 @@ def _interface() -> Any:
 
 
 # Conditions of a loop's model: Pinocchio factors all of them as one full matrix, which takes seconds a state beyond.
-MOST_CONDITIONS = 200
+MAX_CONDITIONS = 200
 TREES, CLOSED = "loop_pinocchio.cpp", "loop_closed.cpp"
 
 
@@ -130,8 +130,8 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
         Skipped: Pinocchio can't be built.
     """
     conditions = sum(len(constraint.conditions) for constraint in task.system.constraints)
-    if conditions > MOST_CONDITIONS:
-        raise Skipped(f"{conditions} conditions: timed up to {MOST_CONDITIONS}, beyond which a state takes seconds")
+    if conditions > MAX_CONDITIONS:
+        raise Skipped(f"{conditions} conditions: timed up to {MAX_CONDITIONS}, beyond which a state takes seconds")
     builds, failures = pinocchio_builds(CLOSED if task.system.constraints else TREES)
     for failure in failures:
         warn(failure)

@@ -20,9 +20,9 @@ from .source import Source
 BUILDS = (("-O3",), ("-O3", "-ffast-math"))
 _FLAGS = ("-march=native", "-std=gnu99", '-DCASADI_SYMBOL_EXPORT=__attribute__((visibility("default")))')
 # Kane's equations of SymPy grow out of hand: two bodies in space take 0.3 s, four 4 s, seven minutes.
-MOST_KANE = 4
+MAX_KANE = 4
 # CasADi's derivatives of larger models are long to compile, and those by quaternions are by four numbers.
-MOST_DERIVED = 10
+MAX_DERIVED = 10
 
 
 def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -34,8 +34,8 @@ def casadi_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     from ...adapters.casadi import code as casadi_code  # Who lacks CasADi has the rest.
     from ...adapters.casadi import tree as casadi_tree  # As above.
 
-    if task.assembly.nv > MOST_DERIVED and any(name.endswith(("derivatives", "vjp")) for name in functions):
-        raise Skipped(f"derivatives are made up to {MOST_DERIVED} degrees of freedom, beyond which they take minutes")
+    if task.assembly.nv > MAX_DERIVED and any(name.endswith(("derivatives", "vjp")) for name in functions):
+        raise Skipped(f"derivatives are made up to {MAX_DERIVED} degrees of freedom, beyond which they take minutes")
 
     def make(name: str) -> Source:
         start = time.thread_time()
@@ -64,9 +64,9 @@ def sympy_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
     """
     if task.system.constraints:
         raise Skipped("Kane's equations are made for trees here")
-    if task.assembly.nv > MOST_KANE:
+    if task.assembly.nv > MAX_KANE:
         raise Skipped(
-            f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MOST_KANE}, "
+            f"{task.assembly.nv} degrees of freedom: Kane's equations by SymPy are made up to {MAX_KANE}, "
             "beyond which generation takes minutes; see the costs"
         )
     from .kane import FUNCTIONS, kane_source  # SymPy's mechanics take a second.

@@ -27,7 +27,7 @@ COLUMNS = "symofros, batch by columns"
 SINGLE = "symofros, batch of floats by columns"
 # States in a call of a batch: their results stay in the second cache, beside the code, as those of engines stay in the
 # first; whole vectors of either precision.
-BLOCK, _LEAST_BLOCK, _KEPT = 64, 16, 3 << 17
+BLOCK, _MIN_BLOCK, _KEPT = 64, 16, 3 << 17
 # How many of a function's outputs engines have, too: Q, multipliers and derivatives by u are ours alone.
 _SHARED = {
     "dynamics": 2,
@@ -40,7 +40,7 @@ _SHARED = {
 _ENDLESS = 1e6
 # Speeds up to which derivatives of forward dynamics are timed by vectors: beyond, their code takes minutes to compile,
 # and of long chains a solver finishes them.
-MOST_BY_VECTORS = 10
+MAX_BY_VECTORS = 10
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
@@ -62,7 +62,7 @@ def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
 
 def _by_vectors(task: Task, name: str) -> bool:
     """Whether a function is timed by vectors: where a solver finishes it state by state, there is no such code."""
-    is_long = name == "forward_dynamics_derivatives" and task.assembly.nv > MOST_BY_VECTORS
+    is_long = name == "forward_dynamics_derivatives" and task.assembly.nv > MAX_BY_VECTORS
     return not (task.system.constraints or is_long)
 
 
@@ -88,8 +88,8 @@ class _Generated:
         given = {"pre": self._libraries[0].pre, "q": states.q, "v": states.v, "a": states.a, "u": states.u}
         given |= {"tau_bar": states.applied, "a_bar": states.a}  # Cotangents: any numbers, CasADi's as well.
         self.arrays = self._libraries[0].arrays(given)
-        fitting = _KEPT // (8 * max(1, sum(self.arrays.sizes))) // _LEAST_BLOCK * _LEAST_BLOCK
-        self.block = min(BLOCK, len(task.states), max(_LEAST_BLOCK, fitting))
+        fitting = _KEPT // (8 * max(1, sum(self.arrays.sizes))) // _MIN_BLOCK * _MIN_BLOCK
+        self.block = min(BLOCK, len(task.states), max(_MIN_BLOCK, fitting))
 
 
 def _by_state(task: Task, name: str) -> Loop:

@@ -25,7 +25,7 @@ EA = {"link1": 2.5e7, "link2": 1.6e7}
 RIGID, ELASTIC = 3, 7
 # Halving its elements again moves none of the seven by more than 5e-7.
 FINE = 32
-MOST_ELEMENTS = 16
+MAX_ELEMENTS = 16
 # Cruder than this, a side is no model of this robot, and its time means nothing.
 SAME_ROBOT = 0.05
 
@@ -97,12 +97,12 @@ def pairs(counts: Iterable[int]) -> Iterator[Pair]:
 
 
 def _matched(count: int, generated: float, reference: Array) -> Pair:
-    for elements in range(1, MOST_ELEMENTS + 1):
+    for elements in range(1, MAX_ELEMENTS + 1):
         tree = exudyn_robot(elements)
         engine = _worst(exudyn_frequencies(tree), reference)
         if engine <= generated:
             return Pair(count, elements, (generated, engine), tree)
-    raise NotTheSameError(f"{LABEL}, {count} functions: no mesh of up to {MOST_ELEMENTS} elements errs {generated:.1e}")
+    raise NotTheSameError(f"{LABEL}, {count} functions: no mesh of up to {MAX_ELEMENTS} elements errs {generated:.1e}")
 
 
 def _worst(frequencies: Array, reference: Array) -> float:

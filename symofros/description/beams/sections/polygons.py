@@ -13,7 +13,7 @@ from symofros.errors import DescriptionError, Problem
 Point = tuple[float, float]
 # Elements over the area: torsion errs by 1e-5 for convex outlines, by some 1e-3 beside corners that point inwards.
 _ELEMENTS = 1000
-_MOST_POINTS = 1000
+_MAX_POINTS = 1000
 
 
 class _Geometry(NamedTuple):
@@ -114,8 +114,8 @@ def _rectangle(y: float, z: float) -> tuple[Point, ...]:
 def _refuse_unusable(rings: Sequence[Sequence[Point]]) -> None:
     """Refuse invalid outlines; faults that need geometry are found by shapely."""
     count = sum(map(len, rings))
-    if any(len(ring) < 3 for ring in rings) or count > _MOST_POINTS:
-        raise DescriptionError(_unusable(f"{count} corners", f"3 corners or more an outline, {_MOST_POINTS} in all"))
+    if any(len(ring) < 3 for ring in rings) or count > _MAX_POINTS:
+        raise DescriptionError(_unusable(f"{count} corners", f"3 corners or more an outline, {_MAX_POINTS} in all"))
     if not all(math.isfinite(x) for ring in rings for point in ring for x in point):
         raise DescriptionError(_unusable("a coordinate is not finite", "coordinates are finite numbers"))
 

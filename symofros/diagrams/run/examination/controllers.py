@@ -45,10 +45,10 @@ class End:
 
 
 # Repeats the end of the run, or another part -> t (n), q, v, u of its records.
-Again = Callable[[End], Sequence[Array] | None]
+Rerun = Callable[[End], Sequence[Array] | None]
 
 
-def blamed(outcome: Outcome, resolved: Resolved, again: Again) -> Outcome:
+def blamed(outcome: Outcome, resolved: Resolved, again: Rerun) -> Outcome:
     """An outcome that names the sampled controller where one drives the motion apart.
 
     Args:

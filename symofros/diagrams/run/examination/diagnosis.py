@@ -12,14 +12,14 @@ from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
-from symofros.diagrams.run.examination.controllers import Again, End
+from symofros.diagrams.run.examination.controllers import End, Rerun
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
-from symofros.simulation.analysis.kinematics.postures import MOST_BETWEEN
+from symofros.simulation.analysis.kinematics.postures import MAX_BETWEEN
 from symofros.simulation.events import event_notes
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.examination.constraint_faults import constraint_notes
@@ -81,7 +81,7 @@ class Ended:
         return tuple(bendings)
 
 
-def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Again) -> tuple[Outcome, Resolution]:
+def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tuple[Outcome, Resolution]:
     """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
     Args:
@@ -151,7 +151,7 @@ def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
     return examine_steps(_part_run(ended, part, settings, steps))
 
 
-def _posture_notes(ended: Ended, again: Again) -> list[str]:
+def _posture_notes(ended: Ended, again: Rerun) -> list[str]:
     """Notes on singular postures that the parts passed, or nearly.
 
     Where constraints engage or release on the way, their rank changes at any posture: nothing is said.
@@ -165,7 +165,7 @@ def _posture_notes(ended: Ended, again: Again) -> list[str]:
         place = ended.layout.parts[i]
 
         def between(first: int, last: int, settings: Settings = settings, place: Part = place) -> States | None:
-            apart = float(t[last] - t[first]) / MOST_BETWEEN
+            apart = float(t[last] - t[first]) / MAX_BETWEEN
             dt = apart if settings.adaptive else min(apart, settings.dt)
             along = None if settings.realtime else again(End(float(t[first]), float(t[last]), apart, dt))
             if along is None or along[0][-1] < t[last] - apart:

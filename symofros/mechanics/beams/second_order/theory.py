@@ -40,7 +40,7 @@ class SecondOrderTheory(BeamTheory):
         return tuple("m" if length else "rad" for length in deformation_of(self.beam).lengths)
 
     def sizes(self, length: float) -> tuple[float, ...]:
-        """Function that gives slopes and twist angles up to which the theory errs by less than a percent."""
+        """Elastic coordinates with slopes and twist angles up to which the theory errs by less than a percent."""
         return small_coordinates(self.beam, length)
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.description.beams.beam import MOST_SECTIONS, Beam
+from symofros.description.beams.beam import MAX_SECTIONS, Beam
 from symofros.description.beams.elastic import PRE_STRAINS
 from symofros.description.values import Value
 from symofros.mechanics.beams.strain.strains import strains_of
@@ -34,7 +34,7 @@ def with_sections(beam: Beam, number: Number) -> Beam:
     if needed <= 2:
         return beam
     chosen = len(strains_of(beam).sections.stations) - 1
-    return replace(beam, sections=min(MOST_SECTIONS, chosen + needed - 2))
+    return replace(beam, sections=min(MAX_SECTIONS, chosen + needed - 2))
 
 
 def sections_of_turn(turn: float, amplitude: float) -> int:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from symofros.description.beams.beam import MOST_SECTIONS, Beam
+from symofros.description.beams.beam import MAX_SECTIONS, Beam
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.expression import evaluate
@@ -75,7 +75,7 @@ class IntegrationError:
     def __init__(self, beam: Beam, values: Mapping[str, float]) -> None:
         points = strains_of(beam).points
         # Of half as many, which err by more, where twice as many are more than a rod may have.
-        compared = 2 * points if 2 * points <= MOST_SECTIONS else points // 2
+        compared = 2 * points if 2 * points <= MAX_SECTIONS else points // 2
         self._own = StrainShape(beam, values, _COMPARED)
         self._other = StrainShape(replace(beam, sections=compared), values, _COMPARED)
 

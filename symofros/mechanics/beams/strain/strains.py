@@ -36,7 +36,7 @@ TURNING = 3
 # The fewest sections an interval beside the root: as many as functions integrate small turns exactly. From three
 # functions on there are one and then two more, as these leave less out than a section is worth; of the user's, which
 # may be of any degree, one more.
-_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _MOST_MORE = 2, 3, 2
+_FEWEST_SECTIONS, _FEWEST_SECTIONS_OF_USER, _MAX_MORE = 2, 3, 2
 # Sections an interval where knots divide the rod: the cubic between them is smooth.
 _SECTIONS_A_SPAN = 4
 # Largest angle [rad] by which the strains of one direction turn the tip in random states; largest stretch and shear.
@@ -197,7 +197,7 @@ def _shared_strains(
     if family == "user":
         chosen = max(_FEWEST_SECTIONS_OF_USER, most + 1)
     else:
-        chosen = max(_FEWEST_SECTIONS, most + min((most - 1) // 2, _MOST_MORE))
+        chosen = max(_FEWEST_SECTIONS, most + min((most - 1) // 2, _MAX_MORE))
     chosen = _SECTIONS_A_SPAN if is_divided else chosen
     return Strains(tuple(functions), counts, sections or chosen)
 

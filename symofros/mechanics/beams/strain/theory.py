@@ -46,7 +46,7 @@ class StrainTheory(BeamTheory):
         return tuple("rad" if axis < TURNING else "" for axis, _ in strains_of(self.beam).axes)
 
     def sizes(self, length: float) -> tuple[float, ...]:
-        """Function that gives strains which turn the rod by a right angle, or stretch or shear it by a tenth."""
+        """Strain coordinates that turn the rod by a right angle, or stretch or shear it by a tenth."""
         return strains_of(self.beam).sizes
 
     def resolved(self, number: Callable[[Value, float], float]) -> Beam:

@@ -24,9 +24,11 @@ Tensor = list[list[list[Edge]]]
 
 def second_derivatives(e: Equations) -> tuple[Tensor, ...]:
     """Second derivatives of the inverse dynamics by (q, q), (v, v), (q, v) and (a, q) (nv x nv x nv each, eq. 11)."""
-    kinematics, by_v, by_mass = e.kinematics, e.inverse_dynamics_by_v, of_mass_matrix(e.kinematics, e.M)
+    kinematics, by_v, by_mass = e.kinematics, e.inverse_dynamics_by_v, mass_matrix_derivatives(e.kinematics, e.M)
     if route(e).method == "mass matrix":
-        by_speeds = _sum(e.g, of_bias(kinematics, e.M, by_mass), by_two_speeds(kinematics, e.passive_slopes))
+        by_speeds = _sum(
+            e.g, bias_second_derivatives(kinematics, e.M, by_mass), by_two_speeds(kinematics, e.passive_slopes)
+        )
     else:
         by_speeds = by_two_speeds(kinematics, by_v)
     return (
@@ -55,13 +57,13 @@ def by_two_speeds(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
     return _symmetric(kinematics, slopes, speeds, range(kinematics.nv))
 
 
-def of_bias(kinematics: TreeKinematics, M: Matrix, by_mass: Tensor) -> Tensor:
+def bias_second_derivatives(kinematics: TreeKinematics, M: Matrix, by_mass: Tensor) -> Tensor:
     """Derivatives of h by two speeds, which M determines (nv x nv x nv, eq. 11a).
 
     Args:
         kinematics: Kinematics of the tree.
         M: Mass matrix.
-        by_mass: Its derivatives, `of_mass_matrix`.
+        by_mass: Its derivatives, `mass_matrix_derivatives`.
     """
     g, nv = kinematics.g, kinematics.nv
     turning = [by_inputs(kinematics, coadjoint(kinematics, row), "v", nv) for row in M]
@@ -94,7 +96,7 @@ def by_coordinates_and_speeds(kinematics: TreeKinematics, slopes: Matrix) -> Ten
     return [[[flat[i * nv + k][j] for k in range(nv)] for j in range(nv)] for i in range(nv)]
 
 
-def of_mass_matrix(kinematics: TreeKinematics, M: Matrix) -> Tensor:
+def mass_matrix_derivatives(kinematics: TreeKinematics, M: Matrix) -> Tensor:
     """Derivatives of M along the manifold of q: T[i][j][k] of M_ij by q_k, symmetric in i and j (nv x nv x nv)."""
     nv = kinematics.nv
     lower = [(i, j) for i in range(nv) for j in range(i + 1)]

@@ -363,7 +363,7 @@ class _Coupling:
 
 
 def _carried(link: MovingLink, body: _ArticulatedBody, moving: _ArticulatedBody) -> _Coupling:
-    """Momentum that a section of a beam carries, on the speeds that move it (rods.md, eq. 19).
+    """Coupling of the body beyond a section of a beam with the speeds that move the section (rods.md, eq. 19).
 
     Args:
         link: The section.

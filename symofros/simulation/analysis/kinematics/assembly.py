@@ -16,7 +16,7 @@ from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import (
     LARGEST_STEP,
-    LEAST_SIZE,
+    MIN_SIZE,
     RESIDUAL_ROUNDING,
     eliminate,
     natural_sizes,
@@ -235,7 +235,7 @@ def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterati
         for _ in range(ATTEMPTS):
             guess = model.integrate(q, size * movable * random.uniform(-1.0, 1.0, model.nv))
             try:
-                near = _drawn_near(at, guess, movable)
+                near = _random_start_near(at, guess, movable)
                 attempt = None if near is None else _attempt(at, near, free, tolerance, iterations)
             except AssemblyError:  # Not smooth there.
                 continue
@@ -247,7 +247,7 @@ def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterati
     return None
 
 
-def _drawn_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
+def _random_start_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
     """The end of damped steps (Levenberg, Marquardt) from a guess beside a singular posture; None where it is not near.
 
     Args:
@@ -259,7 +259,7 @@ def _drawn_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
     phi, judged = at.residual(q), math.inf
     for count in range(DAMPED_STEPS):
         G = at.jacobian(q)
-        sizes = np.maximum(natural_sizes(G, measures).max(axis=1, initial=0.0), LEAST_SIZE)
+        sizes = np.maximum(natural_sizes(G, measures).max(axis=1, initial=0.0), MIN_SIZE)
         r, J = phi / sizes, G * scales / sizes[:, None]
         norm = float(np.linalg.norm(r))
         if norm <= NEAR:

@@ -25,7 +25,7 @@ from symofros.simulation.analysis.kinematics.targets import Target as Target
 from symofros.simulation.analysis.states import given_inputs
 
 # Beyond so many starts a target counts as out of reach: hours would pass without an answer.
-_MOST_STARTS = 100_000
+_MAX_STARTS = 100_000
 
 
 @dataclass(frozen=True)
@@ -220,12 +220,12 @@ def joint_motion(
 
 
 def _check_starts(starts: int) -> None:
-    if not 1 <= starts <= _MOST_STARTS:
+    if not 1 <= starts <= _MAX_STARTS:
         raise SymofrosError(
             Problem(
                 "inverse kinematics: starts is out of range",
-                str(starts) if abs(starts) < 10 * _MOST_STARTS else "a number far outside of it",
-                f"the guess is the first start, and {_MOST_STARTS} are the most",
+                str(starts) if abs(starts) < 10 * _MAX_STARTS else "a number far outside of it",
+                f"the guess is the first start, and {_MAX_STARTS} are the most",
                 "leave it out, or give 1 for the guess alone",
             )
         )

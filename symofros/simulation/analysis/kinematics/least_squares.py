@@ -18,7 +18,7 @@ from symofros.simulation.analysis.kinematics.targets import Task
 _DAMPING, _RELAX, _TIGHTEN, _MOST = 1e-3, 0.2, 8.0, 1e8
 _SMALLEST_GAIN = 1e-16
 # A start is given up where so many steps do not take a tenth of its error.
-_STALLED, _LEAST_SHARE = 20, 0.1
+_STALLED, _MIN_SHARE = 20, 0.1
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ def damped_least_squares(task: Task, start: Array, free: Indices, tolerance: flo
         if damping > _MOST or 0.0 <= gain <= _SMALLEST_GAIN * before:
             break
         if count % _STALLED == 0:
-            if square > (1.0 - _LEAST_SHARE) ** 2 * judged:
+            if square > (1.0 - _MIN_SHARE) ** 2 * judged:
                 break
             judged = square
     return End(q, error, _met(error, bounds), count)

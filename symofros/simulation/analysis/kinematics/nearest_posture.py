@@ -35,7 +35,7 @@ _DIFFERENCE = 1e-5
 _AT_LIMIT = 1e-12
 # Curvature of f along the solutions, in the objective's own unit, below which its size is not trusted; and what is
 # negative.
-_LEAST_CURVATURE, _NEGATIVE = 1e-3, -1e-4
+_MIN_CURVATURE, _NEGATIVE = 1e-3, -1e-4
 
 
 def coordinate_limits(model: Model) -> list[tuple[int, int, float, float]]:
@@ -109,7 +109,7 @@ class FromRest:
         return 0.5 * self.distance(q) ** 2
 
     def flat(self, q: Array) -> float:
-        """Configurations over which the distance changes only by rounding."""
+        """Norm of a gradient at q that counts as zero: the rounding of the distance."""
         return OPTIMALITY * (1.0 + self.distance(q))
 
 
@@ -220,7 +220,7 @@ class NearestPosture:
                 return fallback
             curvature, V = np.linalg.eigh(self._curvature(q, Z))
             slope = V.T @ (Z.T @ self.objective.pull(q))
-            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _LEAST_CURVATURE * self.objective.curvature)))
+            newton = Z @ (V @ (slope / np.maximum(np.abs(curvature), _MIN_CURVATURE * self.objective.curvature)))
             pushed = self._pushed(q, newton)
             if not pushed.size:
                 break

@@ -170,10 +170,10 @@ def _postures(distance: _Distance, stated: Sequence[str]) -> Iterator[Array]:
             placed = at.approached(guess, stated).q
             nearest = distance.descend(at.assembled(placed).q)
             yield nearest
-            yield from _with_one_let_go(distance, distance.with_stated(nearest), stated)
+            yield from _with_one_released(distance, distance.with_stated(nearest), stated)
 
 
-def _with_one_let_go(distance: _Distance, q: Array, stated: Sequence[str]) -> Iterator[Array]:
+def _with_one_released(distance: _Distance, q: Array, stated: Sequence[str]) -> Iterator[Array]:
     """Closed postures with all but one of the stated coordinates held, each followed by a descent."""
     for held in _all_but_one(stated):
         with suppress(AssemblyError):

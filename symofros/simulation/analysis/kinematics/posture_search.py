@@ -87,7 +87,7 @@ class PostureSearch:
             if not solutions:
                 ends += [self._least_squares(end.q, self.iterations) for end in self._promising(drawn)]
                 solutions = self._nearest(self._solutions(ends[given:]))
-        found = self._nearest_to_rest(solutions) if solutions else self._least_missed(ends, used)
+        found = self._nearest_to_rest(solutions) if solutions else self._nearest_miss(ends, used)
         return replace(found, steps=found.steps + sum(end.steps for end in (*ends, *drawn)), starts=given + len(drawn))
 
     def _started_again(self, used: Indices, most: int) -> tuple[list[End], list[Array]]:
@@ -148,7 +148,7 @@ class PostureSearch:
     def _met(self, q: Array) -> bool:
         return bool(np.all(np.abs(self.task.error(q)) <= self.task.bounds(self.tolerance)))
 
-    def _least_missed(self, ends: Sequence[End], used: Indices) -> Posture:
+    def _nearest_miss(self, ends: Sequence[End], used: Indices) -> Posture:
         """The posture on the constraints with the smallest residual of the targets among some ends."""
         found = [self._closed_and_descended(end.q, used) for end in ends]
         missed = [self._missed(posture) for posture in found]

@@ -17,14 +17,14 @@ from symofros.runtime.record import JointLimit
 NEAR = 0.05
 # States that are looked at, spread over the run; more would cost more than short runs themselves. Singular values of nc
 # conditions take nc^3 operations: of many, that number is bounded, but for the fewest states.
-MOST, MOST_OPERATIONS, FEWEST = 1000, 1e7, 16
+MOST, MAX_OPERATIONS, FEWEST = 1000, 1e7, 16
 # States farther apart than this [rad, m] have others looked at between them, so many at most.
-FAR, MOST_BETWEEN = 0.05, 16
+FAR, MAX_BETWEEN = 0.05, 16
 # Parts of the motion that are asked for where the straight way between records meets weak conditions.
 ASKED = 4
-# Change of a row of G, relative to its size, while the configuration changes by MOST_CHANGE [rad, m], halved BISECTIONS
+# Change of a row of G, relative to its size, while the configuration changes by MAX_CHANGE [rad, m], halved BISECTIONS
 # times: a smooth row changes by far less.
-TURN, MOST_CHANGE, BISECTIONS = 0.3, 0.02, 16
+TURN, MAX_CHANGE, BISECTIONS = 0.3, 0.02, 16
 # What lies beyond a limit by this share of it, or by so much [rad, m], is the error of a motion that ends there.
 AT_LIMIT = 1e-6
 
@@ -64,7 +64,7 @@ def jump_ahead(model: Model, t: float, q: Array, v: Array, u: Array, par: Array)
         change = np.linalg.norm(np.diff(G, axis=0), axis=-1) / size
         return np.where(np.isnan(change), np.inf, change)
 
-    within = MOST_CHANGE / fastest * np.array([1.0, 0.1, 0.01, 1e-3])
+    within = MAX_CHANGE / fastest * np.array([1.0, 0.1, 0.01, 1e-3])
     times = np.concatenate([-within, [0.0], within[::-1]])
     G = rows(times)
     size = np.maximum(np.nan_to_num(np.linalg.norm(G, axis=-1)).max(axis=0), 1e-300)
@@ -150,7 +150,7 @@ def nearest_to_singular(
     if rank < 1 or len(states[0]) < 2:
         return None
     model = model.with_precision("double")
-    most = int(min(MOST, max(FEWEST, MOST_OPERATIONS / model.nc**3)))
+    most = int(min(MOST, max(FEWEST, MAX_OPERATIONS / model.nc**3)))
 
     def weakest(at: Sequence[Array]) -> Array:
         """The singular value of the weakest condition of those that do not repeat others, at states t, q, u."""
@@ -196,7 +196,7 @@ def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> list[Arra
     if not np.isfinite(changes).all():
         return [t, q, u]
     far = float(np.abs(changes).max(initial=0.0)) / FAR
-    parts = int(min(max(1.0, math.ceil(far)), MOST_BETWEEN, max(1, most // len(t))))
+    parts = int(min(max(1.0, math.ceil(far)), MAX_BETWEEN, max(1, most // len(t))))
     shares, count = (np.arange(parts) / parts)[:, np.newaxis], (len(t) - 1) * parts
 
     def inner(x: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.errors import SymofrosError
 from symofros.simulation.analysis.kinematics.postures import (
-    MOST_BETWEEN,
+    MAX_BETWEEN,
     Jump,
     Violation,
     jump_ahead,
@@ -97,6 +97,6 @@ def _short_steps(run: ExaminedRun, first: int, last: int) -> States | None:
     t, q, v, _ = run.states
     if run.settings.realtime or not run.same_inputs_again:
         return None
-    part = float(t[last] - t[first]) / MOST_BETWEEN
+    part = float(t[last] - t[first]) / MAX_BETWEEN
     status, along = run.in_short_steps((t[first], q[first], v[first]), float(t[last]), part)
     return [x[:0] for x in along] if status < 0 and status in _SINGULAR_ENDS else along

@@ -49,7 +49,7 @@ def diagnose(
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
     told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = (*constraint_notes(run), *_of_limits(run), *bending_notes(told), *_of_pace(run))
+    notes = (*constraint_notes(run), *_limit_notes(run), *bending_notes(told), *_pace_notes(run))
     fault = input_fault(stepper) if status < 0 else ""
     return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
@@ -67,7 +67,7 @@ def diagnose_one(
         interrupted: Whether Ctrl-C ended it.
     """
     told = () if status == Status.BEYOND_THEORY else bendings
-    return outcome_of(run, status, bendings, (*_of_limits(run), *bending_notes(told)), fault, interrupted=interrupted)
+    return outcome_of(run, status, bendings, (*_limit_notes(run), *bending_notes(told)), fault, interrupted=interrupted)
 
 
 @dataclass(frozen=True)
@@ -261,13 +261,13 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
     return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
 
 
-def _of_limits(run: ExaminedRun) -> tuple[str, ...]:
+def _limit_notes(run: ExaminedRun) -> tuple[str, ...]:
     """Notes on limits of joints that were left."""
     record, states = run.model.record, run.states
     return limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
 
 
-def _of_pace(examined: ExaminedRun) -> list[str]:
+def _pace_notes(examined: ExaminedRun) -> list[str]:
     """A note on steps that began late, in real time."""
     run = examined.stepper.run
     if not run.late_steps:

@@ -44,7 +44,7 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
         unread = {*_names(plain, "blocks"), *_names(plain, "parts")} - read.blocks.keys() - read.parts.keys()
         drafted = draft(read, unread)
         problems = [*problems, *drafted.problems]
-        more, loops = _as_a_whole(read, drafted) if not problems else ([], _loops_of_a_part(read, drafted))
+        more, loops = _whole_diagram_problems(read, drafted) if not problems else ([], _loops_of_a_part(read, drafted))
         problems += [*more, *(error.problem for error in loops)]
     shown = [placed(problem, source, str(file), plain) for problem in in_order(problems)]
     data = as_json(plain)
@@ -60,7 +60,7 @@ def _mechanisms(wired: Wired) -> dict[str, System]:
     return {name: wired.models.system(model) for name, model in wired.mechanisms().items()}
 
 
-def _as_a_whole(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:
+def _whole_diagram_problems(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:
     """Problems of a diagram whose wires fit, and its algebraic loops."""
     try:
         wired = whole(diagram, drafted)

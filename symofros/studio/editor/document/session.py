@@ -205,7 +205,7 @@ class Session:
 
     # Asking.
 
-    def check_of_fields(self, body: Json) -> Callable[[], Json]:
+    def field_checker(self, body: Json) -> Callable[[], Json]:
         """A function that checks texts of fields against the present document, even if it changes later.
 
         Raises:

@@ -93,7 +93,7 @@ class UnsavedWork:
         )
 
     def _is_others(self) -> bool:
-        """Whether the stored work was written by another server since it was read or written here."""
+        """Whether the stored work was written by another process since it was read or written here."""
         autosave = autosave_of(self.file)
         now = signature(autosave)
         if now in ("", self._signature):

@@ -82,7 +82,7 @@ def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
         return done, None
     path = edit.path
     while True:
-        done = _meaning(_written_anew(source, path, after), after)
+        done = _meaning(_rewritten(source, path, after), after)
         if done is not None:
             return done, path
         if not path:
@@ -105,7 +105,7 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
         return None
 
 
-def _written_anew(source: YamlText, path: Path, after: Any) -> str | None:
+def _rewritten(source: YamlText, path: Path, after: Any) -> str | None:
     """The text with the whole value at a path rewritten; None where there is none, before or after."""
     for step in path:
         if isinstance(after, dict) and step in after:

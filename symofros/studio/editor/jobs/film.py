@@ -19,7 +19,7 @@ Json = dict[str, Any]
 MEDIA_TYPES = {"gif": "image/gif", "mp4": "video/mp4"}
 SIZE = (640, 480)
 RATE = 20.0
-MOST_SECONDS = 60.0
+MAX_SECONDS = 60.0
 
 
 def film_of(system: System | None, result: Json, suffix: str, exaggeration: str, speed: str) -> bytes:
@@ -45,8 +45,8 @@ def film_of(system: System | None, result: Json, suffix: str, exaggeration: str,
     t, q = np.asarray(states.t), np.asarray(states.q)
     until = int(np.argmin([*np.isfinite(q).all(axis=1), False]))
     factor, pace = _number("exaggeration", exaggeration), _number("speed", speed)
-    if until > 0 and pace > 0.0 and (t[until - 1] - t[0]) / pace > MOST_SECONDS:
-        rule = f"a film of the page takes {MOST_SECONDS:g} s at most"
+    if until > 0 and pace > 0.0 and (t[until - 1] - t[0]) / pace > MAX_SECONDS:
+        rule = f"a film of the page takes {MAX_SECONDS:g} s at most"
         raise refusal("the film is too long", f"{(t[until - 1] - t[0]) / pace:g} s", rule, "raise the speed")
     shown = states._replace(t=t[:until], q=q[:until], u=np.asarray(states.u)[:until])
     with TemporaryDirectory() as folder:

@@ -45,7 +45,7 @@ def table_of(kind: str, result: Any, suffix: str) -> bytes:
         return file.read_bytes()
 
 
-def _of_simulation(result: Json) -> dict[str, tuple[str, list[float]]]:
+def _simulation_columns(result: Json) -> dict[str, tuple[str, list[float]]]:
     """Coordinates, speeds, inputs (named u.NAME as in files of trajectories) and energies."""
     series = {
         f"u.{item['name'].removeprefix('u.')}" if item["kind"] == "u" else item["name"]: (item["unit"], item["values"])
@@ -54,10 +54,10 @@ def _of_simulation(result: Json) -> dict[str, tuple[str, list[float]]]:
     return series | {f"energy.{name}": ("J", values) for name, values in result["energy"].items()}
 
 
-def _of_diagram(result: Json) -> dict[str, tuple[str, list[float]]]:
+def _diagram_columns(result: Json) -> dict[str, tuple[str, list[float]]]:
     """Each signal that a plot shows."""
     curves = [curve for plot in result["plots"] for curve in plot["curves"]]
     return {curve["name"]: (curve["unit"], curve["values"]) for curve in curves}
 
 
-_COLUMNS = {"simulate": _of_simulation, "run": _of_diagram}
+_COLUMNS = {"simulate": _simulation_columns, "run": _diagram_columns}

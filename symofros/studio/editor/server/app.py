@@ -106,7 +106,7 @@ class Editor:
 
         async def answer(request: Request) -> Response:
             document = await self.exclusively(partial(self._changed, action, await body_of(request)))
-            self.tell_changed(request)
+            self.publish_file_change(request)
             return JSONResponse(document)
 
         return answer
@@ -115,7 +115,7 @@ class Editor:
         action(body)
         return self.session.as_json()
 
-    def tell_changed(self, request: Request) -> None:
+    def publish_file_change(self, request: Request) -> None:
         """Tell the pages that the document has changed, and by whom."""
         document = self.session.document
         client = request.headers.get("x-client", "")[:100]
@@ -141,7 +141,7 @@ class Editor:
 
     async def expression(self, request: Request) -> Response:
         """Check fields, while others go on with the document: reading it with a field's text takes its time."""
-        check = await self.exclusively(partial(self.session.check_of_fields, await body_of(request)))
+        check = await self.exclusively(partial(self.session.field_checker, await body_of(request)))
         return JSONResponse(await run_sync(check))
 
     async def shapes(self, request: Request) -> Response:
@@ -188,7 +188,7 @@ class Editor:
             return JSONResponse({"error": error}, 422)
         adopt = partial(self.session.adopt, name=file.name, text=job.result["text"])
         document = await self.exclusively(partial(self._changed, adopt, body))
-        self.tell_changed(request)
+        self.publish_file_change(request)
         return JSONResponse({**document, "notes": job.result["notes"]})
 
     async def start_job(self, request: Request) -> Response:
@@ -326,7 +326,7 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         both = {"disk": error.disk, "over": error.over, "text": session.document.text}
         return JSONResponse({**error_body(error.problem), **both, "document": session.as_json()}, 409)
 
-    async def no_such(_: Request, error: Exception) -> Response:
+    async def not_found(_: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
         problem = Problem("no such address", str(error.detail), "addresses are those of the page", "reload the page")
         return JSONResponse(error_body(problem), error.status_code)
@@ -341,7 +341,7 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         return JSONResponse(error_body(problem), 500)
 
     handlers: dict[Any, Any] = {
-        HTTPException: no_such,
+        HTTPException: not_found,
         Exception: unforeseen,
         EditError: refused,
         FileError: refused,

@@ -23,7 +23,7 @@ from symofros.studio.viewer.viewer import Viewer
 
 Json = dict[str, Any]
 
-MOST_EXAGGERATION = 1000.0
+MAX_EXAGGERATION = 1000.0
 GAP_UNITS = {LENGTH: "m", ANGLE: "rad"}
 # Chromium starts no module worker from a blob of a page of no origin, and says so only to the page. Where a blob is
 # refused at once, viser's page takes a data address, and that works.
@@ -114,8 +114,8 @@ class DocumentViewer:
         """
         q, par = _numbers(body, "q"), _numbers(body, "par")
         factor = body.get("exaggeration")
-        if factor is not None and not (_finite(factor) and abs(factor) <= MOST_EXAGGERATION):
-            raise _malformed("exaggeration", factor, f"a number up to {MOST_EXAGGERATION:g}")
+        if factor is not None and not (_finite(factor) and abs(factor) <= MAX_EXAGGERATION):
+            raise _malformed("exaggeration", factor, f"a number up to {MAX_EXAGGERATION:g}")
         marked = body.get("marked")
         if marked is not None and not (isinstance(marked, list) and all(isinstance(each, str) for each in marked)):
             raise _malformed("marked", marked, "a list of elements' names")
@@ -216,7 +216,7 @@ class DocumentViewer:
 
 
 def _stand(viewer: Viewer) -> Json:
-    """Present positions of all sliders.
+    """Present state of the mechanism in the view.
 
     `gap`: largest residual of the loops' conditions, None without loops, in `gap_unit`, "" of a formula; `beams`: how
     far each is bent.

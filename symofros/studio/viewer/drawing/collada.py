@@ -26,7 +26,7 @@ _UPWARDS = {
 }
 # It writes Y_UP whatever the axes of the mesh are that it saves.
 _AXES_NOT_MEANT = "MeshLab"
-_MOST_NODES, _DEEPEST = 10_000, 50
+_MAX_NODES, _DEEPEST = 10_000, 50
 
 # What is kept of each element; elements that are not named keep all.
 _KEPT = {
@@ -95,8 +95,8 @@ def _drawn_part(data: bytes) -> bytes:
     for scene in root.iter("visual_scene"):
         for _ in _nodes_below(scene, by_id, 0):
             total += 1
-            if total > _MOST_NODES:
-                raise ValueError(f"more than {_MOST_NODES} nodes")
+            if total > _MAX_NODES:
+                raise ValueError(f"more than {_MAX_NODES} nodes")
     root.set("xmlns", "http://www.collada.org/2005/11/COLLADASchema")
     return ElementTree.tostring(root)
 

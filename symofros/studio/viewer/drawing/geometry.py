@@ -58,7 +58,7 @@ _BASE, _JOINT, _CLOSURE, _ROD, _SPRING, _SLIDE = (
 _ROD_RADIUS, _JOINT_RADIUS, _JOINT_LENGTH, _THIN, _NEAR = 0.006, 0.012, 0.045, 0.002, 1e-6
 # Shares of a link's own length, which its pieces do not exceed; and of the size, which they keep to be seen.
 _OF_LINK, _LEAST = 0.12, 0.25
-_MOST_BOX = 1.2  # Longest box, over the mechanism's size, that is not taken for a placeholder.
+_MAX_BOX = 1.2  # Longest box, over the mechanism's size, that is not taken for a placeholder.
 _SLENDER = 60.0  # Length over half the thickness of a beam whose section is not known.
 _FLATTEST = 6.0  # Ratio of the sides of its section.
 
@@ -123,7 +123,7 @@ class _DrawingBuilder:
             self.numbers.values(self.tree.system.gravity),
             self.size,
             self.center,
-            longest <= _MOST_BOX * self.size,
+            longest <= _MAX_BOX * self.size,
         )
 
     # How thick things are.

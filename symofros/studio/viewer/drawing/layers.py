@@ -8,7 +8,7 @@ from symofros.studio.viewer.drawing.drawing import KINDS, Drawing
 LAYERS = (*KINDS, "frames", "labels", "ground")
 
 
-def shown_at_first(drawing: Drawing) -> frozenset[str]:
+def initial_layers(drawing: Drawing) -> frozenset[str]:
     """The layers of a drawing that are not in the way of others."""
     dressed, bare = ({part.link for part in drawing.parts if part.kind == kind} for kind in ("visuals", "bodies"))
     hidden = {"frames", "labels"}

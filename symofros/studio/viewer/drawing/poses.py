@@ -24,7 +24,7 @@ from symofros.studio.viewer.drawing.inertia_box import longest_edges
 from symofros.studio.viewer.drawing.meshes import axes_along
 from symofros.studio.viewer.drawing.tracks import Track, track_part
 
-_LEAST_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
+_MIN_SIZE = 1e-6  # [m]; what is smaller is drawn as if it were a metre, for want of anything to go by.
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ class Mechanism:
             float(np.median(longest_edges(self.system, numbers) or [0.0])),
             *(2 * numbers.value(item.radius) for item in self.system.constraints if isinstance(item, Rolling)),
         )
-        size = size if size > _LEAST_SIZE else 1.0
+        size = size if size > _MIN_SIZE else 1.0
         drawing = draw(self.tree, values, size, (low + high) / 2)
         return replace(drawing, parts=(*drawing.parts, *(track_part(track, size) for track in self.tracks)))
 

@@ -16,8 +16,8 @@ from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
-MOST_BYTES = 64 << 20
-MOST_FACES = 500_000
+MAX_BYTES = 64 << 20
+MAX_FACES = 500_000
 SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off")
 
 
@@ -63,12 +63,12 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
     if not file.is_file():  # A pipe would be waited for, a device has no end.
         raise ValueError(f"{kind_of(file)}; a mesh is a regular file")
     with file.open("rb") as stream:
-        data = stream.read(MOST_BYTES + 1)
-    if len(data) > MOST_BYTES:
-        raise ValueError(f"more than {MOST_BYTES} bytes")
-    vertices, faces = read_collada(data, MOST_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
-    if not 0 < len(faces) <= MOST_FACES or not np.all(np.isfinite(vertices)):
-        raise ValueError(f"{len(faces)} triangles; 1 to {MOST_FACES} with finite corners")
+        data = stream.read(MAX_BYTES + 1)
+    if len(data) > MAX_BYTES:
+        raise ValueError(f"more than {MAX_BYTES} bytes")
+    vertices, faces = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    if not 0 < len(faces) <= MAX_FACES or not np.all(np.isfinite(vertices)):
+        raise ValueError(f"{len(faces)} triangles; 1 to {MAX_FACES} with finite corners")
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise ValueError("a triangle without a corner")
     return Mesh(vertices, faces)

@@ -24,7 +24,7 @@ _LAYER_NAMES = {
     "ground": "ground and gravity",
 }
 _DARK = "dark"
-_MOST_EXAGGERATION = 50.0
+_MAX_EXAGGERATION = 50.0
 _STEPS = 500  # Of a slider.
 # The bar fits the panel in windows of up to 1800 pixels: it is at most 0.3 of this part of their height.
 _SCALE_PART = 2.0
@@ -118,7 +118,7 @@ class Panel:
         gui, controls = self._gui, self._controls
         with gui.add_folder("Show"):
             if exaggeration is not None:
-                most = max(_MOST_EXAGGERATION, 2 * exaggeration)
+                most = max(_MAX_EXAGGERATION, 2 * exaggeration)
                 self._exaggeration = gui.add_slider(
                     "exaggeration", 0.0, most, 0.5, max(exaggeration, 0.0), hint="multiplies the elastic coordinates"
                 )

@@ -10,7 +10,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
-from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
@@ -35,7 +35,7 @@ class SceneState:
         self.first = self.state = mechanism.closed(mechanism.state())[0]
         drawing = mechanism.drawing(self.state.par)
         self._drawn_par = self.state.par
-        self.scene = ViserScene(server, drawing, self._posture(), shown_at_first(drawing), on_pick=on_pick)
+        self.scene = ViserScene(server, drawing, self._posture(), initial_layers(drawing), on_pick=on_pick)
 
     def change(self, mechanism: Mechanism) -> None:
         """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""

@@ -37,7 +37,7 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
     raise UnknownNameError(Problem(what, actual, rule, remedy))
 
 
-def shown_of(run: DiagramRun, block: str = "") -> tuple[System, States]:
+def shown_system_and_states(run: DiagramRun, block: str = "") -> tuple[System, States]:
     """The mechanism that a block moves, and its states over time, with the run's own parameters.
 
     Raises:

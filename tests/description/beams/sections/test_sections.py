@@ -59,7 +59,7 @@ def test_closed_forms_match_finite_elements(
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.25, 0.5])
-def test_a_thin_tube_shears_with_half_its_area_and_a_full_one_as_a_circle(nu: float) -> None:
+def test_shear_areas_of_thin_tubes_and_full_circles(nu: float) -> None:
     """Its wall is sheared by 2 V/A sin(theta), whatever Poisson's ratio; 6 (1 + nu)^2/(7 + 14 nu + 8 nu^2) is known."""
     material = Material(E=2.0 * (1.0 + nu), G=1.0, rho=1.0)
     thin = sections.tube(material, 1.0, 1e-5)
@@ -116,7 +116,7 @@ def test_matrices_are_integrals_over_points() -> None:
 
 
 @elements
-def test_principal_axes_of_an_l_section() -> None:
+def test_an_l_section_has_the_known_principal_axes() -> None:
     angle_section = sections.l_section(STEEL, 2.0, 3.0, 0.2)
     assert abs(number(angle_section.EI_yz)) > 0.1
     with pytest.raises(sf.DescriptionError, match=r"shear_center's y is not zero"):
@@ -187,7 +187,7 @@ BEAMDYN = np.argsort([2, 0, 1, 5, 3, 4])
 
 
 @pytest.mark.parametrize("axis", ["x", "z"])
-def test_matrices_give_the_section_back(axis: str) -> None:
+def test_a_section_is_recovered_from_its_matrices(axis: str) -> None:
     K, M = COUPLED.stiffness_matrix(), COUPLED.mass_matrix()
     if axis == "z":
         K, M = K[np.ix_(BEAMDYN, BEAMDYN)], M[np.ix_(BEAMDYN, BEAMDYN)]
@@ -236,7 +236,7 @@ def test_matrices_of_no_section_are_refused(change: Any, message: str) -> None:
         Section.of_matrices(*change(COUPLED.stiffness_matrix(), COUPLED.mass_matrix()))
 
 
-def test_a_rod_takes_a_section_off_its_axis_as_it_is() -> None:
+def test_a_rod_accepts_a_section_off_its_axis() -> None:
     entries = COUPLED.beam_properties("strain")
     beam = sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, theory="strain", bend_y=1, twist=1, **entries)
     assert (beam.tension_center, beam.shear_center, beam.mass_center) == ((0.1, -0.2), (0.05, 0.03), (0.02, -0.04))

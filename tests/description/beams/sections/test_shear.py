@@ -98,7 +98,7 @@ def test_shear_stress_is_in_equilibrium_and_compatible(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-def test_no_stress_leaves_the_outline(name: str) -> None:
+def test_shear_stress_is_tangential_at_the_outline(name: str) -> None:
     section = SHAPES[name]
     assert section.shape is not None
     a, b = (number(size) for size in section.shape.sizes)
@@ -138,7 +138,7 @@ def test_shear_stress_does_not_depend_on_axes_or_origin(name: str, angle: float)
     np.testing.assert_allclose(moved.shear_stress(about, points + center), expected, rtol=1e-9)
 
 
-def test_many_forces_at_formulas_of_the_station() -> None:
+def test_section_forces_at_varying_stations_are_evaluated() -> None:
     section = sections.rectangle(STEEL, "h*(1 - x/2)", 0.02)
     forces = np.random.default_rng(0).normal(size=(4, 3, 6))
     stress = section.shear_stress(forces, [[0.001, 0.002], [0.0, 0.0]], {"h": 0.04, "x": 0.5})

@@ -27,7 +27,7 @@ def test_a_rectangle_is_stressed_most_at_a_corner() -> None:
 @pytest.mark.parametrize(
     "shape", [sections.circle(STEEL, 0.03), sections.tube(STEEL, 0.03, 0.004)], ids=["full", "tube"]
 )
-def test_round_sections_bend_about_any_axis_alike(shape: Section) -> None:
+def test_round_sections_bend_equally_about_any_axis(shape: Section) -> None:
     radius, M = 0.03, math.hypot(FORCES[4], FORCES[5])
     area, moment = (sf.evaluate(value, {}) / 210e9 for value in (shape.EA, shape.EI_y))
     low, high = shape.extreme_stresses(FORCES)

@@ -95,7 +95,7 @@ def test_the_unstable_controller_is_named_at_any_record_interval() -> None:
     assert "block 'pd'" in outcome.reason
 
 
-def test_a_law_that_is_stable_is_not() -> None:
+def test_a_stable_controller_is_not_named() -> None:
     assert arm().run(0.2).outcome.ok
 
 
@@ -121,7 +121,7 @@ def test_divergence_of_a_joint_is_not_attributed_to_a_weak_controller(kp: float,
     assert outcome.kind == "diverged" and "'pd'" not in str(outcome), str(outcome)
 
 
-def test_a_law_that_drives_the_same_joint_apart_is_named() -> None:
+def test_a_controller_that_destabilises_its_joint_is_named() -> None:
     outcome = driven_apart(1.0).run(400.0, parameters=gains(0.0, 2000.0)).outcome
     assert outcome.reason.startswith("block 'pd', sampled every 0.02 s"), str(outcome)
 
@@ -138,7 +138,7 @@ def test_divergence_of_a_loaded_beam_is_not_attributed_to_a_weak_controller(EI: 
     assert outcome.kind == "beyond theory" and "'pd'" not in str(outcome), str(outcome)
 
 
-def test_a_law_in_python_is_named() -> None:
+def test_a_python_controller_is_named() -> None:
     """What it gave is replayed: it is the motion that says whether it grows without the law."""
     joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True)
     body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
@@ -156,7 +156,7 @@ def test_a_law_in_python_is_named() -> None:
 
 
 @pytest.mark.parametrize("bad", ["x", "y"])
-def test_of_two_laws_the_one_that_drives_the_motion_apart_is_named(bad: str) -> None:
+def test_the_destabilising_one_of_two_controllers_is_named(bad: str) -> None:
     """Also where the motion reaches the other, whose output grows as well."""
     outcome = two_laws(bad).run(400.0).outcome
     assert outcome.reason.startswith(f"block '{bad}_law', sampled every 0.02 s"), str(outcome)

@@ -54,7 +54,7 @@ def text(system: sf.System, function: str, packs: Packs = "where they pay") -> s
 
 
 @pytest.mark.parametrize("function", ["dynamics", "forward_dynamics", "inverse_dynamics_derivatives"])
-def test_legs_share_vectors(function: str) -> None:
+def test_legs_of_a_quadruped_share_vectors(function: str) -> None:
     system = quadruped()
     assert len(VECTOR.findall(text(system, function))) > 50
     assert not VECTOR.findall(text(system, function, "none"))
@@ -66,7 +66,7 @@ def test_legs_share_vectors(function: str) -> None:
     assert {vector.width for vector in made.vectors} == {4}
 
 
-def test_mirrored_legs_hardly_need_signs_of_their_own() -> None:
+def test_mirrored_legs_need_few_sign_changes() -> None:
     made = []
     for mirrored in (True, False):
         program = Compilation(quadruped(mirrored), sf.Options(functions=("forward_dynamics",))).program
@@ -81,7 +81,7 @@ def test_mirrored_legs_hardly_need_signs_of_their_own() -> None:
     assert right.spared > 0.99 * same.spared
 
 
-def test_the_cheaper_forward_dynamics_is_chosen_with_limbs_in_mind() -> None:
+def test_forward_dynamics_is_chosen_by_cost_with_shared_limbs() -> None:
     """Factors of M take fewer operations; of those of articulated bodies, legs share more."""
     counts = {}
     for method in ("articulated", "factors"):
@@ -102,7 +102,7 @@ def test_rows_of_equal_parts_are_loops() -> None:
     assert "for (i = 0; i < " in stated and not VECTOR.findall(stated)
 
 
-def test_vectors_do_not_wait_for_themselves() -> None:
+def test_vectors_have_no_cyclic_dependences() -> None:
     """A vector of the second limb's end and the first one's would wait for a pack, whose other lane waits for it."""
     g = Graph()
     q = [g.input("q", i) for i in range(2 * JOINTS)]

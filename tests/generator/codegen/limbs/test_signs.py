@@ -36,7 +36,7 @@ def mirrored(g: Graph, q: Joint, k: int) -> Edge:
     return g.add(g.mul(x, x), g.mul(g.mul(x, y), side))
 
 
-def test_mirror_images_need_no_signs_of_their_own() -> None:
+def test_mirror_images_need_no_sign_changes() -> None:
     graph, edges = of_limbs(4, mirrored)
     made = plan(graph, 4, edges)
     assert {lane for node, vector in made.vector_of_node.items() for lane, _ in [vector.nodes[node]]} == {0, 1, 2, 3}
@@ -74,5 +74,5 @@ def test_the_sign_of_a_product_with_a_number_is_chosen_by_its_reader() -> None:
     }
 
 
-def test_products_are_lane_by_lane() -> None:
+def test_products_are_formed_lane_by_lane() -> None:
     assert products((2, -3, 4), (1, -1, -1), (-1, -1, 1)) == (-2, -3, -4)

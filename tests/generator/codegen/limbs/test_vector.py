@@ -169,7 +169,7 @@ def test_brackets_and_signs_match_the_graph(limb: Callable[[Graph, Joint, int], 
 
 
 @pytest.mark.parametrize(("count", "types"), [(2, {"sym_pair"}), (3, {"sym_quad"}), (4, {"sym_quad"})])
-def test_lanes_without_a_limb_are_as_harmless_as_the_first(count: int, types: set[str], tmp_path: Path) -> None:
+def test_unused_lanes_repeat_the_first_limb(count: int, types: set[str], tmp_path: Path) -> None:
     """A zero there would be divided by, which programs that trap floating-point exceptions stop at."""
 
     def limb(g: Graph, q: Joint, k: int) -> Edge:

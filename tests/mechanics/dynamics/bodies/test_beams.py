@@ -37,7 +37,7 @@ def states(m: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("retain", ORDERS)
 @pytest.mark.parametrize("name", NAMES)
-def test_forward_undoes_inverse(name: str, retain: str, rng: np.random.Generator) -> None:
+def test_forward_dynamics_of_beams_inverts_inverse_dynamics(name: str, retain: str, rng: np.random.Generator) -> None:
     """Ties M, by composite bodies, to M a + h, by accelerations: they share no term."""
     m = model(name, retain)
     q, v = states(m, rng)

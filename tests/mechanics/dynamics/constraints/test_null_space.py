@@ -65,7 +65,7 @@ def nested(inertia: float) -> sf.System:
     ("inertia", "backend"),
     [*((inertia, "interpreter") for inertia in (1e-2, 1e-6, 1e-10, 1e-13, 0.0)), (1e-10, "c"), (0.0, "c")],
 )
-def test_a_light_body_costs_no_digits(inertia: float, form: str, backend: str) -> None:
+def test_a_light_body_does_not_reduce_accuracy(inertia: float, form: str, backend: str) -> None:
     """Closed form: (9 J + 16 I) v2' = 3 u1 + u2, v1' = 3 v2'; by M alone, six digits are left at 1e-10."""
     m = sf.compile(nested(inertia), sf.Options(constraints=form, backend=backend))  # type: ignore[arg-type]
     a = m.forward_dynamics([0.3, -0.4], [1.5, 0.5], [0.7, -0.2])

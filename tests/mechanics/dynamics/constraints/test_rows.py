@@ -106,7 +106,7 @@ class TestMultipliers:
     """Repeated, contradicting and missing conditions, in C and in NumPy."""
 
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_conditions_that_repeat_each_other(self, backend: str) -> None:
+    def test_redundant_conditions_leave_the_motion_unchanged(self, backend: str) -> None:
         m = sf.compile(MODELS["parallelogram"], sf.Options(functions=_SOLVED, backend=backend))  # type: ignore[arg-type]
         at = sf.assemble(m, [1.0, -1.0, 1.0, 1.0], np.ones(4))
         a, lam, rank = m.constrained_dynamics(at.q, at.v, [0.7])
@@ -117,7 +117,7 @@ class TestMultipliers:
         assert lam == pytest.approx(least, rel=1e-8, abs=1e-9)
 
     @pytest.mark.parametrize("drift", [0.0, 1e-9, 1e-8])
-    def test_a_little_drift_does_no_harm(self, drift: float) -> None:
+    def test_slight_drift_does_not_change_accelerations(self, drift: float) -> None:
         m = sf.compile(MODELS["parallelogram"], sf.Options(functions=_SOLVED))
         at = sf.assemble(m, [1.0, -1.0, 1.0, 1.0], np.ones(4))
         there = m.forward_dynamics(at.q, at.v, [0.7])
@@ -125,7 +125,7 @@ class TestMultipliers:
         assert np.abs(near - there).max() <= 100 * drift
 
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_a_massless_body_that_the_loop_holds(self, backend: str) -> None:
+    def test_a_massless_body_held_by_a_loop_accelerates(self, backend: str) -> None:
         """The last bar of a four-bar without mass: M is singular, the mechanism is not."""
         bars = [
             sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),

@@ -64,7 +64,7 @@ def loaded(constraint: sf.Constraint, joint: sf.Joint, frame: sf.Frame) -> tuple
 
 
 class TestStatics:
-    def test_a_bar_on_a_hinge_and_a_support(self) -> None:
+    def test_a_support_carries_its_share_of_the_weight(self) -> None:
         """The support at 1 m carries 0.3 of the weight."""
         rest = sf.Closure("rest", ("world", None), ("b", "end"), ("z",))
         m, lam = loaded(rest, sf.Joint("hinge", "revolute", axis=(0, 1, 0)), sf.Frame("end", (1, 0, 0)))
@@ -73,7 +73,7 @@ class TestStatics:
         down = m.closure_wrench("rest", [0.0], lam, on="first")
         assert down == pytest.approx([0, 0, -0.6 * G, 0, 0.6 * G, 0], abs=1e-12)
 
-    def test_the_tension_of_a_rod(self) -> None:
+    def test_rod_tension_balances_the_weight(self) -> None:
         """A rod at 30 degrees to a bar's end holds the share 0.3 of the weight: T sin 30 = 0.3 m g."""
         x = 1 - np.cos(np.pi / 6)
         hook = sf.RigidBody("hook", None, None, [sf.Frame("eye", (x, 0, 0.5))])

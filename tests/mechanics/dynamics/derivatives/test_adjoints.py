@@ -86,7 +86,7 @@ def test_multipliers_have_products_by_one_more_solution_of_the_same_system(case:
 
 
 @pytest.mark.parametrize("case", ["joints2", "heavy_top", "gyroscope", "friction_arm", "slider_crank", "puma560"])
-def test_the_sweep_costs_at_most_four_operations_for_each_one(case: str) -> None:
+def test_reverse_mode_needs_at_most_four_times_the_operations(case: str) -> None:
     tree = Compilation(system(case)).tree
     for name in TRANSPOSED:
         e = Equations(tree)
@@ -128,7 +128,7 @@ def test_a_transposed_cotangent_is_refused_though_it_has_as_many_entries(rng: np
         m.vjp("frame_jacobian", frame, q=q, **{group: J_bar.T})
 
 
-def test_inputs_of_no_entries_may_be_left_out(rng: np.random.Generator) -> None:
+def test_empty_inputs_may_be_omitted(rng: np.random.Generator) -> None:
     """A tree has no multipliers: `lam_bar`, or `lam`, is empty, and says nothing."""
     m = model("double_pendulum")
     given = {"q": rng.normal(size=2), "v": rng.normal(size=2), "u": np.zeros(m.nu)}

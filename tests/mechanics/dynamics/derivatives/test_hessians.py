@@ -54,20 +54,20 @@ def check(H: np.ndarray, reference: np.ndarray) -> None:
     np.testing.assert_allclose(H, reference, rtol=0, atol=TOLERANCE * scale)
 
 
-def test_of_forward_dynamics(m: sf.Model, rng: np.random.Generator) -> None:
+def test_forward_dynamics_hessian_matches_differences(m: sf.Model, rng: np.random.Generator) -> None:
     at = arguments(m, rng, "u")
     weights = {"a_bar": rng.normal(size=m.nv), "lam_bar": rng.normal(size=m.nc)}
     (H,) = m.evaluate("forward_dynamics_hessian", **at, **weights)
     check(H, differences(m, "forward_dynamics", "", at, **weights))
 
 
-def test_of_inverse_dynamics(m: sf.Model, rng: np.random.Generator) -> None:
+def test_inverse_dynamics_hessian_matches_differences(m: sf.Model, rng: np.random.Generator) -> None:
     at, weights = arguments(m, rng, "a"), {"tau_bar": rng.normal(size=m.nv)}
     (H,) = m.evaluate("inverse_dynamics_hessian", **at, **weights)
     check(H, differences(m, "inverse_dynamics", "", at, **weights))
 
 
-def test_of_a_frame(m: sf.Model, rng: np.random.Generator) -> None:
+def test_frame_hessian_matches_differences(m: sf.Model, rng: np.random.Generator) -> None:
     at = {key: x for key, x in arguments(m, rng, "u").items() if key in ("q", "par")}
     frame, weights = m.names.frames[-1], {"p_WF_bar": rng.normal(size=3)}
     (H,) = m.evaluate("frame_position_hessian", frame, **at, **weights)
@@ -75,7 +75,7 @@ def test_of_a_frame(m: sf.Model, rng: np.random.Generator) -> None:
 
 
 @pytest.mark.parametrize("name", ["cart_pole", "four_bar"])
-def test_c_has_the_interpreters_numbers(name: str, rng: np.random.Generator) -> None:
+def test_c_hessians_match_the_interpreter(name: str, rng: np.random.Generator) -> None:
     """The routine in C and its twin: both solve by factors of their own."""
     models = [sf.compile(system(name), sf.Options(FUNCTIONS[:1], backend=each)) for each in ("c", "interpreter")]
     at = arguments(models[0], rng, "u") | {"a_bar": rng.normal(size=models[0].nv)}

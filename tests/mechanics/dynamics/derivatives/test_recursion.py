@@ -50,7 +50,7 @@ def test_recursive_derivatives_match_the_graph(name: str, rng: np.random.Generat
         assert error <= 1e-13 * m.nv * max(1.0, np.abs(expected).max())
 
 
-def test_a_base_in_fast_flight_costs_no_digits(rng: np.random.Generator) -> None:
+def test_a_fast_moving_base_does_not_reduce_accuracy(rng: np.random.Generator) -> None:
     """What a steady flight of 10 km/s changes is nothing, to the digits of a robot at rest."""
     m = model("space_arm", "interpreter")
     q, v = m.random_state(rng)
@@ -63,7 +63,7 @@ def test_a_base_in_fast_flight_costs_no_digits(rng: np.random.Generator) -> None
         assert np.abs(in_flight - at_rest)[arm, arm].max() <= 1e-14 * np.abs(at_rest[arm, arm]).max()
 
 
-def test_a_spinning_rotor_on_a_link_is_left_to_the_graph() -> None:
+def test_a_rotor_on_a_moving_link_uses_the_graph() -> None:
     e = Equations(build_tree(MODELS["gyroscope"]))
     assert e.slopes_route.method == "graph"
     recursive, differentiated = both(e)

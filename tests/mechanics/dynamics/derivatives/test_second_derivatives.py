@@ -11,7 +11,12 @@ import symofros as sf
 from reference_models.rigid.random_tree import random_tree
 from symofros.expr.numerics.evaluate import interpret
 from symofros.expr.program import Function, Output, Program
-from symofros.mechanics.dynamics.derivatives.second_derivatives import Tensor, by_two_speeds, of_bias, of_mass_matrix
+from symofros.mechanics.dynamics.derivatives.second_derivatives import (
+    Tensor,
+    bias_second_derivatives,
+    by_two_speeds,
+    mass_matrix_derivatives,
+)
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology.tree import build_tree
 from tests.models import MOTORS, system
@@ -86,7 +91,7 @@ def test_the_mass_matrix_determines_the_bias_by_two_speeds(
     e, m = Equations(build_tree(stated)), sf.compile(stated, sf.Options(("mass_matrix",), backend="interpreter"))
     q, v = m.random_state(rng)
     inputs = {"q": q[None], "v": v[None], "u": rng.normal(size=(1, m.nu))}
-    of_mass = of_bias(e.kinematics, e.M, of_mass_matrix(e.kinematics, e.M))
+    of_mass = bias_second_derivatives(e.kinematics, e.M, mass_matrix_derivatives(e.kinematics, e.M))
     of_graph = by_two_speeds(e.kinematics, e.by_v(e.h))
     one, other = (values(e, tensor, inputs) for tensor in (of_mass, of_graph))
     np.testing.assert_allclose(one, other, rtol=0, atol=1e-12 * np.abs(other).max())

@@ -78,7 +78,7 @@ def test_articulated_bodies_accelerate_beams_as_factors_do(case: str, retain: st
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_prescribed_motion_inside_a_tree(seed: int, rng: np.random.Generator) -> None:
+def test_a_prescribed_motion_inside_a_tree_matches_the_factors(seed: int, rng: np.random.Generator) -> None:
     stated = random_tree(900 + seed, kinds=("revolute", "prismatic", "universal", "ball"))
     body = next(b for b in stated.bodies[2:] if b.joint is not None and b.joint.kind != "ball")
     assert body.joint is not None
@@ -185,14 +185,14 @@ def error(links: int, way: Way, load: float) -> float:
     return float(np.exp(np.mean(np.log(errors))))
 
 
-def test_long_chains_cost_articulated_bodies_no_digits() -> None:
+def test_articulated_bodies_stay_accurate_in_long_chains() -> None:
     """Twice the links: factors lose a digit more (n^4), articulated bodies nothing to speak of (below n)."""
     lost = {way: np.log2(error(16, way, 1.0) / error(8, way, 1.0)) for way in WAYS}
     assert lost["articulated"] < 1.0
     assert lost["factors"] > 3.0
 
 
-def test_a_heavy_load_costs_articulated_bodies_fewer_digits() -> None:
+def test_articulated_bodies_lose_fewer_digits_under_heavy_loads() -> None:
     """Both lose in proportion to the load on sixteen links, from levels that lie hundreds of times apart."""
     for way in WAYS:
         slope = np.log10(error(16, way, 1e8) / error(16, way, 1e4)) / 4.0

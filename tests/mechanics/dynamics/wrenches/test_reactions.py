@@ -107,7 +107,7 @@ def test_power_of_the_drives_and_actuators_is_the_rate_of_energy() -> None:
     assert slope(energy, 1e-4) == pytest.approx(sum(powers), abs=1e-9 * np.abs(powers).sum())
 
 
-def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
+def test_drive_power_balances_in_a_loop_with_a_beam() -> None:
     """Wrenches through the loop are those of its multipliers: without them the drive of the crank would be wrong."""
     system = MODELS["flexible_slider_crank"]
     bodies = [replace(body, retain="all", damping=0.0) if isinstance(body, sf.Beam) else body for body in system.bodies]
@@ -129,7 +129,7 @@ def test_power_of_a_crank_that_drives_a_loop_with_a_beam() -> None:
 
 
 class TestClosedForms:
-    def test_the_torque_of_a_pendulum_that_follows_its_drive(self) -> None:
+    def test_the_pendulum_drive_supplies_the_required_torque(self) -> None:
         """tau = (J + m l^2 + armature) theta'' + m g l sin(theta); the pin carries the weight and the inertia."""
         mass, length, J, armature = 2.0, 0.5, 0.1, 0.03
         joint = sf.Joint("pin", "revolute", axis=(0, -1, 0), prescribed=True, armature=armature)

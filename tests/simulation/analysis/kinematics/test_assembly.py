@@ -71,19 +71,19 @@ def test_a_loop_that_is_too_short_is_refused_from_a_line_too() -> None:
         sf.assemble(m)
 
 
-def test_out_of_reach_names_the_condition() -> None:
+def test_unreachable_postures_name_the_condition() -> None:
     m = sf.compile(MODELS["slider_crank"], FUNCTIONS).with_parameters(L2=0.05)
     with pytest.raises(sf.AssemblyError, match=r"phi = .* at 'gudgeon\.y'; held: turn"):
         sf.assemble(m, [1.5, -1.5, 0.0], held=["turn"])
 
 
-def test_speeds_that_cannot_be() -> None:
+def test_impossible_speeds_are_refused() -> None:
     m = sf.compile(MODELS["four_bar"], FUNCTIONS)
     with pytest.raises(sf.AssemblyError, match="no speeds keep it closed"):
         sf.assemble(m, [1.2, -1.2, 1.2], [1.0, 0.0, 0.0], held=["q1", "q3"])
 
 
-def test_the_wrong_way_round() -> None:
+def test_closures_facing_the_wrong_way_are_refused() -> None:
     body = sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)))
     shut = sf.Closure("latch", ("world", None), ("b", None), (), ("z", "x", "y"))
     m = sf.compile(sf.System("s", (body,), constraints=(shut,)), FUNCTIONS)
@@ -92,7 +92,7 @@ def test_the_wrong_way_round() -> None:
         sf.assemble(m, [np.pi - 0.1])
 
 
-def test_a_guess_where_constraints_are_not_smooth() -> None:
+def test_a_guess_with_nonsmooth_constraints_is_refused() -> None:
     """A disc that lies flat touches the ground all around: no direction leads to its contact."""
     with pytest.raises(sf.AssemblyError, match=r"has no finite derivative there\n(.*\n)*.*another guess"):
         sf.assemble(sf.compile(MODELS["rolling_disc"], FUNCTIONS))

@@ -68,7 +68,7 @@ def test_a_hinge_may_turn_and_may_not_face_the_other_way() -> None:
         sf.simulate(hinged(), half_turn(np.array([1.0, 0.5, 0.0])), t_end=0.01)
 
 
-def test_of_a_batch_those_that_face_the_wrong_way_are_off() -> None:
+def test_wrongly_facing_members_of_a_batch_are_found() -> None:
     """One among others, as one that starts off the constraints otherwise."""
     good = np.zeros(14)
     good[[6, 13]] = 1.0

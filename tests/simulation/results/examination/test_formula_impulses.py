@@ -29,7 +29,7 @@ def test_no_fixed_step_passes_over_a_pulse_in_silence(pulse: sf.Model, method: s
 
 
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "generalized_alpha", "dopri5"])
-def test_pulses_of_many_steps_are_met_in_silence(pulse: sf.Model, method: str) -> None:
+def test_resolved_pulses_get_no_note(pulse: sf.Model, method: str) -> None:
     """Wherever between two steps they begin."""
     for place in PLACES:
         assert not _run(pulse, method, place, 0.5).outcome.notes

@@ -37,7 +37,7 @@ def oscillation(method: str, z: float, damping: float, steps: int, **options) ->
 
 @pytest.mark.parametrize("damping", [0.0, 0.05, 1.5])
 @pytest.mark.parametrize("method", JUDGED)
-def test_a_note_where_the_error_is_large_and_there_alone(method: str, damping: float) -> None:
+def test_only_large_errors_are_noted(method: str, damping: float) -> None:
     """The tolerance of a tenth is met within a factor of three: shares and modes are those of a few states."""
     for z in STIFFNESS:
         for steps in (20, 300):

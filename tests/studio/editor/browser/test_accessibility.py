@@ -23,7 +23,9 @@ blocks:
 
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
-def test_the_page_and_its_windows(opened: Serve, page: Page, faults: Faults, picture: Picture, theme: str) -> None:
+def test_the_page_and_its_windows_are_accessible(
+    opened: Serve, page: Page, faults: Faults, picture: Picture, theme: str
+) -> None:
     page.emulate_media(color_scheme=theme)
     opened("robot.yaml", source=steps.ROBOT)
     assert faults() == []
@@ -56,7 +58,7 @@ def test_the_page_and_its_windows(opened: Serve, page: Page, faults: Faults, pic
         picture("dark")
 
 
-def test_a_diagram_and_its_windows(opened: Serve, page: Page, faults: Faults) -> None:
+def test_a_diagram_and_its_windows_are_accessible(opened: Serve, page: Page, faults: Faults) -> None:
     opened("drawn.yaml", content=DRAWN)
     assert faults() == []
     steps.open_window(page, "blocks/slow")

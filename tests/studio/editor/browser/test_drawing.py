@@ -120,7 +120,7 @@ def test_a_typed_start_is_kept_or_refused(opened: Serve, page: Page) -> None:
     expect(steps.results(page)).to_contain_text("of computing", timeout=steps.JOB)
 
 
-def test_a_double_pendulum_from_an_empty_canvas(opened: Serve, page: Page, picture: Picture) -> None:
+def test_a_double_pendulum_is_drawn_from_an_empty_canvas(opened: Serve, page: Page, picture: Picture) -> None:
     server = opened("double.yaml")
     picture("empty")
 

@@ -25,7 +25,7 @@ bodies:
 WHOLE = "(element) => element.scrollWidth <= element.clientWidth"
 
 
-def test_names_that_nobody_gives_are_flagged_in_fields_that_the_file_has_not_yet(arm: Server, page: Page) -> None:
+def test_unknown_names_are_flagged_in_new_fields(arm: Server, page: Page) -> None:
     steps.open_window(page, "bodies/upper")
     steps.tab(page, "Forces")
     field = steps.fill(page, "Effort", "-tauu*3", nth=1)
@@ -110,7 +110,7 @@ def test_units_are_shown_whole(opened: Serve, page: Page) -> None:
         fits(page, width)
 
 
-def test_the_sample_time_is_called_so(opened: Serve, page: Page) -> None:
+def test_the_sample_time_field_is_labelled(opened: Serve, page: Page) -> None:
     opened("wave.yaml", content="symofros_diagram: 1\nblocks: {wave: {kind: sine}}\n")
     steps.open_window(page, "blocks/wave")
     sample_time = page.get_by_label("Sample time", exact=True)
@@ -183,7 +183,7 @@ FILES = (
 
 
 @pytest.mark.parametrize("file", FILES)
-def test_a_window_that_is_only_looked_at_changes_nothing(opened: Serve, page: Page, file: str) -> None:
+def test_viewing_a_window_changes_nothing(opened: Serve, page: Page, file: str) -> None:
     opened("model.yaml", source=steps.MODELS / file)
     seen = page.locator(".react-flow__node, .react-flow__edge.closure, .react-flow__edge.connection")
     for index in range(seen.count()):

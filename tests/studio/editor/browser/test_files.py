@@ -35,7 +35,7 @@ def test_a_urdf_is_imported(serve: Serve, page: Page, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["SVG", "PNG"])
-def test_a_picture_of_the_diagram(arm: Server, page: Page, kind: str) -> None:
+def test_a_picture_of_the_diagram_is_downloaded(arm: Server, page: Page, kind: str) -> None:
     with page.expect_download() as download:
         steps.menu(page, "File", f"Picture of the diagram, {kind}")
     data = Path(download.value.path()).read_bytes()

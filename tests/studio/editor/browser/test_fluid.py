@@ -122,7 +122,7 @@ def test_big_models_stay_fluid(opened: Serve, page: Page, tmp_path: Path, name: 
 
 
 @pytest.mark.slow
-def test_bodies_fold_and_are_found(opened: Serve, page: Page, tmp_path: Path) -> None:
+def test_bodies_can_be_folded_and_found(opened: Serve, page: Page, tmp_path: Path) -> None:
     sf.save(chain(BODIES), tmp_path / "chain.yaml")
     opened("chain.yaml")
     blocks = page.locator(".react-flow__node")

@@ -115,7 +115,7 @@ def feed(page: Page, name: str, source: str) -> None:
 
 
 @pytest.mark.slow
-def test_from_nothing_to_a_controlled_arm_that_plays_and_is_exported(
+def test_a_new_user_builds_plays_and_exports_a_controlled_arm(
     serve: Serve, page: Page, picture: Picture, tmp_path: Path
 ) -> None:
     server = serve("arm.yaml")

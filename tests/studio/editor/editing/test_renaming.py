@@ -36,7 +36,7 @@ CASES = [(name, path, old) for name in sorted(FILES) for path, old in names_of(n
 
 
 @pytest.mark.parametrize(("name", "path", "old"), CASES[::27], ids=lambda x: str(x) if isinstance(x, str) else None)
-def test_there_and_back_gives_the_first_bytes_and_no_problems(name: str, path: Path, old: str) -> None:
+def test_renaming_and_back_restores_the_bytes(name: str, path: Path, old: str) -> None:
     there = renamed(TEXTS[name], path, "brand_new")
     assert not analyse(FILES[name], there).problems
     back = path if "joint" in path else (*path[:-1], "brand_new")

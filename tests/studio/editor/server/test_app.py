@@ -36,7 +36,7 @@ def test_a_document_has_the_fields_of_the_contract(client: TestClient) -> None:
     assert found["parameters"][0] == mass
 
 
-def test_edit_undo_redo_save(client: TestClient, folder: Path) -> None:
+def test_edit_undo_redo_and_save_change_the_document(client: TestClient, folder: Path) -> None:
     edit = {"op": "set", "path": ["parameters", "m", "value"], "value": 3}
     first = client.post("/api/edit", json={"revision": 1, "label": "mass", "edits": [edit]}).json()
     assert first["dirty"] and first["undo_label"] == "mass" and first["data"]["parameters"]["m"]["value"] == 3
@@ -70,7 +70,7 @@ def test_a_conflict_on_disk_carries_both_texts(client: TestClient, folder: Path)
     assert saved.status_code == 200 and (folder / "four_bar.yaml").read_text().endswith("# ours\n")
 
 
-def test_files_open_new(client: TestClient, folder: Path) -> None:
+def test_files_are_listed_opened_and_created(client: TestClient, folder: Path) -> None:
     assert [f["path"] for f in client.get("/api/files").json()["files"]] == ["double_pendulum.yaml", "four_bar.yaml"]
     assert client.post("/api/open", json={"path": "double_pendulum.yaml"}).json()["name"] == "double_pendulum.yaml"
     assert client.post("/api/open", json={"path": "../x.yaml"}).status_code == 422

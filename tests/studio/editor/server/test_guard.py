@@ -161,7 +161,7 @@ def test_the_page_s_folder_is_not_left(client: TestClient) -> None:
         assert answer.status_code in (400, 404, 405) and b"import" not in answer.content, path
 
 
-def test_odd_bodies_are_refused_and_the_server_goes_on(client: TestClient, session: Session) -> None:
+def test_malformed_bodies_are_refused_and_the_server_continues(client: TestClient, session: Session) -> None:
     for body in (b"", b"[]", b"{", b"3", b"[" * 200_000, b'{"revision": NaN, "text": "a"}', b"\xff", b"null"):
         answer = client.post("/api/text", content=body, headers={"Content-Type": "application/json"})
         assert answer.status_code in (409, 422) and "error" in answer.json(), body[:20]

@@ -79,7 +79,7 @@ def test_nodes_transform_their_contents() -> None:
         ("<contributor><authoring_tool>VCGLib | MeshLab</authoring_tool></contributor><up_axis>Y_UP</up_axis>", PLAIN),
     ],
 )
-def test_units_and_axes(asset: str, expected: np.ndarray) -> None:
+def test_units_and_axes_of_collada_are_applied(asset: str, expected: np.ndarray) -> None:
     assert np.allclose(corners(document(asset=asset)), expected)
 
 

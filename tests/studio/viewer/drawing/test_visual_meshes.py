@@ -17,7 +17,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.description.visual import Visual
 from symofros.studio.viewer.drawing import visual_meshes
-from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
 from tests.studio.viewer.drawing.test_meshes import volume
@@ -100,7 +100,7 @@ def test_unreadable_meshes_are_reported_and_left_out(name: str, content: bytes, 
 
 def test_too_large_ones_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stl(tmp_path / "m.stl")
-    monkeypatch.setattr(visual_meshes, "MOST_BYTES", 100)
+    monkeypatch.setattr(visual_meshes, "MAX_BYTES", 100)
     with pytest.warns(UserWarning, match="more than 100 bytes"):
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl"))) is None
 
@@ -115,12 +115,12 @@ def test_bodies_look_as_their_file_says() -> None:
     low, high = part.mesh.vertices.min(axis=0), part.mesh.vertices.max(axis=0)
     assert np.allclose([low, high], [[-0.05, -0.1, 0.45], [0.05, 0.1, 0.55]])
     # Boxes of inertia would hide in them.
-    assert "inertias" not in shown_at_first(drawing) and "visuals" in shown_at_first(drawing)
-    assert "inertias" in shown_at_first(Mechanism(MODELS["double_pendulum"]).drawing())
+    assert "inertias" not in initial_layers(drawing) and "visuals" in initial_layers(drawing)
+    assert "inertias" in initial_layers(Mechanism(MODELS["double_pendulum"]).drawing())
     # The skeleton stays until every link has a look of its own.
-    assert "bodies" in shown_at_first(drawing)
+    assert "bodies" in initial_layers(drawing)
     whole = Mechanism(replace(system, visuals={"upper": (box,), "lower": (box,)})).drawing()
-    assert not {"bodies", "joints"} & shown_at_first(whole)
+    assert not {"bodies", "joints"} & initial_layers(whole)
 
 
 def test_a_damaged_collada_file_leaves_its_body_without_a_look_and_all_else_drawn(tmp_path: Path) -> None:

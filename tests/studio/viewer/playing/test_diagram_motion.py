@@ -11,7 +11,7 @@ from symofros import blocks
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import SymofrosError, UnknownNameError
 from symofros.studio.viewer.drawing.poses import Mechanism
-from symofros.studio.viewer.playing.diagram_motion import shown_of
+from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 
 
 def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
@@ -35,7 +35,7 @@ def two() -> DiagramRun:
 
 def test_the_chosen_mechanism_moves_as_it_did(two: DiagramRun) -> None:
     for i, name in enumerate(("left", "right")):
-        system, states = shown_of(two, name)
+        system, states = shown_system_and_states(two, name)
         assert system == MODELS["double_pendulum"] and np.array_equal(states.q, two[f"{name}.q"])
         assert states.q[0, 0] == 0.5 + i and states.par[2] == 0.6 + i
 
@@ -57,7 +57,7 @@ def test_prescribed_inputs_match_those_of_the_run() -> None:
     d.add(blocks.Sequence(name="hub", t=t, values=np.stack([3 * t, 3 + 0 * t, 0 * t], axis=1)))
     d.add(blocks.ForwardDynamics(name="plant", model="beam"), u="hub.y")
     run = sf.Simulation(d).run(0.2, dt=1e-3, record=0.1)
-    system, states = shown_of(run)
+    system, states = shown_system_and_states(run)
     assert np.allclose(states.u[:, 0], [0.0, 0.3, 0.6])
     posture = Mechanism(system).posture(states.q, states.u)
     assert np.allclose(posture.R[-1, 0, :2, 0], [np.cos(0.6), np.sin(0.6)])

@@ -199,7 +199,7 @@ def model(name: str) -> sf.Model:
 
 
 @pytest.mark.parametrize("name", ["joint_zoo", "torque_free_body", "free_boom", "planar_robot"])
-def test_there_and_back(name: str, rng: np.random.Generator) -> None:
+def test_slider_values_and_configurations_are_inverse(name: str, rng: np.random.Generator) -> None:
     m = model(name)
     for _ in range(5):
         q, _ = m.random_state(rng)

@@ -10,7 +10,7 @@ import pytest
 
 from reference_models import MODELS
 from symofros.studio.viewer.drawing.drawing import Drawing, DrawnPart
-from symofros.studio.viewer.drawing.layers import shown_at_first
+from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.meshes import Mesh, box, sphere
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.render.camera import Camera
@@ -87,7 +87,7 @@ def robot_picture(bend: float, exaggeration: float, layers: frozenset[str] | Non
     q = mechanism.model.neutral()
     q[mechanism.model.names.q.index("link1.bend_y[2]")] = bend
     posture = mechanism.posture(q, exaggeration=exaggeration)
-    shown = shown_at_first(drawing) if layers is None else layers
+    shown = initial_layers(drawing) if layers is None else layers
     return picture(drawing, posture, shown, Camera.of(drawing), 400, 300).astype(int)
 
 

@@ -54,7 +54,7 @@ def engine_of(subject: Subject, **options: bool) -> exudyn_frf.FloatingFrameEngi
 
 
 @pytest.mark.parametrize("changed", BEAMS.values(), ids=list(BEAMS))
-def test_floating_frame_term_by_term(changed: dict[str, Any]) -> None:
+def test_floating_frame_matches_term_by_term(changed: dict[str, Any]) -> None:
     """Mass matrix, quadratic velocity terms and weight, strain and damping."""
     subject = floating(**changed)
     states, model, engine = states_of(subject), ours(subject), engine_of(subject)

@@ -79,7 +79,7 @@ def test_every_kind_of_joint_agrees_with_pinocchio() -> None:
 
 
 @pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ["free"]))
-def test_a_beam_on_every_kind_of_joint(kind: str) -> None:
+def test_a_beam_on_every_kind_of_joint_agrees(kind: str) -> None:
     joint = sf.Joint("j", kind, position=(0.1, 0.2, 0.3), axis=(1, 2, 2), pitch=0.2)  # type: ignore[arg-type]
     load = sf.RigidBody("load", sf.Joint("elbow", "revolute", "b", "tip", axis=(0, 1, 0)), UNIT)
     checked(sf.System(kind, [beam("b", joint), load]))
@@ -89,7 +89,7 @@ def test_a_beam_on_every_kind_of_joint(kind: str) -> None:
     "family",
     sampled(("spline", "polynomial", "legendre", "clamped_free", "hermite"), ["spline"]),
 )
-def test_every_family_in_three_directions(family: str) -> None:
+def test_every_family_agrees_in_three_directions(family: str) -> None:
     joint = sf.Joint("j", "revolute", axis=(1, 2, 2))
     counts = {"bend_y": 2, "bend_z": 2, "twist": 1}
     checked(sf.System(family, [beam("b", joint, family=family, **counts)]))
@@ -209,7 +209,7 @@ def test_moments_on_sections_are_compared(retain: Any) -> None:
     assert result.ok
 
 
-def test_few_states_where_each_takes_long(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_slow_derivations_use_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lagrangian, "MOST_COLUMNS", 44)
     result = checked(sf.System("s", [beam("b", sf.Joint("j", "revolute"))]))
     (row,) = rows(result, "bias")

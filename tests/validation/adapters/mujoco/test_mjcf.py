@@ -121,7 +121,7 @@ def test_only_mjcf_files_are_accepted() -> None:
 
 
 @pytest.mark.slow
-def test_the_command_lines(tmp_path: Path) -> None:
+def test_command_lines_reproduce_the_file(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
     # Where it is read with other joints or forces than it states, MuJoCo's own reading is no second opinion.
     for reading in (ReadingOptions(True), ReadingOptions(dissipation="none"), ReadingOptions(limits="stops")):

@@ -128,7 +128,7 @@ def on_an_arm(kind: str) -> sf.System:
 
 
 @pytest.mark.parametrize("kind", sampled(tuple(JOINTS), ("universal", "a curve", "planar")))
-def test_differences_in_40_digits(kind: str) -> None:
+def test_derivatives_match_differences_in_40_digits(kind: str) -> None:
     """Speeds are rates of coordinates here, so q + h e_k moves along speed k."""
     system = on_an_arm(kind)
     program = sf.program_of(system, ("inverse_dynamics",))
@@ -184,7 +184,7 @@ def closed(name: str) -> tuple[sf.Model, pinocchio_loops.LoopEngine, States]:
 
 @pytest.mark.slow  # In every run: the same derivatives against differences, below.
 @pytest.mark.parametrize("name", AGREED)
-def test_closed_loops_against_pinocchio(name: str) -> None:
+def test_closed_loop_derivatives_match_pinocchio(name: str) -> None:
     """computeConstraintDynamicsDerivatives, along changes of q and v that keep phi = 0 and G v = 0.
 
     Along others, points that are apart or drift apart add terms to the conditions' second rates which each side states
@@ -202,7 +202,7 @@ def test_closed_loops_against_pinocchio(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled(CLOSED, SMALL_CLOSED))
-def test_closed_loops_against_differences(name: str) -> None:
+def test_closed_loop_derivatives_match_differences(name: str) -> None:
     """Of sixth order, along the same changes; rounding of v' over the step is what is left."""
     m, _, states = closed(name)
     weights, h = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)), 1e-4
@@ -219,7 +219,7 @@ def test_closed_loops_against_differences(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled(CLOSED, SMALL_CLOSED))
-def test_closed_loops_against_slopes_of_pinocchios_accelerations(name: str) -> None:
+def test_closed_loop_derivatives_match_differences_of_pinocchio(name: str) -> None:
     """Central differences; their error of order h^2 and rounding over h leave some 1e-7."""
     m, engine, states = closed(name)
     h = 1e-5

@@ -38,7 +38,7 @@ def test_closed_forms_are_periodic_and_start_right() -> None:
     assert psi[0] == pytest.approx(np.pi) and (psi[2] - psi[0]) / 1e-4 == pytest.approx(0.3, rel=1e-6)
 
 
-def test_closed_form_of_the_four_bar_against_its_equation() -> None:
+def test_the_closed_form_of_the_four_bar_satisfies_its_equation() -> None:
     solved = four_bar.four_bars.exact(1, tuple(four_bar.TIMES.tolist()))[0]
     assert four_bar.far(solved) < 1e-9 and four_bar.far(solved + 1e-3) == pytest.approx(1e-3, rel=1e-6)
 
@@ -47,7 +47,7 @@ def test_closed_form_of_the_four_bar_against_its_equation() -> None:
 def test_rods_come_within_a_hundred_thousandth_of_the_references() -> None:
     """The largest shares of deflection, effect of flexibility, length that are left at steps that are fine enough."""
     spun = spin_up.judged_model("rod", spin_up.exact_rod(6, 2)).measured(method="rodas4", rtol=1e-6, atol=1e-8)
-    arms = robot.judged_model("rods", sf.compile(robot.of_rods(5, 2))).measured(method="rodas4", rtol=1e-6, atol=1e-8)
+    arms = robot.judged_model("rods", sf.compile(robot.rod_robot(5, 2))).measured(method="rodas4", rtol=1e-6, atol=1e-8)
     swung = soft_pendulum.judged_model("rod", soft_pendulum.model(7, 2)).measured(method="rodas4", rtol=1e-6, atol=1e-8)
     assert max(spun.error, arms.error, swung.error) < 1e-5
     floor = soft_pendulum.judged_model("x", soft_pendulum.model(5, theory="second_order"))

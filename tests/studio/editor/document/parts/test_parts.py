@@ -32,7 +32,7 @@ def test_a_part_holds_its_bodies_parameters_and_inner_constraints() -> None:
 
 
 @pytest.mark.parametrize("name", ["planar_robot", "joint_zoo"])
-def test_a_part_put_in_twice_is_still_a_mechanism(name: str) -> None:
+def test_a_part_inserted_twice_gives_a_valid_mechanism(name: str) -> None:
     data, text = DATA[name], TEXTS[name]
     part = extracted(data, [body for body, entry in data["bodies"].items() if "joint" in entry])
     before = list(data["bodies"])
