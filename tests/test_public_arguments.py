@@ -119,6 +119,7 @@ def test_wrong_arguments_are_refused_in_four_parts(name: str) -> None:
         (lambda: sf.simulate(model(), t_end="1"), "t_end is not a number.*str '1'.*write 1, without quotes"),
         (lambda: sf.simulate(system()), "model is not a Model.*System.*sf.compile"),
         (lambda: sf.simulate("cart_pole.yaml"), "model is not a Model.*sf.load"),
+        (lambda: sf.Stepper(diagram()), "model is not a Model.*Diagram.*sf.Simulation"),
         (lambda: sf.equilibrium(model(), held="q"), r"held is not a list.*one alone: \['q'\]"),
         (
             lambda: sf.load("a.yaml", floating=True),

@@ -37,6 +37,8 @@ _MAKERS = {
     "Scene": "sf.load_scene(path) reads one",
     "Generator": "numpy.random.default_rng(seed) makes one",
 }
+# Names of the class that is wanted and of that which is given -> what does for the latter what was asked.
+_INSTEAD = {("Model", "Diagram"): "sf.Simulation(diagram).run(t_end=...) runs a diagram, its models with it"}
 
 
 @dataclass(frozen=True)
@@ -236,7 +238,11 @@ def _object_of(stated: Any) -> _Kind:
     noun = _with_article(stated.__name__)
     remedy = _MAKERS.get(stated.__name__, f"give {noun}")
     if not getattr(stated, "_is_protocol", False):
-        return _Kind(noun, lambda value: isinstance(value, stated), lambda _: remedy)
+
+        def instead(value: Any) -> str:
+            return _INSTEAD.get((stated.__name__, type(value).__name__), remedy)
+
+        return _Kind(noun, lambda value: isinstance(value, stated), instead)
     methods = [name for name in vars(stated) if not name.startswith("_")]
     remedy = f"it has {', '.join(methods)}"
     return _Kind(noun, lambda value: all(hasattr(value, name) for name in methods), lambda _: remedy)
