@@ -1,4 +1,4 @@
-"""Notes on what half the step, or a tighter tolerance, would change of a run.
+"""Notes on what finer steps, or a tighter tolerance, change of a run.
 
 docs/theory/simulation.md, section 8.
 """
@@ -22,7 +22,7 @@ _ALLOWED, _MOTION, _TIGHT = 0.1, 100.0, 1e-3
 
 
 def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
-    """Note on how half the step changes a run with fixed steps (17), or that this can't be told; "" if little.
+    """Note on how finer steps change a run with fixed steps (17), or that this was not tried; "" if little.
 
     Args:
         run: The run.
