@@ -170,7 +170,7 @@ class Compilation:
         return beams_at(self.tree)
 
     def parameter_problems(self, par: Array) -> list[Problem]:
-        """Problems of sets of run-time parameters (m, npar) that the description does not allow."""
+        """Problems of the first invalid set of run-time parameters among some (m, npar); [] if all are valid."""
         return self._parameter_check.problems(par)
 
     @cached_property
@@ -262,7 +262,7 @@ class Compilation:
 
 
 def inconsistencies(system: System) -> Iterator[str]:
-    """Warnings about a system: beams that soften when they spin for lack of stiffening terms, and unused inertia."""
+    """Warnings about beams: stated rotary inertia that does not count, and softening by spin without stiffening."""
     beams = system.beams
     if not beams:
         return

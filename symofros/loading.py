@@ -113,7 +113,7 @@ def load_with_sources(
 
 
 def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
-    """The system that was read; diagrams are refused.
+    """The system that was read, with remarks among its notes, and its source files.
 
     Raises:
         DescriptionError: With every problem of the file and of the mechanism.

@@ -116,7 +116,7 @@ class CheckedCalls(ABCMeta):
 
         @property
         def __signature__(cls) -> inspect.Signature:
-            """Signature of __init__, which `inspect` does not find past the method above."""
+            """Signature of __init__; `inspect` would take that of the metaclass's __call__."""
             initialise = inspect.signature(cls.__init__)
             return initialise.replace(parameters=[*initialise.parameters.values()][1:])
 
@@ -136,7 +136,7 @@ def bound(
 
 
 def checker_of(annotation: Any) -> Callable[[str, object], None] | None:
-    """A function that refuses values which an annotation does not allow; None where the annotation is not checked.
+    """A function that raises for values which an annotation does not allow; None if the annotation is not checked.
 
     The function raises ArgumentError.
     """
@@ -171,7 +171,7 @@ def shown(value: object) -> str:
 
 
 def entries_of(value: Any) -> list[Any] | None:
-    """The entries of a list; None for text, unordered collections and values without entries."""
+    """The entries of an iterable as a list; None for text, mappings, sets and what can't be iterated."""
     if isinstance(value, str | bytes | Mapping | Set) or not isinstance(value, Iterable):
         return None
     try:

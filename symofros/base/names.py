@@ -62,7 +62,7 @@ def is_rate_symbol(symbol: str) -> bool:
 
 
 def _parts(text: str) -> tuple[str, str] | None:
-    """The prefix d or dd of a rate and the name that it is the rate of; None for text without backquotes."""
+    """The prefix d or dd of a quoted name of a rate, "" of others, and the name; None if nothing is quoted."""
     match = _PARTS.fullmatch(text) if _QUOTED.fullmatch(text) else None
     if match is None:
         return None
@@ -102,7 +102,7 @@ def speed_of(text: str, speeds: Collection[str]) -> str:
 
 
 def speed_column(speed: str, coordinates: Collection[str]) -> str:
-    """Name of a speed in columns and formulas: dNAME of its coordinate, or d`NAME` where dNAME is a coordinate."""
+    """Symbol of a speed in columns and formulas: its name; dNAME or d`NAME` if a coordinate has that name."""
     if speed not in coordinates:
         return speed
     return f"d{speed}" if f"d{speed}" not in coordinates else rate_symbol(speed)

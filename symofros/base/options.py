@@ -60,7 +60,7 @@ class Options(metaclass=CheckedCalls):
     processors: Literal["native", "any"] = "native"
 
     def __post_init__(self) -> None:
-        """Convert lists to tuples, which the cache key needs, and refuse values of other types."""
+        """Convert lists to tuples, for the cache key; refuse fields of the wrong type, warn of those without effect."""
         for name in ("functions", "frames", "flags"):
             if isinstance(getattr(self, name), list):
                 object.__setattr__(self, name, tuple(getattr(self, name)))

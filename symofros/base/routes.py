@@ -77,7 +77,7 @@ def taken(quantity: str, method: str) -> Choice:
 
 
 def table_pays(products: float, full: float) -> bool:
-    """Whether products by tables are faster than those of full matrices."""
+    """Whether products by index tables take no longer than those of full matrices, given the number of each."""
     return TABLE_PRODUCT * products <= full
 
 

@@ -23,7 +23,7 @@ _DAMAGE = (OSError, ValueError, TypeError, LookupError, AttributeError, Arithmet
 
 
 def stored_text(path: Path, make: Callable[[str], T], errors: str = "strict") -> T | None:
-    """Contents of a text file.
+    """The value made from a text file; None if the file is missing or damaged.
 
     Args:
         path: The file.
@@ -45,12 +45,12 @@ def stored_text(path: Path, make: Callable[[str], T], errors: str = "strict") ->
 
 
 def stored_json(path: Path, make: Callable[[Any], T]) -> T | None:
-    """Contents of a JSON file; as in `stored_text`, `make` receives the parsed value."""
+    """The value made from the parsed contents of a JSON file; as `stored_text` otherwise."""
     return stored_text(path, lambda text: make(json.loads(text)))
 
 
 def stored_lines(path: Path, make: Callable[[Any], T]) -> list[T]:
-    """Values of the valid lines of a file with one JSON value per line.
+    """Values made from the valid lines of a file with one JSON value per line.
 
     Args:
         path: The file.

@@ -61,7 +61,7 @@ def along(
 
 
 def _rates(graph: Graph, nodes: Sequence[int], directions: Sequence[Mapping[Edge, Edge]]) -> dict[int, SignedPack]:
-    """Node -> its rates along up to WIDTH directions; constant nodes are left out."""
+    """Node -> its derivatives along up to WIDTH directions; nodes whose derivatives are all zero are left out."""
     padding = (ZERO,) * (WIDTH - len(directions))
     rates: dict[int, SignedPack] = {}
     for seed in dict.fromkeys(seed for direction in directions for seed in direction):

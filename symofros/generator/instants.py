@@ -32,7 +32,7 @@ def has_instants(tree: SpanningTree) -> bool:
 
 
 def instants_at(tree: SpanningTree) -> Callable[[Sequence[Any], Array, float, float], Array]:
-    """A function that gives a mechanism's instants from laws, parameters (npar), start and end of a run."""
+    """Function of laws, parameters (npar), start and end: the instants of a mechanism's formulas of time in a run."""
     own = timed_values(tree.system)
 
     @lru_cache(maxsize=_KEPT)

@@ -34,7 +34,7 @@ class BatchInputs:
 
 @dataclass(frozen=True)
 class GivenInputs:
-    """Inputs of a user, sorted by whether all trajectories share them.
+    """Inputs as a user gave them, sorted by whether all trajectories share them.
 
     Attributes:
         first: Inputs of the first trajectory, as `simulate` takes them.
@@ -53,7 +53,7 @@ class GivenInputs:
         return [*whole, *(values.shape[:-1] for values in self.samples.values())]
 
     def spread(self, model: Model, shape: Shape) -> BatchInputs:
-        """The inputs of a batch of that shape.
+        """Expand the inputs to a batch of that shape.
 
         Raises:
             ShapeError: An array does not fit.
@@ -75,7 +75,7 @@ class GivenInputs:
 
 
 def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
-    """Split inputs into those that vary over a batch and those that do not.
+    """Sort inputs by whether they vary over a batch.
 
     Args:
         model: Names the inputs.

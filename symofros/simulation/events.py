@@ -38,7 +38,7 @@ class Event(metaclass=CheckedCalls):
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
-    """Notes on undecided events of a run: the first of each kind.
+    """Notes on events that a run could not decide: the first of each kind.
 
     Args:
         run: The sym_run.

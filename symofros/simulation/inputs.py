@@ -82,7 +82,7 @@ def held_sample(times: Array, t: float, end: float = math.inf) -> int:
 
 
 def _rounding(t: Array | float) -> Array:
-    """Distance [s] within which instants count as equal to t."""
+    """Largest distance [s] at which instants count as equal to t."""
     return np.asarray(_SAME_INSTANT * np.abs(t) + _SAME_AS_ZERO)
 
 
@@ -113,7 +113,7 @@ class InputPlan:
         return np.unique(np.concatenate([np.zeros(0), *held]))
 
     def next_corner(self, t: float, end: float) -> float:
-        """First corner of the signals in a step from t, which may last until `end` [s].
+        """Time up to which linear signals stay near their chords in a step from t: a corner, or `end` [s].
 
         For solvers that evaluate at the ends of steps only: between two of them no input leaves the chord by more than
         a share of what it changes by (docs/theory/simulation.md, section 1, rule 4).

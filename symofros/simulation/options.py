@@ -82,7 +82,7 @@ class SimulationOptions(metaclass=CheckedCalls):
     realtime: float | bool = False
 
     def __post_init__(self) -> None:
-        """Refuse values of other types."""
+        """Refuse fields of the wrong type."""
         check_fields(self)
 
     def changed(self, changes: Mapping[str, Any], arguments: Sequence[str] = _CALL) -> SimulationOptions:
@@ -105,7 +105,7 @@ class SimulationOptions(metaclass=CheckedCalls):
         return replace(self, **chosen)
 
     def refuse(self, names: Sequence[str], what: str, rule: str) -> None:
-        """Refuse stated options that have no effect on this kind of run.
+        """Refuse options that are stated and have no effect on this kind of run.
 
         Args:
             names: Names of fields.

@@ -152,7 +152,7 @@ def _compared(
     intervals: Sequence[tuple[float, float]],
     tolerance: float,
 ) -> Contradiction | None:
-    """The largest difference of a mean rate over an interval from the rate in its middle, if that is too much."""
+    """Largest difference of the mean rate over an interval from the rate in its middle; None within the tolerance."""
     middles = [0.5 * (a + b) for a, b in intervals]
     # Inputs share their memory.
     ends = [(inputs_at(a).copy(), inputs_at(b).copy()) for a, b in intervals]

@@ -111,7 +111,7 @@ class Settings:
 
     @property
     def judged(self) -> bool:
-        """Whether its steps can be judged by their effect on a mode: fixed ones, of most families."""
+        """Whether its steps can be judged by how they amplify a mode: fixed ones, of most families."""
         return not self.adaptive and self.method.family.judged
 
     @classmethod
@@ -189,10 +189,10 @@ def _check(options: SimulationOptions, t_end: float) -> None:
 
 
 def check_pace(realtime: float | bool) -> None:
-    """Refuse invalid ratios to real time.
+    """Refuse a pace against the clock that is negative, infinite or not a number.
 
     Raises:
-        SymofrosError: It is negative or infinite.
+        SymofrosError: It is.
     """
     if not 0.0 <= float(realtime) < math.inf:
         rule = "realtime is True, or seconds of motion a second, 0 for as fast as possible"
@@ -200,7 +200,7 @@ def check_pace(realtime: float | bool) -> None:
 
 
 def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
-    """Refuse models that a method can't integrate.
+    """Refuse a model, inputs or stabilisation that the method does not support.
 
     Raises:
         SymofrosError: The model, its inputs or how constraints are kept do not suit the method.

@@ -92,7 +92,7 @@ def simulate(
 def run_to_its_end(
     stepper: Stepper, settings: Settings, q: Array, v: Array, show: Callable[[float], None] = lambda t: None
 ) -> Trajectory:
-    """The trajectory of a run that is set up, with its outcome.
+    """Run a prepared stepper to its end; returns the trajectory with its outcome.
 
     Args:
         stepper: Stepper to which the settings were applied.
@@ -118,7 +118,7 @@ def run_to_its_end(
 
 
 def prepare_run(model: Model, settings: Settings | None = None) -> None:
-    """Compile the functions of a run and its diagnosis in parallel; the integrator is compiled once a machine.
+    """Compile the functions of a run and its diagnosis in parallel; the integrator is compiled once per machine.
 
     Args:
         model: Model.

@@ -199,7 +199,7 @@ def _off(model: Model, settings: Settings, initial: InitialStates, stepper: Batc
 def starts_off(
     model: Model, settings: Settings, q: Array, v: Array, u: Array, par: Array, t: Array | float
 ) -> npt.NDArray[np.bool_]:
-    """Which first states (n or 1, ...) are off the constraints (n)."""
+    """Whether each initial state is off the constraints (n); arrays have a row per state, or one for all."""
     exact = model.with_precision("double")  # As states are.
     off = np.zeros(max(len(q), len(v), len(u)), dtype=np.bool_)
     for facing in facings(exact, q, u, par):

@@ -13,7 +13,7 @@ from symofros.expr.program import Function, Program
 
 
 def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> list[int]:
-    """Nodes that some edges depend on, operands first.
+    """Nodes to evaluate for some edges, operands first; inputs, numbers and given nodes are left out.
 
     Args:
         graph: The graph.

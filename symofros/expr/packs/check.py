@@ -105,7 +105,7 @@ def _read_edges(pack: Pack) -> list[Edge]:
 
 
 def _cycle_text(graph: Graph, cycle: Sequence[_Vertex]) -> str:
-    """Text of a dependence cycle in terms of packs."""
+    """Message about a dependence cycle, in terms of packs and their lanes."""
     indices = sorted(-1 - vertex for vertex in cycle if vertex < 0)
     if len(indices) > 1:
         return f"packs {', '.join(map(str, indices))} wait for each other"

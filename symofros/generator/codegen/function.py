@@ -70,7 +70,7 @@ class _Chunks:
 
     @staticmethod
     def of(chunks: list[list[Item]]) -> _Chunks:
-        """The chunks, with slots for values that cross between them."""
+        """The chunks, with slots for the variables that cross from one chunk into another or the border of a loop."""
         statements = (item for chunk in chunks for item in chunk if isinstance(item, Statement))
         widths = {s.vector.key: s.vector.width for s in statements if s.vector is not None}
         slots = _allocate(chunks, widths)

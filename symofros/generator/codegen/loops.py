@@ -47,7 +47,7 @@ class Loop:
 
     @cached_property
     def columns(self) -> list[list[list[Leaf]]]:
-        """Value of each mention of each statement, per iteration."""
+        """For each statement and each mention in it, the leaf that stands there in every iteration."""
         return [
             [list(column) for column in zip(*(body[j] for body in self.leaves), strict=True)] for j in range(len(self))
         ]

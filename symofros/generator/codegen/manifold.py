@@ -121,7 +121,7 @@ def _text(function: _CFunction) -> str:
 
 
 def rotations_text() -> str:
-    """Text of native/stepping/rotations.c; functions used only by the analysis of steps are left out of packages."""
+    """Text of native/stepping/rotations.c; functions that only the analysis of steps calls are left out of packages."""
     common, analysed = list[str](), list[str]()
     for function in _functions():
         (analysed if function.name.startswith(_ANALYSED) else common).append(_text(function))

@@ -120,7 +120,7 @@ def model_text(
 
 
 def _called(texts: Sequence[str], vectors: LaneOptions | None) -> Iterator[str]:
-    """Definitions of the functions of vectors, sines and cosines that the texts call."""
+    """Definitions of the routines that the texts call: trigonometry, lanes, packs, and vectors of limbs."""
     yield from trigonometry.routines(texts, vectors is not None)
     if vectors is not None:
         yield lanes.routines(vectors)

@@ -66,7 +66,7 @@ class Vector:
         return [factor for factor, _ in self.terms] + list(self.put.values())
 
     def lane_text(self, lane: int) -> str:
-        """C text that reads a lane."""
+        """C expression of a lane."""
         return f"sym_lane({vector_name(self.key)}, {lane})"
 
     def lines(self, text: Callable[[Edge], str]) -> list[str]:
@@ -149,7 +149,7 @@ class PackPlan:
         self.vectors = sorted(self._vectors.values(), key=lambda vector: vector.first_node)
 
     def _choose(self, wanted: set[int]) -> None:
-        """Select the packs to be formed: wanted ones with enough lanes."""
+        """Select the packs to be formed: those with enough lanes that are wanted and can be computed."""
         for pack in self._graph.packs:
             if not self._are_available(factor for factor, _ in pack.terms):
                 continue  # Parameters alone determine it, in lanes that this function does not need.
@@ -183,7 +183,7 @@ class PackPlan:
         return [node for node in candidates if node in operands]
 
     def _resolve(self, nodes: Iterable[int]) -> None:
-        """Visit all dependences of some nodes, vectors and inserted lanes included."""
+        """Mark everything that some nodes depend on as needed: scalars, vectors and inserted lanes."""
         self._pending = [partial(self._need_node, node) for node in nodes]
         while self._pending:
             self._pending.pop()()
@@ -291,7 +291,7 @@ class _LaneStore:
     is_negative: bool
 
     def follows(self, last: _LaneStore) -> bool:
-        """Whether lane and entry directly follow another's."""
+        """Whether lane and output entry directly follow those of another store, with the same sign."""
         is_next_entry = self.store.array == last.store.array and self.store.index == last.store.index + 1
         return is_next_entry and self.lane == last.lane + 1 and self.is_negative == last.is_negative
 

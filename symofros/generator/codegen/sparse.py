@@ -27,7 +27,7 @@ class Pattern:
 
     @staticmethod
     def filled(columns: Sequence[Iterable[int]]) -> Pattern:
-        """Pattern of the factor of a matrix with these entries, with fill-in of each eliminated column."""
+        """Pattern of the Cholesky factor, fill-in included, of a matrix with these entries below its diagonal."""
         left = [set(column) for column in columns]
         for column in left:
             if column:

@@ -232,7 +232,7 @@ class StatementWriter:
         return node == 0 or node in self.given or node in self.graph.value or node in self.graph.slot
 
     def name(self, node: int) -> str:
-        """C text that reads a node's value: its variable, or its lane of a vector."""
+        """C expression of a node's value: its variable, or its lane of a vector."""
         if node in self._vector_of_node:
             vector = self._vector_of_node[node]
             return vector.lane_text(vector.nodes[node][0])
@@ -294,7 +294,7 @@ class StatementWriter:
         return f"-{text}" if is_negative else text
 
     def leaf(self, kind: str, which: float) -> str:
-        """Text of an operand of a statement, or its placeholder."""
+        """C expression of an operand; its placeholder while the mentions of a statement are collected."""
         if self._mentions is not None:
             self._mentions.append((kind, which))
             return f"@{kind}"

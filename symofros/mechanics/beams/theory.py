@@ -282,11 +282,11 @@ class BeamTheory(ABC):
     @property
     @abstractmethod
     def judged(self) -> Judged:
-        """Measures that judge a deformation of this beam."""
+        """Data by which a deformation of this beam is judged."""
 
     @abstractmethod
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:
-        """Positions of the sections.
+        """Poses of the sections at some stations, as functions of the elastic coordinates.
 
         Args:
             values: Number of each parameter.

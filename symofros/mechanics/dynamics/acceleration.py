@@ -65,7 +65,7 @@ class RelativeMotion:
 
 
 def relative_motion(link: MovingLink, rates: Sequence[Edge]) -> RelativeMotion:
-    """Relative velocity and acceleration from the speeds of a joint and their rates: sums of partial velocities."""
+    """Relative velocity and acceleration at a joint, from its speeds and their rates: sums of partial velocities."""
     g = link.p_AL.g
     w, v, w_rate, v_rate = Vec3(g), Vec3(g), Vec3(g), Vec3(g)
     for partial, speed, rate in zip(link.partial_velocities, link.speeds, rates, strict=True):

@@ -310,7 +310,7 @@ def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: M
 
 
 def _instant_operands(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
-    """Operands of the description's formulas of time, at whose instants steps end."""
+    """The function that gives the operands of the description's formulas of time, at whose instants steps end."""
     lower = e.kinematics.lowering.value
     return operands_function(row.name, e.g, [lower(value) for value in timed_values(e.tree.system)])
 
@@ -322,7 +322,7 @@ def _mass_matrix_values(e: Equations, row: ModelFunction, methods: Methods, know
 
 
 def _mass_matrix_pattern(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
-    """Row and column indices, which are constants."""
+    """Row and column indices of the entries that `_mass_matrix_values` gives, as constants."""
     rows, columns = ([e.g.constant(entry[side]) for entry in _mass_pattern(e)] for side in (0, 1))
     return Function(row.name, "", (), (_vector("row", rows), _vector("column", columns)))
 

@@ -86,7 +86,7 @@ def link_wrenches(
 def spin_effort(
     kinematics: TreeKinematics, rotor: MovingRotor, motions: Sequence[LinkMotion], v_rate: Sequence[Edge]
 ) -> Edge:
-    """Effort of a rotor's spin on the speed that drives it (eq. 37)."""
+    """Inertia force of a rotor's spin on the speed that drives it (eq. 37)."""
     g = kinematics.g
     rate = g.mul(rotor.ratio, rotor.rate(kinematics, v_rate))
     if rotor.carrier != BASE:

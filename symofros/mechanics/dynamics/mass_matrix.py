@@ -168,7 +168,7 @@ def _carry_to_base(kinematics: TreeKinematics, M: Matrix, momenta: list[Momentum
 
 
 def _across_beam(link: MovingLink, f: Vec3, n: Vec3, added: tuple[Vec3, Vec3]) -> tuple[Vec3, Vec3]:
-    """Momentum at a section of a beam -> momentum at its root, with the part added there."""
+    """Momentum at a section of a beam -> momentum at its root, plus `added`."""
     f, n = link.R_AL.apply(f), link.R_AL.apply(n)
     n = n + link.p_AL.cross(f)
     return f + added[0], n + added[1]

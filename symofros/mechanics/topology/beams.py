@@ -29,8 +29,8 @@ QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
 # Error, between a rod's sections, of what is known at them alone, over its largest value.
 INTERPOLATION_TOLERANCE = 1e-3
-# What rotary inertia may lower a frequency by without a word, where it is stated and left out.
-MAX_ROTARY_INERTIA = 0.01
+# Relative drop of a frequency by rotary inertia, stated and left out, up to which nothing is said.
+MAX_FREQUENCY_DROP = 0.01
 # Stations x/L at which section properties are looked at.
 _STATIONS = np.linspace(0.0, 1.0, 33)
 
@@ -90,7 +90,7 @@ def omitted_rotary_inertia(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, 
         stated = getattr(beam, label), beam.rhoA
         inertia, mass = (section_values(beam, value, middle, numbers.parameters).item() for value in stated)
         share = 1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) / length**2 * inertia / mass)
-        if share > MAX_ROTARY_INERTIA:
+        if share > MAX_FREQUENCY_DROP:
             yield label, mode, float(share)
 
 
@@ -273,7 +273,7 @@ def quadrature_error(beam: Beam, value: Value, values: Mapping[str, Array | floa
 
 
 def interpolation_error(beam: Beam, values: Mapping[str, Array | float]) -> Array:
-    """Largest relative error of properties interpolated at a beam's sections (states)."""
+    """Largest relative error of properties interpolated through their values at a beam's sections (states)."""
     interpolated = theory_of(beam).interpolated
     errors = [_interpolation_error(beam, interpolated, stated, values) for _, stated in interpolated.properties]
     return np.asarray(reduce(np.maximum, errors, np.zeros(1)))

@@ -201,7 +201,7 @@ class _Checker:
             yield from self._taken(joint, "speed", rates, taken)
 
     def _taken(self, joint: Joint, role: str, symbols: Sequence[str], taken: dict[str, str]) -> Iterator[Problem]:
-        """Symbols of a joint that are taken already; the others become taken.
+        """Problems of a joint's symbols that others have already; the free ones are marked as taken.
 
         A coordinate door may have the name of the rate of one called oor, which formulas alone could confuse; they are
         refused where they do. Inputs, which rates of prescribed joints are, and speeds of their own are told by names.
@@ -297,7 +297,7 @@ class _Checker:
     # Forces.
 
     def acting(self) -> Iterator[Problem]:
-        """Loads, connections and powers that refer to missing elements."""
+        """Problems of loads, connections, constraints and powers: references to missing elements, names given twice."""
         for body in self.system.bodies:
             for load in body.loads:
                 yield from self._load(body, load)
@@ -348,7 +348,7 @@ class _Checker:
     # Numbers.
 
     def values(self, numbers: Numbers) -> Iterator[Problem]:
-        """Check that constants are finite, rotations orthonormal and axes nonzero."""
+        """Problems of numbers: formulas not finite, rotations and axes that are none, values out of their ranges."""
         yield from violations(value_conditions(self.system), numbers)
         for body in self.system.bodies:
             for what, rotation, where in rotations_of(self.system, body):

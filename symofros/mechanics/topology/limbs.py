@@ -73,12 +73,12 @@ def _entries(links: Iterable[Link]) -> Limb:
 
 
 def _kinds(link: Link) -> object:
-    """Properties that decide which operations a link needs at all."""
+    """Properties of a link that decide which operations it needs at all."""
     return link.joint.kind, link.q[1], link.v[1], len(link.inertias), link.beam is None, link.is_section
 
 
 def _pattern(link: Link) -> object:
-    """Properties that decide which operations remain after zeros are folded."""
+    """Properties of a link that decide which operations remain after zeros are folded."""
     steps = [*link.placement, *(step for placement, _ in link.inertias for step in placement)]
     return (
         _kinds(link),

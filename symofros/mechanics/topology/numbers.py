@@ -91,7 +91,7 @@ class Numbers:
             )
 
     def rounded(self, rotation: Rotation) -> float:
-        """Distance of a matrix of few digits from the rotation that is used: |R R^T - 1|."""
+        """Defect |R R^T - 1| of a matrix of numbers, which may be stated with few digits; 0 for other rotations."""
         if rotation.kind != "matrix" or any(map(symbols, rotation)):
             return 0.0
         return _defect(self.values(rotation).reshape(3, 3))

@@ -56,7 +56,7 @@ def _body_conditions(body: Body, where: str, numbers: Numbers | None = None) -> 
 
 @lru_cache(maxsize=1 << 12)  # Bodies that an edit of a file leaves as they are.
 def _physical_margins(stated: tuple[Value, ...], about: str) -> tuple[Value, ...]:
-    """Margins that are positive for physical moments and zero without mass; of mass, mass centre and moments (10).
+    """Margins, all positive if moments are physical, and zero without mass; of mass, mass centre and moments (10).
 
     The second moments E = tr(J)/2 - J of a mass distribution are positive semidefinite, which is the triangle
     inequality of the principal moments of J. With a slack on the diagonal the leading minors tell (Sylvester).
@@ -87,7 +87,7 @@ def _nonphysical(body: RigidBody, where: str, numbers: Numbers) -> Problem:
 
 
 def _fault(body: RigidBody, numbers: Numbers) -> str:
-    """The problem of an inertia that is not physical."""
+    """Text that says what is not physical about a body's inertia."""
     assert body.inertia is not None
     mass, J = numbers.value(body.inertia.mass), moments_about_center(body, numbers)
     if not mass >= 0.0 or not np.all(np.isfinite(J)):

@@ -87,7 +87,7 @@ class RunTimeCheck:
         return Conditions(c for c, broken in zip(stated.conditions, violated, strict=True) if not broken)
 
     def problems(self, par: Array) -> list[Problem]:
-        """Problems of the first invalid set of parameters.
+        """Problems of the first invalid set of parameters; [] if all are valid.
 
         Args:
             par: Sets of parameters (n, npar).
@@ -126,7 +126,7 @@ class RunTimeCheck:
         return []
 
     def _sampled_problems(self, par: Array) -> list[Problem]:
-        """Problems of checks without a margin: rotations and axes that depend on parameters."""
+        """Problems of the first set of parameters with an invalid rotation or axis; their checks have no margin."""
         if not (self._turned or self._axes):
             return []
         _, first = np.unique(par, axis=0, return_index=True)

@@ -217,7 +217,7 @@ class _Builder:
         self.nq = self.nv = 0
 
     def place(self, body: Body, link: int, placement: Placement, key: str) -> None:
-        """Place a body and its descendants on a link; depth first without recursion."""
+        """Place a body on a link, or on a new one beyond its joint, then its descendants; depth first, no recursion."""
         stack = [(body, link, placement, key)]
         while stack:
             body, link, placement, key = stack.pop()

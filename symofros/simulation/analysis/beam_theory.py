@@ -166,7 +166,7 @@ def amplified_in_motion(
     par: ArrayLike | None,
     inertia: str = "dynamics",
 ) -> tuple[BeamBending, ...]:
-    """Bending of each beam with its error amplified by the axial loads of a motion, where that can make a note.
+    """Bending of each beam, its error amplified by the axial loads of a motion; unchanged below UNAMPLIFIED.
 
     Args:
         bendings: Bending of each beam, axial loads apart.

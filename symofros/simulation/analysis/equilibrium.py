@@ -130,7 +130,7 @@ def equilibrium(
 
 
 def _no_balance(balance: Balance, end: Search, tolerance: float) -> Problem:
-    """The problem of a failed search: the largest imbalance, and the friction that would have to hold."""
+    """The problem of a failed search for equilibrium: the largest imbalance, and what friction would have to hold."""
     model = balance.model
     worst = int(balance.rows[np.argmax(np.abs(end.R[balance.rows]))])
     names = (*model.names.v, *model.names.constraints)

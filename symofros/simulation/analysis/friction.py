@@ -33,7 +33,7 @@ class FrictionCurve(NamedTuple):
 def friction_curve(
     model: Model, i: int, speeds: Array, state: tuple[Array, Array, Array], par: ArrayLike | None, t: float
 ) -> FrictionCurve | None:
-    """Friction forces of a state as one of its speeds changes; None where they are unbounded or undefined.
+    """Friction force on a speed as this speed changes; None if the force does not level off, or `dynamics` is left out.
 
     Args:
         model: The model.

@@ -22,7 +22,7 @@ _NEAR = 1e-6
 # Stiffness, of the largest, that is neutral: an axis of symmetry leaves rounding.
 _NEUTRAL = 1e-9
 # Mass that the relaxation adds to every motion, of their mean: bodies without mass have none.
-_MIN_MASS = 1e-9
+_ADDED_MASS = 1e-9
 # By how much the damping of the relaxation may change from step to step.
 _SLOWEST, _FASTEST = 4.0, 0.1
 
@@ -99,7 +99,7 @@ class Balance:
 
 @dataclass(frozen=True)
 class Search:
-    """State of a search.
+    """State of a search for an equilibrium.
 
     Attributes:
         q: Configuration (nq).
@@ -215,8 +215,8 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
 
 
 def _unit_mass(M: Array) -> Array:
-    """L^-T of (7a), which normalises the mass of motions (n, n); massless ones get _MIN_MASS of the mean."""
-    least = _MIN_MASS * float(np.trace(M)) / max(len(M), 1) or 1.0
+    """L^-T of (7a), which makes the mass of motions (n, n) the identity; _ADDED_MASS of its mean is added to it."""
+    least = _ADDED_MASS * float(np.trace(M)) / max(len(M), 1) or 1.0
     return np.asarray(np.linalg.inv(np.linalg.cholesky(M + least * np.eye(len(M)))).T)
 
 

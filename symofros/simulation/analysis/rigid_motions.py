@@ -68,7 +68,7 @@ def _weighted(directions: Complex, inertia: Array) -> Complex:
 
 
 def _independent(directions: Complex) -> list[int]:
-    """Indices of directions that span all of them: repeatedly the one farthest from those chosen before."""
+    """Indices of directions that span all: each the first at least half as far from those before as the farthest."""
     rest, chosen = directions.copy(), list[int]()
     while rest.size:
         lengths = np.linalg.norm(rest, axis=0)

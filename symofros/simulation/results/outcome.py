@@ -45,7 +45,7 @@ class Outcome:
         return self.kind in ("finished", "event")
 
     def as_data(self) -> dict[str, Any]:
-        """Plain data of it, for JSON."""
+        """The outcome as plain data, for JSON."""
         named = {name: getattr(self, name) for name in ("kind", "t", "reason", "advice")}
         return {**named, "notes": list(self.notes)}
 

@@ -1,4 +1,4 @@
-"""Pictures of a run, of a model or a diagram, by Matplotlib (the extra `plots`)."""
+"""Plots of runs of models and diagrams, by Matplotlib (the extra `plots`)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _PAPER = ("agg", "cairo", "pdf", "pgf", "ps", "svg", "template")
 
 @dataclass(frozen=True)
 class Panel:
-    """One diagram of a figure.
+    """One panel of a figure: curves over time, or in a plane.
 
     Attributes:
         label: Label of the vertical axis; over a plane, what both axes measure.
@@ -32,7 +32,7 @@ class Panel:
     xy: bool = False
 
     def draw(self, t: Array, axis: Any) -> None:
-        """Draw the first curves over times (n) [s], or over a plane, and say how many there are."""
+        """Draw the first MAX_CURVES curves over times (n) [s], or in a plane; the title says if there are more."""
         for name, values in list(self.curves.items())[:MAX_CURVES]:
             x, y = (values[:, 0], values[:, 1]) if self.xy else (t, values)
             axis.plot(x, y, label=name)
@@ -63,7 +63,7 @@ def figure_class() -> Any:
 
 
 def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> Any:
-    """A Matplotlib figure of panels, one below the other; those over time have one axis of it.
+    """A Matplotlib figure of panels, one below the other; those over time share their axis.
 
     Args:
         t: Times (n) [s].
@@ -92,7 +92,7 @@ def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> A
 
 
 def window_figure() -> Any:
-    """A figure in a window, which `show_windows` opens.
+    """A figure with a window, which `show_windows` opens.
 
     Raises:
         SymofrosError: Matplotlib is not installed, or has no screen to draw on.

@@ -19,7 +19,7 @@ SUFFIXES = (".npz", ".csv", ".parquet")
 
 
 def refuse_suffix(path: Path, what: str) -> None:
-    """Refuse suffixes without a writer.
+    """Refuse a suffix that is not in SUFFIXES.
 
     Raises:
         SymofrosError: Another suffix than SUFFIXES.

@@ -146,7 +146,7 @@ class Trajectories(BatchResults):
         return f"<Trajectories of '{name}' by {self.method}: {self.shape} runs, {len(self.t)} samples; {ends}>"
 
     def __str__(self) -> str:
-        """Counts of outcomes, the first failure, the number of beams that bend much, and steps."""
+        """Counts of outcomes, the first failure, the number with strongly bent beams, and the first note on steps."""
         kinds = self.kinds
         names, counts = np.unique(kinds, return_counts=True)
         lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]

@@ -77,7 +77,7 @@ def _oscillator(z: complex) -> tuple[float, float]:
 
 
 def _nearest(factors: list[complex], z: complex) -> complex:
-    """The factor of a mode: the largest one if it exceeds the mode's own growth, otherwise the nearest to exp(z)."""
+    """Factor of a mode by a step: the largest if it exceeds both 1 and |exp(z)|, otherwise the nearest to exp(z)."""
     exact = cmath.exp(min(z.real, 300.0) + 1j * z.imag)
     largest = max(factors, key=abs)
     if abs(largest) > max(1.0, abs(exact)) * (1.0 + 1e-9):

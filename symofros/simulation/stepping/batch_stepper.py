@@ -90,7 +90,7 @@ class BatchResults:
         return cls(q, v, u, np.zeros(n), q_last, v_last, status, steps, rejected, errors, times, elastic)
 
     def shaped(self, shape: tuple[int, ...]) -> dict[str, Any]:
-        """The arrays by name, whose rows (n) are those of a batch of that shape."""
+        """The arrays by name, their rows (n) reshaped to a batch of that shape."""
         return {name: array.reshape(shape + array.shape[1:]) for name, array in vars(self).items()}
 
 
@@ -129,12 +129,12 @@ class BatchStepper:
         self._lay_out()
 
     def _lay_out(self) -> None:
-        """Memory of the slots."""
+        """Allocate the memory of the slots, and start them."""
         own, shared = self._sizes(self._batch)
         self._start(self._batch, np.zeros(own), self._memory.zeros(shared))
 
     def _sizes(self, batch: Any) -> tuple[int, int]:
-        """Doubles of its own memory, and of that which it may share."""
+        """Numbers of doubles of a batch's own memory, and of the memory that it may share."""
         shared = self.single.ffi.new("size_t *")
         return int(self._native.sym_batch_size(batch, shared)), int(shared[0])
 
@@ -205,7 +205,7 @@ class BatchStepper:
         batch.beam_guard = memory.own("sym_beam_guard[]", results.beam_errors.size)
 
     def _beam_numbers(self, par: Array) -> dict[str, Array]:
-        """Numbers that judge beams, for each set of parameters, by their name in C."""
+        """Arrays by which beams are judged, by their names in C; one row for each set of parameters."""
         beams = [self.single.model.beams(values) for values in par]
         return {
             name: np.array([np.concatenate([np.zeros(0), *(getattr(beam, name) for beam in some)]) for some in beams])
@@ -213,7 +213,7 @@ class BatchStepper:
         }
 
     def set_parameters(self, rows: npt.NDArray[np.intp], par: Array) -> None:
-        """Trajectories of these numbers (m) have other parameters (m, npar) when they begin next."""
+        """Set the parameters (m, npar) of some trajectories (m), in effect from their next start."""
         for kernel, prepared in self._prepared:
             prepared[rows] = kernel.prepare(par)
         for name, numbers in self._beam_numbers(par).items():

@@ -22,7 +22,7 @@ Show = Callable[[float], None]
 
 
 class Executor(Protocol):
-    """What moves a motion on, a number of steps or instants at a time: a `Stepper`, or the loop of a diagram."""
+    """Advances a motion by some steps or instants at a time: a `Stepper`, or the loop of a diagram."""
 
     @property
     def t(self) -> float:
@@ -30,7 +30,7 @@ class Executor(Protocol):
         ...
 
     def advance(self, count: int) -> int:
-        """Make at most so many steps, or meet so many instants; returns a Status."""
+        """Advance by at most `count` steps or instants; returns a Status."""
         ...
 
     def take_records(self) -> list[Array]:
@@ -38,7 +38,7 @@ class Executor(Protocol):
         ...
 
     def take_events(self) -> list[Any]:
-        """The events met since the last call, index and time of each first."""
+        """The events met since the last call, each with its index and time first."""
         ...
 
 
@@ -71,12 +71,12 @@ class Recorded:
 def drive(
     executor: Executor, recorded: Recorded, most: Callable[[int], int], show: Callable[[Recorded], None]
 ) -> Recorded:
-    """Drive a motion that is started to its end, or until no more is to be done.
+    """Advance a started motion to its end, or until `most` allows no further step.
 
     Args:
-        executor: What moves it on.
+        executor: What advances it.
         recorded: Its results so far; others are added.
-        most: The number of steps or instants that one call makes, by the number that takes a moment.
+        most: Number of steps or instants of the next call, given the number that a time slice has room for; 0 stops.
         show: Called after each call, with the results.
     """
     time_slice = TimeSlice()

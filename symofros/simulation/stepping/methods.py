@@ -49,7 +49,7 @@ class Family:
 
     @property
     def judged(self) -> bool:
-        """Whether its fixed steps can be judged by their effect on a mode."""
+        """Whether its fixed steps can be judged by how they amplify a mode."""
         return self.amplification is not None
 
 
@@ -93,7 +93,7 @@ class Method:
 
     @property
     def family(self) -> Family:
-        """Common properties of methods of its kind."""
+        """What methods of its kind have in common."""
         return FAMILIES[self.kind]
 
     def amplification(self, z: complex) -> complex:
@@ -146,7 +146,7 @@ _ELSEWHERE = {
 
 
 def method_meant(name: str, known: Iterable[str] = METHODS) -> str:
-    """The remedy for an unknown method: the one that other programs call so, or the nearest name.
+    """The remedy for the name of an unknown method: its name here if other programs call it so, or the nearest name.
 
     Args:
         name: Name as it was written.

@@ -225,7 +225,7 @@ class Stepper:
         return int(self.native.sym_run_start(self.run))
 
     def reserve(self, capacity: int, diagnostic_rows: int) -> None:
-        """Memory for `capacity` records, and for ends of steps kept for the diagnosis."""
+        """Allocate memory for `capacity` records, and for `diagnostic_rows` ends of steps for the diagnosis."""
         run, model, memory = self.run, self.model, self.memory
         run.work = memory.zeros(self.native.sym_run_work_size(run))
         run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
@@ -240,7 +240,7 @@ class Stepper:
         self._diagnostic_states = memory.table(run, "diagnostic_", diagnostic_rows, **sizes)
 
     def set_state(self, q: Array, v: Array) -> None:
-        """Write the present q, v, where they lie."""
+        """Write q (nq) and v (nv) into the run's memory as its present state."""
         self.memory.view(self.run.q, self.model.nq)[:] = q
         self.memory.view(self.run.v, self.model.nv)[:] = v
 

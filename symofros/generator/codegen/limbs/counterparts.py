@@ -68,7 +68,7 @@ class Rows:
 
 
 class Counterparts:
-    """Finds rows of corresponding nodes.
+    """Finds rows of corresponding nodes in equal limbs.
 
     Args:
         graph: Graph of the program.
@@ -136,7 +136,7 @@ class Counterparts:
             heappush(self._waiting, user)
 
     def _match(self, node: int, operand: int) -> bool:
-        """Find counterparts of a node among the users of those of an operand; whether any exist."""
+        """Match a node in each lane with a user of its operand's counterpart and add the rows; whether it succeeds."""
         found: list[_Trial] = []
         for lane, partner in enumerate(self._partners[operand]):
             trial: _Trial = {}

@@ -153,7 +153,7 @@ class LimbPlan:
         return vector
 
     def _inline(self, read: Collection[int]) -> None:
-        """Inline vectors that only one other vector reads."""
+        """Inline vectors that are read once, by another vector alone; long operands get a variable."""
         uses = Counter(term.vector for vector in self._vectors for term in vector.terms)
         for vector in sorted(self._vectors, key=lambda vector: (vector.is_computed, vector.first_node)):
             if vector.size > _MAX_INLINE:

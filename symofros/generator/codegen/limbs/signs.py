@@ -85,7 +85,7 @@ class _Parities:
         return 1 << self._unknowns
 
     def equate(self, one: int, other: int) -> None:
-        """Declare two sums equal, unless that contradicts earlier statements."""
+        """Declare two sums equal modulo 2, unless that contradicts earlier statements."""
         rest = self._reduced(one ^ other)
         if rest > 1:
             last = rest.bit_length() - 1

@@ -89,7 +89,7 @@ class LimbVector:
         return (self.op in (ADD, MUL, DIV)) + sum(inlined)
 
     def lane_text(self, lane: int) -> str:
-        """C text that reads a lane."""
+        """C expression of a lane."""
         return f"{vector_name(self.key)}[{lane}]"
 
     def lines(self, text: Callable[[Edge], str]) -> list[str]:

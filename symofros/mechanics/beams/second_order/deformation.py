@@ -43,7 +43,7 @@ class Deformation:
 
     @cached_property
     def integrals(self) -> dict[Hashable, UnitIntegral]:
-        """Cached integrals of products of its fields, by their factors."""
+        """Cache of the integrals of products of its fields that were formed so far."""
         return {}
 
     @cached_property

@@ -40,19 +40,19 @@ class SecondOrderTheory(BeamTheory):
         return tuple("m" if length else "rad" for length in deformation_of(self.beam).lengths)
 
     def sizes(self, length: float) -> tuple[float, ...]:
-        """Elastic coordinates with slopes and twist angles up to which the theory errs by less than a percent."""
+        """Sizes of the elastic coordinates up to which slopes and twist cause errors below a percent."""
         return small_coordinates(self.beam, length)
 
     @property
     def judged(self) -> Judged:
-        """Measures that judge a deformation: slopes and twist of the sections, and the difference of EI_y and EI_z."""
+        """Data by which a deformation is judged: slopes and twist of the sections, EI_z and EI_y at mid-length."""
         beam, shape = self.beam, deformation_of(self.beam)
         xi, angles = shape.station_angles
         EI_z, EI_y = (at_middle(EI, beam) for EI in (beam.EI_z, beam.EI_y))
         return Judged(shape.counts, xi, angles, shape.lengths, EI_z, EI_y)
 
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:
-        """Positions of the sections from the displacement field of the equations."""
+        """Poses of the sections, from the displacement field of the equations."""
         return FieldShape(self.beam, stations)
 
     def equations(

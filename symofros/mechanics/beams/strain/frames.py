@@ -56,7 +56,7 @@ class SectionFrames(BeamEquations):
 
     @cached_property
     def law(self) -> SectionLaw:
-        """Stiffness of its sections, and the stretch and shear that follow from bending and twist (2), (2a)."""
+        """Section stiffness, and the stretch and shear that follow from bending and twist (2), (2a)."""
         return section_law(self.beam, {axis for axis, _ in self.strains.axes})
 
     @property

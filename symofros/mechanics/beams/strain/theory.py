@@ -46,7 +46,7 @@ class StrainTheory(BeamTheory):
         return tuple("rad" if axis < TURNING else "" for axis, _ in strains_of(self.beam).axes)
 
     def sizes(self, length: float) -> tuple[float, ...]:
-        """Strain coordinates that turn the rod by a right angle, or stretch or shear it by a tenth."""
+        """Sizes of the strain coordinates that turn the rod by a right angle, or stretch or shear it by a tenth."""
         return strains_of(self.beam).sizes
 
     def resolved(self, number: Callable[[Value, float], float]) -> Beam:
@@ -68,7 +68,7 @@ class StrainTheory(BeamTheory):
 
     @property
     def judged(self) -> Judged:
-        """Measures that judge a deformation: rotations of sections, and the error of the shape's integration."""
+        """Data by which a deformation is judged: rotations of the sections, error of the shape's integration."""
         beam, strains = self.beam, strains_of(self.beam)
         xi = tuple(k / _INTERVALS for k in range(_INTERVALS + 1))
         return Judged(
@@ -85,7 +85,7 @@ class StrainTheory(BeamTheory):
         )
 
     def shape(self, values: Mapping[str, float], stations: Sequence[float]) -> BeamShape:
-        """Positions of the sections from the frames of the equations."""
+        """Poses of the sections, from the frames of the equations."""
         return StrainShape(self.beam, values, stations)
 
     def equations(

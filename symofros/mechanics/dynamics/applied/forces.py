@@ -128,7 +128,7 @@ def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
 
 
 def rates_per_speed(kinematics: TreeKinematics, prescribed: bool = False) -> list[dict[Edge, Edge]]:
-    """For each speed, or each of a prescribed motion, the rates of coordinates per unit of it: columns of N."""
+    """Rates of the coordinates per unit of each free speed, or of each prescribed one: columns of N in q' = N v."""
     return [
         _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
         for link in kinematics.tree.links

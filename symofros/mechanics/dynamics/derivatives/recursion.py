@@ -36,7 +36,7 @@ from symofros.mechanics.topology.tree import BASE
 
 
 def route(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> Choice:
-    """Whether the recursion applies: no beam deforms, and no rotor's spin acts on a moving link."""
+    """Choice of the route of derivatives: recursion if no beam deforms and no rotor's spin acts on a moving link."""
     figures = {
         "elastic_beams": sum(beam.tip is not None for beam in kinematics.beams),
         "moving_rotors": sum(rotor.carrier != BASE for rotor in rotors),

@@ -66,7 +66,7 @@ class JointVariations:
         self._rates_by_v = partials(g, [*r.w_rate, *r.v_rate], link.speeds[:count])
 
     def by_coordinate(self, k: int) -> Variation:
-        """Variation of the motion of speed k in q; all speeds stay constant (eq. 15)."""
+        """Variation of the motion per unit displacement along speed k, at constant speeds (eq. 15)."""
         partial, r, w_WA_L = self._link.partial_velocities[k], self._relative, self._w_WA_L
         dw, dv, dw_rate, dv_rate = (self._column(self._by_q, at, k) for at in range(4))
         turned = w_WA_L.cross(partial.w)
@@ -77,7 +77,7 @@ class JointVariations:
         return self._less_velocity(w, alpha, a)
 
     def by_speed(self, k: int) -> Variation:
-        """Variation of the motion with speed k; the rates of all speeds stay constant (eq. 16)."""
+        """Variation of the motion per unit of speed k, at constant rates of all speeds (eq. 16)."""
         partial, r, w_WA_L, w = self._link.partial_velocities[k], self._relative, self._w_WA_L, self._motion.w_WL_L
         dw_rate, dv_rate = (self._column(self._rates_by_v, at, k) for at in range(2))
         alpha = (w_WA_L + w).cross(partial.w) + dw_rate

@@ -92,7 +92,7 @@ def balances_by_link(
     a: Sequence[Edge],
     hold: Callable[[Sequence[Edge]], list[Edge]],
 ) -> list[Edge]:
-    """Terms that drive the derivatives of the acceleration (linear.md, eq. 29).
+    """Wrenches and balances whose derivatives, at held F and a, drive those of the acceleration (linear.md, eq. 29).
 
     Args:
         kinematics: Kinematics of the tree.
@@ -363,7 +363,7 @@ class _Coupling:
 
 
 def _carried(link: MovingLink, body: _ArticulatedBody, moving: _ArticulatedBody) -> _Coupling:
-    """Coupling of the body beyond a section of a beam with the speeds that move the section (rods.md, eq. 19).
+    """Coupling of the speeds that move a section of a beam, by the articulated body it carries (rods.md, eq. 19).
 
     Args:
         link: The section.

@@ -122,7 +122,7 @@ def approach(
     par: ArrayLike | None = None,
     t: float = 0.0,
 ) -> Attempt:
-    """End of Gauss-Newton steps from exactly this guess, closed or with a residual left.
+    """Result of Gauss-Newton steps from this guess alone, closed or with a residual left.
 
     Args:
         model: Model with constraints.
@@ -153,7 +153,7 @@ class _Conditions(NamedTuple):
     t: float
 
     def residual(self, q: Array) -> Array:
-        """Residual phi (nc)."""
+        """Residual phi of the constraints (nc)."""
         return self.model.constraint(q, u=self.u, par=self.par, t=self.t)
 
     def jacobian(self, q: Array) -> Array:
@@ -235,7 +235,7 @@ def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterati
         for _ in range(ATTEMPTS):
             guess = model.integrate(q, size * movable * random.uniform(-1.0, 1.0, model.nv))
             try:
-                near = _random_start_near(at, guess, movable)
+                near = _damped_approach(at, guess, movable)
                 attempt = None if near is None else _attempt(at, near, free, tolerance, iterations)
             except AssemblyError:  # Not smooth there.
                 continue
@@ -247,7 +247,7 @@ def _shifted(at: _Conditions, q: Array, free: Indices, tolerance: float, iterati
     return None
 
 
-def _random_start_near(at: _Conditions, q: Array, scales: Array) -> Array | None:
+def _damped_approach(at: _Conditions, q: Array, scales: Array) -> Array | None:
     """The end of damped steps (Levenberg, Marquardt) from a guess beside a singular posture; None where it is not near.
 
     Args:
@@ -284,14 +284,14 @@ def _random_start_near(at: _Conditions, q: Array, scales: Array) -> Array | None
 
 
 def _movable(at: _Conditions, q: Array, free: Indices) -> Array:
-    """The scales (nv) by which guesses are shifted, 0 for speeds that do not move."""
+    """The scales (nv) by which guesses are shifted; 0 for speeds that are not free."""
     movable = np.zeros(at.model.nv)
     movable[free] = shift_scales(at.model, at.jacobian(q))[free]
     return movable
 
 
 def shift_scales(model: Model, G: Array) -> Array:
-    """Size of a unit shift of each speed (nv): a radian, the largest reach; none of elastic coordinates."""
+    """Size of a unit shift of each speed (nv): a radian, or the largest reach; 0 for elastic coordinates."""
     measures = model.record.measures
     kinds = np.array(measures.speed, dtype=np.intp)
     lengths = np.array(measures.unit, dtype=np.intp) == LENGTH

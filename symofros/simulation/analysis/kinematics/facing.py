@@ -28,7 +28,7 @@ class Facing(NamedTuple):
 
 
 def facings(model: Model, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None) -> list[Facing]:
-    """Facing of each closure whose axes are to be parallel (docs/theory/constraints.md, (5a)).
+    """Facing of each closure with axes that must be parallel (docs/theory/constraints.md, (5a)).
 
     Args:
         model: Model with constraints.

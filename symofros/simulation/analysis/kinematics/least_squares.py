@@ -69,7 +69,7 @@ class FreeLimits:
 
 
 def damped_least_squares(task: Task, start: Array, free: Indices, tolerance: float, iterations: int) -> End:
-    """Steps from a start until the residual is within its bounds, or no step improves on it.
+    """Damped least-squares steps from a start until the error is within its bounds or no step reduces it.
 
     Args:
         task: Targets and constraints.

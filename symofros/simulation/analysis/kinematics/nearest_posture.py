@@ -64,7 +64,7 @@ def pull(model: Model, q: Array, rest: Array) -> Array:
 
 
 class Objective(Protocol):
-    """The function to be minimised: f(q) >= 0.
+    """The function f(q) >= 0 to be minimised.
 
     Attributes:
         curvature: Unit of its second derivatives by motions.
@@ -109,12 +109,12 @@ class FromRest:
         return 0.5 * self.distance(q) ** 2
 
     def flat(self, q: Array) -> float:
-        """Norm of a gradient at q that counts as zero: the rounding of the distance."""
+        """Norm of a gradient at q that counts as zero."""
         return OPTIMALITY * (1.0 + self.distance(q))
 
 
 class FromTargets:
-    """Half the squared residual of the targets, metres and radians alike.
+    """Half the squared norm of the targets' errors, metres and radians alike.
 
     Args:
         task: Targets; the rows of its constraints take no part.

@@ -51,7 +51,7 @@ class Instant:
         return assemble(self.model, q, v, held=held, u=self.u, par=self.par, t=self.t)
 
     def approached(self, q: Array, held: Sequence[str] = ()) -> Attempt:
-        """End of the steps from exactly this guess; see `approach`."""
+        """Result of the steps from this guess alone; see `approach`."""
         return approach(self.model, q, held=held, u=self.u, par=self.par, t=self.t)
 
     def motions(self, q: Array) -> Array:
@@ -60,7 +60,7 @@ class Instant:
         return null_space(G, self.model.record.measures)
 
     def scales(self, q: Array) -> Array:
-        """Size of a unit change of each speed (nv): a radian, the largest reach."""
+        """Size of a unit change of each speed (nv): a radian, or the largest reach; 1 for elastic coordinates."""
         G = self.model.constraint_jacobian(q, u=self.u, par=self.par, t=self.t)
         scales = shift_scales(self.model, G)
         return np.where(scales > 0.0, scales, 1.0)
@@ -124,7 +124,7 @@ class _Distance:
     sizes: Array
 
     def changes(self, q: Array) -> Array:
-        """Motions that lead back to the stated coordinates, over their sizes."""
+        """Displacements along the stated speeds that lead back to the stated coordinates, over their sizes."""
         return np.asarray(pull(self.at.model, q, self.asked)[self.rows] / self.sizes)
 
     def __call__(self, q: Array) -> float:
@@ -163,7 +163,7 @@ class _Distance:
 
 
 def _postures(distance: _Distance, stated: Sequence[str]) -> Iterator[Array]:
-    """Closed postures near the stated coordinates, from guesses of the others; each from a descent."""
+    """Closed postures near the stated coordinates: from guesses of the others, by descents, and with one released."""
     at = distance.at
     for guess in _guesses(distance):
         with suppress(AssemblyError):
@@ -174,7 +174,7 @@ def _postures(distance: _Distance, stated: Sequence[str]) -> Iterator[Array]:
 
 
 def _with_one_released(distance: _Distance, q: Array, stated: Sequence[str]) -> Iterator[Array]:
-    """Closed postures with all but one of the stated coordinates held, each followed by a descent."""
+    """Closed postures with all but one stated coordinate held, each followed by the end of a descent from it."""
     for held in _all_but_one(stated):
         with suppress(AssemblyError):
             end = distance.at.approached(q, held)

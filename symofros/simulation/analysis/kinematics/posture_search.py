@@ -91,7 +91,7 @@ class PostureSearch:
         return replace(found, steps=found.steps + sum(end.steps for end in (*ends, *drawn)), starts=given + len(drawn))
 
     def _started_again(self, used: Indices, most: int) -> tuple[list[End], list[Array]]:
-        """Ends of drawn starts, and the solution nearest to the guess of the first successful round."""
+        """Ends of steps from random starts, and the nearest solution of the first round that has any."""
         ends: list[End] = []
         within = FreeLimits(self.task.model, self.free).within(self.guess)
         for starts in drawn_starts(self.task, within, used, most if used.size else 0):
@@ -149,7 +149,7 @@ class PostureSearch:
         return bool(np.all(np.abs(self.task.error(q)) <= self.task.bounds(self.tolerance)))
 
     def _nearest_miss(self, ends: Sequence[End], used: Indices) -> Posture:
-        """The posture on the constraints with the smallest residual of the targets among some ends."""
+        """The best posture that some ends lead to: least error of constraints, then of targets, then distance."""
         found = [self._closed_and_descended(end.q, used) for end in ends]
         missed = [self._missed(posture) for posture in found]
         least = min(missed)
@@ -175,7 +175,7 @@ class PostureSearch:
         return Posture(end, False, steps + count, wrong_way_round=self._wrong_way_round(end))
 
     def _missed(self, posture: Posture) -> tuple[float, float]:
-        """Residual of the constraints, 0 of a closed posture, and that of the targets."""
+        """Norms of the errors of constraints (0 if closed, plus 1 if the wrong way round) and of targets."""
         wishes, gaps = np.split(self.task.error(posture.q), [self.task.wishes])
         closed = np.all(np.abs(gaps) <= self.task.bounds(self.tolerance)[self.task.wishes :])
         broken = 0.0 if closed else float(np.linalg.norm(gaps))

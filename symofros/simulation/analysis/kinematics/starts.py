@@ -184,7 +184,7 @@ def changes(
     asked: tuple[Array, Array],
     found: tuple[Array, Array],
 ) -> tuple[str, ...]:
-    """Notes on stated starts whose last digits changed.
+    """Notes on stated values of a start that changed in their last digits.
 
     Args:
         model: Name of the model.

@@ -87,12 +87,12 @@ class Task:
         return np.concatenate([np.full(self.wishes, tolerance), of_constraints])
 
     def position_errors(self, q: Array) -> Array:
-        """Residual of the targets' positions [m] at a configuration (nq)."""
+        """Errors of the targets' positions [m] at a configuration (nq)."""
         units = np.array(self.measures.unit[: self.wishes], dtype=np.intp)
         return np.asarray(self.error(q)[: self.wishes][units == LENGTH])
 
     def error(self, q: Array) -> Array:
-        """Residual: positions [m], rotation vectors [rad] in world axes, constraints."""
+        """Errors, targets minus poses: positions [m], rotation vectors [rad] in world axes; -phi of constraints."""
         parts = [np.zeros(0)]
         for frame, (position, rotation) in self.wanted.items():
             p, R = self.model.frame_pose(frame, q, **self.inputs)

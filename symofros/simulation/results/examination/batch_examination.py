@@ -64,7 +64,7 @@ class BatchExamination:
         return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
-        """Notes on the steps of run i, which came to its end; arguments as of `outcome`."""
+        """Notes on the steps of run i, which finished; arguments as of `outcome`."""
         run = self._with_ends_of_steps(self._run(i, states, steps))
         return examine_run(run, ended_well=True, failed=False)[1]
 
@@ -74,7 +74,7 @@ class BatchExamination:
         return ExaminedRun(self._stepper(i), self.settings, start, states, steps)
 
     def _with_ends_of_steps(self, run: ExaminedRun) -> ExaminedRun:
-        """A run that is made once more for the ends of its steps, where its samples are fewer, if it can be.
+        """The run, repeated to record the ends of its steps if it has fewer samples and can be repeated.
 
         What steps pass over does not depend on what is recorded of them.
         """

@@ -55,7 +55,7 @@ def lost_energy(stepper: Stepper) -> str:
 
 
 def violation(run: ExaminedRun) -> Violation | None:
-    """A condition on speeds that a run without projection has not kept; None where it projects, and so keeps them."""
+    """The worst violation of a condition on speeds by a run; None if it is small, or if the run projects."""
     if not run.model.nc or run.settings.project:
         return None
     t, q, v, u = run.states
@@ -67,7 +67,7 @@ def violation(run: ExaminedRun) -> Violation | None:
 
 
 def constraint_notes(examined: ExaminedRun, between: Between | None = None) -> list[str]:
-    """A note on a singular posture that was passed, or nearly.
+    """Note on a singular posture that a run passed or came close to, if there is one.
 
     Args:
         examined: The run.
@@ -93,7 +93,7 @@ def constraint_notes(examined: ExaminedRun, between: Between | None = None) -> l
 
 
 def _short_steps(run: ExaminedRun, first: int, last: int) -> States | None:
-    """The motion between two records in short steps; None where it can't be made again, empty where these fail."""
+    """The motion between two records in short steps; None if it can't be repeated, empty if it fails as singular."""
     t, q, v, _ = run.states
     if run.settings.realtime or not run.same_inputs_again:
         return None

@@ -108,7 +108,7 @@ class _End:
         return Outcome(kind, self.stepper.state[0], reason, advice, self.notes)
 
     def by_status(self, reason: str = "") -> Outcome:
-        """The outcome of its status, with a reason that says more."""
+        """The outcome that its status stands for, with a more specific reason."""
         return ENDS[self.status].outcome(self.stepper.state[0], self.notes, reason)
 
 
@@ -121,7 +121,7 @@ def outcome_of(
     *,
     interrupted: bool,
 ) -> Outcome:
-    """Outcome of a run after its steps are examined; arguments as of `diagnose_one`."""
+    """Outcome of a run, after an examination of its steps; arguments as of `diagnose_one`, and the notes so far."""
     failed = status in (Status.DIVERGED, Status.BEYOND_THEORY) and not fault
     meant = replace(run, steps=_steps_meant(run.settings)) if failed else run
     mode, remarks = examine_run(meant, ended_well=status >= 0, failed=failed) if meant.steps else (None, ())
@@ -183,7 +183,7 @@ def _grown(end: _End) -> Outcome | None:
 
 
 def _stuck(end: _End) -> Outcome | None:
-    """Outcome of a run that ends at a step which can't be taken, or off its constraints; None otherwise."""
+    """Outcome of a run that ends singular, at too small a step, off its constraints or with energy lost; else None."""
     settings, stepper, (_, q, v) = end.settings, end.stepper, end.stepper.state
     if end.status in (Status.SINGULAR, Status.NO_CONVERGENCE):
         return end.by_status()
@@ -262,13 +262,13 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
 
 
 def _limit_notes(run: ExaminedRun) -> tuple[str, ...]:
-    """Notes on limits of joints that were left."""
+    """Notes on joint limits that the run exceeded."""
     record, states = run.model.record, run.states
     return limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
 
 
 def _pace_notes(examined: ExaminedRun) -> list[str]:
-    """A note on steps that began late, in real time."""
+    """Note on steps that began late, for runs in real time, if there are any."""
     run = examined.stepper.run
     if not run.late_steps:
         return []

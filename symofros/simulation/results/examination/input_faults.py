@@ -46,7 +46,7 @@ def _no_rotation(stepper: Stepper, t: float) -> str:
 
 
 def _source(inputs: InputPlan, i: int) -> str:
-    """Source of input i."""
+    """Source of input i, in words: its formula, its samples, or a constant."""
     if i in inputs.formulas:
         return f"by its formula {str(inputs.formulas[i])!r}"
     if any(index == i for index, *_ in inputs.signals):

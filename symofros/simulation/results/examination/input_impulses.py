@@ -86,7 +86,7 @@ def input_impulse_note(run: ExaminedRun) -> str:
 
 
 def timed_inputs(run: ExaminedRun) -> Iterator[TimedInput]:
-    """Inputs that are signals or formulas of time, without those that prescribe motions."""
+    """Inputs that are signals, or formulas of time alone with instants; none of those that prescribe motions."""
     stepper, settings, start = run.stepper, run.settings, run.start
     inputs, free = stepper.inputs, stepper.model.nu - stepper.model.record.driven
     for index, t, values, linear in inputs.signals:
@@ -194,7 +194,7 @@ def nodes(method: Method) -> tuple[Array, Array, float]:
 
 
 def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: float) -> _Misjudged | None:
-    """The largest error of the impulse by steps; None where no step contains an instant."""
+    """The largest error of the impulse by steps; None if no step contains an instant, or the error is rounding."""
     place = (one.instants - t0) / h
     last = int(np.ceil((t_end - t0) / h - AT_END)) - 1
     within = np.unique(np.floor(place[np.abs(place - np.rint(place)) > AT_END]).astype(np.int64))
@@ -222,7 +222,7 @@ def _misjudged(one: TimedInput, method: Method, t0: float, t_end: float, h: floa
 
 
 def _made(one: TimedInput, method: Method, begin: Array, end: Array) -> Array:
-    """Integrals of an input as the steps approximate them."""
+    """Integrals of an input over steps, by the quadrature of the method."""
     c, weights, of_rate = nodes(method)
     h, total = end - begin, np.zeros(len(begin))
     for node, weight in zip(c, weights, strict=True):

@@ -1,4 +1,4 @@
-"""What half the step, or tighter bounds, make of a run and parts of it.
+"""Notes on what finer steps, or a tighter tolerance, change of a run.
 
 docs/theory/simulation.md, section 8.
 """
@@ -22,7 +22,7 @@ _ALLOWED, _MOTION, _TIGHT = 0.1, 100.0, 1e-3
 
 
 def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
-    """Note on the change of a run with fixed steps by halving the step (17); "" where it is small.
+    """Note on how finer steps change a run with fixed steps (17), or that this was not tried; "" if little.
 
     Args:
         run: The run.
@@ -44,7 +44,7 @@ def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
 
 
 def tolerance_note(run: ExaminedRun) -> str:
-    """Note on an absolute tolerance that exceeds the speeds; "" where it does no harm."""
+    """Note on an absolute tolerance that exceeds the speeds and changes the motion; "" if it does no harm."""
     settings, (t, q, v, u) = run.settings, run.states
     if not settings.adaptive or not run.model.nv or run.stepper.method.family.multistep or run.steps < 1:
         return ""

@@ -148,7 +148,7 @@ def _finite_rows(q: Array, v: Array) -> int:
 
 
 def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> str:
-    """Note on a mode that the steps do not resolve.
+    """Note on a mode that the steps follow inaccurately or amplify.
 
     Args:
         mode: Mode that the run resolves worst.
@@ -173,7 +173,7 @@ def step_size_note(mode: Mode, method: Method, h: float, energy: str = "") -> st
 
 
 def remedy(mode: Mode, method: Method) -> str:
-    """The remedy for an unstable or inaccurate step."""
+    """The remedy for steps beyond the limit of stability for a mode."""
     limit = largest_stable_step(method, mode.rate)
     if limit > 0.0:
         return f"dt below {limit:.3g} s, or {'smaller gains' if mode.of_gains else 'an implicit method'}"

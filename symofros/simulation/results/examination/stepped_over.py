@@ -31,7 +31,7 @@ _DOUBTED = 0.5
 
 
 def stepped_over_note(run: ExaminedRun) -> str:
-    """Note on forces that act unseen within steps (18b); "" where no shorter step shows any."""
+    """Note on what acts within steps and is passed over (18b); "" where no shorter step shows any."""
     settings, steps = run.settings, run.steps
     run = _from_the_start(run)
     if settings.realtime or not run.model.nv or steps < 1 or len(run.states[0]) < 2:
@@ -60,7 +60,7 @@ def stepped_over_note(run: ExaminedRun) -> str:
 
 
 def _from_the_start(run: ExaminedRun) -> ExaminedRun:
-    """A run with its first state, where that was not recorded."""
+    """A run with its first state put before its records if it was not recorded."""
     stepper, t0, states = run.stepper, run.settings.t0, run.states
     if not len(states[0]) or states[0][0] <= t0:
         return run
