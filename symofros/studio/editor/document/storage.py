@@ -180,7 +180,7 @@ class Storage:
             self.unkept = error.problem
 
     def changed_on_disk(self) -> bool:
-        """Whether the file on disk differs from the one that was last read or written here."""
+        """Whether the file on disk differs from the content that the text here is based on."""
         now = signature(self.document.file)
         if now == self._signature:
             return False
