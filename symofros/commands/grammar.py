@@ -26,7 +26,7 @@ _SUMMARY = 300
 
 
 class Group(TyperGroup):
-    """A group of commands that reports invalid arguments in four parts."""
+    """Group of commands that reports invalid arguments and the errors of its commands in four parts."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Options before the command."""
@@ -49,7 +49,7 @@ class Group(TyperGroup):
             formatter.write_dl(rows)
 
     def invoke(self, ctx: Any) -> Any:
-        """Invoke a command and report the errors that it does not report itself."""
+        """Invoke a command; report the errors that it does not report itself, and exit."""
         try:
             with _refusing():
                 return super().invoke(ctx)
@@ -60,42 +60,42 @@ class Group(TyperGroup):
 
 
 class TableGroup(Group, ABC):
-    """Commands of a table, whose modules are imported when they are asked for; to be listed, none is."""
+    """Commands of a table; the module of a command is imported only when the command is used, not to list it."""
 
     table: ClassVar[Mapping[str, Any]]
     _listing = False
 
     @abstractmethod
     def made(self, name: str) -> Any:
-        """A command of the table."""
+        """Make a command of the table, which imports its module."""
 
     @abstractmethod
     def listed(self, name: str) -> Any:
-        """The same for lists alone."""
+        """Make a stand-in of a command for lists, with its name and help, without importing its module."""
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Names of all commands."""
+        """Names of all commands, in the order of the table."""
         return [*self.table]
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
-        """A command by its name."""
+        """A command by its name, or its stand-in while commands are listed; None if the table has no such command."""
         if cmd_name not in self.table:
             return None
         return self.listed(cmd_name) if self._listing else self.made(cmd_name)
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """The list of all commands in the help."""
+        """Write the list of all commands to the help, without importing their modules."""
         with self._names_only():
             super().format_commands(ctx, formatter)
 
     def shell_complete(self, ctx: Any, incomplete: str) -> Any:
-        """Names of commands that begin so."""
+        """Completions of an incomplete argument, without importing the modules of commands."""
         with self._names_only():
             return super().shell_complete(ctx, incomplete)
 
     @contextmanager
     def _names_only(self) -> Iterator[None]:
-        """Commands are asked for to be listed, which imports none."""
+        """Context in which commands are looked up only for lists, so that no module is imported."""
         self._listing = True
         try:
             yield
@@ -109,7 +109,7 @@ def program(cls: type[Group] = Group, **settings: Any) -> typer.Typer:
 
 
 class _AsWritten:
-    """Parameter type that leaves flags and texts as written and makes paths of texts."""
+    """Parameter type that takes flags and texts as written; only the texts of paths are converted."""
 
     def __init__(self, kind: type) -> None:
         self._kind = kind
@@ -149,7 +149,7 @@ def _refusing() -> Iterator[None]:
 
 
 def _nearest(given: str, options: Iterable[str]) -> list[str]:
-    """Options similar to the given one; the common leading dashes are ignored in the comparison."""
+    """Options similar to the given one, sorted; leading dashes are ignored in the comparison."""
     names = {option.strip("-"): option for option in options}
     return sorted(names[name] for name in difflib.get_close_matches(given.strip("-"), names))
 

@@ -174,7 +174,7 @@ def _simulated(
 
 
 def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
-    """Write a picture of a run and report the signals that it leaves out."""
+    """Write a plot of a run to a file and return its path; report it if only the first curves are shown."""
     run.plot(*names).savefig(picture, dpi=120)
     count = len(names or run.model.names.q)
     if count > MAX_CURVES:

@@ -41,7 +41,7 @@ def reading_of(*, prefix: str = "--", **stated: Any) -> ReadingOptions:
 
 
 def _named(stated: dict[str, str]) -> dict[str, str]:
-    """Pairs by name, without backquotes; formulas keep theirs."""
+    """The pairs, with backquotes removed from their names; the texts are unchanged."""
     return {name_of(name): text for name, text in stated.items()}
 
 

@@ -77,7 +77,7 @@ class ReadingOptions:
 
     @property
     def keywords(self) -> dict[str, Any]:
-        """The stated options as keywords of `sf.load`."""
+        """The stated options as keyword arguments of `sf.load`."""
         stated = {option.name: value for option in OPTIONS if (value := getattr(self, option.name))}
         mappings = {name: dict(stated[name]) for name in ("packages", "arguments") if name in stated}
         return stated | mappings

@@ -45,7 +45,7 @@ def refusing_descriptions(path: Path) -> Iterator[None]:
 
 
 def refuse(error: Exception) -> typer.Exit:
-    """Report an error in the input and exit."""
+    """Report an error in the input and return the exit to raise."""
     if isinstance(error, OSError) and error.filename is not None:
         what, rule = f"'{error.filename}' can't be used", "files and folders are there, and open to whoever runs this"
         error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, "check the path, and its rights"))

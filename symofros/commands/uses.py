@@ -60,7 +60,7 @@ def advise(
 
 
 def _tolerances(given: list[str]) -> float | dict[str, float] | None:
-    """The tolerances of --tolerance: one number, or numbers by name."""
+    """Tolerances stated by --tolerance: one number, or numbers by name; None if there are none."""
     if len(given) == 1 and "=" not in given[0]:
         return number("--tolerance", given[0])
     return {name: number(name, text) for name, text in assignments(given, "--tolerance").items()} or None

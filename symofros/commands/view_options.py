@@ -37,7 +37,7 @@ class ViewOptions:
     interactive: bool = False
 
     def check(self) -> None:
-        """Raise errors before the run that would otherwise occur only after it.
+        """Check options whose errors would otherwise surface only after the run.
 
         Raises:
             SymofrosError: The file has another suffix, or viser is not installed; or no page is to simulate on.

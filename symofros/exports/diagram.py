@@ -110,7 +110,7 @@ def write_diagram(
 
 
 def _refuse(resolved: Resolved, stepping: Stepping) -> None:
-    """Refuse blocks that a stand-alone program can't run.
+    """Refuse diagrams that a stand-alone program can't run.
 
     Raises:
         ExportError: The diagram calls Python, or steps by an implicit method.

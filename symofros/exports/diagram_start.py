@@ -74,7 +74,7 @@ def first_motion(resolved: Resolved, outputs: Sequence[str], stepping: Stepping)
 
 
 def _mechanism_notes(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[str]:
-    """Notes on the mechanisms: their descriptions, unenforced limits, singular first postures."""
+    """Notes on the mechanisms: those of their descriptions, limits not enforced, singular initial postures."""
     layout, models = resolved.layout, resolved.wired.models
     for part, at in zip(layout.parts, placed, strict=True):
         for block in part.blocks:

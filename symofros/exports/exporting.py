@@ -213,7 +213,7 @@ def _material(
     stepping: Stepping,
     target: Target,
 ) -> Material:
-    """Contents of an export: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
+    """Material of an export: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
     chosen = target == "c" and bool(further)
     reactions = _reactions(system) if target == "c" and not chosen else ()
@@ -302,7 +302,7 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
 
 
 def _start(model: Model, given: Mapping[str, float]) -> ClosedStart:
-    """The first state on the constraints; given coordinates keep their values."""
+    """Initial state on the constraints; given coordinates and speeds keep their values."""
     q, v = model.neutral(), np.zeros(model.nv)
     for label, value in given.items():
         coordinate, speed = coordinate_of(label, model.names.q), speed_of(label, model.names.v)

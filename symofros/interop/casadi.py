@@ -45,7 +45,7 @@ _OPERATIONS = Operations(
 
 @dataclass(frozen=True)
 class _Differentiable:
-    """A function with access to its derivatives.
+    """A function, and the functions of the model that give its derivatives.
 
     Attributes:
         value: Function of the model and the array that it gives.
@@ -272,7 +272,7 @@ def _externals(
 def _second_derivatives(
     f: _Differentiable, slopes: Sequence[Output], starts: Mapping[str, int], sizes: Mapping[str, int], sources: Sources
 ) -> tuple[Output, ...]:
-    """The derivatives of the Jacobian, of which integrators of stiff equations make sensitivities."""
+    """Derivatives of the Jacobian blocks, from which integrators of stiff equations compute sensitivities."""
     H = sources.hessians(f.hessian, f.frame, f.vjp, f.cotangent, f.size)
     outputs = []
     for x, of in zip(f.inputs, slopes, strict=True):

@@ -138,7 +138,7 @@ class Sources:
 
 
 def _nonzero(function: Function, index: int) -> list[bool]:
-    """Entries of an array that may differ from zero; for solver outputs from their operands."""
+    """Whether each entry of an array may differ from zero; for outputs of solvers, from those of their operands."""
     solver = function.solver
     if solver is None:
         return [edge != ZERO for edge in function.outputs[index].edges]

@@ -15,7 +15,7 @@ Components = Sequence[Any]
 
 
 class Operations(NamedTuple):
-    """Framework operations that the formulas need.
+    """Operations of an array framework that the formulas need.
 
     Attributes:
         entries: The entries of an array (..., n), each an array (...).

@@ -88,12 +88,12 @@ class Task:
         return np.array(self.model.parameter_values)[np.newaxis]
 
     def judge(self, q: Array, v: Array, u: Array) -> tuple[Array, np.ndarray[Any, Any]]:
-        """Rewards (n), and which states (n) end their episodes, after inputs u (n, nu) led to q (n, nq), v (n, nv)."""
+        """Rewards (n) and whether episodes end (n), for states q (n, nq), v (n, nv) that inputs u (n, nu) led to."""
         return self.reward(q, v, u), self.fails(q, v)
 
     @property
     def _steps(self) -> dict[str, Any]:
-        """Settings of the steps between actions."""
+        """Integration method and step size of the steps between actions."""
         return {"method": "rk4", "dt": self.dt / self.substeps}
 
     @property
@@ -115,7 +115,7 @@ class MechanismEnv(_Env):  # type: ignore[misc]
         task: What is asked of the agent.
 
     Attributes:
-        stepper: What makes its steps; a motion that ended goes on from its last good state.
+        stepper: Stepper of the mechanism; a motion that ended goes on from its last good state.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -217,7 +217,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         return Steppers(self.task.model, self.num_envs, par=par, **self.task._steps)
 
     def _change(self, chosen: Any, par: Array) -> None:
-        """Environments of these numbers have other parameters, rows of par (num_envs, npar), where they are."""
+        """Set the parameters of chosen environments from their rows of par (num_envs, npar); their states stay."""
         self.par[chosen] = par[chosen]
         before = self._steppers
         if not self._own:  # They had one set for all.
@@ -304,13 +304,13 @@ def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError
 
 
 def _bounds(task: Task) -> tuple[Array, Array]:
-    """Least and largest inputs (nu)."""
+    """Lower and upper bounds of the inputs (nu)."""
     largest = np.array(task.largest, dtype=np.float64)
     return -largest, largest
 
 
 def _bounded(u: Array, least: Array, largest: Array) -> Array:
-    """Inputs within their bounds; np.clip takes some microseconds more."""
+    """Inputs clipped to their bounds; np.clip would take some microseconds more."""
     return np.minimum(np.maximum(u, least), largest)
 
 

@@ -52,7 +52,7 @@ class InteropError(SymofrosError):
 
 
 def second_derivatives(model: Model, function: str) -> InteropError:
-    """Message for second derivatives that a framework requests."""
+    """Error for a derivative that a framework differentiates again."""
     product = " or model.inverse_dynamics_hvp(...)" if function == "inverse_dynamics" else ""
     return InteropError(
         Problem(

@@ -62,7 +62,7 @@ def residual_weights(G: Array, measures: Measures) -> Array:
 
 
 def residual_rounding(G: Array, measures: Measures) -> Array:
-    """Rounding errors of phi (nc), and of G v at unit speeds (docs/theory/constraints.md, (22a))."""
+    """Residuals of phi (nc), and of G v at unit speeds, that count as rounding (docs/theory/constraints.md, (22a))."""
     return np.asarray(RESIDUAL_ROUNDING * natural_sizes(G, measures).max(axis=1, initial=0.0), dtype=np.float64)
 
 
@@ -268,7 +268,7 @@ def constrained(M: Array, r: Array, G: Array, c: Array, measures: Measures) -> l
 
 
 def deviation(G: Array, measures: Measures, phi: Array) -> float:
-    """Distance of a state from phi = 0, in rad or fractions of the reach (docs/theory/constraints.md, (11a))."""
+    """Largest |phi_i| of a state: angles in rad, others over their reach (docs/theory/constraints.md, (11a))."""
     speeds, unit = np.array(measures.speed, dtype=np.intp), np.array(measures.unit, dtype=np.intp)
     reach = np.where(speeds == TRANSLATION, 0.0, natural_sizes(G, measures)).max(axis=1, initial=0.0)
     scaled = (unit != ANGLE) & (reach > MIN_SIZE)

@@ -138,7 +138,7 @@ class Functions(Arguments):
         return self._precision
 
     def _like(self, par: Array | None = None, threads: int | None = None, precision: Precision | None = None) -> Self:
-        """A copy with the given settings changed."""
+        """A copy with other parameters, threads or precision, which shares the compiled kernels."""
         other = type(self)(
             self.record,
             self._build,
@@ -158,7 +158,7 @@ class Functions(Arguments):
         return other
 
     def beams(self, par: ArrayLike | None = None) -> tuple[ElasticBeam, ...]:
-        """The elastic beams as numbers at these run-time parameters (npar), to judge how far they bend."""
+        """The elastic beams as numbers, by which bending is judged, at these run-time parameters (npar)."""
         if self._beams_at is None:
             return ()
         return self._beams_at(self._par if par is None else self._array("par", par, self.npar))

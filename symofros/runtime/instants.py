@@ -17,7 +17,7 @@ _EVALUATE = "void(void *, int32_t, int32_t, const double *, double *)"
 
 
 def find_instants(kinds: Sequence[int], values: Operands, t0: float, t_end: float) -> Array:
-    """Instants within a span at which a step has to end, so that the next one starts with the new branch.
+    """Instants within a span at which a step has to end, as formulas of time bend, jump or are narrow there.
 
     Args:
         kinds: What formulas do where each operand is small, sym_instant_kind; inner operands first.

@@ -82,6 +82,6 @@ def _conditions_text(judged: Judged, offset: int) -> tuple[list[str], list[str]]
 
 
 def _rule(condition: Condition, numbers: Numbers) -> str:
-    """Text of a condition and its object; the numbers in its problem are meaningless where it holds."""
+    """Object and rule of a condition, without the values found, which are meaningless where the condition holds."""
     problem = condition.problem(numbers)
     return f"run-time parameters: {problem.what.partition(': ')[0]}: {problem.rule}"

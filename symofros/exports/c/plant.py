@@ -15,7 +15,7 @@ from symofros.simulation.stepping.tableaus import Tableau
 
 
 def header_text(material: Material) -> str:
-    """NAME.h: sizes and declarations."""
+    """Text of the header NAME.h: sizes, and declarations of the functions."""
     name, record = material.c_name, material.record
     upper = name.upper()
     sizes = {
@@ -62,7 +62,7 @@ def header_text(material: Material) -> str:
 
 
 def _reaction_calls(name: str) -> tuple[str, ...]:
-    """Declarations of the reaction functions of a package."""
+    """C declarations of the reaction functions of a package."""
     return (
         "/* Names of the joints, rows of joint_wrenches, and of the speeds of prescribed motions, entries of",
         " * prescribed_efforts; these two are functions of the model, the latter where a motion is prescribed. */",
@@ -88,7 +88,7 @@ class Moving(Protocol):
 
     @property
     def c_name(self) -> str:
-        """Prefix of C symbols."""
+        """Prefix of the C symbols."""
         ...
 
     @property
@@ -174,7 +174,7 @@ def plant_text(material: Moving) -> str:
 
 
 def _beams(name: str, beams: Sequence[ElasticBeam]) -> list[str]:
-    """Lines of C with the data that judge the bending of beams."""
+    """C definitions of the data by which the bending of elastic beams is judged."""
     if not beams:
         return []
     structs, lines, first = [], [], 0

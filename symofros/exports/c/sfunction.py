@@ -17,7 +17,7 @@ mex('-output', 'symoSFunction', 'symoSFunction.c', '{name}.c', '{name}_plant.c',
 
 
 def write_sfunction(material: Material, folder: Path) -> Exported:
-    """symoSFunction.c, the table of its models, and the sources that it calls.
+    """Write symoSFunction.c, the table of its models, its build script and the sources that it calls.
 
     Raises:
         ExportError: The folder is not ours.

@@ -107,7 +107,7 @@ def _wrapped(line: str) -> str:
 
 
 def _starts(functions: Sequence[NamedFunction]) -> Iterable[int]:
-    """Index of the first result of each function in the object's memory."""
+    """Offset of the results of each function in the object's memory."""
     at = 0
     for function in functions:
         yield at

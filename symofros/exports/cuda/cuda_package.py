@@ -89,7 +89,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
 
 
 def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
-    """Notes on functions without kernels."""
+    """Notes on what kernels and rollouts leave out: limits, functions without kernels, bending of beams, instants."""
     notes = [*limits_note(joints_of(made.system))]
     if left_out:
         notes.append(
@@ -106,7 +106,7 @@ def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
 
 
 def _rollouts_text(code: DeviceCode) -> str:
-    """README text on rollouts."""
+    """Paragraph of the README on rollouts."""
     if not code.rollouts:
         return "This model has no rollouts: its accelerations take a solver."
     methods = " and ".join(f"`{symbol}` (`{method}` of `sf.simulate`)" for method, symbol in code.rollouts.items())

@@ -55,7 +55,7 @@ class _Writer:
         self._symbols, self._names = symbols, names
 
     def link(self, index: int, link: Link, links: Sequence[Link]) -> str:
-        """A joint and the link that it carries."""
+        """LaTeX paragraph of a link: its joint, placements, inertias and beam."""
         parent = (
             "the base" if link.parent == BASE else f"link {link.parent + 1} ({latex_text(links[link.parent].name)})"
         )

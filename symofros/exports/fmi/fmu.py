@@ -117,7 +117,7 @@ def _glue(material: Material, version: int, token: str) -> str:
 
 
 def _token(material: Material, sources: dict[str, str], version: int) -> str:
-    """Identifier that depends on the content: another model, other outputs or another version give another one."""
+    """Token of an FMU, a digest of its content: other models, outputs or FMI versions have other tokens."""
     parts = [*sources.values(), *material.outputs, *material.functions[-1], str(version)]
     digest = hashlib.sha256("\0".join(parts).encode()).digest()
     return f"{{{UUID(bytes=digest[:16])}}}"

@@ -77,7 +77,7 @@ class _Numbering:
 
 
 def variables(material: Material) -> list[Variable]:
-    """All of them."""
+    """All variables of an FMU, in the order of their references."""
     at, units = _Numbering.of(material), _units(material)
     listed = [Variable(0, "time", "independent", "continuous", unit="s")]
     for group in (_states(material, at, units), _rates(material, at, units), _given(material, at, units)):
@@ -105,7 +105,7 @@ def _states(material: Material, at: _Numbering, units: Mapping[str, str]) -> Ite
 
 
 def _rates(material: Material, at: _Numbering, units: Mapping[str, str]) -> Iterator[Variable]:
-    """Time derivatives of the variables."""
+    """Variables of the time derivatives of the coordinates and speeds."""
     rates = _rate_dependencies(material, at.q, at.v)
     groups = (
         ("q", at.dq, at.q, material.record.q_names, "s", rates),
@@ -194,7 +194,7 @@ def _effort(unit: str) -> str:
 
 
 def _rate_dependencies(material: Material, at_q: int, at_v: int) -> dict[int, tuple[int, ...]]:
-    """Coordinate -> variables on which its rate in q' = N v depends."""
+    """Index of a coordinate -> references of the variables on which its rate in q' = N v depends."""
     dependencies: dict[int, tuple[int, ...]] = {}
     for s in material.record.segments:
         if s.kind == "linear":

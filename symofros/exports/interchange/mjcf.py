@@ -114,7 +114,7 @@ def _moves(body: GatheredBody) -> bool:
 
 
 def _lost(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
-    """Features that MJCF can't represent, and forces that become plain data."""
+    """Notes on features that MJCF can't represent, and on limits that are only data here but act in MuJoCo."""
     losses = []
     moving = [(link, link.joint) for link in links if link.joint is not None]
     elements = [j.name for _, j in moving if any(not _kept(element) for element in j.elements)]
@@ -197,7 +197,7 @@ def _body(into: Tree.Element, gathered_body: GatheredBody, numbers: Numbers) -> 
         _joints(body, place.link, numbers, place)
     if not link.axes and link.joint.traits.mjcf is not None:
         stated = {"name": link.joint.name, "type": link.joint.traits.mjcf}
-        Tree.SubElement(body, "joint", stated | _speed_attributes(link, numbers))
+        Tree.SubElement(body, "joint", stated | _ball_or_free_attributes(link, numbers))
     _joints(body, link, numbers, None)
     _sites(body, link)
     return body
@@ -215,7 +215,7 @@ def _joints(body: Tree.Element, link: RigidLink, numbers: Numbers, place: JointP
 
 
 def _positive(inertia: Array) -> Array:
-    """Inertia that MuJoCo accepts: missing moments of a line or a point are made negligibly small."""
+    """Inertia that MuJoCo accepts: zero principal moments, of a line or a point, are raised to negligible ones."""
     sizes, axes = np.linalg.eigh(inertia)
     least = _LEAST * max(1.0, float(sizes[-1]))
     if sizes[0] >= least:
@@ -229,7 +229,7 @@ def _impossible(inertia: Array) -> bool:
     return bool(small + middle < large * (1.0 - 1e-9))
 
 
-def _speed_attributes(link: RigidLink, numbers: Numbers) -> dict[str, str]:
+def _ball_or_free_attributes(link: RigidLink, numbers: Numbers) -> dict[str, str]:
     """Armature and damping of a ball or free joint, for which MJCF has one number each."""
     assert link.joint is not None
     stated = {"armature": numbers.value(link.joint.armature)}
@@ -252,7 +252,7 @@ def _dynamics(link: RigidLink, joint: Joint, index: int, numbers: Numbers) -> di
 
 
 def _springs(joint: Joint, index: int, numbers: Numbers) -> tuple[float, float]:
-    """Combined linear springs of a coordinate: stiffness, and effort at zero."""
+    """Total stiffness of the linear springs on a coordinate, and their effort at zero."""
     springs = [e for e in joint.elements if isinstance(e, Spring) and e.cubic == 0.0 and e.coordinate == index]
     terms = [(numbers.value(spring.stiffness), numbers.value(spring.rest)) for spring in springs]
     return math.fsum(k for k, _ in terms), math.fsum(k * rest for k, rest in terms)

@@ -212,7 +212,7 @@ def _beam_inertia(beam: Beam, numbers: Numbers) -> tuple[float, Array, Array]:
 
 
 def _lost(system: System) -> Iterator[str]:
-    """Features that no format of plain numbers can represent."""
+    """Notes on features that formats without formulas can't represent: dropped, made rigid, or fixed to numbers."""
     beams = [body.name for body in system.beams if body.modes]
     if beams:
         yield f"beams as rigid bodies, without their elastic coordinates: {listed(beams)}"

@@ -44,7 +44,7 @@ def functions(constrained: bool) -> tuple[str, ...]:
 
 
 def write_wasm(material: Material, folder: Path) -> Exported:
-    """The module of a model with its calling script.
+    """Write the WebAssembly module of a model with its JavaScript, type declarations, page and self-test.
 
     Raises:
         CompileError: There is no ziglang package, or it failed; with its command and messages.
@@ -145,7 +145,7 @@ def _script(material: Material, module: bytes) -> str:
 
 
 def _statuses() -> dict[str, str]:
-    """Negative status of the stepping loop -> its meaning, from the header."""
+    """Negative status of the stepping loop -> its meaning, from the comments of its header."""
     return dict(re.findall(r"SYM_\w+ = (-\d+),?\s*/\* (.*?) \*/", native_text("stepping/symofros_stepper.h")))
 
 

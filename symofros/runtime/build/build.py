@@ -35,7 +35,7 @@ def recall_library(
     toolchain: Toolchain,
     flags: Sequence[str] | None = None,
 ) -> Path:
-    """The library of a recipe; its C text is formed only if no library is cached.
+    """Path of the library of a recipe; its C text is formed only if the library is not cached.
 
     Args:
         recipe: All that the C text depends on, but for the code that writes it.

@@ -73,9 +73,9 @@ def _refused(folder: Path, state: str) -> CompileError:
 
 
 def create_cache_folder(folder: Path) -> None:
-    """Create the folder and its parents for this user only, and remove entries that are too old.
+    """Create the folder and its missing parents for this user only, and remove stale entries.
 
-    That is leftovers, and models that were used longest ago where the folder is over its limit.
+    Those are leftovers, and the least recently used models where the folder is over its limit.
 
     Raises:
         OSError: It can't be created.

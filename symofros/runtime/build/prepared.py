@@ -28,7 +28,7 @@ _PACKAGES = ("numpy", "pydantic", "ruamel.yaml")
 
 
 class Prepared(NamedTuple):
-    """What a description led to.
+    """Cached record of a compiled description.
 
     Attributes:
         name: Name of the system.
@@ -42,7 +42,7 @@ class Prepared(NamedTuple):
 
 
 def recall_prepared(description: Path, request: str, toolchain: Toolchain) -> Prepared | None:
-    """Cached result of a description, if its files are unchanged and its libraries intact.
+    """Cached record of a compiled description, if its files are unchanged and its libraries intact.
 
     Args:
         description: The file.
@@ -65,7 +65,7 @@ def recall_prepared(description: Path, request: str, toolchain: Toolchain) -> Pr
 
 
 def _prepared(stated: Any) -> Prepared:
-    """Contents of a cache file, with the type of each value checked."""
+    """Record read from a cache file, each value converted to its type."""
     sources = tuple(Source(str(a), str(b), int(size), str(digest)) for a, b, size, digest in stated["sources"])
     return Prepared(str(stated["name"]), sources, tuple(map(file_name, stated["libraries"])))
 
@@ -78,7 +78,7 @@ def note_prepared(
     sources: Iterable[Source],
     libraries: Iterable[Path],
 ) -> None:
-    """Store the result of a description.
+    """Store the record of a compiled description in the cache.
 
     Args:
         description: The file, as of `recall_prepared`, like the next two.

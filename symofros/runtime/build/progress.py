@@ -34,7 +34,7 @@ class Progress:
         self._teller: threading.Thread | None = None
 
     def begin(self, stage: str) -> None:
-        """Enter a stage, such as "compiling"; the first one starts the clock."""
+        """Enter a stage, such as "compiling"; the first one starts the clock and the progress line."""
         self._stage = stage
         LOGGER.info("%s: %s", self._label, stage)
         if not self._began:
@@ -47,7 +47,7 @@ class Progress:
                     _LINE.release()
 
     def __enter__(self) -> Self:
-        """Enter without a report, as most libraries are in the cache and no stage begins."""
+        """Nothing is reported before a stage begins, as most libraries are in the cache."""
         return self
 
     def __exit__(

@@ -95,7 +95,7 @@ class NativeMemory:
         return arrays
 
     def own(self, kind: str, values: Sequence[Any] | int) -> Any:
-        """An owned C array of a type such as "int32_t[]", from values or of a length, at least one element long."""
+        """Owned C array of a type such as "int32_t[]", from values or of a given length; at least one element long."""
         array = self.ffi.new(kind, values or 1)
         self.keep(array)
         return array
@@ -111,7 +111,7 @@ class NativeMemory:
         return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64) if size else np.zeros(0)
 
     def raw(self, pointer: Any, kind: str, count: int) -> npt.NDArray[np.uint8]:
-        """The bytes of so many structs behind a pointer, not copied."""
+        """View of the bytes of `count` structs of a type at a pointer, not copied."""
         size = count * self.ffi.sizeof(kind)
         return np.frombuffer(self.ffi.buffer(pointer, size), dtype=np.uint8) if size else np.zeros(0, dtype=np.uint8)
 

@@ -48,7 +48,7 @@ class Bound:
         self._kept = kept
 
     def __call__(self) -> None:
-        """Compute the outputs from the present contents of the inputs."""
+        """Compute the outputs from the current contents of the inputs."""
         self._evaluate()
 
 
@@ -112,7 +112,7 @@ def receivers(
 
 
 def _refuse_overlaps(signature: Signature, given: Mapping[str, Numbers]) -> None:
-    """Refuse an output that shares memory with another array of the caller, as inputs would be overwritten."""
+    """Refuse outputs that share memory with other arrays of the caller: each is written while others are read."""
     for name, _ in signature.outputs:
         for other in given if name in given else ():
             if other != name and share_memory(given[name], given[other]):

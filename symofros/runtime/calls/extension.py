@@ -60,7 +60,7 @@ def available_type() -> Any:
 
 
 def begin() -> None:
-    """Start preparing plain calls in other threads, unless that has started: the type, and the declarations of C."""
+    """Start loading the type `Call` and the C declarations in other threads, unless that has been started."""
     if next(_begun) == 0:
         try_to_start(threading.Thread(target=interface))
         # The process waits for it at its end: a script that is over sooner would never have it.
@@ -97,7 +97,7 @@ def step_type() -> Any:
 
 @cache
 def module() -> Any:
-    """The extension, or None."""
+    """The extension module, built unless the cache folder has it; None where it can't be built or loaded."""
     toolchain = find_toolchain(None)
     headers = [Path(sysconfig.get_paths()["include"]), Path(np.get_include())]
     if toolchain is None or sys.platform == "win32" or not (headers[0] / "Python.h").is_file():

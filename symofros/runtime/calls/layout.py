@@ -92,7 +92,7 @@ class Strided(NamedTuple):
 
     @classmethod
     def of(cls, array: Numbers, dtype: npt.DTypeLike) -> Self:
-        """The array in place, or a copy if its type or strides do not fit."""
+        """The array in place, or a contiguous copy if its type, alignment or strides do not fit."""
         by, to = array.strides
         size = array.itemsize
         if array.dtype != dtype or by % size or to % size or not array.flags.aligned:

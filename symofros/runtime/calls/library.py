@@ -171,7 +171,7 @@ class CompiledKernel:
         return self._unit.prepare(par)
 
     def in_lanes(self, lanes: LaneOptions = SHARED_PARAMETERS) -> CompiledKernel:
-        """The kernel by vectors, compiled at the first call; the scalar one where no vector code exists."""
+        """The kernel vectorised over states, compiled at the first call; this one where there is no vector code."""
         if lanes not in self._lanes:
             make = self._unit.in_lanes
             key = self.signature.name, self.signature.frame

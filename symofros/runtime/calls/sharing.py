@@ -35,7 +35,7 @@ def parts(n: int, threads: int) -> list[tuple[int, int]]:
 
 
 def together(calls: Sequence[Callable[[], object]]) -> None:
-    """Run calls at the same time, the first in this thread; their exceptions are raised here."""
+    """Run calls concurrently, the first in this thread; their exceptions are raised here."""
     mine, *others = calls
     if not others:
         mine()

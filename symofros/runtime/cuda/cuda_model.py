@@ -125,7 +125,7 @@ class CudaModel:
                 raise UnknownNameError(Problem(what, given[:60], listed, remedy))
 
     def usage(self, name: str, frame: str = "", architecture: str = "") -> dict[str, KernelUsage]:
-        """Resources of the kernels of a function on an architecture ("sm_90"); that of this machine by default.
+        """Registers and memory of the kernels of a function on an architecture ("sm_90"), this machine's by default.
 
         Raises:
             CompileError: There is no compiler, or no such architecture.
@@ -345,7 +345,7 @@ class CudaModel:
         return at_unit_length(self.record, group, array)
 
     def _default(self, group: str, device: Driver) -> DeviceArray:
-        """Default values of u and t, (size), copied once because a copy waits for earlier work."""
+        """Default values (size) of the inputs u or the time t, copied once, because a copy waits for earlier work."""
         if group not in self._defaults:
             values = np.asarray(self.record.u_default if group == "u" else np.zeros(1), self._dtype)
             self._defaults[group] = DeviceArray(device, values.shape, self._dtype)

@@ -25,7 +25,7 @@ class DeviceKernel:
     signature: Signature
 
     def bytes_of_state(self, precision: Precision) -> int:
-        """Bytes read and written per state, every input separate: the load on memory bandwidth."""
+        """Bytes read and written per state if no input is shared between states: the load on memory bandwidth."""
         numbers = sum(size for _, size in self.signature.inputs)
         numbers += sum(prod(shape) for _, shape in self.signature.outputs)
         return numbers * (4 if precision == "single" else 8)

@@ -94,7 +94,7 @@ class Driver:
             self._call("cuStreamSynchronize", ctypes.c_void_p(stream))
 
     def order(self, first: int, then: int) -> None:
-        """Make later work of a stream wait for the earlier work of another one."""
+        """Make later work in stream `then` wait for earlier work in stream `first`."""
         if first == then:
             return
         event = ctypes.c_void_p()
@@ -129,7 +129,7 @@ class Driver:
         self._call("cuStreamSynchronize", ctypes.c_void_p(DEFAULT_STREAM))
 
     def read(self, address: int, target: int, size: int) -> None:
-        """Copy to host memory after pending work."""
+        """Copy device memory to the host, after pending work."""
         self._call("cuMemcpyDtoH_v2", ctypes.c_void_p(target), ctypes.c_void_p(address), ctypes.c_size_t(size))
 
     def _call(self, name: str, *arguments: Any) -> None:

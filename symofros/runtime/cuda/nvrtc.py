@@ -29,7 +29,7 @@ _SHOWN = 6
 
 @dataclass(frozen=True)
 class KernelUsage:
-    """Resources of a kernel per thread, as the assembler (`ptxas -v`) states them.
+    """Resources that a kernel takes per thread, as the assembler (`ptxas -v`) reports them.
 
     Attributes:
         registers: Registers of 32 bits; 255 are all that there are.
@@ -59,7 +59,7 @@ def compile_cuda(text: str, architecture: str, contract: bool = False) -> bytes:
 
 
 def usage_of(text: str, architecture: str, contract: bool = False) -> dict[str, KernelUsage]:
-    """Resources of each kernel of CUDA C++ by name; arguments and errors as of `compile_cuda`."""
+    """Resources of each kernel of a CUDA C++ text, by name; arguments and errors as of `compile_cuda`."""
     # NVRTC from 12.9 on returns what its cache holds without the assembler's words.
     options = ["--no-cache"] if _version(_library()) >= _FIRST_WITH_CACHE else []
     log = _compiled(text, architecture, contract, ["--ptxas-options=-v", *options])[1]
@@ -93,7 +93,7 @@ def _compiled(text: str, architecture: str, contract: bool, more: list[str]) -> 
 
 
 def _usage(text: str) -> KernelUsage:
-    """Resources stated after the name of an entry."""
+    """Resources of a kernel, from the part of the assembler's log after its name."""
     registers, stack = _REGISTERS.search(text), _STACK.search(text)
     return KernelUsage(
         int(registers[1]) if registers else 0,

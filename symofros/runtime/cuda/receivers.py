@@ -68,7 +68,7 @@ def receivers(
 
 
 def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
-    """Result array in the layout of kernels: entries by rows, at equal distances.
+    """A result array as kernels take it: its address, and the distances of its entries and of its rows.
 
     Raises:
         ShapeError: It has another shape or layout.

@@ -59,7 +59,7 @@ def is_captured(device: Driver, stream: int) -> bool:
 
 
 def refused_in_capture(what: str, found: str, remedy: str) -> SymofrosError:
-    """Error for a call that can't become part of a graph."""
+    """Error for a call that can't be captured in a graph."""
     rule = "while a graph is captured nothing is allocated, copied from the host or waited for"
     return SymofrosError(Problem(f"CUDA: {what} can't be captured in a graph", found, rule, remedy))
 

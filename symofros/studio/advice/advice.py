@@ -137,7 +137,7 @@ class Advice:
         write_atomically(file, comment + write_yaml(self.system))
 
     def summary(self) -> list[str]:
-        """Savings and accuracy, a line each."""
+        """Recommended stepping, error of each output, and cost of a run, a line each."""
         lines = [f"step it by {self.stepping}; functions: {', '.join(self.options.functions or ())}"]
         for name, share in self.errors.items():
             bound = self.bounds[name]
@@ -152,7 +152,7 @@ class Advice:
 
     @property
     def _beside(self) -> str:
-        """Cost of the full model relative to the reduced one."""
+        """Cost of the full model: over that of the reduced one, or with its error where that exceeds the tolerance."""
         taken = f"takes {self.full_cost.total} ({self.full_stepping})"
         if self.truncation > 1.0:
             return f"the full model {taken}, and errs by {self.truncation:.3g} of what is allowed"

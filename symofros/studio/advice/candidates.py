@@ -143,7 +143,7 @@ def _beam_candidates(loads: BeamLoads) -> Iterator[Reduction]:
 
 
 def _bent(loads: BeamLoads, direction: Direction) -> tuple[float, str, dict[str, float]]:
-    """Loss of outputs without a direction, from deflection and residual vibration; in words; in numbers."""
+    """Change of outputs by deflection and vibration in a direction, in units of the tolerance; in words; in numbers."""
     static = loads.deflection(direction)
     if direction == "twist":
         return loads.share(static), f"twist: static {static.slope:.2g} rad", {"static": static.slope}
@@ -249,7 +249,7 @@ def _of_joint(seen: Observed, body: str, joint: Joint) -> Iterator[Reduction]:
 
 
 def changed_beam(name: str, **changed: Any) -> Callable[[System], System]:
-    """A function that changes entries of a beam of a system."""
+    """A function that replaces attributes of a beam of a system."""
 
     def apply(system: System) -> System:
         body = system.body(name)

@@ -198,7 +198,7 @@ class Observed:
         return ""
 
     def beam(self, beam: Beam) -> BeamLoads:
-        """Loads on a beam."""
+        """Loads on a beam in the motion, largest values over time."""
         length = self.number(beam.length)
         p, R = self.poses[beam.name]
         gravity = np.array([self.number(value) for value in self.system.gravity])

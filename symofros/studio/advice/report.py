@@ -12,7 +12,7 @@ _COLORS = {"taken": "green", "refused": "red", "not tried": "yellow"}
 
 
 def table_of(advice: Advice) -> RenderableType:
-    """Every choice, then cost and error of the reduced model."""
+    """A table of all choices, then cost and error of the reduced model, times and notes."""
     table = Table(
         "what",
         "change",

@@ -84,7 +84,7 @@ class Output(metaclass=CheckedCalls):
 
 
 def missing(output: Output, names: Any) -> Problem:
-    """The problem of an output whose object a model lacks."""
+    """The problem of an output whose frame, coordinate, speed or input the model lacks."""
     known = {"position": names.frames, "coordinate": names.q, "speed": names.v, "effort": names.u}[output.kind]
     return Problem(
         f"output '{output.name}': there is no {'frame' if output.kind == 'position' else output.kind} '{output.of}'",

@@ -111,7 +111,7 @@ class _Reader:
         return self.number(node, what)
 
     def built(self, node: Node, make: Callable[[], Made]) -> Made:
-        """Result of a constructor, with its error placed at a line."""
+        """Object made by a constructor; an error is raised with the line of its node."""
         try:
             return make()
         except DescriptionError as error:

@@ -116,7 +116,7 @@ class SceneRunner:
         return Stepping("rk4", dt=self.scene.t_end / self.scene.samples)
 
     def functions(self, system: System, method: str) -> tuple[str, ...]:
-        """Functions of a model that a run by a method calls, with poses of the scene's frames."""
+        """Functions of a model that a run by a method calls, and `frame_pose` if the scene observes frames."""
         needed = ["forward_dynamics", *METHODS[method].family.functions]
         if system.constraints:
             needed += ["project", "constraint", "constraint_rate", "constraint_jacobian"]
@@ -264,7 +264,7 @@ class SceneRunner:
         return {name: known[name] for name in functions}
 
     def cost(self, system: System, trial: Trial, method: str) -> Cost:
-        """Operations of a run."""
+        """Arithmetic operations of a run, per evaluation and per Jacobian, with their numbers and the time taken."""
         assert trial.run is not None
         statistics, kind = trial.run.statistics, METHODS[method].kind
         n = trial.run.model.nv + trial.run.model.nc

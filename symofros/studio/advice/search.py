@@ -134,7 +134,7 @@ class _Search:
         return ReferenceSolution(richer, reference)
 
     def _note_unjudged_beams(self) -> None:
-        """Note beams without a richer model: those with user-defined functions."""
+        """Add a note on beams with user-defined functions, for which no richer model judges their error."""
         own = [f"'{b.name}'" for b in self.current.beams if b.modes and b.family == "user"]
         if own:
             self.notes.append(
@@ -276,7 +276,7 @@ class _Search:
         return any(not b.modes and one.subject == f"beam '{b.name}'" for b in self.current.beams)
 
     def _worse(self, one: Reduction) -> Reduction:
-        """A refused "no foreshortening", with the error of a model that keeps only the softening."""
+        """A refused "no foreshortening", with the error of a model that keeps only the softening in its reason."""
         name = one.subject.split("'")[1]
         body = self.current.body(name)
         assert isinstance(body, Beam)
@@ -310,10 +310,10 @@ _PRIORITY = ("rigid", "elastic joint", "direction", "theory", "rotor", "rotary i
 
 
 def _still_to_come(changes: Sequence[float]) -> float:
-    """Bound of the changes by further functions, after changes by one more each, in units of the tolerance.
+    """Estimated change of outputs by still more functions, after changes by one more each, in units of the tolerance.
 
-    Those that settle are taken to go on as they did last, by one ratio; of the first change alone none is known, and
-    what is left after a small one counts as nothing.
+    Changes that have become small are extrapolated as a geometric series by the ratio of the last two; after a single
+    small change none is expected.
     """
     if not changes or changes[-1] > REFINE:
         return changes[-1] if changes else 0.0

@@ -45,7 +45,7 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
 
 
 def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
-    """Effect of the error of second-order theory on outputs, in units of the tolerance.
+    """Error of outputs due to second-order theory, in units of the tolerance.
 
     Args:
         loads: The beam in the motion.

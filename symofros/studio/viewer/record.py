@@ -76,7 +76,7 @@ class _Recording:
 
     @property
     def factor(self) -> str:
-        """Scale of deformations in words after the time; "" where it is one."""
+        """Exaggeration of deformations, in words after the time; "" where there is none."""
         return "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
 
 
@@ -159,7 +159,7 @@ def record(
 
 
 def check_suffix(file: Path) -> None:
-    """Refuse suffixes that can't be recorded.
+    """Refuse a file whose suffix is no format of recordings.
 
     Raises:
         SymofrosError: Its suffix is another.
@@ -178,7 +178,7 @@ def check_suffix(file: Path) -> None:
 def _asked(
     system: System | DiagramRun, run: Played | str | Path, path: str | Path | None, block: str
 ) -> tuple[System, Played, Path]:
-    """Mechanism, motion and path of a recording."""
+    """System, motion and path of a recording, from the arguments of `record`."""
     if isinstance(system, DiagramRun) and isinstance(run, (str, Path)) and path is None:
         return *shown_system_and_states(system, block), Path(run)
     if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:

@@ -111,7 +111,7 @@ class Viewer(ViewerPage):
 
     @property
     def url(self) -> str:
-        """Address to open in a browser or an iframe; it grants access to the controls."""
+        """Address to open in a browser or an iframe; whoever has it may look and move controls, nobody else."""
         return f"http://{f'[{self.host}]' if ':' in self.host else self.host}:{self.port}/{self._token}/"
 
     @property
@@ -121,7 +121,7 @@ class Viewer(ViewerPage):
 
     @property
     def is_closed(self) -> bool:
-        """Whether the server has stopped."""
+        """Whether the viewer has been closed."""
         return self._closing
 
     @property
@@ -231,7 +231,7 @@ class Viewer(ViewerPage):
         stop_server(self._server)
 
     def __enter__(self) -> Self:
-        """Return the viewer."""
+        """The viewer itself."""
         return self
 
     def __exit__(

@@ -61,7 +61,7 @@ def _mechanisms(wired: Wired) -> dict[str, System]:
 
 
 def _whole_diagram_problems(diagram: Diagram, drafted: Draft) -> tuple[list[Problem], list[AlgebraicLoopError]]:
-    """Problems of a diagram whose wires fit, and its algebraic loops."""
+    """Problems of a complete diagram, such as incompatible rates, and its algebraic loops."""
     try:
         wired = whole(diagram, drafted)
         needs, problems = _needs(diagram, wired)

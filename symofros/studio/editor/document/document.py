@@ -56,12 +56,12 @@ class EditedDocument:
 
     @property
     def content(self) -> bytes:
-        """Contents for the file."""
+        """Bytes of the file, with a byte order mark if it begins with one."""
         return ((BOM if self.marked else "") + self.text).encode("utf-8")
 
     @property
     def analysis(self) -> Analysis:
-        """Analysis of the text, cached per text."""
+        """Analysis of the text, cached until the text changes."""
         if self._analysis is None:
             self._analysis = analyse(self.file, self.text)
             if self._analysis.readable:
@@ -69,7 +69,7 @@ class EditedDocument:
         return self._analysis
 
     def read_again(self, revision: int) -> None:
-        """Drop the analysis because files that it refers to have changed; at a new revision."""
+        """Drop the analysis, as files that the text refers to have changed; the document gets a new revision."""
         self.revision, self._analysis = revision, None
 
     def expect(self, revision: Any) -> None:
@@ -122,7 +122,7 @@ class EditedDocument:
             kept -= len(self._undo.pop(0).text)
 
     def as_json(self) -> dict[str, Any]:
-        """The document as the page shows it; its data are a mapping, whatever the text is."""
+        """The document as JSON for the page; its data are a mapping, whatever the text is."""
         now = self.analysis
         readable = now if now.readable else self._readable or now
         return {
@@ -165,7 +165,7 @@ def refuse_text(text: Any) -> str:
 
 
 def too_large(size: int) -> Problem:
-    """The problem of text of more bytes than the editor accepts."""
+    """The problem of a text with more bytes than the editor accepts."""
     return Problem(
         "the text is too large to edit", f"{size} bytes", f"at most {MAX_TEXT} bytes", "split it, and use include"
     )

@@ -19,12 +19,12 @@ Json = dict[str, Any]
 
 
 def check_field(file: File, text: str, now: Analysis, path: Path, typed: Any, draft: Edit | None = None) -> Json:
-    """The message about a formula in a field.
+    """Check a formula in a field: its names and value, or its error.
 
     Args:
         file: The document's.
         text: The document's text.
-        now: Present text of the field.
+        now: Analysis of the text.
         path: Path of the field; it need not exist yet. Empty: the formula alone is checked.
         typed: Text that was typed.
         draft: Edit that puts the entry which is being filled in into the document, with the field.

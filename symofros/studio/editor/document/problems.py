@@ -37,7 +37,7 @@ _WORDS = {"inertia": "moments", "modes": "family", "functions": "family"}
 
 
 def schema_problems(source: YamlText, file: str) -> dict[Problem, Path]:
-    """Format errors of the main file, each with its exact path."""
+    """Violations of the format in the main file, each with its exact path."""
     try:
         NativeFile.model_validate(source.data)
     except ValidationError as error:

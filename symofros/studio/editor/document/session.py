@@ -48,7 +48,7 @@ class Session:
         return self.storage.document
 
     def shown_system(self, block: str = "") -> System | None:
-        """The system of the 3-D view; None while the document has problems.
+        """The system that the 3-D view shows; None while the document has problems.
 
         Args:
             block: Block of a diagram that moves a mechanism; "" for the first one.
@@ -112,7 +112,7 @@ class Session:
         self.storage.autosave()
 
     def discard(self, body: Json) -> None:
-        """Return to the last saved text."""
+        """Return to the last saved text, or to the empty document."""
         self.document.expect(body.get("revision", self.document.revision))
         self.storage.discard()
 
@@ -151,7 +151,7 @@ class Session:
         self.storage = inner
 
     def leave(self, body: Json) -> None:
-        """Return to the parent diagram; `discard`: unsaved changes here are given up."""
+        """Return to the diagram that this document was opened from; `discard`: unsaved changes here are given up."""
         self.document.expect(body.get("revision"))
         if not self._outer:
             raise refusal("there is no way back", "the outermost document", "one goes back from inside", "open a file")
@@ -189,7 +189,7 @@ class Session:
     # Beside the document.
 
     def place(self, body: Json) -> None:
-        """Store positions of the named blocks.
+        """Store positions of the named blocks; others keep theirs.
 
         Raises:
             StaleError: They are of another document than the one that is open: blocks there may have the same names.
@@ -206,7 +206,7 @@ class Session:
     # Asking.
 
     def field_checker(self, body: Json) -> Callable[[], Json]:
-        """A function that checks texts of fields against the present document, even if it changes later.
+        """A function that checks texts of fields against the document as it is now, even if it changes later.
 
         Raises:
             EditError: The fields are no list of mappings, or too many.

@@ -153,7 +153,7 @@ class Storage:
     # While it is open.
 
     def autosave(self) -> None:
-        """Store unsaved changes in case the server is killed; nothing once they are saved.
+        """Store unsaved changes in case the server is killed; delete what is stored if there are none.
 
         Where that fails (a full disk, a folder that is gone) the edit stands nevertheless, and the page says so.
         """
@@ -169,7 +169,7 @@ class Storage:
         self.note_revision()
 
     def place(self, data: Any) -> None:
-        """Store positions: name -> [x, y]; other names keep theirs."""
+        """Store positions: name -> [x, y]; those of other names are kept."""
         self.layout |= positions(data)
         self._write_layout()
 
@@ -180,7 +180,7 @@ class Storage:
             self.unkept = error.problem
 
     def changed_on_disk(self) -> bool:
-        """Whether another process has written the file since it was read or written here."""
+        """Whether the file on disk differs from the content that the text here is based on."""
         now = signature(self.document.file)
         if now == self._signature:
             return False
@@ -193,7 +193,7 @@ class Storage:
         return not same
 
     def reload(self) -> None:
-        """Read the text on disk; undo restores the replaced one.
+        """Replace the text by the file on disk; undo restores the replaced text.
 
         Raises:
             FileError: It can't be read.
@@ -204,7 +204,7 @@ class Storage:
         self.autosave()
 
     def discard(self) -> None:
-        """Return to the last saved text, or to the empty document; undo restores the discarded one."""
+        """Return to the last saved text, or to the empty document; undo restores the discarded text."""
         saved = self.document.saved
         kind = "mechanism" if self.document.analysis.diagram is None else "diagram"
         empty = EMPTY[kind].format(name=identifier(self.document.file.stem))
@@ -271,7 +271,7 @@ class Storage:
         )
 
     def _refuse_unsaved(self, file: Path) -> None:
-        """Refuse another file that has unsaved work of another server, which would be offered over this document."""
+        """Refuse to save to another file that has unsaved work, which would be offered over this document."""
         found = UnsavedWork(file).recover()
         if found is None or found.text == self.document.text:
             return

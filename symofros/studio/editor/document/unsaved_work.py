@@ -63,7 +63,7 @@ class UnsavedWork:
             return self.file.name, UNKNOWN_BASE
 
     def keep(self, text: str, base: str) -> None:
-        """Write unsaved changes.
+        """Store unsaved work: its text, and the digest of the file that it is based on.
 
         Args:
             text: The document.
@@ -93,7 +93,7 @@ class UnsavedWork:
         )
 
     def _is_others(self) -> bool:
-        """Whether the stored work was written by another process since it was read or written here."""
+        """Whether the stored text was written by another server since it was read or written here."""
         autosave = autosave_of(self.file)
         now = signature(autosave)
         if now in ("", self._signature):

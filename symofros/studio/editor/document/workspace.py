@@ -172,7 +172,7 @@ def read_own(path: Path) -> str:
 
 
 def signature(path: Path) -> str:
-    """A signature that changes when a file is written; "" where there is none."""
+    """Signature of a file that changes when the file is written; "" where there is none."""
     try:
         stat = path.stat()
     except OSError:
@@ -191,22 +191,22 @@ def identifier(stem: str) -> str:
 
 
 def autosave_of(path: Path) -> Path:
-    """Path of the unsaved work on a file."""
+    """Path of the file that stores unsaved work on a file."""
     return path.with_name(f".{path.stem}.autosave.yaml")
 
 
 def base_of(path: Path) -> Path:
-    """Path of the record which state of a file unsaved work was based on."""
+    """Path of the record that states which content of a file the unsaved work is based on."""
     return path.with_name(f".{path.stem}.autosave.json")
 
 
 def layout_of(path: Path) -> Path:
-    """Path of the positions of a file's blocks."""
+    """Path of the side file with the positions of a file's blocks."""
     return path.with_name(f".{path.stem}.editor.json")
 
 
 def read_layout(path: Path) -> dict[str, list[float]]:
-    """The positions beside a file; none where the side file is missing or unusable."""
+    """Positions of a file's blocks; none where its side file is missing or unusable."""
     try:
         data = json.loads(read_own(layout_of(path)))["layout"]
     except (FileError, ValueError, KeyError, TypeError, RecursionError):
@@ -215,7 +215,7 @@ def read_layout(path: Path) -> dict[str, list[float]]:
 
 
 def positions(data: Any) -> dict[str, list[float]]:
-    """Valid positions in some data: name -> [x, y]."""
+    """The valid positions in some data: name -> [x, y]."""
     valid: dict[str, list[float]] = {}
     for name, place in data.items() if isinstance(data, dict) else ():
         numbers = isinstance(place, list) and len(place) == 2 and all(type(x) in (int, float) for x in place)

@@ -62,7 +62,7 @@ class Edit:
 
 
 def section_of(data: Any, key: str) -> dict[str, Any]:
-    """A section of a document's data; an empty one where it has none, or something else in its place."""
+    """A section of a document's data, or of an entry in it; empty if it is missing or no mapping."""
     section = data.get(key) if isinstance(data, dict) else None
     return section if isinstance(section, dict) else {}
 
@@ -118,7 +118,7 @@ def inserted(owner: Any, edit: Edit) -> Any:
 
 
 def place(path: Path, keys: Sequence[str], key: str) -> int:
-    """Position of a new key: a section at its place in the file, any other at the end."""
+    """Index at which a new key is inserted: a section at its place in the file's order, any other key at the end."""
     if path or key not in _ORDER:
         return len(keys)
     after = _ORDER[: _ORDER.index(key)]
@@ -137,7 +137,7 @@ def four_parts(problem: Problem) -> dict[str, str]:
 
 
 def _at(data: Any, path: Path, whole: Path, change: Any) -> Any:
-    """The data with the value at a path changed."""
+    """A copy of the data with the value at a path changed."""
     if not path:
         return change(data)
     step = path[0]

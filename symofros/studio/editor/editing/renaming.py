@@ -127,7 +127,7 @@ def _joint(data: Any, path: Path, new: str) -> list[Edit]:
 
 
 def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:
-    """Names of the coordinates, speeds and rates of a joint in formulas."""
+    """Symbols of the coordinates, speeds and rates of a joint in formulas; none of user-defined kinds."""
     kind: Any = joint.get("kind")
     if kind not in KINDS or KINDS[kind].user_defined:
         return ()

@@ -96,7 +96,7 @@ def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
 
 
 def _meaning(text: str | None, wanted: Any) -> str | None:
-    """A text, if it has the wanted meaning."""
+    """The text if it reads as the wanted data, otherwise None."""
     if text is None:
         return None
     try:
@@ -106,7 +106,7 @@ def _meaning(text: str | None, wanted: Any) -> str | None:
 
 
 def _rewritten(source: YamlText, path: Path, after: Any) -> str | None:
-    """The text with the whole value at a path rewritten; None where there is none, before or after."""
+    """The text with the whole value at a path rewritten; None if the path is missing before or after the edit."""
     for step in path:
         if isinstance(after, dict) and step in after:
             after = after[step]

@@ -86,7 +86,7 @@ class YamlText:
         return list(owner.value.values()) if isinstance(owner.value, dict) else list(owner.value)
 
     def end(self, node: Node) -> int:
-        """End of a value, without comments and blank lines after it."""
+        """Position of the end of a value, without comments and blank lines after it."""
         if node.style == "block":
             return self.end(self.children(node)[-1])
         if node.style in ("|", ">"):
@@ -94,7 +94,7 @@ class YamlText:
         return node.end
 
     def begin(self, owner: Node, i: int) -> int:
-        """Start of an entry: its key, or the dash of an item."""
+        """Position of the start of an entry: its key, or the dash of an item."""
         nodes = self.children(owner)
         if isinstance(owner.value, dict):
             return nodes[i].key_start
@@ -116,20 +116,20 @@ class YamlText:
 
     @cached_property
     def line_starts(self) -> list[int]:
-        """Position of the start of each line."""
+        """Positions at which lines start."""
         return [0, *(line_break.end() for line_break in _BREAK.finditer(self.text))]
 
     def line_start(self, at: int) -> int:
-        """Start of the line of a position."""
+        """Position at which the line of a position starts."""
         return max(self.text.rfind("\n", 0, at), self.text.rfind("\r", 0, at)) + 1
 
     def line_end(self, at: int) -> int:
-        """End of the line of a position, without its break."""
+        """Position at which the line of a position ends, before its break."""
         line_break = _BREAK.search(self.text, at)
         return line_break.start() if line_break else len(self.text)
 
     def next_line(self, at: int) -> int:
-        """Start of the line after that of a position."""
+        """Position at which the line after that of a position starts."""
         line_break = _BREAK.search(self.text, at)
         return line_break.end() if line_break else len(self.text)
 
@@ -142,7 +142,7 @@ class YamlText:
         return not self.text[self.line_start(at) : at].strip()
 
     def lines_of(self, owner: Node, i: int) -> Span:
-        """Lines of an entry of a collection in block style.
+        """Span of the lines that belong to an entry of a collection in block style.
 
         Its own lines, the comments directly above it at its own indentation (but not those at the head of the file),
         the comment at the end of its last line, and comments below it that are indented deeper than it is.
@@ -168,7 +168,7 @@ class YamlText:
         return Span(first, last)
 
     def _floor(self, owner: Node) -> int:
-        """Upper bound of the comments that belong to the first entry of a collection."""
+        """Position above which no comment belongs to the first entry of a collection."""
         if owner is self.root:
             return self.line_start(owner.start)
         return self.next_line(owner.key_end) if owner.key_start >= 0 else owner.start

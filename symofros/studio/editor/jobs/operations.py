@@ -78,13 +78,13 @@ def compile_model(request: Json, tell: Tell) -> Json:
 
 
 def _prepare_start(model: sf.Model) -> None:
-    """Compile the functions that close loops before a simulation."""
+    """Compile the constraint functions that close loops at the start of a simulation."""
     if model.nc:
         model.prepare("constraint", "constraint_rate", "constraint_jacobian")
 
 
 def _prepare_energies(model: sf.Model) -> None:
-    """Compile the functions that evaluate a simulation's records for many states at a time."""
+    """Compile the energies of a simulation's records by evaluating them for as many states at once."""
     q, v = np.tile(model.neutral(), (POINTS + 1, 1)), np.zeros((POINTS + 1, model.nv))
     model.kinetic_energy(q, v), model.potential_energy(q)
 

@@ -128,7 +128,7 @@ class Jobs:
         return self._jobs[key]
 
     def order(self, key: str, order: Any) -> Job:
-        """Order a running job to pause, to continue, or to end with its present results.
+        """Tell a running job to pause, to continue, or to end with its present results.
 
         Raises:
             EditError: There is no such order, or no such job.
@@ -174,7 +174,7 @@ class Jobs:
         return WorkerProcess()
 
     def _follow(self, job: Job, request: Json) -> None:
-        """Send a worker its request, and read its messages until it answers or ends."""
+        """Send a worker its request and read its messages until it answers or ends; replace one that died idle."""
         worker = job.worker
         assert worker is not None
         heard = self._listen(job, worker, request)
@@ -200,7 +200,7 @@ class Jobs:
         self.publish("job", job.as_json(whole=False))
 
     def _listen(self, job: Job, worker: WorkerProcess, request: Json) -> bool:
-        """Read the messages of a worker; whether there were any."""
+        """Send a request to a worker and read its messages until it answers or ends; whether there were any."""
         heard = False
         with contextlib.suppress(OSError):  # It has died already; that is found below.
             worker.send(json.dumps(request))

@@ -51,7 +51,7 @@ def system_of(request: Json) -> System:
 
 
 def number_of(given: Any, what: str, from_zero: bool = False) -> float:
-    """A finite number of a request, or one that is not negative.
+    """A finite number of a request; at least zero if `from_zero`.
 
     Raises:
         SymofrosError: It is none.

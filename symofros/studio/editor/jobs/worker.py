@@ -60,7 +60,7 @@ def _serve(request: Json, tell: Tell) -> None:
 
 
 def task(kind: str) -> Callable[[Json, Tell], Any]:
-    """The function of a kind of job; each imports only its own packages."""
+    """The function that runs a kind of job; only the packages that it needs are imported."""
     if kind == "run":
         from symofros.studio.editor.jobs.diagram_run import run_diagram  # With the library of blocks.
 

@@ -62,7 +62,7 @@ class WorkerProcess:
             raise OSError("the worker has ended") from None
 
     def lines(self) -> Iterator[bytes]:
-        """Lines of its output until it ends."""
+        """Lines of the worker's output until it ends."""
         stdout = self._process.stdout
         assert stdout is not None
         return iter(lambda: stdout.readline(MAX_ANSWER), b"")
@@ -74,7 +74,7 @@ class WorkerProcess:
                 os.killpg(self._process.pid, signal.SIGKILL)
 
     def end(self) -> tuple[int, str]:
-        """Kill it if it runs; its exit code, and the end of its error output."""
+        """Kill the worker if it runs; its exit code, and the end of its error output."""
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
         code = self._process.wait()

@@ -106,7 +106,7 @@ class Editor:
 
         async def answer(request: Request) -> Response:
             document = await self.exclusively(partial(self._changed, action, await body_of(request)))
-            self.publish_file_change(request)
+            self.publish_document_change(request)
             return JSONResponse(document)
 
         return answer
@@ -115,14 +115,14 @@ class Editor:
         action(body)
         return self.session.as_json()
 
-    def publish_file_change(self, request: Request) -> None:
-        """Tell the pages that the document has changed, and by whom."""
+    def publish_document_change(self, request: Request) -> None:
+        """Publish to the pages that the document has changed, and by which client."""
         document = self.session.document
         client = request.headers.get("x-client", "")[:100]
         self.events.publish("document", {"revision": document.revision, "name": document.file.name, "client": client})
 
     async def exclusively(self, work: Callable[[], Any]) -> Any:
-        """Run work on the document in a separate thread, exclusively."""
+        """Run work on the document in another thread, while no other work on it runs."""
         async with self.turn:
             return await run_sync(work)
 
@@ -135,7 +135,7 @@ class Editor:
         return JSONResponse(await self.exclusively(self.session.as_json))
 
     async def layout(self, request: Request) -> Response:
-        """Store positions."""
+        """Store positions of blocks."""
         await self.exclusively(partial(self.session.place, await body_of(request)))
         return JSONResponse({"layout": self.session.storage.layout})
 
@@ -188,7 +188,7 @@ class Editor:
             return JSONResponse({"error": error}, 422)
         adopt = partial(self.session.adopt, name=file.name, text=job.result["text"])
         document = await self.exclusively(partial(self._changed, adopt, body))
-        self.publish_file_change(request)
+        self.publish_document_change(request)
         return JSONResponse({**document, "notes": job.result["notes"]})
 
     async def start_job(self, request: Request) -> Response:
@@ -215,7 +215,7 @@ class Editor:
         return Response(job.result["page"], media_type="text/html")
 
     async def order_job(self, request: Request) -> Response:
-        """Pause, continue or end a job."""
+        """Pause a job, continue it, or end it with its present results."""
         order = (await body_of(request)).get("order")
         return JSONResponse((await run_sync(self.jobs.order, request.path_params["key"], order)).as_json(whole=False))
 
@@ -271,7 +271,7 @@ class Editor:
         return Response(content, media_type=FILM_TYPES[suffix])
 
     async def watch(self) -> None:
-        """Publish each change of the file by another process."""
+        """Publish a change of the file by another process, once until it is resolved."""
         notified = False
         while True:
             await anyio.sleep(WATCH_SECONDS)

@@ -216,7 +216,7 @@ class DocumentViewer:
 
 
 def _stand(viewer: Viewer) -> Json:
-    """Present state of the mechanism in the view.
+    """State of the view: coordinates, exaggeration, frames, gap of the loops and bending of the beams.
 
     `gap`: largest residual of the loops' conditions, None without loops, in `gap_unit`, "" of a formula; `beams`: how
     far each is bent.

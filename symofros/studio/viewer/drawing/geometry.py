@@ -89,7 +89,7 @@ def placed(placement: Placement, numbers: Numbers) -> tuple[Array, Array]:
 
 
 def draw(tree: SpanningTree, values: dict[str, float], size: float, center: Array) -> Drawing:
-    """Shapes of a mechanism.
+    """Drawing of a mechanism.
 
     Args:
         tree: Tree of a checked system.
@@ -141,7 +141,7 @@ class _DrawingBuilder:
     # Rigid bodies.
 
     def _branch_points(self, link: int) -> Iterator[Array]:
-        """Positions of a link's frames and children; its mass centre if there are none."""
+        """Distinct origins of a link's frames and children away from its own; its mass centre if there are none."""
         if link != BASE and self.tree.links[link].beam is not None:
             return  # The beam itself leads there.
         origins = [placed(frame.placement, self.numbers)[0] for frame in self.tree.frames if frame.link == link]

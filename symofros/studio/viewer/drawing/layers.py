@@ -9,7 +9,7 @@ LAYERS = (*KINDS, "frames", "labels", "ground")
 
 
 def initial_layers(drawing: Drawing) -> frozenset[str]:
-    """The layers of a drawing that are not in the way of others."""
+    """The layers of a drawing that are shown initially: those that hide no others."""
     dressed, bare = ({part.link for part in drawing.parts if part.kind == kind} for kind in ("visuals", "bodies"))
     hidden = {"frames", "labels"}
     if dressed or not drawing.inertias_fit:

@@ -116,7 +116,7 @@ class Mechanism:
         return tuple(self._elastic.tolist())
 
     def state(self, q: ArrayLike | None = None, u: ArrayLike | None = None, par: ArrayLike | None = None) -> State:
-        """A state to show; missing values are neutral, zero or default.
+        """A state to show; omitted arrays are neutral or default.
 
         Raises:
             ShapeError: An array does not fit the model.
@@ -165,7 +165,7 @@ class Mechanism:
         return Posture(p, R, drawn)
 
     def drawing(self, par: ArrayLike | None = None) -> Drawing:
-        """Shapes to draw for values of the run-time parameters (npar)."""
+        """Drawing of the mechanism and its tracks at run-time parameters (npar)."""
         state = self.state(par=par)
         values = dict(zip(self.model.names.par, state.par.tolist(), strict=True))
         neutral = self.posture(state.q, state.u, state.par)

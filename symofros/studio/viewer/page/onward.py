@@ -23,7 +23,7 @@ _STEPPING = ("method", "dt", "rtol", "atol", "beam_limit")
 
 
 def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) -> dict[str, Any]:
-    """Data for the page of a replay.
+    """Data with which the page of a replay continues the simulation.
 
     Args:
         system: System that moved.
@@ -69,6 +69,6 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
 
 
 def _at(t: Array, known: Array, values: Array) -> Array:
-    """Columns (n, k) interpolated at times."""
+    """Columns (n, k) at times t, interpolated linearly from those at known times."""
     columns = [np.interp(t, known, column) for column in values.T]
     return np.stack(columns, axis=1) if columns else np.zeros((len(t), 0))

@@ -14,7 +14,7 @@ _NO_PANEL = '<style>.mantine-Paper-root:has([class*="tabler-icon-cloud"]) { disp
 
 
 def page_head(title: str, panel: bool = True) -> str:
-    """Replacement for VISER_TITLE.
+    """HTML that replaces VISER_TITLE in the head of a page.
 
     Args:
         title: Title of the page, which its tab shows.

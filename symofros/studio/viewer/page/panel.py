@@ -128,7 +128,7 @@ class Panel:
                 self._on(self._boxes[layer], partial(controls.set_layer, layer))
 
     def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
-        """React to changes by a person; changes by this program have no client and are ignored."""
+        """Call a function when a user changes a control; changes by this program have no client and are ignored."""
         handle.on_update(lambda event: act(event.target.value) if event.client is not None else None)
         return handle
 
@@ -191,7 +191,7 @@ class Panel:
             self._scale.content = _SCALE.format(text=bar.text, width=100.0 * bar.share / _SCALE_PART)
 
     def show(self, layers: frozenset[str], exaggeration: float) -> None:
-        """Set the controls to the displayed layers."""
+        """Set the controls to the displayed layers and the exaggeration."""
         for layer in LAYERS:
             if layer in self._boxes:
                 self._boxes[layer].value = layer in layers

@@ -32,7 +32,7 @@ def replay_page(
     units: Sequence[str],
     onward: Mapping[str, Any] | None = None,
 ) -> str:
-    """Put title and controls beside a recording.
+    """A recording's page with a title and the controls of a replay.
 
     Args:
         page: Page of viser, with the recording in it.

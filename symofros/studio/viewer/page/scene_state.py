@@ -69,7 +69,7 @@ class SceneState:
 
     @property
     def values(self) -> Array:
-        """Positions of the sliders (nv)."""
+        """Values of the sliders (nv)."""
         return values_of(self.mechanism.model, self.state.q)
 
     def with_sliders_moved(self, changes: Mapping[int, float], par: Array | None = None) -> tuple[State, str]:

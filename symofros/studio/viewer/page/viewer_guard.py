@@ -65,7 +65,7 @@ class ViewerGuard:
         self.is_asked = False
 
     def before(self, answer: Answerer | None) -> Answerer:
-        """A handler that asks the guard, then forwards the request as if there were no token."""
+        """A handler that asks the guard, then forwards the request without its token."""
         self.is_asked = True
 
         def guarded(connection: Any, request: Any) -> Any:

@@ -120,7 +120,7 @@ class ViewerPage:
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def mark(self, elements: Collection[str]) -> None:
-        """Mark some elements of the description, in place of earlier ones, by colour and frames.
+        """Mark some elements of the description by a colour of their own and their frames, in place of earlier ones.
 
         Args:
             elements: "world", "bodies/arm", "bodies/arm/joint", "bodies/arm/frames/tip", "closures/loop",
@@ -174,7 +174,7 @@ class ViewerPage:
 
     @property
     def values(self) -> Array:
-        """Positions of the sliders (nv)."""
+        """Values of the sliders (nv)."""
         return self._scene_state.values
 
     def reset(self) -> None:

@@ -128,7 +128,7 @@ class ViserScene:
         self.mark(self.marked)
 
     def mark(self, elements: Collection[str]) -> None:
-        """Draw some elements in the colour of the selection, with their frames, and all others in their own."""
+        """Mark some elements by the colour of the selection and by their frames, and no others."""
         with self.server.atomic():
             for element in self.marked:
                 for node, color, layer in self._of_elements.get(self._shown_by(element), ()):
@@ -152,7 +152,7 @@ class ViserScene:
         return f"bodies/{name.partition('/')[0]}"
 
     def _belongs(self, element: str, node: Any, layer: str, color: Color | None = None) -> None:
-        """Note the element of a node; `color` is its own, None for marks."""
+        """Record the element that a node draws; `color` is the node's own, None for nodes shown only as marks."""
         if element:
             self._of_elements.setdefault(element, []).append(_Marked(node, color, layer))
             if self._on_pick is not None and hasattr(node, "on_click"):

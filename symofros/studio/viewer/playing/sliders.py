@@ -59,7 +59,7 @@ def sliders_of(
 
 
 def values_of(model: Model, q: Array) -> Array:
-    """Slider positions of a configuration (nq)."""
+    """Values of the sliders (nv) at a configuration q (nq)."""
     values = model.difference(model.neutral(), q)
     for segment in model.record.segments:
         along = segment.translations

@@ -128,7 +128,7 @@ PALETTE: tuple[Json, ...] = (
 
 
 def catalogue() -> Json:
-    """The format, the palette, and the choices of fields and runs."""
+    """Version, format and palette of the editor, and the choices of fields and runs."""
     methods = [
         {"name": item.name, "adaptive": item.adaptive, "order": item.order, "help": item.summary}
         for item in METHODS.values()

@@ -76,7 +76,7 @@ def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str
 
 
 def _symbols(data: Any) -> set[str]:
-    """Names of the coordinates and speeds of a document's bodies in formulas."""
+    """Symbols of formulas for the coordinates and speeds of a document's bodies, and for their rates."""
     symbols: set[str] = set()
     for name, body in section_of(data, "bodies").items():
         joint = section_of(body, "joint")
