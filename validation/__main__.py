@@ -69,7 +69,7 @@ class Commands(TableGroup):
         return command(name)
 
     def listed(self, name: str) -> Any:
-        """A command for lists alone."""
+        """A command with its name and summary only, for listings, without importing its module."""
         return TyperCommand(name, help=COMMANDS[name].summary, rich_markup_mode=None)
 
 

@@ -221,7 +221,7 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
 
 
 def _procedures(bench: _Bench) -> Iterator[Comparison]:
-    """Procedures on the equations of a reference model; other models have none."""
+    """Comparisons of procedures, such as integrators, on a reference model's equations; none for other models."""
     start = time.perf_counter()
     # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
     try:
@@ -235,7 +235,7 @@ def _procedures(bench: _Bench) -> Iterator[Comparison]:
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
-    """The reason why a system with a prescribed motion is not compared; that is not agreement."""
+    """The reason why a prescribed motion prevents a comparison, which is not agreement; "" if none does."""
     driven = assembly.driven_joints
     if driven and not has_beams(system):
         return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"

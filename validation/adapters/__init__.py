@@ -1,4 +1,4 @@
-"""How a check asks engines: one folder each, the only one that imports the engine's package; here, what needs none.
+"""Adapters of engines: one folder each, which alone imports the engine's package; this module needs none.
 
 Rigid trees and loops are stated to the engine's plug-in of the matrix (`charted`, `validation/engines`). A new engine
 is a plug-in, one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package, and

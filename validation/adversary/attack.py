@@ -45,7 +45,7 @@ class Verdict:
 
 
 def refused(said: object) -> Verdict:
-    """The verdict on a scene that our own code refuses."""
+    """The verdict on a scene for which our own code says that it has no good answer."""
     return Verdict("refused", " ".join(str(said).split()))
 
 

@@ -83,7 +83,7 @@ def _attack(
 
 
 def _logged(data: Any) -> tuple[dict[str, Tally], list[Find]]:
-    """Contents of log.json, for attacks that exist."""
+    """Tallies and finds in the contents of log.json, of attacks that still exist."""
     tallies = {name: Tally(**one) for name, one in data["attacks"].items() if name in ATTACKS}
     return tallies, [Find(**one) for one in data["finds"] if one["attack"] in ATTACKS]
 

@@ -34,7 +34,7 @@ def claimed_good(run: sf.Trajectory) -> bool:
 
 
 def claim_verdict(outcome: Any, quantity: str, error: float, bound: float) -> Verdict:
-    """An outcome against its relative error: runs without notes must be accurate, accurate runs without notes.
+    """Verdict on an outcome: without notes, its error must be within the bound; with notes, it must not be exact.
 
     Args:
         outcome: Outcome of the run.

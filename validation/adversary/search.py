@@ -164,7 +164,7 @@ def _settings(folder: Path, count: int) -> settings:
 
 
 def quantity_of(scene: Scene, verdict: Verdict) -> str:
-    """Key that distinguishes finds of one attack: the contradicted quantity and the scene's choices in words."""
+    """Key of a find among those of its attack: the contradicted quantity and the scene's string values."""
     words = sorted(value for value in scene.values() if isinstance(value, str))
     return ", ".join((verdict.quantity, *words))
 

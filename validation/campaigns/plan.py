@@ -34,7 +34,7 @@ class _Strict(BaseModel):
 
 
 class _OfFiles(_Strict):
-    """How the files of models are read, as by `sf.load` (docs/importing.md).
+    """Options for reading the files of models, as of `sf.load` (docs/importing.md).
 
     Attributes:
         floating_base: Whether the body of a file that stands on the ground goes onto a free joint.
@@ -222,7 +222,7 @@ def cases(plan: Plan) -> list[Case]:
 
 
 def identities(models: Sequence[Case]) -> dict[str, str]:
-    """Label -> hash of a model's file or description, which changes when it is edited."""
+    """Label -> hash of the model's file or description."""
     return {case.label: _identity(case) for case in models}
 
 

@@ -167,7 +167,7 @@ def run(store: Store, tasks: Sequence[Task], pool: Pool, done: Callable[[Task], 
 def _outcomes(
     client: distributed.Client, store: Store, tasks: Sequence[Task], width: int
 ) -> Iterator[tuple[Task, BaseException | None]]:
-    """Each batch when its part is written, or with its error; at most `width` are handed out at a time."""
+    """Each task once its part is written, with None, or with its exception; at most `width` are in flight."""
     waiting, by_key = iter(tasks), {f"{store.hash}-{task.number}": task for task in tasks}
 
     def submit(task: Task) -> distributed.Future:

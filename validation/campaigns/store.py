@@ -66,7 +66,7 @@ class Store:
 
     @classmethod
     def agreeing(cls, folder: Path, manifest: dict[str, Any]) -> Store:
-        """The folder's store, if its manifest matches the present one.
+        """The store of a folder whose plan, models and versions are those of a manifest.
 
         Raises:
             StoreError: Plan, models or versions have changed since, so that old and new rows would not belong together.
@@ -188,7 +188,7 @@ def _noted(line: Any) -> dict[str, Any]:
 
 
 def manifest_of(folder: Path) -> dict[str, Any]:
-    """The manifest with which a campaign began.
+    """The manifest with which the campaign in a folder was begun, from its plan.json.
 
     Raises:
         StoreError: The folder holds no campaign.
@@ -206,7 +206,7 @@ def manifest_of(folder: Path) -> dict[str, Any]:
 
 
 def provenance_of(path: Path) -> dict[str, Any]:
-    """Provenance of a part or of the results.
+    """Provenance in the metadata of a Parquet file: a part or the results.
 
     Raises:
         KeyError: It is no file of a campaign.

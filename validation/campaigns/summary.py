@@ -19,7 +19,7 @@ _NULLS = pc.ScalarAggregateOptions(skip_nulls=False)
 
 
 def effort(journal: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Effort of a campaign: sessions, total wall time, executions, repeated batches."""
+    """Effort of a campaign by its journal: sessions, total wall time [s], executions, batches begun more than once."""
     begun: Counter[int] = Counter()
     sessions: list[list[float]] = []
     for line in journal:
@@ -79,7 +79,7 @@ def checked(rows: pa.Table) -> dict[str, Any]:
 
 
 def swept(rows: pa.Table) -> dict[str, Any]:
-    """Range of each result of a sweep, and how many points failed, by reason."""
+    """Summary of a sweep: range of each result, and number of failed points by reason."""
     failed = Counter(rows["outcome"].to_pylist())
     done = failed.pop(DONE, 0)
     first = rows.column_names.index("outcome")

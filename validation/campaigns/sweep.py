@@ -78,7 +78,7 @@ class Sweeper:
         return par, u
 
     def _frequencies(self, par: Array, u: Array) -> tuple[Array, list[str]]:
-        """Frequencies of small motions about the equilibrium near the start [rad/s], the lowest first."""
+        """Lowest frequencies about the equilibrium near the start [rad/s] (points, modes), ascending, and outcomes."""
         frequencies, outcomes = np.full((len(par), self.plan.modes), np.nan), []
         for row, (values, inputs) in enumerate(zip(par, u, strict=True)):
             try:
@@ -92,7 +92,7 @@ class Sweeper:
         return frequencies, outcomes
 
     def _motions(self, par: Array, u: Array) -> tuple[Array, list[str]]:
-        """End states of the motions; none for motions that end early."""
+        """Final q and v of the motions (points, nq + nv), NaN for those that end early, and outcomes."""
         motion = self.plan.motion
         assert motion is not None  # A plan of end states has one.
         shape = (len(par), 1)
@@ -112,7 +112,7 @@ class Sweeper:
 
 
 def placed(where: str, values: Array, names: Sequence[str], given: Mapping[str, float]) -> Array:
-    """The values with the named ones replaced.
+    """A copy of the values with the named ones replaced.
 
     Raises:
         UnknownNameError: A name is none of them.

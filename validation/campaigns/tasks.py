@@ -80,7 +80,7 @@ class CheckTask:
         return f"{self.case.label} {first}…{first + self.size - 1}"
 
     def run(self) -> pa.Table:
-        """Check a model; an exception becomes a row."""
+        """Cross-check the model at the batch's states; an exception becomes a row."""
         rows = self._rows(run_case(self.case, self.settings))
         return pa.Table.from_pylist(list(rows), CHECKED)
 

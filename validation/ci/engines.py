@@ -65,7 +65,7 @@ class EngineCheck(CellItem):
         self.user_properties.append(("error", digits(cell.error)))
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Location in reports."""
+        """Path, line and title of the test in pytest's reports."""
         return Path(self.engine), None, f"symofros::{self.name}"
 
 

@@ -85,7 +85,7 @@ class CrossCheck(CellItem):
         self.user_properties += [(row.quantity, digits(row.error)) for row in compared]
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Location in reports."""
+        """Path, line and title of the test in pytest's reports."""
         return self.case.path or Path(self.case.label), None, f"symofros::{self.name}"
 
 

@@ -151,7 +151,7 @@ def judge_rates(label: str, engine: str, refined: Sequence[Refined]) -> Comparis
 
 
 def judge_strain(label: str, engine: str, beam: BeamElements, ours: sf.Model, q: Array) -> Comparison:
-    """Whether the difference of elastic forces equals the terms that our strain energy omits.
+    """Whether elastic forces differ from the elements' by the order of the terms that our strain energy omits.
 
     Args:
         label: Label of the model.

@@ -75,7 +75,7 @@ class Comparison:
 
 
 def raised(model: str, engine: str, quantity: str, fault: Raised) -> Comparison:
-    """The row of an exception inside an engine's adapter, or inside our own model; it never counts as agreement."""
+    """Row of an exception in an engine's adapter or in our own model: failed, which never counts as agreement."""
     return Comparison(model, engine, quantity, "failed", note=f"raises {fault.words}")
 
 
@@ -139,7 +139,7 @@ def _largest(x: Array, axes: int) -> Array:
 
 
 def _floor(quantity: Quantity, size: Array, scales: Scales) -> float:
-    """Lower bound of the scale of any state; see `quantities.Floor`."""
+    """Lower bound of the scale that errors are relative to; see `quantities.Floor`."""
     finite = size[np.isfinite(size)]
     if not finite.size:
         return 1.0

@@ -66,7 +66,7 @@ def _assembled(model: sf.Model, states: States, worst: float) -> States:
 
 
 def with_unique_multipliers(engine: SymofrosEngine, states: States) -> States:
-    """The states where no condition repeats others."""
+    """The states whose constraints are independent, so that multipliers are unique."""
     rank = engine.model.constrained_dynamics(states.q, states.v, states.u)[2]
     return _chosen(states, rank == engine.model.nc)
 
@@ -76,7 +76,7 @@ def _chosen(states: States, which: Any) -> States:
 
 
 def _consistent(model: sf.Model, q: Array, v: Array, u: Array) -> Array:
-    """States where an acceleration keeps the constraints; at a singular posture some v with G v = b have none."""
+    """Whether an acceleration satisfies the constraints (N,): at a singular posture, not for every v with G v = b."""
     G, gamma = model.constraint_jacobian(q, u=u), model.constraint_bias(q, v, u=u)
     left = times(G @ np.asarray(np.linalg.pinv(G, rcond=RANK), dtype=np.float64), gamma) - gamma
     return np.asarray(np.abs(left).max(axis=1) < CONSISTENT * (1.0 + np.abs(gamma).max(axis=1)))

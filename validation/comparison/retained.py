@@ -101,7 +101,7 @@ def scaled(assembly: Assembly, states: States, eps: float) -> States:
 def _differences(
     ours: SymofrosEngine, untruncated: SymofrosEngine, states: States, sizes: dict[str, float]
 ) -> dict[str, float]:
-    """Differences of M, h and Q, relative to sizes that do not depend on the scale; some forces are only elastic."""
+    """Norms of the differences of M, h and Q over sizes independent of the scale: some forces are only elastic."""
     one, other = _terms(ours, states), _terms(untruncated, states)
     return {name: float(np.linalg.norm(one[name] - other[name])) / sizes[name] for name in one}
 

@@ -59,7 +59,7 @@ class Slot:
 
     @property
     def turns(self) -> bool:
-        """Whether its linear speeds are along the axes of its position, and so turn against ours."""
+        """Whether its linear speeds are along the axes of its position: they rotate against ours, along the body's."""
         return self.chart in (IN_WORLD, IN_PARENT)
 
 
@@ -107,7 +107,7 @@ class Chart:
     nv: int
 
     def __post_init__(self) -> None:
-        """Check that each chart is one of ours or has its conversion."""
+        """Check that the chart of each slot is one of ours or has a conversion."""
         for slot in self.slots:
             assert slot.chart in _OURS or slot.chart in _ENCODE, slot.chart
 

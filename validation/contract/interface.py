@@ -21,7 +21,7 @@ Format = Literal["", "urdf", "mjcf"]
 
 @dataclass(frozen=True)
 class Unsupported:
-    """An engine can't do what it is asked, and says so. Returned, never raised, so that others go on.
+    """A system that an engine can't represent, or a quantity that it can't compute; returned, never raised.
 
     Attributes:
         reason: Names the thing that is in the way, for people: the engine's words, or ours where it offers nothing of

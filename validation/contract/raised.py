@@ -28,7 +28,7 @@ class Raised:
 
 
 def attempted(function: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T | Raised:
-    """Result or exception of a function; KeyboardInterrupt and missing extras propagate."""
+    """Result of a function, or `Raised` for its exception; KeyboardInterrupt and missing extras propagate."""
     try:
         return function(*arguments, **named)
     except ANY as error:

@@ -108,7 +108,7 @@ class Baseline:
             raise BaselineError(f"baseline {self.name}: its states are others; run the check with {stored}")
 
     def judge(self, record: Record, machine: tuple[str, ...]) -> tuple[list[Regression], list[str]]:
-        """The regressions of a run, and quantities that could not be compared.
+        """The regressions of a run, and notes on what was not compared or not decided.
 
         Args:
             record: Record of the run.
@@ -165,7 +165,7 @@ class Baseline:
                 yield Regression(row.model, "", row.function, "slower", text)
 
     def _undecided(self, speeds: tuple[Speed, ...], models: set[str]) -> Iterator[str]:
-        """The speeds whose noise exceeds the change to be found."""
+        """Notes on speeds in whose noise a slowdown above LOOKED_FOR would not show."""
         now = {(row.model, row.function): row for row in speeds}
         for row in self.record.speeds:
             fresh = now.get((row.model, row.function))
@@ -185,7 +185,7 @@ def slowest(stored: Speed, fresh: Speed) -> float:
 
 
 def machine_of(data: Data) -> tuple[str, ...]:
-    """Machine data that speeds depend on: processor, system, compiler, flags."""
+    """What speeds depend on: processor, system, compiler, flags; "" where the data lacks one."""
     machine = data.get("machine", {})
     return (
         *(str(machine.get(name, "")) for name in _MACHINE),

@@ -95,7 +95,7 @@ def measure(
 
 
 def _with_baseline(stored: Baseline, data: Data) -> tuple[Data, list[Regression]]:
-    """A run's data with its baseline and regressions."""
+    """A run's data with the results of its comparison with a baseline, and the regressions."""
     regressions, notes = stored.judge(Record.of(data), machine_of(data))
     origin = {"file": stored.name, "revision": stored.revision, "date": stored.date, "notes": notes}
     baseline = origin | {"regressions": [asdict(worse) for worse in regressions]}

@@ -105,7 +105,7 @@ def compose(data: Data) -> Report:
 
 
 def _against_baseline(data: Data) -> tuple[Block, ...]:
-    """Regressions against the stored run; none without one."""
+    """Blocks on regressions against the stored run; none if there is no stored run."""
     stored = data.get("baseline")
     if stored is None:
         return ()
@@ -152,7 +152,7 @@ def _closeness(record: Record, engines: list[str]) -> tuple[Section, ...]:
 
 
 def _own(record: Record) -> tuple[Section, ...]:
-    """Rates at which our energy drifts and finite elements converge, and procedures on the equations."""
+    """Sections on energy drift, convergence of finite elements, and procedures on the equations."""
     drifts, powers, procedures = [], [], []
     for row in record.compared:
         extra, limit = row.extra, verdict(digits(row.tolerance), row.ok)

@@ -81,7 +81,7 @@ def _of(model: ModelResult, engine: str) -> list[Comparison]:
 
 
 def opinion(record: Record, engine: str) -> tuple[str, ...]:
-    """Result of an engine about our C, as a row under `OPINION`.
+    """An engine's verdict on our C, as a row under `OPINION`.
 
     One that disagrees is suspect itself where it is alone in that, in most cases, against other independent engines.
     """
@@ -144,7 +144,7 @@ def worst(rows: Iterable[Comparison]) -> Comparison | None:
 
 
 def failures(record: Record) -> list[tuple[str, str, str]]:
-    """Model, engine and disagreement or failure, with its numbers."""
+    """Model, engine and text of each disagreement or failure."""
     return [(row.model, row.engine, failure(row)) for row in record.rows("disagree", "failed")]
 
 
@@ -160,7 +160,7 @@ def failure(row: Comparison) -> str:
 
 
 def unsupported(record: Record, unjudged: bool = False) -> list[tuple[str, str, str]]:
-    """Models, engine, unsupported features and reason; one line for each reason.
+    """Models, engine, unsupported quantities and reason; one line for each engine and reason.
 
     `unjudged`: only of models that no independent engine could be asked about.
     """

@@ -71,7 +71,7 @@ def kernels_of(subject: Subject, functions: Sequence[str]) -> list[Kernel]:
 
 
 def usages(kernels: Sequence[Kernel], architecture: str, threads: int) -> Iterator[KernelUsage]:
-    """Resources of each kernel, compiled in parallel."""
+    """Resource usage of each kernel, in order; kernels are compiled in parallel."""
     for kernel in kernels:  # The generator is not for threads; NVRTC is.
         kernel.gpu.code(kernel.function)
 

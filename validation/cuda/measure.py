@@ -39,7 +39,7 @@ _MODEL = f"Only this model; repeatable. {', '.join(MODELS)}."
 
 
 def run_model(label: str, functions: tuple[str, ...], record: Record, run: Run) -> None:
-    """Add results of our kernels for a model to a record."""
+    """Add rows of our kernels for a model to a record, and rollouts where a GPU is present."""
     device = present()
     subject = Subject.of(label, _STATES)
     kernels = kernels_of(subject, functions)
@@ -57,7 +57,7 @@ def run_model(label: str, functions: tuple[str, ...], record: Record, run: Run) 
 
 
 def run_peer(label: str, record: Record, run: Run) -> None:
-    """Add results of MuJoCo Warp for a model to a record."""
+    """Add MuJoCo Warp's rows for a model to a record."""
     run.expect(len(warp.FUNCTIONS), f"{label}: {PEER} compiles its kernels")
     for peer in warp.rows(Subject.of(label, _STATES)):
         record.peers.append(peer)

@@ -67,7 +67,7 @@ def _existing(folder: Path) -> Path:
 
 
 def _gathered(folder: Path, names: list[str]) -> dict[str, Entry]:
-    """Verdicts of the reports in a folder, a line each on the terminal."""
+    """Entries of the reports in a folder, whose verdicts are printed, a line each."""
     entries = gather(_existing(folder), provenance.current_versions(), names=names)
     for name, entry in entries.items():
         typer.echo(f"{name:11}{entry.verdict:10}{entry.said}")

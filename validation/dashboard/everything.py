@@ -61,7 +61,7 @@ class Made:
 
 @dataclass(frozen=True)
 class Job:
-    """The reports to make and their folder.
+    """Folders of a run that makes reports, and whether it takes the short ways.
 
     Attributes:
         output: Folder of the reports.
@@ -74,7 +74,7 @@ class Job:
     quick: bool = False
 
     def state(self) -> dict[str, Made]:
-        """Reports that were made; none where no valid state is stored."""
+        """Reports that were made, by name; empty where no readable state is stored."""
         made = stored_json(self.work / _STATE, lambda rows: {name: Made(**row) for name, row in rows.items()})
         return made or {}
 
@@ -100,7 +100,7 @@ class Job:
         return worker_command("__main__", self.arguments(topic))
 
     def arguments(self, topic: Topic) -> list[str]:
-        """Command line of a report; long measurements keep their own state for each state of the code."""
+        """Arguments of the command that makes a report; campaign and mutants keep their work by digest of the code."""
         own = self.work / f"{topic.name}-{present(topic)[:8]}"
         if topic.name == "campaign":
             arguments = ["campaign", "run", "--models", "all", "--report", str(self.output), "-o", str(own)]

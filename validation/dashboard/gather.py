@@ -45,7 +45,7 @@ class Entry:
 
     @property
     def said(self) -> str:
-        """The verdict of the report in a sentence."""
+        """The report's summary in a sentence, or the remarks where there is no report."""
         return self.report.summary if self.report else "; ".join(self.remarks)
 
 
@@ -86,7 +86,7 @@ def _entry(folder: Path, topic: Topic, installed: Mapping[str, str], digest: Cal
 
 
 def doubts(origin: Provenance, installed: Mapping[str, str]) -> list[str]:
-    """Reasons why a report may not describe the present code, such as changed packages."""
+    """Reasons why a report may not describe the present code: standing, missing provenance, changed packages."""
     asked = "when it was made", "on which machine", "with which versions"
     stated = zip(asked, (origin.date, origin.machine, origin.versions), strict=True)
     said = [standing_text(origin.standing)] if origin.standing else []

@@ -57,7 +57,7 @@ def deflection(run: sf.DiagramRun) -> Array:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Measure how the flexible robot tracks the square under a rigid model's controller, and the run's speed."""
     simulation = sf.Simulation(square())
     flexible, rigid = simulation.run(T_END, dt=DT, record=RECORD), traced(square(functions=0))
     counts = (1, 2, 3) if quick else tuple(range(1, MOST + 1))

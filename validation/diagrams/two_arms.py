@@ -27,7 +27,7 @@ _SPRINGS = tuple(f"{kind}_{axis}" for kind in ("give", "sway") for axis in "xyz"
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Measure a mount's sway while the right arm carries a payload, with the left hand holding and not holding."""
     held = sf.Simulation(working())
     with_grip = held.run(T_END, dt=DT, record=RECORD)
     open_hand = sf.Simulation(working(grips=False)).run(T_END, dt=DT, record=RECORD)

@@ -34,7 +34,7 @@ INSTALL_PEER = f"npm install {PEER} (in the folder where the command runs)"
 
 
 def missing() -> Absent | None:
-    """The reason why the environment can't run here, if any."""
+    """The missing program or package that keeps the environment from running here, if any."""
     if shutil.which("node") is None:
         return Absent(NAME, OURS, "Node is not installed", "install Node 20 or newer (Debian: apt install nodejs)")
     if find_spec("ziglang") is None:
@@ -43,7 +43,7 @@ def missing() -> Absent | None:
 
 
 def run(subject: Subject, states: Sequence[int], turns: int) -> dict[str, Any]:
-    """Output of the program: versions, and the races with results and times.
+    """Run the races in Node: versions, and the races with results and times.
 
     Raises:
         RuntimeError: It failed; with its last words.

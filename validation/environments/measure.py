@@ -36,7 +36,7 @@ _MODEL = f"Only this model; repeatable. {', '.join(MODELS)}."
 def run_environment(
     name: str, models: list[str], turns: int, record: Record, doing: Callable[[str], object] = lambda said: None
 ) -> None:
-    """Add results of one environment to a record.
+    """Race one environment in a process of its own, and add its results to a record.
 
     Args:
         name: Name of the environment.

@@ -61,7 +61,7 @@ def rows(
 
 
 def checked(computed: Array, expected: Array, fail: Callable[[str], object]) -> float | None:
-    """Error of results (n, size) against native C, relative to a state's largest entry; None if too large."""
+    """Error of results (n, size) against native C, relative to a state's largest entry; None if above TOLERANCE."""
     off = error(computed, expected) if computed.shape == expected.shape else math.inf
     if off <= TOLERANCE:
         return off

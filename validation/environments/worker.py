@@ -47,7 +47,7 @@ def work(environment: Environment, models: list[str], states: list[int], turns: 
 
 
 def run_node_worker(models: list[str], states: list[int], turns: int, say: Say) -> None:
-    """The same of WebAssembly, whose races are run by Node."""
+    """Race the functions of each model in WebAssembly, run by Node, as `work` does for other environments."""
     missing = in_node.missing()
     if missing is not None:
         say("absent", asdict(missing))

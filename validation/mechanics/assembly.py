@@ -80,7 +80,7 @@ class Mover:
 
     @property
     def kind(self) -> PartKind:
-        """Kind of a joint as engines distinguish them."""
+        """Kind of the mover's part of a joint, as engines distinguish them."""
         return self.part.kind
 
     @property

@@ -80,7 +80,7 @@ def all_speeds(assembly: Assembly, q: Array, v: Array, a: Array, motions: Array)
 
 
 def slots(assembly: Assembly) -> list[tuple[slice, slice]]:
-    """Indices of the coordinates and speeds of each mover."""
+    """Slices of each mover's coordinates and speeds; those of prescribed motions come after all others."""
     ends = {}
     q, v = assembly.nq, assembly.nv
     for joint in assembly.driven_joints:

@@ -140,7 +140,7 @@ class ElasticBeam(BeamSection):
         return Turn(Rz @ Ry @ Rx, partial, bend)
 
     def _curved(self, linear: Array, H: Array, along: Array, q: Array, v: Array) -> Curve:
-        """(along - q.H q/2, 0, 0) plus the terms linear in q."""
+        """The curve (along - q.H q/2, 0, 0) plus the terms linear in q."""
         n = len(q)
         Hq, Hv = np.einsum("kij,nj->nki", H, q), np.einsum("kij,nj->nki", H, v)
         value = np.einsum("kci,ni->nkc", linear, q)

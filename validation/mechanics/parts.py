@@ -55,7 +55,7 @@ def speed_symbols(joint: sf.Joint) -> tuple[str, ...]:
 
 
 def rates_by_coordinate(joint: sf.Joint) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Further names in formulas of a joint's speeds and of a prescribed joint's rates: d`q` and dd`q`."""
+    """Alternative names in formulas of a joint's speeds and of a prescribed joint's rates of them: d`q`, dd`q`."""
     names = [
         name.replace("`", "``") for name in (speed_symbols(joint) if has_quaternion(joint) else _coordinates(joint))
     ]
@@ -79,7 +79,7 @@ def has_quaternion(joint: sf.Joint) -> bool:
 
 
 def rate_symbols(joint: sf.Joint) -> tuple[str, ...]:
-    """Names of the rates of the speeds of a prescribed joint in inputs."""
+    """Input names of the rates of a prescribed joint's speeds."""
     return tuple(f"d{name}" for name in speed_symbols(joint))
 
 

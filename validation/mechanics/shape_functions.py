@@ -53,7 +53,7 @@ def legendre(first: int, count: int, L: float) -> tuple[Shape, ...]:
 
 
 def _jacobi(m: int, k: int, L: float) -> Shape:
-    """Shape xi^m P_k(2 xi - 1); P by its recurrence, as powers of xi would cancel digits from eight functions on."""
+    """Shape function xi^m P_k(2 xi - 1); P by recurrence: powers of xi cancel digits from eight functions on."""
 
     def P(x: Any, order: int) -> Any:
         """The derivative of that order: a product of (k + 2 m + i)/2 and a Jacobi polynomial of lower degree."""
@@ -91,7 +91,7 @@ def splines(dropped: int, count: int, L: float) -> tuple[Shape, ...]:
 
 
 def spline_breaks(dropped: int, count: int, L: float) -> tuple[float, ...]:
-    """Knots between the pieces of splines."""
+    """Interior knots [m], where the pieces of splines meet."""
     spans = count + dropped - min(3, count + dropped - 1)
     return tuple(L * k / spans for k in range(1, spans))
 

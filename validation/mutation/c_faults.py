@@ -124,7 +124,7 @@ class _Planter:
         return i
 
     def _closed(self, i: int) -> int:
-        """Index of the closing token of an opening one."""
+        """Index of the bracket that closes the one at index i; the last token if none does."""
         depth = 0
         for k in range(i, len(self.tokens)):
             depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(self.tokens[k].text, 0)
@@ -163,7 +163,7 @@ class _Planter:
                 yield self._replaced(SWAPPED, self.tokens[i + 2].start, ends[1].start, f"{second},{gap}{first}")
 
     def _argument_ends(self, opening: int, close: int) -> list[_Token]:
-        """The commas between a call's arguments, and its closing token."""
+        """The commas between a call's arguments, and its closing bracket; none for a call without arguments."""
         ends, depth = [], 0
         for k in range(opening + 1, close):
             depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(self.tokens[k].text, 0)

@@ -111,7 +111,7 @@ def judge(module: str) -> dict[str, Any]:
 
 
 def _verdict(name: str, asked: Callable[[Subject], Iterable[Comparison]]) -> dict[str, Any] | None:
-    """The disagreement of a model; None if there is none."""
+    """Status and reason of a model's first disagreement, failure or exception; None if there is none."""
     try:
         for row in asked(subject(name)):
             if not row.ok:

@@ -63,7 +63,7 @@ def measure(
 
 
 def as_data(study: Study) -> dict[str, Any]:
-    """Known results of each fault as plain data; faults without a verdict are left out."""
+    """The report's data: results of each fault, and scores; faults neither judged nor argued are left out."""
     rows = []
     for fault in study.faults:
         answers = {stage: study.store.get(fault.id, stage) for stage in (CHECK, OUTPUTS)} | {TESTS: study.tested(fault)}

@@ -149,9 +149,9 @@ class _Planter:
             case ast.BoolOp(op=op, values=[first, second, *_]):
                 yield self._between(COMPARISON, first, second, "or" if isinstance(op, ast.And) else "and")
             case _:
-                yield from self._name_faults(node)
+                yield from self._operand_faults(node)
 
-    def _name_faults(self, node: ast.AST) -> Iterator[SourceFault]:
+    def _operand_faults(self, node: ast.AST) -> Iterator[SourceFault]:
         match node:
             case ast.AugAssign(op=ast.Add() | ast.Sub()):
                 yield self._node(DROPPED, node, "pass")
@@ -169,7 +169,7 @@ class _Planter:
                 pass
 
     def _between(self, kind: str, left: ast.expr, right: ast.expr, operator: str) -> SourceFault:
-        """The operator between two operands replaced; parentheses and spaces are kept."""
+        """A fault that replaces the operator between two operands, not parentheses and spaces."""
         start, end = self._span(left)[1], self._span(right)[0]
         piece = self.text[start:end]
         inner = re.search(r"[^\s()#]+(?: (?:not|in))?", piece)

@@ -47,7 +47,7 @@ Answer = dict[str, Any]
 
 
 def argued_faults(file: Path = _ARGUED) -> dict[str, str]:
-    """Fault -> why it changes no result, as a person has argued.
+    """Fault -> a person's argument that it changes no result.
 
     Args:
         file: JSON of them.
@@ -219,7 +219,7 @@ class Study:
         return all(answer is not None and answer.get("code") == -signal.SIGBUS for answer in answers)
 
     def fate(self, fault: SourceFault) -> str:
-        """The fate of a fault, as far as it is known."""
+        """The fate of a fault by the answers known so far."""
         check, tests = self.store.get(fault.id, CHECK), self.tested(fault)
         outputs = self.store.get(fault.id, OUTPUTS)
         if stillborn(fault, check) or stillborn(fault, outputs):

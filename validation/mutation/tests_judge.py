@@ -97,7 +97,7 @@ _GENERAL = {
 
 
 class _Listener:
-    """Records failing and hanging tests."""
+    """Pytest plugin that records failures, exits at a test that hangs, and stops once the budget is spent."""
 
     def __init__(self) -> None:
         self.failed: list[str] = []
@@ -138,7 +138,7 @@ def _run(files: list[str], options: list[str], listener: _Listener) -> int:
 
 
 def _spent() -> float:
-    """CPU time of this process and its finished children [s], unaffected by other processes."""
+    """CPU time of this process and the children that it has waited for [s]; other processes do not count."""
     times = os.times()
     return times.user + times.system + times.children_user + times.children_system
 
@@ -164,7 +164,7 @@ def judge(files: list[str], deselected: list[str], budget: float) -> dict[str, A
 
 @cache
 def _imports(file: Path) -> frozenset[str]:
-    """Paths of modules that a test file imports, such as `symofros.mechanics.beams.fields`."""
+    """Paths of modules and names that a test file imports, such as `symofros/mechanics/beams/fields`."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):

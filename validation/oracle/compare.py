@@ -26,7 +26,7 @@ WORKING = 50
 
 @dataclass(frozen=True)
 class Agreement:
-    """One model.
+    """Digits to which the generator and SymPy's derivation of one model agree.
 
     Attributes:
         model: Name of the model.
@@ -44,7 +44,7 @@ class Agreement:
 
 
 def check(name: str, points: int = 2, seed: int = 0) -> Agreement:
-    """Compare the generator with the derivation of one of the models."""
+    """Compare the generator with Kane's derivation of one of the models."""
     model = MODELS[name]
     digits = agreement(model.system, kane.derive, points, seed)
     return Agreement(name, "kane", digits, model.digits, min(digits.values()) >= model.digits)

@@ -138,7 +138,7 @@ class _Model:
         return self.fixed(self.placed[name], stated.position, stated.rotation)
 
     def proximal(self, joint: sf.Joint) -> Placed:
-        """Placement of a joint on its parent."""
+        """Placement of a joint's proximal frame on its parent."""
         return self.fixed(self.frame(joint.parent, joint.frame), joint.position, joint.rotation)
 
     def across(self, proximal: Placed, joint: sf.Joint) -> Placed:

@@ -60,7 +60,7 @@ def _chain(*bodies: tuple[dict[str, Any], sf.Inertia | None], **more: Any) -> sf
 
 
 def _with(system: sf.System, index: int, **more: Any) -> sf.System:
-    """The system with further entries of one body."""
+    """The system with fields of one body replaced."""
     return system.with_bodies(replace(system.bodies[index], **more))
 
 

@@ -51,7 +51,7 @@ def measure(
 
 
 def _kept(run: Run, quick: bool) -> dict[str, Any]:
-    """Results of an earlier run on this machine with the same settings: problems by name."""
+    """Problems by name from an earlier run on this machine with the same settings; none without one."""
 
     def kept(data: Any) -> dict[str, Any]:
         if data["quick"] != quick or data["machine"] != machine():

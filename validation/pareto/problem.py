@@ -65,7 +65,7 @@ class Point:
 
     @property
     def series(self) -> tuple[str, str, str]:
-        """Settings that stay fixed while the step varies."""
+        """Engine, model and method, which stay the same while the step varies."""
         return self.who, self.model, self.method
 
     @property

@@ -64,5 +64,5 @@ def _run(one: Contestant, repeats: int, enough: float) -> Point:
 
 
 def engines(points: tuple[Point, ...]) -> tuple[str, ...]:
-    """Engines that also ran, in order."""
+    """Engines other than ours that have a point, in order of appearance."""
     return tuple(dict.fromkeys(p.who for p in points if p.who != OURS))

@@ -89,7 +89,7 @@ def compose(data: Data) -> Report:
 
 
 def _chosen(name: str, problem: BenchmarkProblem, result: Result) -> list[str]:
-    """The best choice at each error; the scene is named once, with its error."""
+    """Table rows of the best choice at each error; the first one names the scene and its error."""
 
     def loss(best: Point, other: Point | None, who: str) -> str:
         if other is None:

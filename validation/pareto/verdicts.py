@@ -36,7 +36,7 @@ class Verdict:
 
     @property
     def winner(self) -> str:
-        """The fastest side at the error and its factor; "alone" where the other side does not keep it."""
+        """The faster side and its factor; "alone" where the other does not keep the error, "nobody" where none does."""
         if math.isnan(self.ratio):
             return "nobody"
         who = OURS if self.ratio >= 1.0 else self.target.engine
@@ -71,7 +71,7 @@ class Choice:
 
 
 def choices(problem: BenchmarkProblem, result: Result) -> list[Choice]:
-    """The best choice at each target error, and below the floors of second order, which only our rods pass."""
+    """The best choice at each target error, and below the floors of second order, which of ours only rods pass."""
     chosen = []
     for error in sorted({target.error for target in problem.targets}, reverse=True):
         chosen += _choice(problem.shown(error), (p for p in usable(result.points) if p.error <= error))

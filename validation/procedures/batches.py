@@ -121,7 +121,7 @@ def oscillator() -> sf.Model:
 
 
 def amplified(model: sf.Model) -> Iterator[Cell]:
-    """Amplification of modes by steps in C matches the method's factor, and so do limits of stability."""
+    """Steps in C amplify modes by the method's factor, and limits of stability agree with it."""
     h, n = 0.1, 12
     modes = [0.3j, 2.3j, 0.9 * cmath.exp(2.0j), 1.4 * cmath.exp(1.7j), complex(-0.4), complex(-1.1)]
     for name, method in METHODS.items():

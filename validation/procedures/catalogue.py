@@ -134,7 +134,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
 
 
 def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Iterator[Comparison]:
-    """Checks of the equations of a model against its own formulas; none for most models.
+    """Comparisons of procedures on a reference model's equations with independent formulas; none for most models.
 
     Args:
         label: Name of the model in tables.

@@ -56,7 +56,7 @@ def implicit_steps(scene: Scene) -> Iterator[Cell]:
 
 
 def scaled_steps(scene: Scene, lengths: tuple[tuple[int, ...], tuple[int, ...]]) -> Iterator[Cell]:
-    """Steps at other scales equal those at one metre and one kilogram, in units of sqrt(L/g).
+    """Steps at other scales equal the harness's at one metre and one kilogram, in units of sqrt(L/g).
 
     Args:
         scene: Model whose parameters are its mass and its length, both 1, and its first state.
@@ -219,7 +219,7 @@ def mirrored(scene: Scene) -> Iterator[Cell]:
 
 
 def stated_error(scene: Scene) -> Iterator[Cell]:
-    """The stated error of a rod covers that of its tip by independent integration, without being far too large."""
+    """A rod's stated error covers its tip's error against quadrature, and is at most 1/TIP_SHARE times it."""
     described = scene.system.bodies[0]
     assert isinstance(described, sf.Beam)
     rod = StrainRod(described, scene.system.parameter_values())

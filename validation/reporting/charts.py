@@ -165,7 +165,7 @@ def _legend(axes: Any, width: float, height: float, note: str) -> list[str]:
 
 
 def _inlined(text: str, title: str, description: str) -> str:
-    """The element without parts that the page has itself: head, fonts, colours, names of groups."""
+    """SVG text as an inline element, without what the page supplies: head, fonts, colours, names of groups."""
     box = text.partition('viewBox="')[2].partition('"')[0]
     body = text.partition("</metadata>")[2]
     body = body.replace("xlink:href", "href").replace("font-family: 'DejaVu Sans'; ", "")

@@ -61,7 +61,7 @@ class Done:
 
 
 def progress_bar(console: Console) -> Progress:
-    """A bar for eyes, with names and what is left; a file or a pipe gets a line each ten seconds (`Run.advance`)."""
+    """A bar with names and time left for a terminal; other outputs get a line each ten seconds (`Run.advance`)."""
     left = TextColumn("left"), TimeRemainingColumn()
     columns = (
         TextColumn("{task.description}"),
@@ -162,7 +162,7 @@ def present(topic: Topic) -> str:
 
 
 def composed(topic: Topic, data: Data) -> Report:
-    """The report composed from the stored JSON data."""
+    """The report composed from data as JSON restores them."""
     return topic.compose(json.loads(json.dumps(data, allow_nan=False)))
 
 
@@ -195,7 +195,7 @@ def code(report: Report) -> Exit:
 
 
 def execute(topic: Topic, folder: Path | None, as_json: bool, **options: Any) -> None:
-    """Measure with the given options, write, print (data only if `as_json`), exit."""
+    """Measure a topic, write its report and print it (only the data as JSON if `as_json`), and exit."""
     run = Run(topic, folder)
     try:
         with run.bar:
@@ -258,7 +258,7 @@ def known(
     noun: str,
     retired: Mapping[str, str] = MappingProxyType({}),
 ) -> list[str]:
-    """The chosen names, or all.
+    """The chosen names, or all if none is chosen.
 
     Raises:
         BadParameter: One of them does not exist; of one that is `retired`, with the command that answers its question.

@@ -65,7 +65,7 @@ def sources(folder: str, *beside: str) -> Iterator[tuple[str, Path]]:
 
 
 def _listed(root: Path) -> list[str]:
-    """Sources below a folder; in a repository only tracked ones."""
+    """Source files below a folder; in a repository only tracked ones."""
     if not root.is_dir():
         return []
     names = [name for name in _git(root, "ls-files", "-z").split("\0") if name and (root / name).is_file()]
@@ -122,7 +122,7 @@ def _imported(name: str) -> frozenset[str]:
 
 
 def standing_text(standing: str) -> str:
-    """Text of a standing after the name of a report."""
+    """Verb and standing, to follow the name of a report in a sentence."""
     return f"{'is' if standing == OLDER else 'was'} {standing}"
 
 

@@ -126,7 +126,7 @@ def block(item: Block, figure_name: str = "") -> str:
 
 
 def chart(item: Chart | Drawing) -> str:
-    """A picture under its title, or the package needed to draw it."""
+    """HTML of a picture under its title, or of a note on the package that drawing it needs."""
     try:
         picture = f'<div class="scroll" tabindex="0">{draw(item)}</div>'
     except ModuleNotFoundError as error:

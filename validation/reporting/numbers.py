@@ -27,7 +27,7 @@ def digits(x: float | None, number: int = 2) -> str:
 
 
 def times(x: float) -> str:
-    """A ratio as text."""
+    """A ratio to two digits, as text with a multiplication sign."""
     return f"{short(float(f'{x:.2g}'))}×"
 
 

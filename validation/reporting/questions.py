@@ -48,7 +48,7 @@ def data_of(study: Study) -> dict[str, Any]:
 
 
 def composing(title: str, theory: str) -> Compose:
-    """A function that composes the report from its JSON; `theory` is the page of docs/ that it is based on."""
+    """A function that composes the report from its data; `theory` is the page of docs/ that it rests on."""
     intro = (
         "Each section asks a question, answers it from what this run measured, shows it, and lists the numbers with "
         f"the bounds they must keep. The theory is in `{theory}`."

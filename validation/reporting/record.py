@@ -19,7 +19,7 @@ _NUMBER = re.compile(r"([<>] )?[-+−]?\d([-+−\d.,: ]|e[-+]?\d| of \d)*( ?[%×
 
 
 def verdict(text: object, ok: bool | None) -> str:
-    """A text for a cell, marked if the target is missed."""
+    """The text of a table cell, marked as missed if `ok` is False."""
     return f"{MISSED if ok is False else ''}{text}"
 
 
@@ -241,5 +241,5 @@ class Topic:
 
     @property
     def command(self) -> str:
-        """Command that writes it."""
+        """Command that writes the report."""
         return f"{PROGRAM} {self.name if self.arguments is None else self.arguments}".strip()

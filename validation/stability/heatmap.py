@@ -44,7 +44,7 @@ def draw(mapped: Map, x: Grid, y: Grid, quantity: str) -> Drawing:
 
 
 def borders(values: Array, grid: Grid) -> Array:
-    """Borders of cells, halfway between neighbours on the axis as drawn; categories are a unit wide."""
+    """Borders of the cells, halfway between neighbours on the axis as drawn; categories are a unit wide."""
     if grid.labels or len(values) == 1:
         return np.arange(-0.5, len(values))
     at = np.log10(values) if grid.log else values
@@ -67,7 +67,7 @@ def _scaled(axes: Any, name: str, values: Array, grid: Grid, ends: Array) -> Non
 
 
 def _cells(axes: Any, mapped: Map, columns: Array, rows: Array) -> None:
-    """The cells, those of one colour and depth as one path, then their texts."""
+    """Draw the cells, those of one colour and depth as one path, their texts, and the legend's entries."""
     ends = zip(_APART, (columns, rows), SIZE, strict=True)
     strides = [math.ceil(apart * (len(values) - 1) / size) for apart, values, size in ends]
     middles = _middles(columns, axes.xaxis), _middles(rows, axes.yaxis)

@@ -42,7 +42,7 @@ def measure(
 
 
 def study_data(study: ParameterStudy, quick: bool, run: Run) -> dict[str, Any]:
-    """Run one study and judge it; its definition states the questions and bounds."""
+    """Run and judge one study: its verdict, findings and maps as plain data."""
     start = time.perf_counter()
     maps = survey(study, quick, run.advance)
     verdict = study.judge(maps)

@@ -81,13 +81,13 @@ class Cell:
     note: str = ""
 
     def __post_init__(self) -> None:
-        """Check that a completed run has a number."""
+        """Check that a completed run has a finite number."""
         if self.ended in FINISHED and not math.isfinite(self.value):
             raise ArithmeticError(f"a run is said to be {self.ended} and has no number: {self.value} {self.note}")
 
 
 def cell(run: sf.Trajectory, value: Callable[[sf.Trajectory], float]) -> Cell:
-    """Result of a run; the reason of a failure and its notes are kept."""
+    """Cell of a run: its criterion, or NaN with the reason of its failure; notes are kept."""
     outcome = run.outcome
     note = "; ".join((*(() if outcome.ok else (outcome.reason,)), *outcome.notes))
     if not outcome.ok:
@@ -110,7 +110,7 @@ def simulate(model: sf.Model, *given: Any, **settings: Any) -> sf.Trajectory:
 
 
 def longest(holds: Callable[[float], bool], low: float, high: float, within: float = 1e-4) -> float:
-    """The largest value that holds between one that does and one that does not, by bisection of the logarithm."""
+    """The largest value that holds, by bisection in the logarithm; `low` must hold and `high` must not."""
     while high / low > 1.0 + within:
         middle = math.sqrt(low * high)
         low, high = (middle, high) if holds(middle) else (low, middle)
@@ -118,7 +118,7 @@ def longest(holds: Callable[[float], bool], low: float, high: float, within: flo
 
 
 def refused(error: Exception) -> Cell:
-    """A cell for a run that was refused, with the reason."""
+    """The cell of a run that was refused, with the reason."""
     return Cell(math.nan, REFUSED, str(error).splitlines()[0])
 
 
@@ -177,7 +177,7 @@ class Map:
 
     @cached_property
     def good(self) -> npt.NDArray[np.bool_]:
-        """Cells where the criterion is met (ny, nx)."""
+        """Whether the criterion is met (ny, nx)."""
         with np.errstate(invalid="ignore"):
             return np.asarray(self.values <= self.bound)
 

@@ -109,7 +109,7 @@ class FaultSimulator:
         return result
 
     def affected(self, fault: Fault) -> tuple[list[Function], Callable[[Function], list[Array]]]:
-        """The functions that a fault changes.
+        """The functions whose outputs a fault changes.
 
         Returns:
             The functions with an output that changes by a single bit, and their outputs under the fault.

@@ -55,7 +55,7 @@ def mutated_files(kind: str, seed: int) -> Iterator[bytes]:
         elif kind.endswith(".npz") and rng.random() < 0.7:
             yield _lying_archive(rng)
         elif kind.endswith(".parquet") and rng.random() < 0.5:
-            yield _malformed_table(rng)
+            yield _invalid_table(rng)
         else:
             data = rng.choice(sound)
             for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
@@ -153,8 +153,8 @@ def _parquet(columns: dict[str, object]) -> bytes:
     return stream.getvalue()
 
 
-def _malformed_table(rng: random.Random) -> bytes:
-    """Columns of other types and lengths, sound by themselves."""
+def _invalid_table(rng: random.Random) -> bytes:
+    """A Parquet file whose columns have other types, values or lengths than a motion's; some are mutated, too."""
     columns = _columns()
     name = rng.choice([*columns])
     count = rng.choice((4, 4, 4, 0, 1, 300_000))

@@ -27,7 +27,7 @@ _WORD = re.compile(rb"[A-Za-z_]\w*|-?\d+(?:\.\d+)?")
 
 
 def corpus(kind: str) -> list[bytes]:
-    """Inputs from which mutations of a kind start."""
+    """Inputs from which mutations of a kind start: formulas, or files with that suffix."""
     if kind == "formula":
         return list(_FORMULAS)
     folders = (CORPUS, references.FOLDER)

@@ -108,7 +108,7 @@ class _Harness:
         self.reference = {function: results[function.name] for function in self.program.functions}
 
     def _results(self) -> dict[str, tuple[Quantity, Array]]:
-        """Results of the engine, and for forces of the description's formulas, per function."""
+        """Results per function: forces from the description's own formulas, all else from the engine."""
         forces = description.build(self.subject)
         results = {}
         for quantity in QUANTITIES.values():

@@ -1,4 +1,4 @@
-"""Derivations by SymPy, as a command."""
+"""Comparison with SymPy's derivations, as a command."""
 
 from __future__ import annotations
 

@@ -90,7 +90,7 @@ class TimedModel:
     closed: Mapping[str, float] | None = None
 
     def load(self) -> sf.System:
-        """Load its description, without friction and springs in joints, as engines model them differently."""
+        """Load its description without elements of joints (friction, springs), which engines model differently."""
         system = self.make()
         bodies = [
             body if body.joint is None else replace(body, joint=replace(body.joint, elements=()))

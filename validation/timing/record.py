@@ -131,7 +131,7 @@ class Wait:
 
     @property
     def met(self) -> bool:
-        """Whether the target is reached."""
+        """Whether the target is met; True without one."""
         return self.asked is None or self.seconds <= self.asked
 
 
@@ -162,7 +162,7 @@ class Record:
     waits: list[Wait] = field(default_factory=list)
 
     def forget(self, models: Iterable[str], functions: Iterable[str], peers: Iterable[str]) -> None:
-        """Drop results that are about to be measured again."""
+        """Drop entries, costs and notes of what is about to be measured again."""
         M, F, P = set(models), set(functions), set(peers)
         self.entries = [x for x in self.entries if not (x.model in M and x.function in F and x.peer in P)]
         self.costs = [x for x in self.costs if not (x.model in M and x.function in F and x.by in {*P, "symofros"})]

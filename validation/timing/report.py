@@ -102,7 +102,7 @@ def compose(data: Data) -> Report:
 
 
 def _decisions(best: Sequence[Entry], machine: Mapping[str, Any]) -> tuple[str | Table, ...]:
-    """Speed-ups of the generated C on each model, with machine and date; none where nothing was measured."""
+    """Sentence and table on speed-ups of the generated C on each model; none where nothing was measured."""
     raced = [row for row in best if row.function in _ASKED and row.peer in _PEERS]
     if not raced:
         return ()
@@ -119,7 +119,7 @@ def _decisions(best: Sequence[Entry], machine: Mapping[str, Any]) -> tuple[str |
 
 
 def _conditions(machine: Mapping[str, Any]) -> str:
-    """Conditions that times depend on, besides versions and flags."""
+    """Conditions besides versions and flags: states, repeats, load, measured limits of a core."""
     load = " and ".join(f"{load:.1f}" for load in machine.get("load before and after", ()))
     peaks = {"scalar_flops": "GFlop/s one by one", "vector_flops": "GFlop/s in vectors", "copied_bytes": "GB/s copied"}
     limits = ", ".join(f"{machine[name] / 1e9:.1f} {unit}" for name, unit in peaks.items() if name in machine)

@@ -34,7 +34,7 @@ LEFT = "what was left"
 
 
 def run_job(job: Job, record: Record, doing: Doing = lambda model, function, part: None) -> None:
-    """Time one model in a separate process; results before its end, or Ctrl-C, are kept.
+    """Time one model in a process of its own; what was measured before it fails, or before Ctrl-C, is kept.
 
     Args:
         job: Model, functions and peers to time.
@@ -73,7 +73,7 @@ def jobs(
     states: int,
     done: Record | None = None,
 ) -> list[Job]:
-    """The jobs: requested functions of each model that were not measured before."""
+    """One job for each model, with its requested functions that were not measured before."""
     wanted = set(functions)
     todo = []
     for model in models:
@@ -85,7 +85,7 @@ def jobs(
 
 
 def prepare(todo: Iterable[Job], say: Say) -> list[str]:
-    """Compile shared parts of the jobs' models by all compilers in parallel; failures are reported by each model.
+    """Compile the programs that models of the jobs share, in parallel; each model reports what fails itself.
 
     Args:
         todo: Jobs.

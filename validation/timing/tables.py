@@ -68,7 +68,7 @@ _RATIOS = "model | nv | Pinocchio | batch by rows | batch by columns | MuJoCo | 
 
 
 def sections(record: Record) -> list[Section]:
-    """Times of each function, growth, costs, limits, and missing measurements."""
+    """Sections on times, growth, waiting times, costs of generation, limits, and skipped measurements."""
     costs = (record.cost(model, function, by) for model in TIMED_MODELS for function in FUNCTIONS for by in _GENERATORS)
     made = [cost for cost in costs if cost is not None]
     making = (
@@ -100,7 +100,7 @@ def targets_table(verdicts: Sequence[Verdict]) -> Table:
 
 
 def ratios(rows: Sequence[Entry]) -> Figure:
-    """Peer times over ours, over the size of the model; a point a model."""
+    """Figure of peers' times over ours against the number of speeds; a point a model."""
     charts = []
     for function in _RACED:
         own = [row for row in rows if row.function == function]
@@ -157,7 +157,7 @@ def _title(function: str) -> str:
 
 
 def _limits(record: Record, made: Sequence[Made]) -> Section:
-    """Costs against the limits of the machine."""
+    """Section on costs against measured limits of the machine."""
     peaks = [record.machine.get(name, math.nan) / 1e9 for name in ("scalar_flops", "vector_flops", "copied_bytes")]
     flops, vector, copied = peaks
     rows = []

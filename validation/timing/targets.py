@@ -86,7 +86,7 @@ TARGETS: tuple[Target, ...] = (
 
 
 def verdicts(record: Record) -> list[Verdict]:
-    """Verdict on each target against the peer's fastest way, which does not depend on our code."""
+    """Verdict on each target against the peer's fastest build, whose choice does not depend on our times."""
     judged = []
     for target in TARGETS:
         entry = record.best(target.model, target.function, target.peer, target.family)
@@ -125,7 +125,7 @@ class ReverseCost(Labelled):
 
     @property
     def met(self) -> bool:
-        """Whether it is within the target."""
+        """Whether the ratio is at most MAX_REVERSE."""
         return self.ratio <= MAX_REVERSE
 
 

@@ -132,7 +132,7 @@ def process_time(arguments: Sequence[str], cache: Path | None, runs: int) -> flo
 
 
 def _process(arguments: Sequence[str], cache: Path) -> tuple[float, str]:
-    """Seconds and output of a Python process."""
+    """Wall time [s] and output of a Python process."""
     environment = {**os.environ, "SYMOFROS_CACHE": str(cache)}
     # Whoever installs a package has its bytecode; without, each process would translate its text again.
     environment.pop("PYTHONDONTWRITEBYTECODE", None)

@@ -59,7 +59,7 @@ def files(tree: Tree) -> dict[str, str]:
 
 
 def numbers(tree: Tree) -> dict[str, Any]:
-    """The tree as plain data with every digit: the mechanism of the values."""
+    """The tree as plain data with every digit: the mechanism that the tabulated values belong to."""
     made = layout(tree)
     return {
         "name": tree.name,

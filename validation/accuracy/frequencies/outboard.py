@@ -44,7 +44,7 @@ def squares_of(etas: Array, mass: float, **changed: object) -> Array:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Compare first flap frequencies of a beam with a tip mass with a Ritz solution, against the speed."""
     etas = np.linspace(0.0, 6.0, 7 if quick else 25)
     measured = {mass: squares_of(etas, mass) for mass in MASSES}
     expected = {mass: ritz(etas, mass) for mass in MASSES}

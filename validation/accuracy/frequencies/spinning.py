@@ -26,7 +26,7 @@ PRINTED = 0.5e-4 + 1e-6
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Compare frequencies of a spinning cantilever, with and without foreshortening, with tables and Exudyn."""
     reference = data("spinning_cantilever")
     etas = np.linspace(0.0, 12.0, 13 if quick else 97)
     worst = {n: errors(n, reference["table"]) for n in BOUNDS}
@@ -62,7 +62,7 @@ def _findings(
     critical: Mapping[float, float],
     apart: float,
 ) -> list[Finding]:
-    """Findings on frequencies.
+    """Findings on errors of frequencies, on speeds of divergence, and on the difference from Exudyn.
 
     Args:
         worst: Errors by number of functions, then by plane and hub.
@@ -140,14 +140,14 @@ def divergence(delta: float) -> float:
 
 
 def growth(eta: float) -> float:
-    """Rate at which a beam without foreshortening flies away in lag; NaN where it swings."""
+    """Growth rate of lag without foreshortening, over sqrt(EI/(rho A L^4)); NaN where lag is stable."""
     m = spinning("bend_y", 5, foreshortening=False, retain="all")
     squared = float(spinning_squares(m, eta, 0.0)[0])
     return float(np.sqrt(-squared)) if squared < 0.0 else np.nan
 
 
 def _above_divergence() -> list[Finding]:
-    """Findings on speeds above the first frequency, in lag: η up to 8, hubs up to twice the length."""
+    """Findings on lag at speeds above the first frequency: η up to 8, hub radii up to twice the length."""
     places = [(eta, delta) for eta in (4.0, 6.0, 8.0) for delta in (0.0, 0.5, 1.0, 2.0)]
     stiff, ruthless = spinning("bend_y", 5), spinning("bend_y", 5, retain="zeroth_order")
     least = min(float(spinning_squares(stiff, *place)[0]) for place in places)

@@ -51,7 +51,7 @@ def error(m: sf.Model, deflection: float, periods: int) -> tuple[Array, Array]:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Measure the energy error along free motions with all terms and at first order."""
     periods = 6 if quick else 100
     kept, first = system("all"), system("first_order")
     time, all_error = error(kept, 0.1, periods)

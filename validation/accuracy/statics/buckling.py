@@ -75,7 +75,7 @@ def lateral(functions: int, retain: str = "all") -> float:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Compare buckling loads of a column, a heavy column and a strip on edge with closed forms."""
     reference = data("buckling_cantilever")
     counts = np.arange(1.0, 6.0 if quick else 11.0)
     loads = {
@@ -134,7 +134,7 @@ def study(quick: bool) -> Study:
 
 
 def _euler(loads: Mapping[str, Array], known: Mapping[str, Mapping[str, float]]) -> list[Finding]:
-    """Findings on Euler's load.
+    """Findings on Euler's load, against π²/4 and against a Ritz solution.
 
     Args:
         loads: Loads by family, of 1, 2, ... functions.
@@ -186,7 +186,7 @@ def axial(counts: Array, loads: dict[str, Array], quick: bool, reference: dict[s
 
 
 def strip(functions: Array, loads: Array) -> Figure:
-    """Buckling of a strip sideways."""
+    """Figure of the lateral buckling load of a strip on edge against the number of functions."""
     x, y = "number of functions a field  [1]", "critical load P L²/√(EI GJ)  [1]"
     marks, drawn = (Mark("4.0126 (Prandtl)", LATERAL),), curves(functions, {"retain: all": loads})
     return Figure(

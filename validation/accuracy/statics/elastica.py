@@ -48,7 +48,7 @@ def tip(m: sf.Model, alpha: float) -> tuple[float, float]:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Compare deflections of the second-order beam under a tip load with the elastica."""
     m, reference = second_order(), data("elastica_tip_load")
     alphas = np.geomspace(0.05, 3.0, 25 if quick else 50)
     beam = np.array([tip(m, float(alpha)) for alpha in alphas])

@@ -77,7 +77,7 @@ def twist(R: Array) -> float:
 
 
 def study(quick: bool) -> Study:
-    """Run the study: its findings and figures."""
+    """Compare deflection and twist of the Princeton strip with Exudyn's geometrically exact beam."""
     angles = np.radians(np.linspace(0.0, 90.0, 4 if quick else 13))
     loads = LOADS[1:2] if quick else LOADS
     m = {retain: strip_model(retain) for retain in ORDERS}
@@ -119,7 +119,7 @@ def study(quick: bool) -> Study:
 
 
 def _findings(deflection: Array, whole: Array, turned: Mapping[str, Array], lost: float) -> tuple[Finding, ...]:
-    """Findings on the strip under loads at 60 degrees.
+    """Findings on deflection and twist of the strip under loads at 60 degrees, and on its loss of equilibrium.
 
     Args:
         deflection: Deflections over the length.

@@ -52,11 +52,11 @@ class JointedEngine(ChartedEngine):
     """An Exudyn system with a node of Euler parameters for every moving body of a description."""
 
     def closure_gap(self, states: States) -> Array:
-        """The largest of Exudyn's conditions (N,), joints of the tree among them."""
+        """Largest residual of Exudyn's constraints (N,), those of the tree's joints included."""
         return self.asked("closure_gap", states)
 
     def frame_response(self, states: States) -> Array:
-        """Accelerations of points of the bodies (N, F, 6)."""
+        """Constrained accelerations of the frames' origins, (linear; angular), in world axes (N, F, 6)."""
         return self.asked("frame_response", states)
 
 
@@ -93,7 +93,7 @@ def _obstacle(system: sf.System, assembly: Assembly) -> Unsupported | None:
 
 
 def _connector(assembly: Assembly, system: sf.System, item: sf.Constraint) -> tuple[str, list[Any], dict[str, Any]]:
-    """A connector as the plug-in's text takes it: its class, its ends, its arguments."""
+    """Class, ends and arguments of the Exudyn connector for a closure or a rod."""
     assert isinstance(item, sf.Closure | sf.Rod)
     ends = [_end(assembly.frames[anchor_name(assembly, anchor) or "world"]) for anchor in (item.first, item.second)]
     if isinstance(item, sf.Rod):

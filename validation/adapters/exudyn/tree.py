@@ -1,4 +1,4 @@
-"""Exudyn's own recursions for rigid trees, ObjectKinematicTree, by its plug-in of the matrix.
+"""Exudyn's own recursions for rigid trees, ObjectKinematicTree, by the engine matrix's plug-in.
 
 Its joints turn about or slide along one axis. Balls, free joints and screws are none of its kinds: those trees are made
 of bodies with Euler parameters (`mapped`).
@@ -28,7 +28,7 @@ _JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic"})
 
 @dataclass(frozen=True)
 class KinematicTreeEngine(ChartedEngine):
-    """An ObjectKinematicTree, which gives M and h, and where links are; the rest follows from these.
+    """Exudyn's ObjectKinematicTree: M, h and link poses are its own; energies and dynamics follow from them.
 
     Attributes:
         masses: Masses of its links, and times their mass centres (links, 4).

@@ -55,7 +55,7 @@ class MjcfEngine(ChartedEngine):
         return self._of_data(states, lambda d: np.array([one(d, kind, i) for kind, i in self.places]))
 
     def _of_data(self, states: States, result: Callable[[Any], Array]) -> Array:
-        """One state at a time, results of the data that MuJoCo fills."""
+        """Evaluate `result` on MuJoCo's data after a forward pass at each state (N, ...)."""
         d: Any = mujoco.MjData(self.model)
         values = []
         q, v = self.chart.coordinates(states.q), self.chart.speeds(states.q, states.v)

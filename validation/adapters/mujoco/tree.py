@@ -1,4 +1,4 @@
-"""MuJoCo: its tree algorithms, without contacts and without its integrators, by its plug-in of the matrix."""
+"""MuJoCo: its tree algorithms, without contacts and without its integrators, by the engine matrix's plug-in."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "ball", "free
 
 
 def write(engine: ChartedEngine, path: Path) -> None:
-    """Write a MuJoCo model to a binary file, for programs in C."""
+    """Save an engine's MuJoCo model as a binary file, for programs in C."""
     mujoco.mj_saveModel(engine.model, str(path))
 
 
@@ -42,7 +42,7 @@ def build(subject: Subject) -> ChartedEngine | Unsupported:
 
 
 def charted(name: str, model: Any, slots: tuple[Slot, ...], capabilities: frozenset[str]) -> ChartedEngine:
-    """A model that MuJoCo has read itself, of whose joints and masses alone something is asked.
+    """An engine on a model that MuJoCo read itself; its contacts, constraints and actuators are disabled.
 
     Args:
         name: Name of the route.

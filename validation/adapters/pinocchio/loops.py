@@ -59,7 +59,7 @@ _WAYS = WAYS | {
 
 
 class Tie(NamedTuple):
-    """One of Pinocchio's constraints.
+    """One of Pinocchio's constraints, which represents a closure or a part of it.
 
     Attributes:
         closure: Index of the closure that it is a part of.
@@ -97,7 +97,7 @@ class LoopEngine(ChartedEngine):
         return lines
 
     def multipliers(self, states: States) -> Array:
-        """Components of the wrenches between the frames, along the blocked directions; the signs are opposite."""
+        """Components of the closures' wrenches along the blocked directions (N, nc); Pinocchio's signs are reversed."""
         wrenches = -self.asked("wrenches", states)
         force, torque = np.zeros((2, len(states), len(self.closures), 3))
         for k, tie in enumerate(self.ties):
@@ -110,11 +110,11 @@ class LoopEngine(ChartedEngine):
         return np.stack(columns, axis=1)
 
     def constraint_force(self, states: States) -> Array:
-        """J^T of its forces; of both, the signs are opposite to ours."""
+        """J^T lambda by Pinocchio's Jacobian and forces (N, nv), both of which have signs opposite to ours."""
         return self.chart.our_forces(states.q, self.asked("constraint_force", states))
 
     def closure_gap(self, states: States) -> Array:
-        """The largest distance between points that are to coincide, and angle between frames that are to."""
+        """Largest distance along blocked translations, or angle between welded frames (N,)."""
         gaps = np.abs(self.asked("gaps", states))
         held = np.zeros(gaps.shape[1:], dtype=bool)
         for row, tie in zip(held, self.ties, strict=True):
@@ -171,7 +171,7 @@ def _points(item: sf.Closure) -> list[Array]:
 
 
 def _rigid(assembly: Assembly, tree: Tree, item: sf.Closure, offset: Array) -> Constraint:
-    """A constraint of the matrix between points, or frames, at an offset along the first one's axes."""
+    """A weld or point constraint for a closure, at an offset along the first frame's axes."""
     ends = []
     for anchor in (item.first, item.second):
         name = anchor_name(assembly, anchor)

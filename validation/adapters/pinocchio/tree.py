@@ -1,4 +1,4 @@
-"""Pinocchio: recursive algorithms on rigid trees, by its plug-in of the matrix."""
+"""Pinocchio: recursive algorithms on rigid trees, by the engine matrix's plug-in."""
 
 from __future__ import annotations
 

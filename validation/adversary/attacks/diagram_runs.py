@@ -120,7 +120,7 @@ def judge(scene: Scene) -> Verdict:
 
 
 def _common(*times: Array) -> tuple[npt.NDArray[np.intp], ...]:
-    """Indices of the common instants in each array."""
+    """Indices into each array of the instants that all arrays share."""
     shared = times[0]
     for other in times[1:]:
         shared = np.intersect1d(shared, other)

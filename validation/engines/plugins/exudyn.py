@@ -81,7 +81,7 @@ def _plain(values: Array) -> str:
 
 
 class _Links:
-    """Exudyn's links, and what our links are on them: at the origin of one, or placed on it where they have no mass."""
+    """Exudyn's links of a tree, and the placement of each of our links on the Exudyn link that carries it."""
 
     def __init__(self) -> None:
         self.types: list[str] = []
@@ -99,7 +99,7 @@ class _Links:
         self.slots: list[tuple[Slot, ...]] = []
 
     def add(self, link: Link) -> Unsupported | None:
-        """A link, with those without mass that joints in series hang on."""
+        """Append a link, preceded by massless ones for joints in series; `Unsupported` if Exudyn has no such link."""
         steps, (R_end, p_end) = series(link.joints)
         carrier, R0, p0 = self.carriers[link.parent] if link.parent >= 0 else (-1, np.eye(3), np.zeros(3))
         if not steps and link.mass == 0.0 and not np.any(link.inertia):
@@ -135,7 +135,7 @@ class _Links:
 
 
 def write(tree: Tree) -> Source | Unsupported:
-    """Text that builds a kinematic tree."""
+    """Python text that builds a kinematic tree; joints in series hang on links without mass."""
     made = _Links()
     for link in tree.links:
         obstacle = made.add(link)

@@ -47,7 +47,7 @@ def _elements(joint: Joint) -> list[tuple[str, Array]]:
 
 
 def _name(name: str) -> str:
-    """An attribute's value, in a text in Python in three quotes."""
+    """A name escaped for an XML attribute within a triple-quoted Python string."""
     return escape(name, {"'": "&apos;", '"': "&quot;", "\\": "&#92;"})
 
 
@@ -96,7 +96,7 @@ class _Bodies:
         return made
 
     def _inertia(self, inertia: Array) -> str:
-        """Attributes of an inertia: its entries, or its principal moments and their axes."""
+        """MJCF attributes of an inertia: its entries, or its principal moments and axes."""
         if not self.principal:
             return f'fullinertia="{_text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))}"'
         moments, axes = np.linalg.eigh(inertia)

@@ -47,7 +47,7 @@ def _placement(R: Array, p: Array) -> str:
 
 
 def _is_possible(inertia: Rows) -> bool:
-    """Whether some body has such moments: none is negative, or above the sum of the others."""
+    """Whether principal moments are non-negative and satisfy the triangle inequality."""
     moments = np.linalg.eigvalsh(np.array(inertia))
     return bool(moments[0] >= 0.0 and 2.0 * moments[2] <= moments.sum())
 

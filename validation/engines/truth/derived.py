@@ -62,7 +62,7 @@ def classical(truth: Truth, q: Exact, v: Exact, a: Exact) -> Exact:
 
 
 def joint_wrenches(truth: Truth, s: Point) -> Exact:
-    """Force and moment that hold each link with all that it carries, at its origin and along its axes (L, 6)."""
+    """Wrench (force; moment) of each joint on its link's subtree, about the link's origin, in link axes (L, 6)."""
     poses = truth.kinematics.poses(s.q)
     held = truth.wrenches(truth.motions(s.q, s.v, s.a), poses, list(truth.inertias))
     for k, link in reversed(list(enumerate(truth.kinematics.tree.links))):

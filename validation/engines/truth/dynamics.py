@@ -100,7 +100,7 @@ class Truth:
     def wrenches(
         self, motions: tuple[Exact, Exact, Exact], poses: list[Pose], inertias: list[Inertia | None]
     ) -> dict[int, Exact]:
-        """What moves each link against gravity (6): force, and moment about its origin, along world axes."""
+        """Link -> wrench that moves it against gravity (6): force, and moment about its origin, along world axes."""
         _, velocity, acceleration = motions
         wrenches: dict[int, Exact] = {}
         for k, stated in enumerate(inertias):

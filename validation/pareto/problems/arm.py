@@ -55,7 +55,7 @@ def possible(made: E | Unsupported) -> E:
 
 
 def subject() -> Subject:
-    """The subject from which engines build their models."""
+    """The arm as a subject, from which engines build their models."""
     return Subject("panda7", system())
 
 
@@ -98,7 +98,7 @@ def judged_model() -> SymofrosModel:
 
 
 def symofros_all(quick: bool) -> list[Contestant]:
-    """Contestants of every method."""
+    """Our contestants, by every method unless quick; some in single precision."""
     one = judged_model()
     rtols = (1e-5, 1e-8) if quick else (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
     contestants = one.by("dop853", rtols)
@@ -117,7 +117,7 @@ def symofros_all(quick: bool) -> list[Contestant]:
 
 
 def in_mujoco() -> MujocoModel:
-    """MuJoCo's contestant."""
+    """MuJoCo's model of the arm, held by springs and dampers in its joints."""
     made = possible(mujoco.build(subject()))
     m = mujoco_steps.held(made, np.full(7, TARGET), STIFFNESS, DAMPING)
     q0 = made.chart.coordinates(start()[None])[0]
@@ -179,7 +179,7 @@ def exudyn_all(quick: bool) -> list[Contestant]:
 
 
 def prepare(quick: bool) -> Prepared:
-    """Compute the references."""
+    """Contestants, with the agreement of two independent references."""
     h = 2.5e-4 if quick else 1e-4
     (tiny,) = in_mujoco().by("RK4", (h,))
     agreement = tiny.run().error

@@ -108,7 +108,7 @@ def splines(count: int) -> str:
 
 
 def prepare(quick: bool) -> Prepared:
-    """Compute the references."""
+    """Contestants, with the agreement of two independent references and the floors of second-order beams."""
     first_order = (
         judged_model("4 splines", sf.compile(system(4))).measured(method="rodas4", rtol=1e-8, atol=1e-10).error
     )

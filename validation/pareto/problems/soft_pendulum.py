@@ -60,7 +60,7 @@ def judged_model(label: str, m: sf.Model) -> SymofrosModel:
 
 
 def prepare(quick: bool) -> Prepared:
-    """Compute the references."""
+    """Contestants, with the agreement of two independent references and the floors of second-order beams."""
     mine = judged_model("rod", model(7, 2)).measured(method="rodas4", rtol=1e-7, atol=1e-9).error
     floors = {
         name: judged_model(name, model(5, theory="second_order", retain=retain)).measured(method="dop853", rtol=1e-9)

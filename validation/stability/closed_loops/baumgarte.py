@@ -129,7 +129,7 @@ def judge(maps: Maps) -> Verdict:
 
 
 def _findings(maps: Maps, reached: Mapping[str, float], slope: float) -> list[Finding]:
-    """Findings on the edges.
+    """Findings on edges of stability, against closed forms, and on known errors.
 
     Args:
         maps: Map of each method.

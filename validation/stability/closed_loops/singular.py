@@ -77,7 +77,7 @@ def off(loops: int, run: sf.Trajectory) -> float:
 
 
 def soft(loops: int, h: float, solref: str, solimp: str, stated_at: float = four_bars.START[0]) -> Cell:
-    """MuJoCo, stated with the cranks at an angle [rad], upright unless said."""
+    """MuJoCo's position error [m] for a model stated with the cranks at an angle [rad], upright by default."""
     m = four_bars.linkage(loops)
     q, v = four_bars.state(m, *four_bars.START)
     text = four_bars.mjcf(loops, "RK4", h, solref, solimp, stated_at)
@@ -163,7 +163,7 @@ def judge(maps: Maps) -> Verdict:
 def _method_findings(
     maps: Maps, always: Sequence[str], errors: Array, near: Mapping[str, float]
 ) -> tuple[Finding, ...]:
-    """Findings on each method of keeping constraints.
+    """Findings on projection, on Baumgarte's gains, and on runs without stabilisation.
 
     Args:
         maps: Maps of all ways.
@@ -209,7 +209,7 @@ def _method_findings(
 
 
 def _motion_findings(noted: float) -> tuple[Finding, ...]:
-    """Findings on the known motion, and on notes of runs; `noted` is the share of our runs with one."""
+    """Findings on MuJoCo, known verdicts, notes and the exact motion; `noted`: share of our runs with a note."""
     known = data("four_bars")
     exact = max(
         four_bars.tip_error(int(n), float(t), np.array([row["B0x"][t], row["B0y"][t]]))

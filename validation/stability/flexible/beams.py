@@ -110,7 +110,7 @@ def closed_form(c: float, modes: int = 3) -> float:
 
 
 def held(run: sf.Trajectory) -> bool:
-    """Whether a run comes to its end, and its energy stays."""
+    """Whether a run completes with an energy of at most BOUND times that at the start, in its second half."""
     return run.outcome.ok and growth(run) <= BOUND
 
 
@@ -222,7 +222,7 @@ def line(bound: float) -> Limit:
 
 
 def stiff() -> ParameterStudy:
-    """The undamped beam."""
+    """The study of step lengths on an undamped beam."""
     return ParameterStudy(
         "How long may an explicit step be on a stiff beam?",
         f"A clamped strip of steel, 1 m x 20 mm x 1 mm, rings for {STEPS} steps from a millimetre in every mode.",
@@ -242,7 +242,7 @@ def stiff() -> ParameterStudy:
 
 
 def kelvin_voigt() -> ParameterStudy:
-    """The damped beam."""
+    """The study of step lengths on a beam with Kelvin-Voigt damping."""
     c = np.array(RETARDATION.values)
     boundary = Limit("|R(h s)| = 1", c, lambda values: np.array([closed_form(x) for x in values]))
     return ParameterStudy(

@@ -43,7 +43,7 @@ def swing(method: str, h: float, steps: int) -> sf.Trajectory:
 
 
 def excursion(run: sf.Trajectory) -> float:
-    """Largest change of the energy over m g L, the energy exchanged by the swing."""
+    """Largest change of the energy over m g L, the scale of the energy exchanged in the swing."""
     return float(np.abs(run.energy - run.energy[0]).max() / 9.81)
 
 
@@ -63,7 +63,7 @@ def measure(steps: int) -> Subject:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Findings: which side drifts, which oscillates."""
+    """Verdict on which methods' energy drifts and which only oscillates."""
     early, late = maps.values()
     rows = {WHO.label(y): k for k, y in enumerate(late.y)}
     with np.errstate(invalid="ignore", divide="ignore"):

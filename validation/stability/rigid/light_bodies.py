@@ -90,7 +90,7 @@ def massless() -> sf.System:
 
 
 def refusal() -> tuple[str, str]:
-    """Messages for a massless last link: at compilation, and in motion if its mass is a parameter that is zero."""
+    """Compiler's message on a massless last link, and kind of outcome of a run whose mass parameter is zero."""
     try:
         sf.compile(massless())
         said = ""
@@ -100,7 +100,7 @@ def refusal() -> tuple[str, str]:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Findings on the edge on a spring against 2.83/omega, and on messages for zero mass."""
+    """Verdict on the longest step on a spring against 2.83/omega, and on the refusal of zero mass."""
     missed = maps[SPRING].miss("y", lambda m2: 2.8284271 / fastest(m2, STIFFNESS))
     free = maps[FREE]
     said, kind = refusal()

@@ -121,7 +121,7 @@ def other_engine(engine: str) -> Callable[[float, float], Cell]:
 
 
 def drift(ratio: float, links: float) -> Cell:
-    """Change of energy over a second of fall, relative to the energy exchanged."""
+    """Change of energy over a second of fall, relative to the potential energy exchanged."""
     n = int(links)
     m = compiled(n).with_parameters(ratio=ratio)
     run = simulate(m, *state(n), t_end=1.0, method="dop853", rtol=1e-12, atol=1e-14, max_steps=MOST)
@@ -134,7 +134,7 @@ def drift(ratio: float, links: float) -> Cell:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Findings on digits lost to mass ratios."""
+    """Verdict on digits lost to mass ratios."""
     worst = {name: float(np.nanmax(runs.values)) for name, runs in maps.items()}
     heavy = {name: float(np.nanmax(runs.values[:, -1])) for name, runs in maps.items() if name != DRIFT}
     light = {name: float(np.nanmax(runs.values[:, 0])) for name, runs in maps.items()}

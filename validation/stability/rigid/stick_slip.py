@@ -80,18 +80,18 @@ def jump() -> float:
 
 
 def measure(method: str) -> Callable[[float, float], Cell]:
-    """Distance from the exact motion, in slips."""
+    """A function that evaluates one cell of the map, by smoothing speed and step: distance in slips."""
     return lambda v0, h: cell(dragged(v0, method=method, dt=h, adaptive=False), distance)
 
 
 def dragged(v0: float, **settings: Any) -> sf.Trajectory:
-    """The block, dragged by its spring."""
+    """Motion of the block, dragged by its spring, with friction smoothed at speeds below v0 [m/s]."""
     m = block().with_parameters(v0=v0)
     return simulate(m, [0.0], t_end=END, output=0.01, u={m.names.u[0]: f"{SPRING}*({PULL}*t - x)"}, **settings)
 
 
 def distance(run: sf.Trajectory) -> float:
-    """Mean distance from the exact motion, in slips."""
+    """Mean distance from the exact motion, over the distance of one slip."""
     return float(np.abs(run.q[:, 0] - exact(run.t)).mean() / jump())
 
 
@@ -111,7 +111,7 @@ def reach(runs: Map) -> list[tuple[float, float]]:
 
 
 def judge(maps: Maps) -> Verdict:
-    """Findings on accuracy lost to chatter and to smoothing."""
+    """Verdict on the accuracy lost to chatter and to smoothing."""
     rk4, implicit = maps["rk4"], maps["implicit_euler"]
     below = 0
     for name, bound in LIMITS.items():

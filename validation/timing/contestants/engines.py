@@ -96,7 +96,7 @@ def pinocchio_builds(program: str = TREES, say: Say = silent) -> tuple[list[tupl
 
 
 def _includes() -> list[Path]:
-    """Folders with the headers of Pinocchio, Boost and Eigen: wheels; Eigen's in Debian's place otherwise."""
+    """Include folders of Pinocchio, Boost and Eigen: those of wheels; without Eigen's wheel, the system's."""
     headers = [_headers("libpinocchio", "pinocchio/algorithm/crba.hpp")]
     try:
         headers.append(_headers("cmeel-eigen", "Eigen/Core"))
@@ -147,7 +147,7 @@ def pinocchio_loops(task: Task, functions: Sequence[str], warn: Callable[[str], 
 
 
 def _ties_text(task: Task) -> str:
-    """Text of Pinocchio's rigid constraints that close the loops, for `validation/native/loop_closed.cpp`."""
+    """Number of Pinocchio's rigid constraints and a line for each, for `validation/native/loop_closed.cpp`."""
     from ...adapters.pinocchio import loops as pinocchio_loops  # Who lacks Pinocchio has the rest.
 
     engine = pinocchio_loops.build(Subject(task.label, task.system))
@@ -286,7 +286,7 @@ class _Converted:
         return chart.our_forces(q, computed) if function == "inverse_dynamics" else self._ended(computed)
 
     def _ended(self, computed: Array) -> Array:
-        """End of a motion: q and v from the engine's."""
+        """Final q and v of a motion, from the engine's (1, nq + nv)."""
         assert self.chart is not None
         q = np.zeros((1, self.task.assembly.nq))
         for slot in self.chart.slots:

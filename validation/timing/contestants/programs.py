@@ -116,7 +116,7 @@ def source(name: str) -> str:
 
 
 def declared(name: str) -> str:
-    """Declarations of a native file for bindings."""
+    """C declarations of a native file that Python's bindings read."""
     return source(name).partition("/* cdef begin: what Python reads */")[2].partition("/* cdef end */")[0]
 
 

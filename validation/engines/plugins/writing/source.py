@@ -106,7 +106,7 @@ class SourceModel:
         return values if isinstance(values, Unsupported) else np.asarray(values[0])
 
     def each(self, function: str, states: Iterable[State]) -> Array | Unsupported:
-        """A function at N states (N, ...), one after the other."""
+        """Values of a function at N states (N, ...), one state after the other."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
         text = self._source.spelled(self._ways[function].code)
