@@ -71,7 +71,7 @@ def _loop(wired: Wired, path: Sequence[Source]) -> AlgebraicLoopError:
 
 
 def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str]]:
-    """Blocks that move between samples, grouped where their motions depend on each other or a crossing exists.
+    """Blocks that move between samples, grouped where their motions are coupled; all in one if there are crossings.
 
     What only meets at samples can move apart, each with steps of its own, on a thread of its own.
     """

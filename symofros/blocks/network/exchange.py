@@ -32,7 +32,7 @@ class Exchange(ExternalBlock):
         """Refuse an invalid host or port.
 
         Raises:
-            DescriptionError: The host is no IP address, or the port none of 1 to 65535.
+            DescriptionError: The host is not an IP address, or the port is not in 1 to 65535.
         """
         host, port = self.place()
         try:

@@ -47,7 +47,7 @@ class Meshes:
         self._bare_names = settings.get("strippath") == "true"
 
     def cut(self) -> None:
-        """Remove the shapes and assets that give no inertia from the document, and load the meshes that stay."""
+        """Remove assets, and shapes from files, that give no body its inertia; load the meshes that stay."""
         for world in self.document.all("worldbody"):
             self._visit(world, "main", self._total, False)
         for asset in self.document.all("asset"):

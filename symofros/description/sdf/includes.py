@@ -164,7 +164,7 @@ class Includes:
         self.values.add(Problem(what, found, rule, remedy, self.values.where(include), argument))
 
     def _of_folder(self, folder: Path) -> Path | None:
-        """The SDFormat file of a model's folder: model.config's latest, or model.sdf; None if it may not be read."""
+        """The SDFormat file of a model's folder, by model.config or else model.sdf; None if it may not be read."""
         config = folder / "model.config"
         if not os.path.isfile(config) or not self.packages.allows(resolved(config)):
             return self.packages.file("model.sdf", folder)

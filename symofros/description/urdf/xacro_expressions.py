@@ -54,7 +54,7 @@ _COMPARISONS: Mapping[type, Callable[[Any, Any], Any]] = {
 
 
 class Refusal(Exception):
-    """A xacro file asks for something that is not allowed, or is too large.
+    """Raised where a xacro file does or needs what is not allowed, or exceeds a bound.
 
     Args:
         text: What it is.

@@ -52,7 +52,7 @@ def flexure_coefficients(lateral: Term, k: Term) -> tuple[Term, Term]:
 
 
 def rectangle_torsion(y: Term, z: Term) -> Term:
-    """Saint-Venant's torsion constant J of a rectangle (eq. 27), by a series that is cut off after n = 7."""
+    """Torsion constant J of a rectangle (eq. 27); the sum of 1/n^5 is exact, the rest of the series ends at n = 7."""
     a = y.maximum(z)
     b = y * z / a
     rest = Term(0.0)

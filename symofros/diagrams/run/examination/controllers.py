@@ -27,7 +27,7 @@ GROWTH, CHANGES = 10.0, 6
 
 @dataclass(frozen=True)
 class RerunSpan:
-    """Span of a run that is repeated, with its records and step.
+    """Span of a run that is to be repeated, with the interval of its records and its step.
 
     Attributes:
         start: Time of its start; it begins with the record before [s].
