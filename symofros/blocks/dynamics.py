@@ -135,7 +135,7 @@ class InverseDynamics(Block):
         return Ports(tuple(motion), (motion_port("tau", record, "effort"),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """Efforts by the model's inverse dynamics; friction is left out if `with_friction` is False."""
+        """Efforts tau by inverse dynamics of the model, without those against friction if `with_friction` is False."""
         q, v, a = (context.inputs[name] for name in ("q", "v", "a"))
         tau = context.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=context.t)["tau"]
         return {"tau": tau if self.with_friction else tau + friction(context, self.model, q, v)}

@@ -18,7 +18,7 @@ BLOCKED: dict[str, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
 
 
 def closing_remedy(name: str, kind: str, parent: str, child: str) -> str:
-    """Remedy for a joint that would give its child a second parent.
+    """Remedy for a joint that would give its child a second parent: replace it by a closure, or drop it.
 
     Args:
         name: Name of the joint.

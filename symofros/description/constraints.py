@@ -31,27 +31,27 @@ def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
 
 
 class _OnCoordinates:
-    """A condition on coordinates, which bears the name of its constraint unless that has several."""
+    """Base class of constraints on coordinates; by default one condition, named after the constraint."""
 
     name: str
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """One condition."""
+        """Names of its conditions: by default its own alone."""
         return (self.name,)
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """Conditions that bind speeds only: none."""
+        """Names of the conditions that bind speeds only: none."""
         return ()
 
 
 class _OnSpeeds(_OnCoordinates):
-    """A condition that binds speeds only."""
+    """Base class of constraints whose conditions bind speeds only."""
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """It binds speeds only."""
+        """Names of the conditions that bind speeds only: by default all."""
         return self.conditions
 
 
@@ -222,7 +222,7 @@ class Rolling(_OnSpeeds):
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """Conditions that bind speeds only."""
+        """Names of the two conditions that bind speeds only."""
         return self.conditions[:2]
 
 

@@ -87,7 +87,7 @@ def _mapping(what: str, value: Any) -> Any:
 
 
 def _conversion(entry: str, annotation: Any) -> _Convert | None:
-    """Converter of an entry's value; None where the class itself converts numbers and formulas."""
+    """Function that converts or refuses an entry's value; None if the class does so, or any value is valid."""
     origin, parts = get_origin(annotation), get_args(annotation)
     if annotation is Rotation:
         return as_rotation
@@ -104,7 +104,7 @@ def _conversion(entry: str, annotation: Any) -> _Convert | None:
 
 
 def _check_of(annotation: Any) -> Callable[[str, object], None] | None:
-    """A function that refuses values outside an annotation; for choices the class lists the alternatives."""
+    """Function that refuses values outside an annotation; of a Literal, only those that are no text."""
     return checker_of(str if get_origin(annotation) is Literal else annotation)
 
 
@@ -125,7 +125,7 @@ def _holds_values(annotation: Any) -> bool:
 
 @cache
 def _conversions(cls: type) -> dict[str, _Convert]:
-    """Entry -> function that converts or refuses its value."""
+    """Entry -> function that converts or refuses its value, for the entries that have one."""
     hints = get_type_hints(cls)
     stated = ((field.name, _conversion(field.name, hints[field.name])) for field in fields(cls) if field.init)
     return {name: convert for name, convert in stated if convert is not None}

@@ -75,7 +75,7 @@ class Packages:
 
     @cached_property
     def at_once(self) -> Mapping[str, Path]:
-        """Packages that need no search of neighbours: the file's own by its names, and stated ones."""
+        """Name -> folder of the packages that need no search of neighbours: the file's own, and those stated."""
         names = {name: self.own for name in (self.own.name, self._name_of(self.own)) if name}
         return names | self.stated
 
@@ -90,7 +90,7 @@ class Packages:
 
     @property
     def named(self) -> Mapping[str, Path]:
-        """Packages by name, without names that several packages share."""
+        """Name -> folder of the packages whose names are unambiguous."""
         names = dict.fromkeys([*self.at_once, *self.neighbours])
         return {name: folders[0] for name in names if len(folders := self.of(name)) == 1}
 

@@ -81,7 +81,7 @@ def resolved(path: Path) -> Path:
 
 
 def kind_of(path: Path) -> str:
-    """Kind of a path that is not a regular file."""
+    """What is at a path that is not a regular file, as a noun phrase for messages."""
     if path.is_symlink() and not os.path.exists(path):
         return "a link that leads nowhere"
     kinds = (
@@ -95,7 +95,7 @@ def kind_of(path: Path) -> str:
 
 
 def refuse_size(path: Path, data: bytes, limit: int) -> None:
-    """Refuse data that is too long.
+    """Refuse the data of a file that is longer than a limit [bytes].
 
     Raises:
         DescriptionError: More bytes than the limit.

@@ -36,6 +36,6 @@ class Visual:
 
 
 def color_of(shares: Sequence[float]) -> tuple[int, int, int]:
-    """Red, green and blue, 0 to 255, from fractions between 0 and 1; further entries are ignored."""
+    """Red, green and blue, 0 to 255, from fractions, clipped to 0 to 1; further entries are ignored."""
     red, green, blue = (round(255 * min(max(float(share), 0.0), 1.0)) for share in shares[:3])
     return red, green, blue

@@ -15,7 +15,7 @@ MAX_PRINTED = 20_000
 
 
 def answer_of(script: str, task: Mapping[str, Any], timeout: float, bounds: str) -> dict[str, Any]:
-    """Answer of a worker; {"fault": ...} if it takes too long or fails.
+    """Run a worker and return its answer; {"fault": ...} if it takes too long or fails.
 
     Args:
         script: Path of the worker's script, which bounds its own processor time and memory.
@@ -70,7 +70,7 @@ class _Beginning:
             self._thread.join()
 
     def text(self) -> str:
-        """Stored output; control characters and invalid UTF-8 are escaped for terminals and logs."""
+        """The stored first bytes, with control characters and invalid UTF-8 escaped for terminals and logs."""
         self.close()
         text = self._kept.decode("utf-8", "backslashreplace")
         return "".join(c if c.isprintable() or c == "\n" else f"\\u{ord(c):04x}" for c in text)

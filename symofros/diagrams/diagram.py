@@ -63,7 +63,7 @@ class Diagram(metaclass=CheckedCalls):
     file: str = field(default="", compare=False)
 
     def where(self, block: str, port: str = "") -> str:
-        """The "file:line" of an input, or of its block; "" for inputs stated in Python."""
+        """The "file:line" of an input, or else of its block; "" if they are stated in Python."""
         return self.origin.get(("input", block, port)) or self.origin.get(("block", block), "")
 
     @checked

@@ -24,7 +24,7 @@ class Running(ABC):
         """
 
     def kept(self) -> Mapping[str, Array]:
-        """Results of the finished run by name; `DiagramRun.kept` holds them."""
+        """What the block stored during the run, by name, as `DiagramRun.kept` holds it; read after the run."""
         return {}
 
     def end(self) -> None:  # noqa: B027 - most have nothing to close.
@@ -37,4 +37,4 @@ class ExternalBlock(Block, ABC):
 
     @abstractmethod
     def begin(self, environment: Environment) -> Running:
-        """Prepare a run, for example open connections. Several runs of one block may overlap."""
+        """Prepare a run, for example open connections; several runs of one block may overlap."""

@@ -17,7 +17,7 @@ def check_fit(
     sources: Mapping[tuple[str, str], tuple[str, str]],
     problems: list[Problem],
 ) -> None:
-    """Add mismatches of connections: invalid units, and shapes or units that differ.
+    """Add the faults of ports and wires: invalid units, unknown shapes, and shapes or units that differ.
 
     Args:
         diagram: Diagram that the faults are of.
@@ -88,7 +88,7 @@ def fits(given: Shape | None, taken: Shape | None) -> bool:
 
 
 def _differing(given: Port, taken: Port, odd: set[str]) -> tuple[str, str, str] | None:
-    """The first entry whose units differ: its index if there are several, its unit, and the expected one."""
+    """Place, unit and expected unit of the first entry whose units differ; the place is "" if there is one entry."""
     own, other = given.entry_units, taken.entry_units
     count = max(len(own), len(other))
     if {len(own), len(other)} - {1, count}:

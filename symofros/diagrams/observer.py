@@ -41,7 +41,7 @@ class NoObserver:
     signals: Sequence[str] = ()
 
     def stop(self) -> float:
-        """Never stop."""
+        """Time of the next stop: infinity, for none."""
         return math.inf
 
     def see(self, t: float, times: Array, values: Mapping[str, Array]) -> None:

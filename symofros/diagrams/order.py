@@ -22,7 +22,7 @@ class AlgebraicLoopError(DescriptionError):
 
 
 def order_of(wired: Wired, needs: Mapping[str, Mapping[str, frozenset[str]]]) -> list[Source]:
-    """All outputs, each after its direct dependences, as if every sampled block were due.
+    """All outputs, each after those that it depends on without delay, as if every sampled block were due.
 
     Args:
         wired: Diagram whose signals are ordered.
@@ -71,7 +71,7 @@ def _loop(wired: Wired, path: Sequence[Source]) -> AlgebraicLoopError:
 
 
 def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str]]:
-    """Blocks with continuous states, grouped where their motions depend on each other between samples.
+    """Blocks that move between samples, grouped where their motions are coupled; all in one if there are crossings.
 
     What only meets at samples can move apart, each with steps of its own, on a thread of its own.
     """

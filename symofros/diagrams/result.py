@@ -40,7 +40,7 @@ class DiagramRun(Records, Mapping[str, Array]):
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        """Diagram, sizes and outcome; the numbers are in its attributes."""
+        """One line: name of the diagram, numbers of records and outputs, span of time, outcome."""
         span = f"t = {self.t[0]:.6g} … {self.t[-1]:.6g} s" if len(self.t) else "no records"
         name = self.compiled.resolved.wired.name
         return (
@@ -48,7 +48,7 @@ class DiagramRun(Records, Mapping[str, Array]):
         )
 
     def __iter__(self) -> Iterator[str]:
-        """Names of all outputs."""
+        """Names "block.port" of all outputs."""
         wired = self.compiled.resolved.wired
         return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
 
@@ -67,7 +67,7 @@ class DiagramRun(Records, Mapping[str, Array]):
 
     @checked
     def save(self, path: str | Path, *signals: str) -> list[Path]:
-        """Write signals, "block.port" or "block.port[i]"; all by default. Returns the files.
+        """Write signals "block.port" or "block.port[i]", all by default, to .npz, .csv or .parquet; returns the files.
 
         Into .npz an array (n, *shape) a signal, "names" and "units" beside them; into .csv and .parquet a column an
         entry, named "block.port[i]", with its unit. What blocks kept at times of their own goes to NAME.BLOCK.csv.

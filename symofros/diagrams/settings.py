@@ -54,10 +54,10 @@ class RunSettings:
     plots: tuple[Plot, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse values of other types."""
+        """Refuse values of the wrong type."""
         check_fields(self)
 
     def keywords(self) -> dict[str, Any]:
-        """The stated settings as keywords of a run, without t_end."""
+        """The stated settings as keywords of a run, without `t_end` and `plots`."""
         names = [item.name for item in fields(self) if item.name not in ("t_end", "plots")]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}

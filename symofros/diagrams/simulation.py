@@ -160,7 +160,7 @@ def _end(diagram: Diagram, t_end: float | None) -> float:
 
 
 def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, frozenset[str], bool]]:
-    """(time, due blocks, whether to record) up to the end."""
+    """(time, due blocks, whether to record) of each instant up to the end."""
     base_n, base_d = float(plan.base.numerator), float(plan.base.denominator)
     slack, turn = 1e-9 * base_n / base_d, 0
     while True:

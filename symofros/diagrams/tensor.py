@@ -51,7 +51,7 @@ class Tensor:
 
     @staticmethod
     def of_terms(g: Graph, array: Terms) -> Tensor:
-        """Tensor of the result of a formula over terms."""
+        """Tensor of an array of terms, such as the result of a NumPy formula."""
         return Tensor.of(g, edges_of(g, array), array.shape)
 
     @property
@@ -152,7 +152,7 @@ class Tensor:
         return self._with(others[0], lambda x, y: self.g.call(function, x, y))
 
     def clipped(self, low: Any, high: Any) -> Tensor:
-        """The tensor limited by bounds."""
+        """The tensor with its entries clipped to low and high."""
         return self.apply("max", low).apply("min", high)
 
     def sum(self) -> Tensor:

@@ -56,7 +56,7 @@ class Wired:
         return _output(self.name, text, self.blocks, self.ports, self.outlets)
 
     def check_signal(self, text: str) -> None:
-        """Refuse text that does not name a signal "block.port" or an entry "block.port[i]".
+        """Refuse text that names neither a signal "block.port" nor an entry "block.port[i]" of one.
 
         Raises:
             DescriptionError: There is none.
@@ -65,7 +65,7 @@ class Wired:
         check_entry(text, index, self.shape(self.output(name)))
 
     def behind(self, block: str, inputs: Collection[str] | None = None) -> list[Source]:
-        """Sources of some or all inputs of a block, in the order of its ports; unconnected ones have none."""
+        """Sources of some or all inputs of a block, in the order of its ports; unconnected inputs are skipped."""
         wanted = [port.name for port in self.ports[block].inputs if inputs is None or port.name in inputs]
         return [self.sources[block, port] for port in wanted if (block, port) in self.sources]
 
@@ -127,7 +127,7 @@ class _Surroundings:
 
 
 def surroundings(wired: Wired, block: str) -> _Surroundings:
-    """Environment of a block in a wired diagram."""
+    """Environment of a block in a wired diagram: models, shapes and units of its inputs."""
     shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
     units = {port.name: port.entry_units for port in wired.ports[block].inputs}
     return _Surroundings(wired.models, shapes, units)
@@ -153,7 +153,7 @@ class Draft:
 
 
 def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
-    """Find the valid part of a diagram.
+    """Wire a diagram as far as it is valid, and collect all its faults.
 
     Args:
         diagram: Diagram as its author stated it, as far as it could be read.
@@ -237,7 +237,7 @@ def _check_plane(wired: Wired, text: str) -> None:
 
 
 def located(problems: Sequence[Problem], where: str) -> list[Problem]:
-    """Problems with the place of their element, unless they have a more precise one."""
+    """Problems at a place, except those that have a place of their own."""
     return [replace(problem, where=problem.where or where) for problem in problems]
 
 

@@ -98,7 +98,7 @@ class JointPID(Block):
         return effort, par["ki"] * error + (effort - wanted) / self.tracking
 
     def compute(self, context: EvaluationContext) -> Values:
-        """Torques within their limits."""
+        """Efforts of the controller, clipped to their limits."""
         return {"effort": self._terms(context)[0]}
 
     def rates(self, context: EvaluationContext) -> Values:

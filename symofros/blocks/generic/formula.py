@@ -214,7 +214,7 @@ class _Function(Running):
         self._block = block
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """Call the user's function; its result must match the outputs.
+        """Call the user's function, and check that it returns exactly the declared outputs.
 
         Raises:
             DescriptionError: Outputs are missing, or have other shapes.

@@ -19,7 +19,7 @@ MOST_STATES = 200
 
 @dataclass(frozen=True, kw_only=True)
 class _Linear(Block, ABC):
-    """Base of both forms; x is a state, or stored from sample to sample."""
+    """Base class of linear blocks; x is a continuous state, or stored from sample to sample."""
 
     @abstractmethod
     def matrices(self) -> tuple[Array, Array, Array, Array]:
@@ -96,7 +96,7 @@ class StateSpace(_Linear):
         return A, B, C, np.zeros((len(C), B.shape[1])) if self.D is None else np.asarray(self.D, dtype=np.float64)
 
     def first(self) -> Any:
-        """The initial state."""
+        """The initial x (n)."""
         return np.zeros(len(self.A)) + np.asarray(self.start, dtype=np.float64)
 
     def ports(self, environment: Environment) -> Ports:

@@ -94,7 +94,7 @@ class DeadZone(_Bounded):
     """
 
     def compute(self, context: EvaluationContext) -> Values:
-        """The part of the input outside the dead zone."""
+        """Signed excess of the input beyond the nearer bound of the dead zone; zero inside it."""
         u = context.inputs["u"]
         return {"y": u - u.clipped(context.parameters["low"], context.parameters["high"])}
 
@@ -118,7 +118,7 @@ class Quantizer(_OneToOne):
             raise refuse(self.name, "step", self.step, "a number above zero", "give another")
 
     def compute(self, context: EvaluationContext) -> Values:
-        """The rounded input."""
+        """The input rounded to the nearest multiple of `step`; halves are rounded up."""
         step = context.parameters["step"]
         return {"y": step * (context.inputs["u"] / step + 0.5).apply("floor")}
 
@@ -189,7 +189,7 @@ class LookupTable(Block):
         return Ports((Port("u", (), self.unit_in),), (Port("y", np.shape(self.y)[1:], self.unit_out),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """The first value plus the increments of the intervals."""
+        """Piecewise linear interpolation: the first value plus the increment over each interval."""
         x, y = np.asarray(self.x, dtype=np.float64), np.asarray(self.y, dtype=np.float64)
         total = context.numbers(y[0])
         for i in range(len(x) - 1):

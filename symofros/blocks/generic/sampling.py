@@ -39,7 +39,7 @@ class UnitDelay(Block):
         return {"before": np.broadcast_to(np.asarray(self.start, dtype=np.float64), environment.inputs["u"])}
 
     def compute(self, context: EvaluationContext) -> Values:
-        """The stored samples."""
+        """The input at the previous sample."""
         return {"y": context.memory["before"]}
 
     def update(self, context: EvaluationContext) -> Values:

@@ -74,7 +74,7 @@ class Gain(Block):
 
     @property
     def conversion(self) -> float:
-        """Factors of the units."""
+        """Factor that converts `unit_in` to `unit_out`; 1 if either is empty or their dimensions differ."""
         if not self.unit_in or not self.unit_out:
             return 1.0
         a, b = parse(self.unit_in), parse(self.unit_out)
@@ -98,7 +98,7 @@ class Gain(Block):
 
 
 def _require_one_per_input(name: str, field: str, given: str, pair: str) -> None:
-    """Refuse text that is not one character of a pair for each input."""
+    """Refuse a text unless it has 1 to MAX_INPUTS characters, each one of the pair."""
     if not given or set(given) - {*pair} or len(given) > MAX_INPUTS:
         rule = f"1 to {MAX_INPUTS} {field} {pair[0]} or {pair[1]}, one an input"
         raise refuse(name, field, repr(given), rule, f'write for example "{pair}"')

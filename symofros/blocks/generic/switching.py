@@ -123,5 +123,5 @@ class RateLimit(Block):
         return {"y": began * limited + (1.0 - began) * u}
 
     def update(self, context: EvaluationContext) -> Values:
-        """Store the output."""
+        """Store the output, and that a first sample was taken."""
         return {"before": self.compute(context)["y"], "began": context.numbers(1.0)}

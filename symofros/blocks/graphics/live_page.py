@@ -39,7 +39,7 @@ class Feed:
         self.lock = threading.Lock()
 
     def take(self, data: bytes) -> None:
-        """Read one datagram; data that is not a packet of the run is dropped."""
+        """Append the row of one datagram; data that is not a packet of the run is dropped."""
         packet = unpack(data, len(self.head.get("labels", ())))
         if packet is not None:
             with self.lock:
@@ -62,7 +62,7 @@ class Page(BaseHTTPRequestHandler):
     port: int
 
     def do_GET(self) -> None:
-        """Serve the page under /TOKEN/ and the rows under /TOKEN/rows; refuse every other request."""
+        """Serve the page at /TOKEN/ and its rows at /TOKEN/rows; refuse other paths, hosts and origins."""
         hosts = (f"127.0.0.1:{self.port}", f"localhost:{self.port}")
         first, _, rest = self.path.removeprefix("/").partition("/")
         foreign = {*self.headers.get_all("Origin", [])} - {f"http://{host}" for host in hosts}
@@ -89,7 +89,7 @@ class Page(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def _stream(self) -> None:
-        """Stream events: the layout whenever it changes, and new rows."""
+        """Stream events until the page closes: the head whenever it changes, and new rows."""
         self._begin("text/event-stream")
         self.end_headers()
         seen, sent_head = 0, None

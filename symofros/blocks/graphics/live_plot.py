@@ -70,7 +70,7 @@ class LivePlot(ExternalBlock):
 
     @property
     def url(self) -> str:
-        """Address of the page of the last run; "" before the first."""
+        """URL of the page of the last run; "" before the first."""
         page = self.__dict__.get("_page")
         return page.url if page else ""
 

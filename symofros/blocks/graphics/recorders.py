@@ -80,7 +80,7 @@ class Store(ExternalBlock):
         return open_ports(self.name, self.signals, environment)
 
     def begin(self, environment: Environment) -> Running:
-        """Start without stored samples."""
+        """Begin a run without stored samples."""
         return _Stored(self.signals, self.most)
 
 

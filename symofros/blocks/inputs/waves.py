@@ -20,7 +20,7 @@ def _rates(unit: str) -> tuple[str, str, str]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Wave(Block):
-    """Base of the wave signals: parameters that broadcast, a unit, and an output."""
+    """Base class of the wave blocks: parameters that broadcast, a unit and the output y."""
 
     unit: str = ""
 

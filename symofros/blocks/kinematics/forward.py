@@ -90,7 +90,7 @@ class Extremities(Block):
         return Ports(_motion_ports(environment, self.model, ("q", "v", "a")), _frame_ports(k))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """Evaluate each frame; common terms are computed once."""
+        """Motions of all frames, stacked in their order; common subexpressions are computed once."""
         motions = [_frame_motion(context, self.model, frame) for frame in self._frames(context.environment)]
         return {key: stacked([motion[key] for motion in motions]) for key in motions[0]}
 

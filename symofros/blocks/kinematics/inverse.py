@@ -97,7 +97,7 @@ class InverseKinematics(Block):
         return joints
 
     def _moved(self, context: EvaluationContext, joints: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Rates and accelerations of the joints, and the residual."""
+        """Rates and accelerations of the joints, and the residual of the task without the closures."""
         task, chosen = self._task(context.environment), self._chosen(context.environment)
         q = chosen.configuration(context, joints)
         J, error = task.jacobian(context, q), task.error(context, q)
@@ -125,5 +125,5 @@ class InverseKinematics(Block):
         return {"joints": self._moved(context, context.states["joints"])[0]} if self.period is None else {}
 
     def update(self, context: EvaluationContext) -> Values:
-        """Start of the next sample."""
+        """Sampled: the joint coordinates found, from which the next sample iterates."""
         return {} if self.period is None else {"joints": self._placed(context)}

@@ -139,7 +139,7 @@ class Task:
         return context.inputs.get(name + self.suffix)
 
     def error(self, context: EvaluationContext, q: Tensor) -> Tensor:
-        """Residual of the inputs p and angle or R at a configuration (nq), then -phi of the closures."""
+        """Desired minus actual p, and angle or R, at a configuration (nq); then -phi of the closures."""
         pose = context.call(self.model, "frame_pose", self.frame, q=q, t=context.t)
         parts = []
         p, R, angle = (self.given(context, name) for name in ("p", "R", "angle"))
@@ -199,7 +199,7 @@ def near_singular(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tenso
 
 
 def damped(J: Tensor, damping: float, near: float) -> tuple[Tensor, Tensor]:
-    """The smaller Gram matrix of J (m, n), damped near singular postures, and J, as `resolved` needs them."""
+    """The smaller of J J^T and J^T J, damped where it is nearly singular, and J (m, n) itself, for `resolved`."""
     gram, extra = near_singular(J, damping, near)
     return gram + extra * np.eye(len(gram)), J
 

@@ -29,10 +29,10 @@ class Exchange(ExternalBlock):
         """Host and port."""
 
     def check(self) -> None:
-        """Refuse invalid addresses.
+        """Refuse an invalid host or port.
 
         Raises:
-            DescriptionError: The host is no IP address, or the port none of 1 to 65535.
+            DescriptionError: The host is not an IP address, or the port is not in 1 to 65535.
         """
         host, port = self.place()
         try:
@@ -119,7 +119,7 @@ class Receiving(Running):
         """Packets that have arrived since the last sample, MAX_TAKEN at most; nothing is waited for."""
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:
-        """Read the packets that have arrived and return the latest values."""
+        """Read the packets that have arrived, and return the outputs at time t."""
         if self._began is None:
             self._began = t
         for data in self.arrived():

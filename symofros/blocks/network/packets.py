@@ -35,7 +35,7 @@ def pack(stream: int, sequence: int, t: float, values: Array) -> bytes:
 
 @dataclass(frozen=True)
 class Packet:
-    """Contents of a packet."""
+    """Decoded packet: stream, sequence number, time of sending [s] and values."""
 
     stream: int
     sequence: int
@@ -59,7 +59,7 @@ def unpack(data: bytes, size: int) -> Packet | None:
 
 @dataclass
 class Reception:
-    """Packets that have arrived at one receiver.
+    """State of one receiver: values of the newest packet, and counts of all that arrived.
 
     Attributes:
         size: Values a packet.
@@ -115,7 +115,7 @@ class Reception:
             self._behind(-ahead % _ROUND)
 
     def _behind(self, behind: int) -> None:
-        """Count a packet that is not newer than the latest one."""
+        """Count a packet that is this many numbers behind the newest, as a duplicate or as late."""
         if behind < _WINDOW and self._seen >> behind & 1:
             self.duplicate += 1
             return
@@ -130,7 +130,7 @@ class Reception:
         self.values, self.stamp, self.arrived = packet.values, packet.t, t
 
     def outputs(self, t: float, began: float, on_silence: Silence, fallback: Any) -> dict[str, Any]:
-        """Outputs of a receiving block at time t; see `receiver_ports`."""
+        """Outputs of a receiving block at the receiver's time t; see `receiver_ports`."""
         age = t - (self.arrived if self.values is not None else began)
         alive = self.values is not None and age <= self.silence
         held = self.values is not None and (alive or on_silence == "hold")

@@ -128,7 +128,7 @@ class _Listening(Receiving):
         self._socket = listener
 
     def arrived(self) -> Iterator[bytes]:
-        """Packets in the socket."""
+        """Datagrams that wait in the socket, at most MAX_TAKEN."""
         for _ in range(MAX_TAKEN):
             try:
                 yield self._socket.recv(65536)

@@ -37,10 +37,10 @@ class _ByZenoh(Exchange):
         return host.strip("[]"), int(port) if port.isdigit() and len(port) < 6 else 0
 
     def check(self) -> None:
-        """Refuse invalid addresses and keys.
+        """Refuse an invalid address or key.
 
         Raises:
-            DescriptionError: It is none.
+            DescriptionError: The address or the key is invalid.
         """
         super().check()
         key = self.key
@@ -139,7 +139,7 @@ class _Subscribed(Receiving):
         self._subscriber = subscriber  # Zenoh hears as long as it is referred to.
 
     def arrived(self) -> Iterator[bytes]:
-        """Packets in the queue; later ones belong to the next sample."""
+        """Packets that wait in the queue; those that arrive meanwhile are left for the next sample."""
         for _ in range(len(self._waiting)):
             yield self._waiting.popleft()
 
@@ -149,10 +149,10 @@ class _Subscribed(Receiving):
 
 
 def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
-    """A peer restricted to one address, and the declared endpoint.
+    """Open a session restricted to the block's address, and return it with the endpoint that `declare` makes.
 
     Raises:
-        SymofrosError: Zenoh is not installed, the address is taken, or the key is none.
+        SymofrosError: Zenoh is not installed, the address is taken, or the key is invalid.
     """
     name, address = block.name, block.address
     try:

@@ -41,7 +41,7 @@ def reading_of(tree: ImportedTree, sources: tuple[Source, ...] = (), notes: tupl
 
 
 def system_of(tree: ImportedTree) -> System:
-    """The description of a file; faults are added to the problems of the tree."""
+    """The System of an imported tree; faults are added to the problems of the tree."""
     _float_root(tree)
     bodies = tuple(_Builder(tree).bodies())
     if tree.options.limits == "stops":
@@ -132,7 +132,7 @@ class _Builder:
         return Joint(name, "fixed", parent, None, *(body.placement or ()))
 
     def elements(self, stated: ImportedJoint) -> Iterator[JointElement]:
-        """Springs, and the dampers and friction that the options keep."""
+        """Springs of a joint, and the dampers and friction that the options keep."""
         joint, remarks, keeps = stated.joint, self.tree.remarks, self.tree.keeps
         if self.tree.limits_act and joint.limits is not None and self.tree.options.limits == "data":
             remarks.add(_DATA, "joint", joint.name)

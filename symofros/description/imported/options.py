@@ -35,7 +35,7 @@ class ImportOptions:
     limits: LimitsAs = "data"
 
     def __post_init__(self) -> None:
-        """Refuse unknown choices.
+        """Refuse unknown choices, and a `snap_tol` that is not small.
 
         Raises:
             ArgumentError: A word is unknown, or `snap_tol` is not a small number.

@@ -126,5 +126,5 @@ class ImportedTree:
 
     @property
     def keeps(self) -> Dissipation:
-        """The passive losses that are kept."""
+        """Which passive losses are kept: by the options, or else by the default of the format."""
         return self.options.dissipation or self.dissipation

@@ -108,7 +108,7 @@ class ActuatorReader:
             )
 
     def _obstacle(self, i: int, place: int, target: int) -> str:
-        """The reason why an actuator can't be a formula of its control; "" if there is none."""
+        """Why an actuator can't be a formula of its control, as a clause for notes; "" if it can."""
         m = self.model
         if m.opt.disableflags & _NO_ACTUATION or m.opt.disableactuator & 1 << int(np.clip(m.actuator_group[i], 0, 30)):
             return "that are switched off"

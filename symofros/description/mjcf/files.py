@@ -98,7 +98,7 @@ class Folder:
         return data
 
     def _expand(self, element: Element, folder: Path, depth: int) -> None:
-        """Replace each <include> by the included elements."""
+        """Replace each <include> in an element, at any depth, by the included elements."""
         if depth > MAX_DEPTH:
             raise DescriptionError(
                 Problem(

@@ -142,7 +142,7 @@ class JointReader:
         return Limits(lower, upper)
 
     def _resistances(self, j: int) -> tuple[Resistance, ...]:
-        """Resistances of each speed, with MuJoCo's higher orders where they exist here.
+        """Spring, damping and friction of each speed of a joint; MuJoCo's higher orders where a Resistance has them.
 
         MuJoCo: F = -(k x + k2 x^2 + k3 x^3) with x = q - springref, and F = -(d v + d2 v |v| + d3 v^3).
         """

@@ -47,7 +47,7 @@ class Meshes:
         self._bare_names = settings.get("strippath") == "true"
 
     def cut(self) -> None:
-        """Remove unneeded elements from the document and collect the needed ones."""
+        """Remove assets, and shapes from files, that give no body its inertia; load the meshes that stay."""
         for world in self.document.all("worldbody"):
             self._visit(world, "main", self._total, False)
         for asset in self.document.all("asset"):
@@ -133,7 +133,7 @@ def _joints(place: Element) -> Iterator[Element]:
 
 
 def _geom_defaults(document: Element) -> dict[str, dict[str, str]]:
-    """Shape attributes of each class of defaults, inherited ones included."""
+    """Class of defaults -> attributes of its geoms, inherited ones included."""
     classes: dict[str, dict[str, str]] = {"main": {}}
 
     def visit(default: Element, name: str, inherited: dict[str, str]) -> None:

@@ -127,7 +127,7 @@ class Importer:
         return Inertia(float(m.body_mass[i]), position, tuple(map(float, m.body_inertia[i])), rotation=rotation)
 
     def _loads(self, i: int) -> tuple[Load, ...]:
-        """Loads of gravity compensation and actuators on a body."""
+        """Loads on a body by gravity compensation and actuators."""
         lift = -float(self.model.body_gravcomp[i]) * float(self.model.body_mass[i])
         x, y, z = (lift * g for g in self.gravity.tolist())
         acting = self.actuators.loads.get(i, ())

@@ -100,7 +100,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
 
 
 def compiled(document: Document, remarks: Remarks) -> Any:
-    """The model compiled by MuJoCo.
+    """The model that MuJoCo compiles from a document.
 
     Raises:
         DescriptionError: MuJoCo is not installed, or refuses the model.
@@ -166,7 +166,7 @@ def _written(element: Element) -> Iterator[tuple[str, Element]]:
 
 
 def _places(element: Element) -> dict[tuple[str, ...], str]:
-    """Places in the file of named bodies, joints and constraints."""
+    """(kind, name) of named bodies, joints and constraints -> place in the file."""
     kinds = {"body": "body", "joint": "joint", "freejoint": "joint"}
     places: dict[tuple[str, ...], str] = {}
     pending = list(element.children)

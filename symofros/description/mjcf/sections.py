@@ -136,7 +136,7 @@ class Sections:
                 self.remarks.add(f"{label} of <tendon> ignored", "tendon", _name(item))
 
     def _expanded(self, element: Element) -> int:
-        """Number of elements that MuJoCo makes of one; copies of empty elements take time, too."""
+        """Number of elements that MuJoCo makes of one; empty copies count, as they take time, too."""
         inside = sum(map(self._expanded, element.children))
         if element.tag != "replicate":
             return 1 + inside

@@ -78,7 +78,7 @@ class Frames:
         self.nodes[name] = FrameNode(element, scope, self.values.pose(stated, owner), full, attached_to)
 
     def full(self, scope: str, name: str) -> str:
-        """Full name for a name used within a model."""
+        """Full name of what a model calls by a name; of a model in it, that of its frame."""
         if name == WORLD and scope + name not in self.nodes:
             return WORLD
         own = f"{scope}{SEPARATOR}{name}" if scope else name

@@ -71,7 +71,7 @@ class Includes:
     def _included(
         self, include: Element, element: Element, folder: Path, within: tuple[Path, ...]
     ) -> Iterator[Element]:
-        """The elements that replace an <include> in an element of a file in the folder."""
+        """The elements that replace an <include>; none if it is refused."""
         self._count += 1  # Also of those that are refused: each takes time, and may be a fault to tell.
         self._check_bounds(include)
         if not self._is_plain(include, element):
@@ -164,7 +164,7 @@ class Includes:
         self.values.add(Problem(what, found, rule, remedy, self.values.where(include), argument))
 
     def _of_folder(self, folder: Path) -> Path | None:
-        """The SDFormat file of a model's folder: the latest version named in model.config, or model.sdf."""
+        """The SDFormat file of a model's folder, by model.config or else model.sdf; None if it may not be read."""
         config = folder / "model.config"
         if not os.path.isfile(config) or not self.packages.allows(resolved(config)):
             return self.packages.file("model.sdf", folder)
@@ -226,10 +226,10 @@ class Includes:
 
 
 def merged(model: Element, include: Element) -> list[Element]:
-    """The contents of an included model, with the frame that represents the model's own.
+    """The contents of an included model for the including one, after a proxy frame for the model's own.
 
     Args:
-        model: The included model, what the <include> states of it in place.
+        model: The included model, with what the <include> overrides of it.
         include: The <include>.
     """
     proxy = f"_merged__{model.attributes.get('name', '')}__model__"
@@ -246,7 +246,7 @@ def merged(model: Element, include: Element) -> list[Element]:
 
 
 def _refer(element: Element, proxy: str) -> None:
-    """Redirect references to the frame of a merged model, named or implied, to another frame."""
+    """Redirect an element's references to the frame of a merged model, named or implied, to its proxy frame."""
     if element.tag in ("link", "frame", "model"):
         pose = element.first("pose")
         if pose is None:

@@ -124,7 +124,7 @@ class JointReader:
         return ImportedBody(child, parent=parent, joints=(made,), placement=held)
 
     def _made(self, joint: SdfJoint, child: str, placement: Placement) -> ImportedJoint:
-        """The joint itself, at its place on the carrying body."""
+        """The joint at its placement on the parent link, with the resistances of its axes."""
         kind, (position, rotation) = joint.kind, placement
         if "axis" not in KINDS[kind].entries:
             if kind == "ball" and joint.element.first("axis"):

@@ -131,7 +131,7 @@ class _Importer:
         return tree
 
     def model(self, model: Element, scope: str, around: str) -> None:
-        """Read a model: its frame and its contents.
+        """Read a model: its frame, the models in it and its other contents.
 
         Args:
             model: The element.

@@ -77,7 +77,7 @@ def _remark_transmission(element: Element, remarks: Remarks) -> None:
 
 
 def _inside(element: Element) -> Iterator[Element]:
-    """The elements inside one at any depth, except those of plug-ins."""
+    """The elements inside one at any depth, except those inside plug-ins and sensors."""
     pending = list(reversed(element.children))
     while pending:
         inner = pending.pop()

@@ -249,7 +249,7 @@ class _Importer:
         return Joint(name, "planar", position=position, rotation=placed)
 
     def resistances(self, element: Element, joint: Joint) -> tuple[Resistance, ...]:
-        """Damping and friction; invalid numbers count as stated and are refused only if they are used."""
+        """Damping and friction of a joint; invalid numbers become NaN, and are refused only if they are used."""
         dynamics = element.first("dynamics")
         stated = {} if dynamics is None else dynamics.attributes
         damping, friction = (

@@ -99,7 +99,7 @@ class Visuals:
         return _color(material) or self.materials.get(material.attributes.get("name", ""))
 
     def _file(self, stated: str, folder: Path) -> str:
-        """Path of a mesh; "" where it must not be read."""
+        """Path of the file of a mesh; "" if it is not found or must not be read."""
         package = _PACKAGE.match(stated)
         name, inner = (package[1], PurePosixPath(package[2])) if package else ("", PurePosixPath(stated))
         if "://" in str(inner) or inner.is_absolute() or ".." in (name, *inner.parts) or "\0" in stated:
@@ -114,7 +114,7 @@ class Visuals:
         return ""
 
     def _elsewhere(self, name: str) -> Iterator[tuple[Path, Path]]:
-        """Folder of a package or model outside those around the file; searched only when needed."""
+        """(root, place) of a package or model outside the folders around the file; searched only when needed."""
         folders = self.packages.of(name)
         if len(folders) > 1:
             self.remarks.add("packages of one name, of which none is taken", "package", f"{name} in {told(folders)}")

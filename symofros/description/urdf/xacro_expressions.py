@@ -54,7 +54,7 @@ _COMPARISONS: Mapping[type, Callable[[Any, Any], Any]] = {
 
 
 class Refusal(Exception):
-    """A construct that xacro files may not use.
+    """Raised where a xacro file does or needs what is not allowed, or exceeds a bound.
 
     Args:
         text: What it is.
@@ -82,7 +82,7 @@ def _bounded(value: Any) -> Any:
 
 
 def _binary(kind: type, a: Any, b: Any) -> Any:
-    """Result of a binary operator, whose size is checked before it is computed."""
+    """Result of a binary operator; its size is bounded before it is computed."""
     if kind not in _BINARY:
         raise Refusal(f"the operator {kind.__name__} is not allowed in an expression")
     if kind is ast.Mult:

@@ -42,7 +42,7 @@ expressions = _beside("xacro_expressions")
 
 
 def parsed(inp: Any, filename: str | None = None) -> Any:
-    """The document parsed by xacro, without document types, as only they define entities.
+    """Parse a document for xacro; document types are refused, as only they define entities.
 
     Raises:
         Refusal: A document type, or too many bytes.
@@ -222,7 +222,7 @@ def innermost(error: BaseException) -> BaseException:
 
 
 def told(error: BaseException) -> str:
-    """The error message once, with the places that xacro names; xacro's own texts repeat their causes."""
+    """Message of the innermost cause, and what xacro's errors around it add without repeating it."""
     first = innermost(error)
     said = [str(first).strip() or type(first).__name__]
     while error is not first:
@@ -234,7 +234,7 @@ def told(error: BaseException) -> str:
 
 
 def main() -> None:
-    """Expand the requested file."""
+    """Expand the file that the task on standard input names, and write the answer as JSON."""
     task = json.load(sys.stdin)
     out, sys.stdout = sys.stdout, sys.stderr  # What xacro prints is no answer.
     try:

@@ -65,7 +65,7 @@ def _stated(row: Mapping[str, Any]) -> Iterator[Fault]:
 
 
 def _bounds(row: Mapping[str, Any]) -> Iterator[Fault]:
-    """Numbers of a row: limits, drives and those of format extensions, infinities included."""
+    """Faults of limits, drives and format extensions of a row: each is one number, which may be infinite."""
     limits = ((f"limit {freedom}", value) for freedom, pair in row.get("limits", {}).items() for value in pair)
     drives = (("maxForce", drive["maxForce"]) for drive in row.get("drives", {}).values())
     for name, value in (*limits, *drives):

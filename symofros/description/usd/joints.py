@@ -63,7 +63,7 @@ class UsdJoint:
 
 
 def motion_of(row: Mapping[str, Any]) -> tuple[Motion, int, tuple[float, float]] | str:
-    """Free motion of a joint, its axis and its bounds; or the reason why it can't be read.
+    """Free motion of a joint, index of its axis, and its bounds; or the reason why it can't be read.
 
     Args:
         row: What the stage states of it.

@@ -57,7 +57,7 @@ class Extent:
     E: Array
 
     def times(self, factor: float) -> Extent:
-        """The mass properties at a multiple of the density."""
+        """The integrals multiplied by a factor, such as a density."""
         return Extent(self.size * factor, self.center, self.E * factor)
 
 

@@ -74,7 +74,7 @@ def read_usd(path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTI
 
 
 def _told(warnings: Sequence[str]) -> Iterator[str]:
-    """Notes on OpenUSD's warnings while it read the file."""
+    """Note of OpenUSD's first warning while it read the file, and of the number of others."""
     if warnings:
         more = f" (and {len(warnings) - 1} more)" if len(warnings) > 1 else ""
         yield f"OpenUSD warns: {warnings[0]:.300}{more}"
@@ -189,7 +189,7 @@ class _Importer:
             yield UsdJoint(name, row, *motion, (ends[0], ends[1]), frames, self.where(path))
 
     def _remark_several(self, row: Mapping[str, Any], name: str) -> None:
-        """Note properties of a joint of several coordinates that are supported only for single joints."""
+        """Note limits and drives of a joint of several coordinates, which are ignored."""
         cones = any(cone is not None and number(cone, -1.0) >= 0.0 for cone in row["cones"])
         bounds = ((number(low, -math.inf), number(high, math.inf)) for low, high in row["limits"].values())
         if cones or any(low < high and (math.isfinite(low) or math.isfinite(high)) for low, high in bounds):
@@ -233,7 +233,7 @@ class _Importer:
                 yield ImportedBody(name, inertia, floats=True)
 
     def _constraints(self, closing: Iterable[UsdJoint], frames: dict[str, list[Frame]]) -> Iterator[Constraint]:
-        """Constraints for the joints that close loops; their frames are added to the bodies."""
+        """Constraints for the joints that close loops; their frames are added to those of the bodies."""
         for joint in closing:
             names = (self.names.get(joint.ends[0], WORLD), self.names.get(joint.ends[1], WORLD))
             if joint.row["kind"] != "distance":

@@ -60,7 +60,7 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def warnings_of(printed: str) -> list[str]:
-    """Messages printed by OpenUSD, one per line, without their place in OpenUSD's source.
+    """Distinct messages printed by OpenUSD, one per line, without their place in OpenUSD's source.
 
     Args:
         printed: Lines such as "Warning: in NAME at line N of FILE -- TEXT".

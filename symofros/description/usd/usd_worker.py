@@ -121,7 +121,7 @@ def _time() -> Any:
 
 
 def stage_data(file: str) -> dict[str, Any]:
-    """Contents of a stage.
+    """Contents of a stage: "stage", its "layers" and what is "missing"; or a "fault".
 
     Args:
         file: Path of its root layer.
@@ -282,7 +282,7 @@ def printable(text: str) -> str:
 
 
 def main() -> None:
-    """Read the requested stage."""
+    """Read the stage that the task on standard input names, and write the answer as JSON."""
     task = json.load(sys.stdin)
     answers = os.dup(1)
     os.dup2(2, 1)  # What OpenUSD prints is no answer.

@@ -38,7 +38,7 @@ _ANCHOR = (str, str | None)
 
 
 def _entry_type(name: str, kind: Any) -> Any:
-    """Type of the file entry for a field of that type."""
+    """Annotation of the file's entry for a field of a noun, from the field's name and type."""
     arguments = get_args(kind)
     if kind == Value:
         return Formula
@@ -116,10 +116,10 @@ class NounEntry(PartEntry):
         return {name: _value(getattr(self, name)) for name in type(self).model_fields}
 
     def build(self, **given: Any) -> Any:
-        """The noun made of these fields and of further ones given elsewhere in the file.
+        """Make the noun of the entries that are stated here, and of fields that are given elsewhere in the file.
 
         Raises:
-            DescriptionError: It refuses them.
+            DescriptionError: The noun refuses them.
         """
         values = self.stated() | given
         return self.noun(**{key: value for key, value in values.items() if value is not None})

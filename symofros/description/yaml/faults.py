@@ -56,7 +56,7 @@ _BOUNDS = {
 
 
 def placed_problems(error: ValidationError, root: Node, file: str, data: Any) -> list[tuple[Problem, Path]]:
-    """Problems found by pydantic, each with its place in the data.
+    """Problems found by pydantic, each with its path in the data.
 
     Args:
         error: What validation raised.
@@ -69,7 +69,7 @@ def placed_problems(error: ValidationError, root: Node, file: str, data: Any) ->
 
 
 def _path_of(error: ErrorDetails) -> Path:
-    """Path of an error in the data; pydantic marks an error of a key itself by a last item "[key]"."""
+    """Path of an error in the data, without the last item "[key]" by which pydantic marks an error of a key."""
     loc = error["loc"]
     return loc[:-1] if loc and loc[-1] == "[key]" else loc
 
@@ -187,7 +187,7 @@ def _short(value: Any) -> str:
 
 
 def _about(path: Path, what: str) -> str:
-    """Text of a fault with its context: "body 'arm1': joint: axis[2]: not a number"."""
+    """Message of a fault after its path in words: "body 'arm1': joint: axis[2]: not a number"."""
     return ": ".join([*_words(path), what.removeprefix("value: ")])
 
 

@@ -193,7 +193,7 @@ class RotationEntry(PartEntry):
         return self
 
     def build(self) -> Rotation:
-        """Make the Rotation."""
+        """The Rotation that is stated."""
         if self.matrix is not None:
             return Rotation.matrix(self.matrix)
         kind, values = next((kind, values) for kind in ROTATIONS if (values := getattr(self, kind)) is not None)

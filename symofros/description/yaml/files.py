@@ -219,7 +219,7 @@ class _Merger:
         return None
 
     def merge(self, file: NativeFile, root: Node, shown: str, included: bool) -> None:
-        """Add the entries of one file."""
+        """Add one file's entries to those merged so far; names that another file has are noted as problems."""
         system_line = f"{shown}:{root.at(('system',)).key_line}"
         if file.system is not None and included:
             self.problems.append(
@@ -272,10 +272,10 @@ class _Merger:
 
 
 def _refuse_diagram(root: Node, shown: str) -> None:
-    """Report a diagram file as such, instead of refusing each of its entries.
+    """Refuse the file of a diagram as a whole, instead of each of its entries.
 
     Raises:
-        DescriptionError: It is one.
+        DescriptionError: The file is one of a diagram.
     """
     if isinstance(root.value, dict) and DIAGRAM in root.value and "symofros" not in root.value:
         raise DescriptionError(

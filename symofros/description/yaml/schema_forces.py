@@ -50,7 +50,7 @@ class ElementEntry(PartEntry):
 
     @property
     def given(self) -> list[NounEntry]:
-        """The stated forces."""
+        """The elements that are stated."""
         return [entry for name in ELEMENTS if (entry := getattr(self, name)) is not None]
 
     @model_validator(mode="after")

@@ -108,7 +108,7 @@ def decoded(data: bytes, file: str) -> str:
 
 
 def too_many_nodes(where: str) -> Problem:
-    """Fault: the document has more than MAX_NODES values.
+    """The problem that a document has more than MAX_NODES values.
 
     Args:
         where: Place of the first beyond.

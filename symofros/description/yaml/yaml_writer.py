@@ -144,7 +144,7 @@ def _document(system: System) -> Plain:
 
 
 def _entry(entry: type[NounEntry], noun: Any) -> Plain:
-    """The required entries of a noun, and those that differ from their defaults."""
+    """The entries of a noun that the file requires or that differ from their defaults."""
     defaults = {item.name: item.default for item in fields(noun)}
     entries: Plain = {}
     for name, stated in entry.model_fields.items():
@@ -276,7 +276,7 @@ def _styled(value: Any, role: str) -> Any:
 
 
 def _role(key: str, owner: str) -> str:
-    """Role of an entry in the layout; names of elements are not keys of the format."""
+    """Role of an entry in the layout: "body", "item", or its key at the top level and in bodies."""
     if owner == "bodies":
         return "body"
     return key if owner in ("", "body") else "item"

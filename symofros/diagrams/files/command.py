@@ -73,7 +73,7 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
 
 
 def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
-    """Write the requested files; a window opens last and waits until it is closed."""
+    """Write the requested files, and return their paths; a window opens last and waits until it is closed."""
     files = run.save(request.output, *request.signals) if request.output else []
     if request.jitter:
         histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(request.jitter, dpi=120)
@@ -87,7 +87,7 @@ def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
 
 
 def print_run(run: DiagramRun, files: list[str], as_json: bool, out: Console) -> None:
-    """Print outcome, cost, jitter, results of blocks and last values."""
+    """Print outcome, cost, jitter, counts of blocks, crossings and the files that were written."""
     cost, outcome = run.cost, run.outcome
     jitter = jitter_of(cost) if cost.late.size else None
     counts = {
@@ -136,7 +136,7 @@ def _print_details(
 
 
 def print_diagram(diagram: Diagram, as_json: bool, out: Console) -> None:
-    """Blocks with their ports, rates and states, in the order in which they are evaluated; models; parameters.
+    """Print the blocks with their ports, rates and states, their order of evaluation, models and parameters.
 
     Raises:
         DescriptionError: With what is wrong with the diagram.

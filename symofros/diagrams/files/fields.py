@@ -139,7 +139,7 @@ def _listed(arguments: tuple[Any, ...], node: Node, kind: Any) -> Any:
 
 
 def _object(kind: type[Any], node: Node) -> Any:
-    """A dataclass from a mapping; its own checks may raise any exception."""
+    """Read a dataclass from a mapping; its own checks may raise any exception."""
     if not isinstance(node.value, dict):
         raise Misfit(node, words_for(kind))
     types = types_of(kind)
@@ -153,7 +153,7 @@ def _object(kind: type[Any], node: Node) -> Any:
 
 
 def write(value: Any) -> Any:
-    """A field's value in a form that YAML holds.
+    """A field's value as plain data for YAML: numbers, texts, lists and mappings.
 
     Raises:
         TypeError: No file can state it.

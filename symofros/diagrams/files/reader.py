@@ -82,7 +82,7 @@ def read_diagram(
 
 @dataclass
 class _Shared:
-    """Data shared by the files of one diagram."""
+    """State shared by the readers of one diagram's files."""
 
     folder: Path
     kinds: Mapping[str, type[Block]]
@@ -128,7 +128,7 @@ class _Reader(Entries):
         self.shared, self.base, self.here = shared, path.parent, here
 
     def diagram(self, entries: Mapping[str, Node], name: str) -> Diagram:
-        """The diagram stated in a file or an inline part."""
+        """The diagram that the entries of a file or of an inline part state."""
         diagram = Diagram(self.text(entries["name"], "name") if "name" in entries else name)
         for key, read_one in (("models", self.model), ("blocks", self.block), ("parts", self.part)):
             if key in entries:
@@ -184,7 +184,7 @@ class _Reader(Entries):
             self.take(node, error.problems)
 
     def system(self, node: Node, what: str, options: Mapping[str, Any]) -> System | None:
-        """The description in a file; the same object for the same file, read by the same options."""
+        """The System described by a file; the same object for the same file and options."""
         text = self.text(node, f"{what}: file", 1000)
         problem = refused(text, self.base, self.shared.folder, MODEL_SUFFIXES) if text else None
         if not text or problem:

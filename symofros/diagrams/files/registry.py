@@ -16,7 +16,7 @@ KIND, INPUTS = "kind", "inputs"
 
 
 def kind_of(block: type[Block]) -> str:
-    """Name of a class of blocks in files: JointPD is joint_pd, View3D view3d."""
+    """Name of a block class in files: JointPD is joint_pd, View3D view3d."""
     return _WORD.sub("_", block.__name__).lower()
 
 

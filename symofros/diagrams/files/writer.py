@@ -148,7 +148,7 @@ class _Writer:
 
 
 def _replayed(diagram: Diagram) -> Diagram:
-    """A diagram of the parts only, as their files state them.
+    """A new diagram that includes the parts of a diagram, and nothing else.
 
     Raises:
         DescriptionError: A part was changed after it was included.
@@ -176,7 +176,7 @@ def _replayed(diagram: Diagram) -> Diagram:
 
 
 def _unchanged(diagram: Diagram, path: Path) -> bool:
-    """Whether a part's file still equals the part."""
+    """Whether the file of a part still states the part's diagram."""
     try:
         stated = load_diagram(path, network=True)
     except DescriptionError:

@@ -52,7 +52,7 @@ class Resolved:
 
 
 def rates_of(pieces: Mapping[str, Piece]) -> list[tuple[str, float, float]]:
-    """(block, period, offset) of the sampled blocks."""
+    """(block, period [s], offset [s]) of each sampled block."""
     return [
         (name, piece.block.period, piece.block.offset)
         for name, piece in pieces.items()
@@ -143,7 +143,7 @@ class CompiledDiagram:
 
 
 def fuser(resolved: Resolved) -> Fuser:
-    """The writer of a diagram's functions."""
+    """The Fuser that writes the functions of a resolved diagram."""
     return Fuser(resolved.wired, resolved.pieces, resolved.layout, resolved.order)
 
 
@@ -196,11 +196,11 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
     unit, text = unit_of(motion, record, toolchain, options)
 
     def formulas(_: tuple[object, ...], __: bool) -> Unit:
-        """Formulas whose zeros the stepper locates."""
+        """The part's unit, which has the formulas whose zeros the stepper locates."""
         return unit
 
     def instants(_: Sequence[object], par: Array, t0: float, t_end: float) -> Array:
-        """Instants of the part's formulas of time."""
+        """Instants at which formulas of time in the part's motion bend, jump or change fast (n) [s]."""
         edges = [edge for function in motion.functions for edge in function.edges()]
         return formula_instants(motion, edges, par, t0, t_end)
 

@@ -20,7 +20,7 @@ AFTER = (*AT, "a", "lam")
 
 
 def reads(graph: Graph, edges: Sequence[Edge], groups: Collection[str], given: Collection[int] = ()) -> bool:
-    """Whether edges depend on inputs of some groups.
+    """Whether the computation of edges reads inputs of some groups.
 
     Args:
         graph: The graph.
@@ -88,7 +88,7 @@ class Point:
         return self._values[source]
 
     def _place(self, source: Source) -> Place | None:
-        """Storage of an output; None for one that is computed."""
+        """Place of a stored output in u; None for one that is computed."""
         layout, piece = self._layout, self._pieces[source[0]]
         if source in layout.samples:
             return layout.samples[source]
@@ -120,7 +120,7 @@ class Point:
         return copy_into(self.g, piece.g, edges, replacement)
 
     def _group(self, piece: Piece, group: str) -> list[Edge]:
-        """Signal for an input group of a block."""
+        """Edges that replace an input group of a block's own graph."""
         name, layout = piece.name, self._layout
         if group == "t":
             return [self.g.input("t", 0)]
@@ -207,7 +207,7 @@ class Fuser:
         return self._program(self._wired.name, g, functions, part)
 
     def _judging(self, at: Point, part: Part) -> list[Function]:
-        """Functions that judge a part with elastic beams: mass_matrix, and beam_stiffness as models have it."""
+        """Functions mass_matrix and beam_stiffness of a part, by which its elastic beams are judged; none without."""
         nv, layout, models = part.nv, self._layout, self._wired.models
         M = [[ONE if i == k else ZERO for k in range(nv)] for i in range(nv)]
         K = [[ZERO] * nv for _ in range(nv)]
@@ -330,7 +330,7 @@ class Fuser:
         return [name for name in (names | rest) if self._pieces[name].is_external]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
-        """Functions evaluated at instants: "due_i" for each set and "crossed_i" for each crossing.
+        """Program of the functions at instants: "due_i" for each set and "crossed_i" for each crossing.
 
         "inputs_i_j" gives what the j-th block of set i is called with: its inputs, one after the other.
         """

@@ -158,7 +158,7 @@ def _refuse_missing(name: str, block: Block, parameters: Mapping[str, Array]) ->
 def _context(
     g: Graph, wired: Wired, name: str, known: Environment, own: Sequence[Mapping[str, Array]]
 ) -> EvaluationContext:
-    """Inputs of a block's formulas.
+    """Evaluation context of a block: the symbolic inputs of its formulas.
 
     Args:
         g: Graph of the block.
@@ -201,7 +201,7 @@ def _given(g: Graph, wired: Wired, name: str, port: Port) -> Tensor:
 
 
 def _fit(wired: Wired, piece: Piece) -> None:
-    """Check the shapes of results, and that the sample time does not change the kind of a block."""
+    """Refuse formulas whose shapes are not those declared, and a sample time that the kind of block excludes."""
     name, block = piece.name, piece.block
     shapes = {port.name: port.shape for port in wired.ports[name].outputs}
     given = set() if piece.is_external else shapes.keys() - block.samples().keys()

@@ -52,7 +52,7 @@ class Models:
         return tuple(self._setups)
 
     def setup(self, name: str) -> ModelSetup:
-        """The stated settings of a model.
+        """Setup of a model as it was stated; of NAME + FRICTION, that of the model with friction only.
 
         Raises:
             DescriptionError: There is none of that name.

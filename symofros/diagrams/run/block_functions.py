@@ -156,7 +156,7 @@ class Blocks:
             self.out[name, key][...] = value
 
     def engaged(self) -> Array:
-        """Signals that state which constraints hold: the lock inputs of all blocks."""
+        """Values of the lock inputs of all blocks, which state which constraints are engaged."""
         wired = self.resolved.wired
         ports = [(name, port) for name, piece in self.resolved.pieces.items() for port in piece.block.lock_inputs()]
         return np.concatenate([np.zeros(0), *(self.out[wired.sources[port]].reshape(-1) for port in ports)])

@@ -130,7 +130,7 @@ class _RecordFeed:
         self._sent, self._when = 0, time.perf_counter()
 
     def send(self, t: float, is_over: bool = False) -> bool:
-        """Send new records, at a stop or when due; whether the run continues."""
+        """Send new records if a stop is reached or they are due; returns whether the run continues."""
         is_due = t >= self._observer.stop() - _SLACK or time.perf_counter() - self._when >= _SENT_EVERY
         if not (is_over and self._sent < len(self._rows)) and not (is_due and not is_over):
             return True

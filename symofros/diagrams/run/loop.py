@@ -211,7 +211,7 @@ class Loop:
         return self._memory.view(self.diagram.u, self.diagram.nu).copy()
 
     def put(self, places: Iterable[Place], values: Array) -> None:
-        """Assign some entries of the inputs from values (nu)."""
+        """Copy the entries at some places from values (nu) into the inputs."""
         u = self._memory.view(self.diagram.u, self.diagram.nu)
         for place in places:
             u[place.slice] = values[place.slice]
@@ -222,14 +222,14 @@ class Loop:
         return float(self.diagram.t[0])
 
     def take_records(self) -> list[Array]:
-        """The records since the last call, t (n), q (n, nq), v (n, nv), u (n, nu); their rows are free again."""
+        """The records since the last call: t (n), q (n, nq), v (n, nv), u (n, nu); their rows are reused."""
         n = int(self.diagram.n_records)
         self.diagram.n_records = 0
         t, q, v, u = (array[:n].copy() for array in self._records)
         return [t[:, 0], q, v, u]
 
     def take_events(self) -> list[tuple[int, float]]:
-        """The crossings since the last call, index and t; their rows are free again."""
+        """(index, t) of the crossings since the last call; their rows are reused."""
         n = int(self.diagram.n_event_records)
         self.diagram.n_event_records = 0
         return [(int(self._event_index[i]), float(self._event_t[i])) for i in range(n)]

@@ -116,7 +116,7 @@ def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Star
 
 
 def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par: Array) -> Placed:
-    """A part on its constraints, with the stated values of its start.
+    """A part projected onto its constraints, such that the stated entries of its start are preserved.
 
     Raises:
         AssemblyError: There is no such state.

@@ -1,4 +1,4 @@
-"""What pictures of a run of a diagram show."""
+"""Plots of a run of a diagram as panels: their curves and labels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from symofros.simulation.results.plots import Panel
 
 
 def plots_of(wired: Wired) -> list[Plot]:
-    """Plots of a diagram: those it lists, then its scopes."""
+    """Plots of a diagram: those that it lists, then those of its scopes."""
     plots = list(wired.plots)
     for name, block in wired.blocks.items():
         outputs = [port.name for port in wired.ports[name].outputs]
@@ -24,7 +24,7 @@ def plots_of(wired: Wired) -> list[Plot]:
 
 
 def panels_of(run: Records, plots: Sequence[Plot]) -> list[Panel]:
-    """The curves of plots of a run, which are computed together.
+    """The panels of plots of a run, one each; their signals are computed together.
 
     Raises:
         DescriptionError: There is no such signal.

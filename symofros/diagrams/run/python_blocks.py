@@ -72,7 +72,7 @@ class Called:
         return named_function(getattr(self._wired.blocks[name], "function", None) or self._running[name].call)
 
     def kept(self) -> dict[str, dict[str, Array]]:
-        """Results stored by each block; blocks without results are left out."""
+        """Block -> what it stored during the run; blocks that store nothing are left out."""
         return {name: dict(kept) for name, one in self._running.items() if (kept := one.kept())}
 
 
@@ -93,10 +93,10 @@ class CalledBefore(Called):
         self.given = given
 
     def call(self, name: str, t: float, inputs: Mapping[str, Array]) -> dict[str, Array]:
-        """Stored output at that time.
+        """Outputs of the block at this time in the earlier run.
 
         Raises:
-            NotKeptError: That is not known.
+            NotKeptError: They were not stored.
         """
         if (name, t) not in self.given:
             raise NotKeptError

@@ -28,7 +28,7 @@ class Crossed(NamedTuple):
 
 @dataclass(frozen=True)
 class Cost(Statistics):
-    """What a run took, of all parts together.
+    """Computational cost of a run, of all its parts together.
 
     Attributes:
         late: Lateness of each instant (n) [s]; empty unless pace was kept.

@@ -1,4 +1,4 @@
-"""Signals of a run of a diagram as columns: an entry of a signal each."""
+"""Signals of a run of a diagram as columns, one for each entry of a signal."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from symofros.diagrams.program.layout import Place
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
-from symofros.diagrams.run.examination.controllers import End, Rerun, blamed
+from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan, blamed
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
@@ -151,19 +151,19 @@ def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
 
 
 def _rerun(task: _Run, states: Sequence[Array], given: Given) -> Rerun:
-    """Repeats a part of a run, with other records and steps."""
+    """Function that repeats a span of a run with other records and steps; it returns None where it can't."""
     wired = task.compiled.resolved.wired
 
-    def again(end: End) -> Sequence[Array] | None:
+    def again(span: RerunSpan) -> Sequence[Array] | None:
         t = states[0]
         if not len(t):
             return None
-        i = max(0, int(np.searchsorted(t, end.start, "right")) - 1)
-        if not t[i] < end.stop:
+        i = max(0, int(np.searchsorted(t, span.start, "right")) - 1)
+        if not t[i] < span.stop:
             return None
-        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, end.interval, 0.0)], wired.name)
-        options = replace(task.options, realtime=False, dt=end.dt)
-        finer = replace(task, options=options, plan=plan, t_end=end.stop, threads=1, hold=end.hold)
+        plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, span.interval, 0.0)], wired.name)
+        options = replace(task.options, realtime=False, dt=span.dt)
+        finer = replace(task, options=options, plan=plan, t_end=span.stop, threads=1, hold=span.hold)
         found = _continued_run(finer, states, given, i)
         return found and found[1]
 
@@ -186,7 +186,7 @@ def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Seque
 
 
 def _continued_run(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
-    """A run continued from a record, with the later records; None where the part does not move."""
+    """A run continued from record i, and its states from there on; None if it fails."""
     begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
     try:
         ended = _drive(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
@@ -287,7 +287,7 @@ def _recorded(
     bendings: tuple[BeamBending, ...],
     kept: Mapping[str, Mapping[str, Array]],
 ) -> DiagramRun:
-    """The records of a run and its cost."""
+    """The DiagramRun of an ended run: records, outcome, crossings, cost and results of blocks."""
     d, (seconds, worked), looked_for = ended.loop.diagram, ended.spent, watched(ended.resolved.pieces)
     crossings = tuple(Crossed(*looked_for[int(which)], when) for which, when in ended.recorded.events)
     clock = ended.spacing / (float(task.options.realtime) or 1.0)

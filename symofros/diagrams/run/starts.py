@@ -50,12 +50,12 @@ def stated_entries(resolved: Resolved, part: Part) -> tuple[list[int], list[int]
 
 
 def close_loops(resolved: Resolved, part: Part, begin: Start, par: Array) -> tuple[str, ...]:
-    """Project the mechanisms of a part onto their constraints, in place; stated starts are preserved.
+    """Move the mechanisms of a part onto their constraints, in place, with their stated starts preserved.
 
     Those with prescribed motions, or with constraints that engage, stay as they are: their inputs say where they are.
 
     Returns:
-        What was stated and changed in its last digits, in words.
+        Notes on stated values that changed in their last digits.
 
     Raises:
         AssemblyError: No state on the constraints keeps what is stated.
@@ -75,7 +75,7 @@ def close_loops(resolved: Resolved, part: Part, begin: Start, par: Array) -> tup
 
 
 def changes_of_driven(resolved: Resolved, part: Part, asked: Start, found: Start) -> tuple[str, ...]:
-    """Notes on stated starts of driven mechanisms whose last digits changed.
+    """Notes on stated starts of mechanisms with prescribed motions that changed in their last digits.
 
     Raises:
         AssemblyError: More than those changed.

@@ -1,4 +1,4 @@
-"""What a run is given by name and by number: options, run-time parameters, how often to record."""
+"""Arguments of a run of a diagram: options, run-time parameters, interval of records."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _RECORDS = 2000
 
 
 def diagram_options(options: SimulationOptions | None, changes: Mapping[str, Any]) -> SimulationOptions:
-    """Options of a run of a diagram, some of them given by name.
+    """Options of a run of a diagram, with changes that are given by name.
 
     Raises:
         UnknownNameError: A name is not that of an option.
@@ -87,7 +87,7 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
 
 
 def record_interval(record: Any, t0: float, t_end: float, dt: float | None) -> float:
-    """Record interval: the stated one, or a multiple of dt that gives about _RECORDS records.
+    """Interval of records [s]: the stated one, or a multiple of dt (1 ms without one) for about _RECORDS of them.
 
     Raises:
         SymofrosError: It is no positive number, or there is no span of time.

@@ -112,7 +112,7 @@ def _rectangle(y: float, z: float) -> tuple[Point, ...]:
 
 
 def _refuse_unusable(rings: Sequence[Sequence[Point]]) -> None:
-    """Refuse invalid outlines; faults that need geometry are found by shapely."""
+    """Refuse a wrong number of corners and coordinates that are not finite; shapely finds other faults."""
     count = sum(map(len, rings))
     if any(len(ring) < 3 for ring in rings) or count > _MAX_POINTS:
         raise DescriptionError(_unusable(f"{count} corners", f"3 corners or more an outline, {_MAX_POINTS} in all"))

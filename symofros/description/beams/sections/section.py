@@ -220,7 +220,7 @@ class Section:
         return {label: getattr(self, label) for label in labels if getattr(self, label) is not None}
 
     def _off_axis(self) -> list[tuple[str, Value, Value]]:
-        """Properties for which a beam has no entry, each with the size that it is compared with."""
+        """(name, value, reference size) of the properties for which a beam has no entry."""
         height = (Term(self.EI_y) + Term(self.EI_z)) / Term(self.EA)
         size = height.sqrt().value
         centers = [

@@ -52,7 +52,7 @@ def flexure_coefficients(lateral: Term, k: Term) -> tuple[Term, Term]:
 
 
 def rectangle_torsion(y: Term, z: Term) -> Term:
-    """J of Saint-Venant's torsion (eq. 27); the sum of 1/n^5 is known and the remaining series converges fast."""
+    """Torsion constant J of a rectangle (eq. 27); the sum of 1/n^5 is exact, the rest of the series ends at n = 7."""
     a = y.maximum(z)
     b = y * z / a
     rest = Term(0.0)
@@ -102,7 +102,7 @@ def unit_stresses(kind: Kind, sizes: tuple[float, float], ratio: float, y: Array
 
 
 def _force_on_ellipse(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
-    """Shear stress of a force on an ellipse (eq. 28a)."""
+    """Shear stress (2, points) of a unit force along y on an ellipse of semi-axes a and b (eq. 28a)."""
     k = (b / a) ** 2
     p, s = map(_number, flexure_coefficients(Term(lateral), Term(k)))
     moment = 0.25 * np.pi * a**3 * b
@@ -110,12 +110,12 @@ def _force_on_ellipse(a: float, b: float, lateral: float, y: Array, z: Array) ->
 
 
 def _torque_on_ellipse(a: float, b: float, y: Array, z: Array) -> Array:
-    """Shear stress of a torque on an ellipse (eq. 32a)."""
+    """Shear stress (2, points) of a unit torque on an ellipse of semi-axes a and b (eq. 32a)."""
     return np.stack([-z / b**2, y / a**2]) * (2.0 / (np.pi * a * b))
 
 
 def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Array:
-    """Shear stress of a force on an elliptic tube (eq. 28c)."""
+    """Shear stress (2, points) of a unit force along y on a round tube of radii a and b < a (eq. 28c)."""
     p, s = map(_number, flexure_coefficients(Term(lateral), Term(1.0)))
     square = np.maximum(y * y + z * z, np.finfo(float).tiny)
     cosine, sine = y / np.sqrt(square), z / np.sqrt(square)
@@ -127,12 +127,12 @@ def _force_on_tube(a: float, b: float, lateral: float, y: Array, z: Array) -> Ar
 
 
 def _torque_on_tube(a: float, b: float, y: Array, z: Array) -> Array:
-    """Eq. 32a, by J."""
+    """Shear stress (2, points) of a unit torque on a round tube of radii a and b < a (eq. 32a, by J)."""
     return np.stack([-z, y]) * (2.0 / (np.pi * (a**4 - b**4)))
 
 
 def _force_on_rectangle(h: float, b: float, lateral: float, y: Array, z: Array) -> Array:
-    """Eqs. 32b and 32c: phi of (28) in sines of 2 m pi z/b."""
+    """Shear stress of a unit force along y on a rectangle (eqs. 32b, 32c): phi of (28) in sines of 2 m pi z/b."""
     moment = b * h**3 / 12.0
     curl = lateral / moment
     rate = 2.0 * np.pi / b
@@ -153,7 +153,7 @@ def _force_on_rectangle(h: float, b: float, lateral: float, y: Array, z: Array) 
 
 
 def _torque_on_rectangle(h: float, b: float, y: Array, z: Array) -> Array:
-    """Eqs. 32d and 32e: Prandtl's function in cosines of n pi y/h, n odd."""
+    """Shear stress of a unit torque on a rectangle (eqs. 32d, 32e): Prandtl's function in cosines of n pi y/h."""
     if h > b:  # The series are the shorter, the shorter the side along which they go.
         return -_torque_on_rectangle(b, h, z, y)[::-1]
     rate = np.pi / h

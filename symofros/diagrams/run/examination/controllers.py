@@ -26,8 +26,8 @@ GROWTH, CHANGES = 10.0, 6
 
 
 @dataclass(frozen=True)
-class End:
-    """The end of a run, or another part of it, as it is repeated.
+class RerunSpan:
+    """Span of a run that is to be repeated, with the interval of its records and its step.
 
     Attributes:
         start: Time of its start; it begins with the record before [s].
@@ -44,8 +44,8 @@ class End:
     hold: tuple[Place, ...] = ()
 
 
-# Repeats the end of the run, or another part -> t (n), q, v, u of its records.
-Rerun = Callable[[End], Sequence[Array] | None]
+# Repeats a span of the run -> t (n), q, v, u of its records.
+Rerun = Callable[[RerunSpan], Sequence[Array] | None]
 
 
 def blamed(outcome: Outcome, resolved: Resolved, again: Rerun) -> Outcome:
@@ -54,19 +54,19 @@ def blamed(outcome: Outcome, resolved: Resolved, again: Rerun) -> Outcome:
     Args:
         outcome: Outcome as of the motion alone.
         resolved: The diagram.
-        again: Repeats the end of the run.
+        again: Repeats a span of the run.
     """
     if outcome.kind not in ("diverged", "beyond theory"):
         return outcome
     for name in _controllers(resolved.wired):
         block = resolved.wired.blocks[name]
         period = block.period or 0.0
-        end = End(outcome.t - WINDOW * period, outcome.t, period, period / FINER)
-        states = again(end)
+        span = RerunSpan(outcome.t - WINDOW * period, outcome.t, period, period / FINER)
+        states = again(span)
         if states is None:
             continue
         grown = max((_growth(values) for values in _outputs(resolved, name, states[3])), default=0.0)
-        if grown >= GROWTH and _is_its_own(resolved, states, again(_held(resolved, name, end))):
+        if grown >= GROWTH and _is_its_own(resolved, states, again(_held(resolved, name, span))):
             reason = (
                 f"block '{name}', sampled every {period:g} s, drives the motion apart: within {len(states[0])} samples"
                 f" its output grows {grown:.2g} times, back and forth"
@@ -77,7 +77,7 @@ def blamed(outcome: Outcome, resolved: Resolved, again: Rerun) -> Outcome:
 
 
 def _controllers(wired: Wired) -> Iterator[str]:
-    """Sampled blocks in a loop with a mechanism, nearest to its inputs first."""
+    """Sampled blocks in a loop with a mechanism, those nearest to its inputs first."""
     seen: set[str] = set()
     nearest = [source[0] for name in wired.mechanisms() for source in wired.behind(name, ["u"])]
     while nearest:
@@ -106,11 +106,11 @@ def _behind(wired: Wired, name: str) -> set[str]:
     return seen
 
 
-def _held(resolved: Resolved, name: str, end: End) -> End:
-    """The end of a run, with the outputs of a block held, and of the sampled blocks that depend on it."""
+def _held(resolved: Resolved, name: str, span: RerunSpan) -> RerunSpan:
+    """A span with the outputs of a block held, and those of the sampled blocks that depend on it."""
     wired = resolved.wired
     held = {block for block, _ in resolved.layout.held if block == name or name in _behind(wired, block)}
-    return replace(end, hold=tuple(place for (block, _), place in resolved.layout.held.items() if block in held))
+    return replace(span, hold=tuple(place for (block, _), place in resolved.layout.held.items() if block in held))
 
 
 def _is_its_own(resolved: Resolved, states: Sequence[Array], held: Sequence[Array] | None) -> bool:
@@ -140,7 +140,7 @@ def _jolts(resolved: Resolved, v: Array) -> tuple[float, float]:
 
 
 def _outputs(resolved: Resolved, name: str, u: Array) -> Iterator[Array]:
-    """Each output entry that a block holds between samples, at the records (n)."""
+    """Each entry of the outputs that a block holds between samples, at the records (n)."""
     for (block, _), place in resolved.layout.held.items():
         if block == name:
             yield from u[:, place.slice].T

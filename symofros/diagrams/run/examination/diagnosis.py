@@ -12,7 +12,7 @@ from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
-from symofros.diagrams.run.examination.controllers import End, Rerun
+from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
@@ -136,7 +136,7 @@ def _stepped(ended: Ended, settings: Settings) -> Settings:
 
 
 def _part_run(ended: Ended, part: int, settings: Settings, steps: float) -> ExaminedRun:
-    """A part of a run, as it is examined, with its number of steps."""
+    """The run of one part as an ExaminedRun with this many steps, at least one."""
     (t, q, v, u), place = ended.states, ended.layout.parts[part]
     states = (t, q[:, place.q], v[:, place.v], u)
     return ExaminedRun(ended.loop.parts[part], settings, (states[1][0], states[2][0]), states, max(1, round(steps)))
@@ -152,7 +152,7 @@ def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
 
 
 def _posture_notes(ended: Ended, again: Rerun) -> list[str]:
-    """Notes on singular postures that the parts passed, or nearly.
+    """Notes on singular postures that the parts passed through or came close to.
 
     Where constraints engage or release on the way, their rank changes at any posture: nothing is said.
     """
@@ -167,7 +167,7 @@ def _posture_notes(ended: Ended, again: Rerun) -> list[str]:
         def between(first: int, last: int, settings: Settings = settings, place: Part = place) -> States | None:
             apart = float(t[last] - t[first]) / MAX_BETWEEN
             dt = apart if settings.adaptive else min(apart, settings.dt)
-            along = None if settings.realtime else again(End(float(t[first]), float(t[last]), apart, dt))
+            along = None if settings.realtime else again(RerunSpan(float(t[first]), float(t[last]), apart, dt))
             if along is None or along[0][-1] < t[last] - apart:
                 return None
             return [along[0], along[1][:, place.q], along[2][:, place.v], along[3]]

@@ -78,7 +78,7 @@ class _Doubts:
 
 
 def _is_numerical(run: Examined, name: str, rows: Array, doubts: _Doubts) -> bool:
-    """Whether finer steps change the energy gained over the most doubtful intervals."""
+    """Whether finer steps change the energy gained over the intervals in which most of it is doubtful."""
     states = run.states
     gained, kinetic = doubts.gained, doubts.kinetic
     sizes = np.maximum.accumulate(np.maximum(kinetic[1:], 1e-300))

@@ -142,7 +142,7 @@ class Examined(HeldRun):
 
     @property
     def tolerance(self) -> float:
-        """Change that is worth a note."""
+        """Relative change above which a note is made."""
         return (_UNANSWERED if self.external else 1.0) * TOLERANCE
 
     def coarse(self, window: Window, every: int) -> States | None:
@@ -154,11 +154,11 @@ class Examined(HeldRun):
         return self.repeat(first, window.t_end, 0)
 
     def fine(self, window: Window, refinements: int, every: int) -> States | None:
-        """Recorded at the same instants."""
+        """The window's records by steps that are refined so many times; None where these do not get there."""
         return self.repeat(window.first, window.t_end, refinements)
 
     def halvings(self, part: Part) -> int:
-        """Steps over a contact may all err in the same way: windows of fixed ones are looked at more closely."""
+        """Number of halvings: more for windows of fixed steps, which may all err in the same way over a contact."""
         return HALVINGS if self.h and part != "part" else 1
 
     def jumps(self, fine: States) -> bool:
@@ -171,7 +171,7 @@ class Examined(HeldRun):
             )
 
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
-        """Change of the mechanism that changes most."""
+        """Relative change of the mechanism that changes most, and the name of its block."""
         run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
         shares = ((_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v)
         return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)
