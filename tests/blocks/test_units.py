@@ -72,7 +72,7 @@ def ports_of(block: Block) -> tuple[Port, ...]:
     return (*found.inputs, *found.outputs)
 
 
-def test_every_library_block_has_a_unit_test_case() -> None:
+def test_every_library_block_has_a_case_of_its_port_units() -> None:
     assert library() == set(MAKE) | OF_THE_USER | BY_WIRE | ELSEWHERE
 
 

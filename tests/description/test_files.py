@@ -132,7 +132,7 @@ def test_unsaved_text_is_read_as_if_it_were_saved(tmp_path: Path) -> None:
     assert "too large" in read_yaml(tmp_path / "a.yaml", "#" * (MAX_BYTES + 1)).problems[0].what
 
 
-def test_nodes_know_their_line_and_column() -> None:
+def test_nodes_know_their_span_and_style_in_the_text() -> None:
     text = "a: 1  # c\nb c: {x: 'y', z: [1, 2]}\nd: |\n  e\nf:\n  - g\n"
     root, _ = compose_text(text, "x")
     places = {

@@ -39,7 +39,7 @@ def test_gains_match_those_of_scipy(size: int, scale: float, rng: np.random.Gene
         np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9 * np.abs(expected).max())
 
 
-def test_states_that_no_input_reaches_have_no_gain() -> None:
+def test_an_unstable_state_that_no_input_reaches_gives_no_gain() -> None:
     A, B = np.diag([1.0, -1.0]), np.array([[0.0], [1.0]])
     assert continuous_gain(A, B, np.eye(2), np.eye(1)) is None
     assert sampled_gain(*held_inputs(A, B, 0.1), np.eye(2), np.eye(1)) is None

@@ -34,7 +34,7 @@ def test_streams_match_those_of_rngstreams() -> None:
     assert uniforms([12345] * 6, 1)[0] == pytest.approx(0.127011122046577, abs=1e-15)
 
 
-def test_double_arithmetic_is_exact_in_python_and_c() -> None:
+def test_uniform_numbers_match_the_streams_in_python_and_c() -> None:
     block = Noise(name="n", seed=3, size=3, kind="uniform", scale=0.5, mean=0.5, period=STEP)
     found = run(block, t_end=5.0, compare=1e-300)["y"]
     expected = np.array([uniforms(stream(3, i), len(found)) for i in range(3)]).T

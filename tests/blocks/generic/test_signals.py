@@ -24,7 +24,7 @@ def test_a_constant_is_a_run_time_parameter() -> None:
 
 
 @pytest.mark.parametrize("gain", [2.0, [1.0, -2.0, 3.0], MATRIX])
-def test_matrix_gain(gain: object, rng: np.random.Generator) -> None:
+def test_a_gain_is_a_scalar_a_vector_or_a_matrix(gain: object, rng: np.random.Generator) -> None:
     u = rng.normal(size=(6, 3))
     expected = u @ np.array(MATRIX).T if gain is MATRIX else u * np.asarray(gain)
     np.testing.assert_allclose(run(Gain(name="g", gain=gain), {"u": u})["y"], expected, rtol=1e-14)
@@ -51,7 +51,7 @@ def test_sum_and_product_are_elementwise(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(found, u["u1"] / u["u2"] * u["u3"], rtol=1e-14)
 
 
-def test_pick_join_and_reshape_entries(rng: np.random.Generator) -> None:
+def test_pick_join_and_reshape_rearrange_entries(rng: np.random.Generator) -> None:
     u = rng.normal(size=(4, 6))
     np.testing.assert_array_equal(run(Pick(name="p", entries=[4, 0]), {"u": u})["y"], u[:, [4, 0]])
     np.testing.assert_array_equal(run(Reshape(name="r", shape=(2, 3)), {"u": u})["y"], u.reshape(4, 2, 3))

@@ -14,7 +14,7 @@ signal = late("scipy.signal")
 T = 0.01 * np.arange(201)
 
 
-def test_step_and_ramp_signals() -> None:
+def test_step_and_ramp_match_their_formulas() -> None:
     found = run(Step(name="s", time=[0.5, 1.0], before=-1.0, after=[2.0, 3.0], unit="N"), t_end=2.0)["y"]
     np.testing.assert_array_equal(found, np.where(T[:, None] >= [0.5, 1.0], [2.0, 3.0], -1.0))
     ramp = run(Ramp(name="r", time=0.5, slope=4.0, start=1.0, duration=1.0), t_end=2.0)

@@ -85,7 +85,7 @@ def test_octave_simulates_the_mex_function(built: Callable[..., Path], name: str
     assert np.abs(found["X"] - x).max() < SAME * np.abs(x).max()
 
 
-def test_every_other_mex_flag_works(built: Callable[..., Path]) -> None:
+def test_every_other_flag_of_the_mex_function_matches_the_model(built: Callable[..., Path]) -> None:
     """Two models loaded at once, called in turn."""
     code = (
         SHOW

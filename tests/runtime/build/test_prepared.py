@@ -225,7 +225,7 @@ def test_warnings_are_repeated_for_cached_models(compiling: Compiling, tmp_path:
 
 
 @pytest.mark.parametrize("become", [Path.mkdir, lambda path: None])
-def test_a_source_replaced_by_a_folder_counts_as_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
+def test_an_edited_or_replaced_source_counts_as_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
     path = tmp_path / "file"
     path.write_bytes(b"text")
     source = Source.of(path, b"text")

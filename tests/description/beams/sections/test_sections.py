@@ -59,7 +59,7 @@ def test_closed_forms_match_finite_elements(
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.25, 0.5])
-def test_shear_areas_of_thin_tubes_and_full_circles(nu: float) -> None:
+def test_shear_areas_of_thin_tubes_and_circles_match_known_formulas(nu: float) -> None:
     """Its wall is sheared by 2 V/A sin(theta), whatever Poisson's ratio; 6 (1 + nu)^2/(7 + 14 nu + 8 nu^2) is known."""
     material = Material(E=2.0 * (1.0 + nu), G=1.0, rho=1.0)
     thin = sections.tube(material, 1.0, 1e-5)
@@ -116,7 +116,7 @@ def test_matrices_are_integrals_over_points() -> None:
 
 
 @elements
-def test_an_l_section_has_the_known_principal_axes() -> None:
+def test_an_l_section_turned_to_its_principal_axes_has_no_coupling() -> None:
     angle_section = sections.l_section(STEEL, 2.0, 3.0, 0.2)
     assert abs(number(angle_section.EI_yz)) > 0.1
     with pytest.raises(sf.DescriptionError, match=r"shear_center's y is not zero"):
