@@ -86,7 +86,7 @@ def test_a_rod_of_another_stiffness_is_found() -> None:
 
 
 @pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("screw",)))
-def test_a_tipped_beam_on_every_kind_of_joint_agrees(kind: str) -> None:
+def test_a_beam_with_a_tip_body_on_every_kind_of_joint_agrees(kind: str) -> None:
     joint = sf.Joint("j", kind, position=(0.1, 0.2, 0.3), axis=(1, 2, 2), pitch=0.2)  # type: ignore[arg-type]
     load = sf.RigidBody("load", sf.Joint("elbow", "revolute", "b", "tip", axis=(0, 1, 0)), UNIT)
     rows = checked(sf.System(kind, [beam("b", joint), load]))

@@ -113,7 +113,7 @@ def test_a_file_that_became_unreadable_is_reported(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_only_mjcf_files_are_accepted() -> None:
+def test_models_not_read_from_mjcf_are_unsupported() -> None:
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
     pendulum = subject_of(sf.System("pendulum", [rod]))
     assert isinstance(mujoco_mjcf.build(pendulum), Unsupported)
@@ -121,7 +121,7 @@ def test_only_mjcf_files_are_accepted() -> None:
 
 
 @pytest.mark.slow
-def test_command_lines_reproduce_the_file(tmp_path: Path) -> None:
+def test_the_command_line_checks_mjcf_files_unless_options_change_their_reading(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
     # Where it is read with other joints or forces than it states, MuJoCo's own reading is no second opinion.
     for reading in (ReadingOptions(True), ReadingOptions(dissipation="none"), ReadingOptions(limits="stops")):
