@@ -85,7 +85,7 @@ def test_functions_that_cannot_be_evaluated_are_refused(name: str, inputs: dict[
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_every_output_has_a_source_in_the_equations(function: str) -> None:
+def test_every_output_names_an_attribute_of_the_equations(function: str) -> None:
     row = FUNCTIONS[function]
     if not row.by_solver:
         assert all(hasattr(FrameEquations if row.of_frame else Equations, array.source) for array in row.outputs)

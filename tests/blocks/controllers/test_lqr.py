@@ -20,7 +20,7 @@ from tests.blocks.support import refused
 
 
 @pytest.mark.parametrize(("size", "scale"), [(1, 1.0), (5, 1.0), (5, 300.0), (12, 300.0)])
-def test_gains_match_those_of_scipy(size: int, scale: float, rng: np.random.Generator) -> None:
+def test_gains_match_scipy(size: int, scale: float, rng: np.random.Generator) -> None:
     A, B = scale * rng.normal(size=(size, size)), scale * rng.normal(size=(size, 2))
     Q = np.diag(rng.uniform(0.5, 2, size))
     R = np.array([[2.0, 0.3], [0.3, 1.0]])
@@ -79,7 +79,7 @@ def test_a_floating_arm_is_regulated_along_its_manifold() -> None:
     assert "actuate more joints" in caught.value.problems[0].remedy
 
 
-def test_the_gain_in_a_closed_loop_matches_that_of_its_independent_coordinates() -> None:
+def test_the_gain_in_a_closed_loop_equals_the_gain_in_independent_coordinates() -> None:
     system = crank_driven()
     diagram = sf.Diagram("loop")
     q0 = sf.assemble(sf.compile(system), [1.2, -1.2, 1.2]).q

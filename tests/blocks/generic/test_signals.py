@@ -113,5 +113,5 @@ def make_pick(**fields: object) -> None:
         (lambda: make_pick(entries="actuated", model="free"), "none", "name the entries"),
     ],
 )
-def test_invalid_fields_are_refused(make: Callable[[], object], found: str, remedy: str) -> None:
+def test_invalid_fields_of_signal_blocks_are_refused(make: Callable[[], object], found: str, remedy: str) -> None:
     refused(make, found, remedy)

@@ -39,7 +39,7 @@ def test_a_sine_outputs_its_derivatives() -> None:
 
 
 @pytest.mark.parametrize(("sweep", "method"), [("linear", "linear"), ("exponential", "logarithmic")])
-def test_chirps_match_those_of_scipy(sweep: str, method: str) -> None:
+def test_chirps_match_scipy(sweep: str, method: str) -> None:
     found = run(Chirp(name="c", amplitude=2.0, first=0.5, last=4.0, duration=1.5, sweep=sweep), t_end=2.0)
     during = T <= 1.5
     expected = 2 * signal.chirp(T, 0.5, 1.5, 4.0, method=method, phi=-90)

@@ -38,7 +38,7 @@ def test_a_controlled_arm_is_the_same_compiled_and_interpreted(period: float | N
     agree(arm(PENDULUM, period, q1=0.3), 0.05, ["plant.q", "plant.v", "pd.effort", "plant.a"], 100.0)
 
 
-def test_a_continuous_controller_matches_that_of_simulate() -> None:
+def test_a_continuous_controller_moves_as_formulas_of_simulate_do() -> None:
     """The same law as formulas of `simulate`'s, by the same method and steps: another path to the same motion."""
     model = sf.compile(PENDULUM)
     names = model.names

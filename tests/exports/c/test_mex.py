@@ -48,7 +48,7 @@ SHOW = "function show(name, x), printf('%s', name); printf(' %.17g', x'); printf
 
 
 @pytest.mark.parametrize("name", SAMPLED)
-def test_the_calls_of_the_paper_work(built: Callable[..., Path], name: str) -> None:
+def test_the_calls_of_the_paper_match_the_model(built: Callable[..., Path], name: str) -> None:
     """Section 8.1, literally; `model` is the model's function."""
     code = (
         SHOW

@@ -42,7 +42,7 @@ def number(g: Graph, edge: Edge) -> float:
     return found
 
 
-def test_sums_and_products_match_those_of_values() -> None:
+def test_sums_and_products_of_fields_match_their_values() -> None:
     assert at(A + A.scaled(3)) == pytest.approx(4 * at(A))
     assert at(A - A) == 0.0
     assert at(A.times(B)) == pytest.approx(at(A) * at(B))

@@ -23,7 +23,7 @@ def pendulum() -> sf.Model:
     return sf.compile(MODELS["soft_pendulum"], sf.Options(("frame_pose",), backend="interpreter"))
 
 
-def test_the_stated_error_of_a_rod_matches_that_of_its_sections(rng: np.random.Generator) -> None:
+def test_the_stated_error_of_a_rod_is_the_error_of_its_sections(rng: np.random.Generator) -> None:
     (judged,) = pendulum().beams()
     for size in (0.3, 1.0, 3.0):
         q = size * rng.standard_normal(3)

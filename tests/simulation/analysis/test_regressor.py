@@ -19,7 +19,7 @@ FUNCTIONS = sf.Options(functions=("regressor", "bias", "mass_matrix"))
 
 
 @pytest.mark.parametrize("name", sampled(("pendulum", "rx90", "space_arm", "mss"), ("rx90", "space_arm")))
-def test_regressors_match_those_of_pinocchio(name: str) -> None:
+def test_regressors_match_pinocchio(name: str) -> None:
     system = MODELS[name]
     m, engine = sf.compile(system, FUNCTIONS), pin_adapter.build(Subject(name, system))
     rng = np.random.default_rng(0)

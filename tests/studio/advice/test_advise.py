@@ -223,7 +223,7 @@ def test_two_segments_are_between_one_beam_and_the_rod(absolute: float, names: l
     assert np.linalg.norm(found - right, axis=1).max() <= advice.bounds["end"]
 
 
-def test_segments_can_replace_a_rod() -> None:
+def test_simpler_theories_of_a_rod_include_segments_and_fewer_functions() -> None:
     """Of second order, of the rod itself with fewer functions each; of the rod alone where second order lacks terms."""
     system, _ = bowed(1e-3)
     rod = replace(system.body("rod"), bend_y=4, bend_z=3)

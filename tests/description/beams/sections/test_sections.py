@@ -28,7 +28,7 @@ def number(value: Any, **values: float) -> float:
 
 
 @pytest.mark.parametrize(("ratio", "torsion"), [(1.0, 0.140577), (2.0, 0.228682), (10.0, 0.312325), (1e6, 1 / 3)])
-def test_torsion_of_rectangles_matches_that_of_the_tables(ratio: float, torsion: float) -> None:
+def test_torsion_of_rectangles_matches_published_tables(ratio: float, torsion: float) -> None:
     # Timoshenko and Goodier, Theory of Elasticity, table of k_1: J = k_1 (2a)^3 (2b).
     for y, z in ((ratio, 1.0), (1.0, ratio)):
         assert number(sections.rectangle(STEEL, y, z).GJ) == pytest.approx(torsion * ratio, rel=4e-6)
@@ -158,7 +158,7 @@ bodies:
 """
 
 
-def test_a_section_in_the_file_matches_that_of_python(tmp_path: Path) -> None:
+def test_a_section_in_a_file_equals_the_same_section_in_python(tmp_path: Path) -> None:
     entry = "section: {shape: rectangle, E: 70e9, G: 26e9, rho: 2700, y: b*(2 - x/L), z: 0.005}"
     (tmp_path / "a.yaml").write_text(FILE.format(section=entry))
     (beam,) = sf.load(tmp_path / "a.yaml").bodies

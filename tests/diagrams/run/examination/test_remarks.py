@@ -98,7 +98,7 @@ def test_phase_drift_from_amplitude_errors_is_reported() -> None:
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-def test_energy_lost_at_repeated_contacts_is_reported() -> None:
+def test_energy_errors_of_repeated_contacts_are_reported() -> None:
     simulation = pushed("python", "-9.81 + max(0, -1e3*x[0])", x=1.0)
     coarse, fine = (simulation.run(20.0, method=m, dt=1e-3, record=0.1) for m in ("euler", "rk4"))
     assert np.abs(coarse.v).max() > 1.5 * np.abs(fine.v).max()

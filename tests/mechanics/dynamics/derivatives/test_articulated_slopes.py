@@ -122,7 +122,7 @@ def test_errors_grow_in_proportion_to_the_load_from_a_lower_level() -> None:
     assert (gained > (2.0, 4.0, 10.0)).all()
 
 
-def test_the_option_affects_no_other_function() -> None:
+def test_the_forward_dynamics_option_affects_no_other_function() -> None:
     """Forming all others by either way gives one program; what is solved by M is said in `Options`."""
     system = MODELS["double_pendulum"]
     others = tuple(name for name, row in FUNCTIONS.items() if name not in FOLLOWING and not row.of_frame)

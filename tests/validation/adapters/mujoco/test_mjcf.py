@@ -97,7 +97,7 @@ def test_features_ignored_by_the_importer_are_not_disagreements(tmp_path: Path) 
         ),
     ],
 )
-def test_files_that_it_cannot_represent_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+def test_files_that_the_engine_cannot_represent_are_unsupported(tmp_path: Path, text: str, reason: str) -> None:
     built = mujoco_mjcf.build(subject(tmp_path, text))
     assert isinstance(built, Unsupported) and reason in built.reason
 
