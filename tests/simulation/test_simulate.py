@@ -232,7 +232,7 @@ class TestEnds:
             ({"method": "rodas4", "u": lambda t, q, v: [0.0]}, "derivatives of the inputs"),
         ],
     )
-    def test_contradictory_settings_are_refused(self, pendulum: sf.Model, settings, words: str) -> None:
+    def test_invalid_settings_are_refused(self, pendulum: sf.Model, settings, words: str) -> None:
         with pytest.raises(sf.SymofrosError, match=words):
             sf.simulate(pendulum, **settings)
 

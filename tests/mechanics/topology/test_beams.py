@@ -33,7 +33,7 @@ def problems(one: sf.Beam, **system: Any) -> str:
         ({"loads": [sf.Load((1.0, 0, 0))]}, ["Load on a Beam"]),
     ],
 )
-def test_impossible_beams_are_refused(changed: dict[str, Any], said: list[str]) -> None:
+def test_beams_with_unusable_functions_or_loads_are_refused(changed: dict[str, Any], said: list[str]) -> None:
     text = problems(beam(**changed))
     assert all(part in text for part in said), text
 

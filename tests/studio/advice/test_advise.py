@@ -143,7 +143,7 @@ def test_joints_that_a_controller_reads_are_not_removed() -> None:
         ({"inputs": {"swing": "1e9*exp(swing^2*1e6)"}}, "can't be computed to its tolerance"),
     ],
 )
-def test_scenes_that_do_not_fit_are_refused(changed: dict[str, object], words: str) -> None:
+def test_scenes_that_do_not_fit_their_system_are_refused(changed: dict[str, object], words: str) -> None:
     system, scene = crane()
     with pytest.raises(sf.SymofrosError) as raised:
         sf.advise(system, replace(scene, **changed))  # type: ignore[arg-type]

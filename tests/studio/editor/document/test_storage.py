@@ -277,7 +277,7 @@ def test_files_are_listed_by_path(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("content", "says"), [(b"\xff\xfe", "not UTF-8"), (b"#" * (MAX_TEXT + 1), "too large")])
-def test_files_that_are_not_text_are_refused(file: Path, content: bytes, says: str) -> None:
+def test_files_that_are_not_text_or_too_large_are_refused(file: Path, content: bytes, says: str) -> None:
     session = opened(file)
     (file.parent / "odd.yaml").write_bytes(content)
     with pytest.raises(FileError, match=says):
