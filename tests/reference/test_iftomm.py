@@ -74,7 +74,7 @@ class TestFourBars:
 
     @pytest.mark.parametrize("stabilisation", ["projection", "baumgarte"])
     @pytest.mark.parametrize("n", [1, 2])
-    def test_motion_over_ten_seconds_matches_the_reference(self, n: int, stabilisation: str) -> None:
+    def test_four_bars_match_the_reference_over_ten_seconds(self, n: int, stabilisation: str) -> None:
         energy, motion = four_bars.MOTION[n]
         run = self.run(n, 10.0, 5e-3, stabilisation, output=1.0)
         assert np.abs(run.energy - energy).max() < 1e-6
@@ -134,7 +134,7 @@ class TestBricard:
     @pytest.mark.parametrize(
         ("method", "settings"), [("dop853", {"rtol": 1e-10, "atol": 1e-10}), ("rk4", {"dt": 5e-3})]
     )
-    def test_motion_over_ten_seconds_matches_the_reference(self, method: str, settings: dict[str, float]) -> None:
+    def test_bricard_matches_the_reference_over_ten_seconds(self, method: str, settings: dict[str, float]) -> None:
         times = [row[0] for row in bricard.MOTION]
         run = sf.simulate(compiled("bricard"), t_end=10.0, method=method, output=times, **settings)  # type: ignore[arg-type]
         assert run.outcome.ok

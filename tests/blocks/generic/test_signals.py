@@ -39,7 +39,7 @@ def test_a_gain_is_a_scalar_a_vector_or_a_matrix(gain: object, rng: np.random.Ge
         ("rev/min", "rad/s", np.pi / 30),
     ],
 )
-def test_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
+def test_only_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
     found = run(Gain(name="g", gain=3.0, unit_in=unit_in, unit_out=unit_out), {"u": [2.0, 5.0]})["y"]
     assert found == pytest.approx([6.0 * factor, 15.0 * factor], rel=1e-14)
 

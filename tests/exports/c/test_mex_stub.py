@@ -104,6 +104,8 @@ def test_matrices_of_the_mex_function_match_python(program: Path, rng: np.random
         (([9.0], np.zeros(6), [], [], [0.0, 1.0, 0.0]), ":span"),
     ],
 )
-def test_invalid_states_inputs_and_parameters_are_refused(program: Path, arguments: tuple[Sequence[float], ...], words: str) -> None:
+def test_invalid_states_inputs_and_parameters_are_refused(
+    program: Path, arguments: tuple[Sequence[float], ...], words: str
+) -> None:
     done = ask(program, 1, *arguments)
     assert done.returncode == 3 and words in done.stdout

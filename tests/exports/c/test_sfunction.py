@@ -95,7 +95,9 @@ def test_the_block_accepts_parameters_in_their_order(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("words", [("nothing", "direct_dynamics"), ("MODEL", "fly")])
-def test_unknown_model_names_or_functions_of_the_block_are_refused(block: tuple[str, Path], words: tuple[str, str]) -> None:
+def test_unknown_model_names_or_functions_of_the_block_are_refused(
+    block: tuple[str, Path], words: tuple[str, str]
+) -> None:
     name, folder = block
     with pytest.raises(AssertionError, match="no such ModelName or ModelFunction"):
         run("./block", words[0].replace("MODEL", name), words[1], "0", "1", cwd=folder)

@@ -98,9 +98,7 @@ def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str
 
 
 @pytest.mark.parametrize("case", FLOATING)
-def test_the_gradient_of_turning_bodies_matches_differences(
-    method: str, case: str, rng: np.random.Generator
-) -> None:
+def test_the_gradient_of_turning_bodies_matches_differences(method: str, case: str, rng: np.random.Generator) -> None:
     """With weights of the quaternions' coordinates, along a random change of start, speeds, inputs and parameters."""
     m, n = of(case), 10
     q0, v0 = m.random_state(rng)
@@ -183,7 +181,9 @@ def test_rollouts_step_as_simulate_does(method: str, case: str, rng: np.random.G
         ("double_pendulum", {"v0": [1e200, 1e200]}, "leaves the finite numbers"),
     ],
 )
-def test_rollouts_without_derivatives_and_invalid_starts_are_refused(case: str, changes: dict[str, object], words: str) -> None:
+def test_rollouts_without_derivatives_and_invalid_starts_are_refused(
+    case: str, changes: dict[str, object], words: str
+) -> None:
     m = model(case, "c")
     given = {"q0": m.neutral(), "v0": np.zeros(m.nv), "u": np.zeros((3, m.nu)), "dt": 0.01} | changes
     with pytest.raises(sf.SymofrosError, match=words):

@@ -54,7 +54,9 @@ def advice(errors: float, unsettled: float) -> sf.Advice:
         ([9.0, 3.0, 1.0], 1.0, False),
     ],
 )
-def test_changes_by_further_functions_count_against_the_advice(changes: list[float], unsettled: float, converged: bool) -> None:
+def test_changes_by_further_functions_count_against_the_advice(
+    changes: list[float], unsettled: float, converged: bool
+) -> None:
     search = settled(changes)
     assert search.unsettled == pytest.approx(unsettled)
     assert any("not converged" in note for note in search.notes) != converged

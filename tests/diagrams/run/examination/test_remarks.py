@@ -145,7 +145,9 @@ def test_work_of_dampers_and_sampled_efforts_is_not_noted_at_any_scale(scale: fl
         (15.0, 0.05, 0.1107, ""),
     ],
 )
-def test_forces_that_are_not_finite_between_steps_are_reported(t_end: float, dt: float, instant: float, said: str) -> None:
+def test_forces_that_are_not_finite_between_steps_are_reported(
+    t_end: float, dt: float, instant: float, said: str
+) -> None:
     """A force that is no number for an instant: half the step asks for it there, in a window or in all of the run.
 
     The phase of the third one drifts, so that all of the run is made once more; in the last one no step asks.

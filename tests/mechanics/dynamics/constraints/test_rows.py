@@ -117,7 +117,7 @@ class TestMultipliers:
         assert lam == pytest.approx(least, rel=1e-8, abs=1e-9)
 
     @pytest.mark.parametrize("drift", [0.0, 1e-9, 1e-8])
-    def test_slight_drift_does_not_change_accelerations(self, drift: float) -> None:
+    def test_slight_drift_changes_accelerations_only_slightly(self, drift: float) -> None:
         m = sf.compile(MODELS["parallelogram"], sf.Options(functions=_SOLVED))
         at = sf.assemble(m, [1.0, -1.0, 1.0, 1.0], np.ones(4))
         there = m.forward_dynamics(at.q, at.v, [0.7])
