@@ -52,7 +52,7 @@ class TestSimplePendulum:
             ("generalized_alpha", {"dt": 1e-3}),
         ],
     )
-    def test_energy_is_kept(self, method: str, settings: dict[str, float]) -> None:
+    def test_energy_of_the_pendulum_is_kept(self, method: str, settings: dict[str, float]) -> None:
         run = sf.simulate(self.model(), [np.pi], t_end=10.0, method=method, **settings)  # type: ignore[arg-type]
         # Generalised alpha damps what it can't resolve: 1e-3 J here with steps of a millisecond, of order h^2.
         bound = 2e-2 if method == "generalized_alpha" else 5e-5

@@ -72,7 +72,7 @@ show('M', Mnl); show('gnl', gnl); show('X', X); show('U', U);
 
 
 @pytest.mark.parametrize("name", SAMPLED)
-def test_octave_simulates_the_mex_function(built: Callable[..., Path], name: str) -> None:
+def test_a_simulation_by_the_mex_function_matches_the_trajectory(built: Callable[..., Path], name: str) -> None:
     code = (
         SHOW
         + f"""

@@ -32,7 +32,7 @@ def ports(text: str) -> list[np.ndarray]:
     return [np.array(list(map(float, line.split()))) for line in text.splitlines()]
 
 
-def test_direct_dynamics_can_be_integrated(block: tuple[str, Path]) -> None:
+def test_integrated_direct_dynamics_match_the_trajectory(block: tuple[str, Path]) -> None:
     name, folder = block
     found = ports(run("./block", name, "direct_dynamics", "0.2", str(STEP[name]), cwd=folder))
     wanted = trajectory(name, 0.2)

@@ -45,7 +45,7 @@ def compared(result: ModelResult) -> set[str]:
         ("several_joints_on_a_body", "ball_joint", "free_joint", "nameless"), ("several_joints_on_a_body", "free_joint")
     ),
 )
-def test_all_offered_quantities_agree(tmp_path: Path, name: str) -> None:
+def test_all_quantities_offered_by_mujoco_agree(tmp_path: Path, name: str) -> None:
     result = check(subject(tmp_path, MODELS[name]), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert compared(result) == MJCF_ROUTE | {"motion_energy"}
