@@ -31,7 +31,7 @@ def test_a_missing_package_skips_with_its_extra() -> None:
         require("no_such", "network")
 
 
-def test_extras_named_in_tests_match_those_of_the_distribution() -> None:
+def test_extras_named_in_tests_are_defined_by_the_distribution() -> None:
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     asks = re.compile(r'(?<![\w.])(?:require|late)\("[\w.]+", "([\w-]+)"\)')
     named = {extra for path in (ROOT / "tests").rglob("*.py") for extra in asks.findall(path.read_text())}

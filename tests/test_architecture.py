@@ -69,7 +69,7 @@ def test_tests_are_where_the_map_says(part: str) -> None:
         assert (ROOT / (path if path.startswith("tests/") else f"tests/{path}")).is_dir(), cells
 
 
-def test_files_named_as_answers_exist() -> None:
+def test_files_named_in_the_look_ups_exist() -> None:
     paths = [
         path
         for part in ("Look-ups", "To add ...")

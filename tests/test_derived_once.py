@@ -89,7 +89,7 @@ bodies:
 """
 
 
-def test_an_energy_call_on_a_loop_from_a_file_derives_once(work: Counter[str], tmp_path: Path) -> None:
+def test_simulating_a_loop_from_a_file_derives_it_once(work: Counter[str], tmp_path: Path) -> None:
     """Compiled: M, h and Q; the constraints; forward dynamics with the projection; the energies; and the stepper."""
     file = tmp_path / "slider_crank.yaml"
     sf.save(MODELS["slider_crank"], file)

@@ -46,7 +46,7 @@ def test_every_problem_has_its_four_parts() -> None:
         ("zz", [f"name{i}" for i in range(20)], "use one of: " + ", ".join(f"name{i}" for i in range(12)) + ", …"),
     ],
 )
-def test_suggestions_for_misspelt_names(name: str, known: list[str], remedy: str) -> None:
+def test_misspelt_names_get_a_suggestion(name: str, known: list[str], remedy: str) -> None:
     assert did_you_mean(name, known) == remedy
     assert near_name(name, known) == (remedy if remedy.startswith("did") else "")
 

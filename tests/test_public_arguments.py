@@ -130,7 +130,7 @@ def test_wrong_arguments_are_refused_in_four_parts(name: str) -> None:
         (lambda: model().dynamics(Q, V, U, t=None), "t is not an array of numbers"),
     ],
 )
-def test_messages_for_wrong_arguments(call: Callable[[], object], words: str) -> None:
+def test_wrong_arguments_are_refused_with_the_expected_message(call: Callable[[], object], words: str) -> None:
     with pytest.raises(sf.SymofrosError) as refusal:
         call()
     assert re.search(words, str(refusal.value), re.DOTALL), str(refusal.value)
@@ -176,7 +176,7 @@ def first(names: Iterable[str], pair: tuple[str, str] = ("a", "b"), kind: type[s
     return next(iter(names))
 
 
-def test_iterators_are_read_only_once() -> None:
+def test_checks_do_not_exhaust_iterators() -> None:
     assert first(iter(["a", "b"]), ["c", "d"], sf.ShapeError) == "a"
     for wrong in (("a", "b", "c"), ("a", 1), "ab"):
         with pytest.raises(sf.ArgumentError, match="pair is not a tuple"):

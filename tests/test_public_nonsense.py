@@ -47,7 +47,9 @@ def sound() -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_nonsense_is_refused(name: str, sound: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_public_functions_meet_nonsense_with_library_errors_only(
+    name: str, sound: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
     function = getattr(sf, name)
     try:

@@ -85,7 +85,7 @@ def test_functions_that_cannot_be_evaluated_are_refused(name: str, inputs: dict[
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_every_output_has_a_source_in_the_equations(function: str) -> None:
+def test_every_output_names_an_attribute_of_the_equations(function: str) -> None:
     row = FUNCTIONS[function]
     if not row.by_solver:
         assert all(hasattr(FrameEquations if row.of_frame else Equations, array.source) for array in row.outputs)
@@ -102,7 +102,7 @@ def test_methods_take_the_inputs_of_the_table(function: str) -> None:
     assert set(parameters) - set(inputs) <= FURTHER
 
 
-def test_functions_compiled_into_one_unit() -> None:
+def test_functions_generated_together_are_listed_for_trees_and_closed_loops() -> None:
     assert generated_with("mass_matrix", True) == ("mass_matrix",)
     assert generated_with("forward_dynamics", True) == ("forward_dynamics", "project")
     assert generated_with("forward_dynamics", False) == ("forward_dynamics",)
@@ -111,7 +111,7 @@ def test_functions_compiled_into_one_unit() -> None:
     assert generated_with("constraint", True) == ("constraint", "constraint_rate", "constraint_jacobian")
 
 
-def test_functions_that_are_zero_for_a_tree_share_one_unit() -> None:
+def test_constraint_functions_of_a_tree_are_generated_together() -> None:
     """A compiler starts once for all of it."""
     empty = generated_with("constraint", False)
     stated = {name for name, row in FUNCTIONS.items() if row.constrained_only and not row.transposes}
@@ -120,7 +120,7 @@ def test_functions_that_are_zero_for_a_tree_share_one_unit() -> None:
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "double_pendulum"])
-def test_stiffness_at_rest_is_the_residual_derivative(name: str, rng: np.random.Generator) -> None:
+def test_rest_stiffness_equals_the_residual_derivative_at_rest(name: str, rng: np.random.Generator) -> None:
     m, (q, _) = model(name), model(name).random_state(rng)
     u, lam, still = rng.normal(size=m.nu), rng.normal(size=m.nc), np.zeros(m.nv)
     (K,) = m.evaluate("rest_stiffness", q=q, u=u, lam=lam)

@@ -17,7 +17,7 @@ def test_an_option_without_effect_warns_if_given(name: str, value: Any) -> None:
     assert caught[0].filename == __file__
 
 
-def test_options_that_change_nothing_do_not_warn() -> None:
+def test_options_with_an_effect_do_not_warn() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sf.Options(tune=False, processors="native", packs=False)

@@ -68,7 +68,7 @@ def test_time_of_generation_and_compilation(
     assert benchmark.pedantic(compile_anew, rounds=5).nq == 9
 
 
-def test_time_of_reading(benchmark: BenchmarkFixture, file: Path) -> None:
+def test_time_of_reading_a_description(benchmark: BenchmarkFixture, file: Path) -> None:
     benchmark.extra_info["bytes"] = file.stat().st_size
     assert len(benchmark(sf.load, file).bodies) > 7
 

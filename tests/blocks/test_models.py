@@ -175,7 +175,7 @@ def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:
 
 
 @everywhere
-def test_cartesian_control_forces(name: str) -> None:
+def test_cartesian_controllers_give_the_wrench_and_acceleration_of_their_law(name: str) -> None:
     (q, v, _), m, at = states(name), model(name), frame(name)
     rng = np.random.default_rng(1)
     J = m.frame_jacobian(at, q)[:, :3]

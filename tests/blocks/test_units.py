@@ -72,7 +72,7 @@ def ports_of(block: Block) -> tuple[Port, ...]:
     return (*found.inputs, *found.outputs)
 
 
-def test_every_library_block_has_a_unit_test_case() -> None:
+def test_every_library_block_has_a_case_of_its_port_units() -> None:
     assert library() == set(MAKE) | OF_THE_USER | BY_WIRE | ELSEWHERE
 
 
@@ -166,7 +166,7 @@ def test_entries_of_mixed_vectors_are_compared_individually() -> None:
 
 
 @pytest.mark.parametrize(("given", "taken"), [(1.5, [2.0]), ([1.5], 2.0)])
-def test_a_scalar_and_a_vector_of_one_have_the_same_size(given: object, taken: object) -> None:
+def test_a_scalar_and_a_vector_of_one_entry_are_interchangeable(given: object, taken: object) -> None:
     diagram = sf.Diagram("one")
     diagram.add(lib.Constant(name="a", value=taken))
     diagram.add(lib.Constant(name="b", value=given))

@@ -174,7 +174,7 @@ def test_commands_refuse_wrong_input_in_four_parts(line: str, tmp_path: Path, mo
     assert REFUSED[line] in result.output and all(part in result.output for part in _PARTS), result.output
 
 
-def test_the_editor_names_the_extra_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_its_packages_the_editor_names_the_extra_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "uvicorn", None)
     monkeypatch.delitem(sys.modules, "symofros.studio.editor.command", raising=False)
     result = invoke("edit", CART_POLE)
@@ -208,7 +208,7 @@ def test_the_harness_starts_from_any_folder(
     assert not (tmp_path / "reports").exists()
 
 
-def test_the_harness_names_the_extra_to_install(
+def test_without_its_packages_the_harness_names_the_extra_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """As after `pip install symofros` alone: a package that can't be imported stands for one that is not there."""

@@ -29,20 +29,20 @@ def seen(monkeypatch: pytest.MonkeyPatch) -> list[sf.Viewer]:
     return found
 
 
-def test_view_records_a_model(tmp_path: Path) -> None:
+def test_simulate_records_the_motion_of_a_model(tmp_path: Path) -> None:
     found = run(ARM, "0.1", "--set", "q1=0.5", "--record-view", tmp_path / "r.gif", "-o", tmp_path / "r.npz")
     said = "".join(found.output.split())  # Long names of folders are folded.
     assert found.exit_code == 0 and f"wrote{tmp_path / 'r.gif'}" in said, found.output
     assert (tmp_path / "r.gif").read_bytes().startswith(b"GIF89a") and (tmp_path / "r.npz").exists()
 
 
-def test_view_records_a_diagram(tmp_path: Path) -> None:
+def test_simulate_records_a_picture_of_a_diagram(tmp_path: Path) -> None:
     found = run(folder_with(tmp_path), "--record-view", tmp_path / "r.png", "--json")
     assert found.exit_code == 0 and str(tmp_path / "r.png") in found.stdout, found.output
     assert (tmp_path / "r.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_view_plays_a_model(seen: list[sf.Viewer]) -> None:
+def test_simulate_plays_the_motion_of_a_model(seen: list[sf.Viewer]) -> None:
     found = run(ARM, "0.1", "--set", "q1=0.5", "--view", "--exaggeration", "2")
     (viewer,) = seen
     assert found.exit_code == 0 and f"it plays at {viewer.url} (Ctrl-C ends)" in found.output, found.output
@@ -58,7 +58,7 @@ def test_a_real_time_diagram_is_shown_while_it_runs(seen: list[sf.Viewer], tmp_p
     assert viewer._player is not None and viewer._player.motion.end == pytest.approx(0.2)  # Then it is played.
 
 
-def test_view_selects_one_of_several_mechanisms(seen: list[sf.Viewer], tmp_path: Path) -> None:
+def test_simulate_shows_the_mechanism_of_the_chosen_block(seen: list[sf.Viewer], tmp_path: Path) -> None:
     file = folder_with(tmp_path, TEXT.replace("blocks:\n", "blocks:\n" + SECOND))
     refused = run(file, "--view")
     assert refused.exit_code == 2 and "blocks that move one: second, plant" in refused.output and not seen
@@ -88,7 +88,7 @@ def test_a_run_that_cannot_be_displayed_is_not_started(
     assert found.exit_code == 2 and expected in found.output and not (tmp_path / "r.npz").exists()
 
 
-def test_static_mechanisms_are_drawn_and_interrupted_recordings_are_kept(seen: list[sf.Viewer], tmp_path: Path) -> None:
+def test_view_draws_a_picture_or_plays_a_trajectory_of_the_same_model(seen: list[sf.Viewer], tmp_path: Path) -> None:
     assert run(FOUR_BAR, "--record", tmp_path / "bar.png", command="view").exit_code == 0
     assert (tmp_path / "bar.png").read_bytes().startswith(b"\x89PNG")
     motion = sf.simulate(sf.compile(sf.load(ARM)), [1.0, 0.0], None, 0.1, dt=0.01).save(tmp_path / "run.npz")

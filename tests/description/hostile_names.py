@@ -52,7 +52,7 @@ def _with_formulas(system: sf.System, names: list[str], rng: np.random.Generator
     taken = {name for joint in joints for name in (*coordinate_names(joint), *speed_symbols(joint))}
     free = [name for name in names if name not in taken and name not in ("t", "pi")]
     parameter, inlet = free[:2]
-    # A coordinate that is the rate of another by name is refused in formulas of speeds: see test_formulas_two_meanings.
+    # A coordinate that is the rate of another by name is refused in formulas of speeds: see unclear.txt.
     safe = [name for name in (*q, *v) if not ({*q} & {*v} & {name})] or ["t"]
 
     def formula(symbols: Sequence[str]) -> str:

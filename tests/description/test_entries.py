@@ -52,7 +52,7 @@ def test_a_station_is_a_number_from_root_to_tip(cls: Any, at: Any) -> None:
         cls(at=at)
 
 
-def test_newer_entries_follow_the_positional_ones() -> None:
+def test_positional_entries_of_beams_keep_their_order() -> None:
     beam = sf.Beam("b", sf.Joint("q", "fixed"), 1.0, 2.0, 3.0, 4.0, 5.0, 0.6, 0.7, 0.8, 1, 2, 3, "legendre")
     assert (beam.length, beam.rhoA, beam.EI_z, beam.EI_y, beam.GJ) == (1.0, 2.0, 3.0, 4.0, 5.0)
     assert (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) == (0.6, 0.7, 0.8)

@@ -29,7 +29,7 @@ def test_yaml_1_2_numbers_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["symofros: 1\nbodies: [", "- 1\n- 2\n", "a: " + "[" * 80 + "]" * 80])
-def test_a_document_that_is_not_a_mapping_is_refused(text: str, tmp_path: Path) -> None:
+def test_texts_that_are_not_yaml_mappings_are_refused(text: str, tmp_path: Path) -> None:
     """All other faults of a text are in faults.txt."""
     assert "arm.yaml:" in (message := faults(tmp_path, text)) and "rule:" in message
 
@@ -132,7 +132,7 @@ def test_unsaved_text_is_read_as_if_it_were_saved(tmp_path: Path) -> None:
     assert "too large" in read_yaml(tmp_path / "a.yaml", "#" * (MAX_BYTES + 1)).problems[0].what
 
 
-def test_nodes_know_their_line_and_column() -> None:
+def test_nodes_know_their_span_and_style_in_the_text() -> None:
     text = "a: 1  # c\nb c: {x: 'y', z: [1, 2]}\nd: |\n  e\nf:\n  - g\n"
     root, _ = compose_text(text, "x")
     places = {

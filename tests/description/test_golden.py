@@ -189,7 +189,9 @@ def test_foreign_files_are_read_as_stated(case: Case, request: pytest.FixtureReq
 
 
 @pytest.mark.parametrize("case", SAID)
-def test_notes_and_errors_of_foreign_files(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+def test_notes_and_errors_of_foreign_files_match_the_golden_file(
+    case: Case, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
     assert_golden(case, lambda lines: said_of_each(lines, case.path.stem, tmp_path), request)
 
 
@@ -201,6 +203,8 @@ def test_stages_are_read_as_stated(case: Case, request: pytest.FixtureRequest, t
 
 
 @pytest.mark.parametrize("case", golden_cases(__file__, "usd"))
-def test_notes_and_errors_of_usd_stages(case: Case, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+def test_notes_and_errors_of_usd_stages_match_the_golden_file(
+    case: Case, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
     require("pxr", "usd")
     assert_golden(case, lambda lines: said_of_each(lines, "usd", tmp_path), request)

@@ -214,7 +214,7 @@ def test_included_files_share_the_limit_on_length(tmp_path: Path, monkeypatch: p
 
 
 @pytest.mark.parametrize("suffix", ["yaml", "urdf", "xml", "sdf", "usda"])
-def test_loops_of_links_are_refused(suffix: str, tmp_path: Path) -> None:
+def test_loops_of_symbolic_links_are_refused(suffix: str, tmp_path: Path) -> None:
     """Path.resolve raises RuntimeError of them before Python 3.13."""
     loop = tmp_path / f"loop.{suffix}"
     loop.symlink_to(loop.name)

@@ -216,7 +216,7 @@ def test_a_singular_mass_matrix_gives_no_stop(tmp_path: Path) -> None:
         ('damping="0" friction="0.0" K="0"', ""),
     ],
 )
-def test_urdf_dynamics_entries_are_read(tmp_path: Path, dynamics: str, said: str) -> None:
+def test_other_entries_of_urdf_dynamics_are_noted_unless_zero(tmp_path: Path, dynamics: str, said: str) -> None:
     text = URDF.replace('damping="0.5" friction="0.2"', dynamics)
     notes = sf.load(written(tmp_path, ".urdf", text), dissipation="all").notes
     assert [note for note in notes if "<dynamics>" in note or "friction" in note] == [said] * bool(said)

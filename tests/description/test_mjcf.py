@@ -188,7 +188,7 @@ def test_mujoco_errors_are_reported_with_their_line(tmp_path: Path, text: str, s
     assert said in message and "model.xml:2" in message, message
 
 
-def test_a_urdf_named_xml_is_recognised(tmp_path: Path) -> None:
+def test_a_urdf_named_xml_is_refused_with_the_remedy(tmp_path: Path) -> None:
     path = tmp_path / "robot.xml"
     path.write_text('<robot name="r"/>')
     assert "name a URDF file .urdf" in faults(path)

@@ -117,7 +117,7 @@ def test_equalities_constrain_the_same_speeds_as_in_mujoco(tmp_path: Path, name:
         np.testing.assert_allclose(row_space(G), row_space(G_mujoco @ T), atol=1e-9)
 
 
-def test_couplings_match_those_of_mujoco(tmp_path: Path) -> None:
+def test_couplings_have_the_residual_of_mujoco(tmp_path: Path) -> None:
     path = write(tmp_path, ARM.format(q1="") + f"<equality>{EQUALITIES['joint'][0]}</equality>")
     model = sf.compile(sf.load(path), sf.Options(backend="interpreter"))
     reference = Reference(path)

@@ -48,7 +48,7 @@ def required(noun: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("noun", "entry"), entries(), ids=lambda value: getattr(value, "__name__", value))
-def test_nonsense_is_refused_or_taken_whole(noun: Any, entry: str) -> None:
+def test_invalid_values_are_refused_with_a_rule_or_give_a_usable_object(noun: Any, entry: str) -> None:
     noun(**required(noun))
     for value in NONSENSE:
         try:
@@ -62,7 +62,7 @@ def test_nonsense_is_refused_or_taken_whole(noun: Any, entry: str) -> None:
 
 
 @pytest.mark.parametrize("maker", ["rpy", "axis_angle", "quaternion", "matrix"])
-def test_invalid_rotations_are_refused(maker: str) -> None:
+def test_rotations_refuse_nonsense_with_library_errors_only(maker: str) -> None:
     make = getattr(sf.Rotation, maker)
     names = list(inspect.signature(make).parameters)
     sound = {"axis": (0, 0, 1), "rows": np.eye(3)}

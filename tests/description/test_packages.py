@@ -37,7 +37,7 @@ def test_packages_of_a_workspace_are_found_by_their_manifests(tmp_path: Path) ->
     assert [body.name for body in sf.load(main).bodies] == ["base", "finger"]
 
 
-def test_a_package_in_another_folder_is_named(tmp_path: Path) -> None:
+def test_a_package_in_another_folder_is_opened_by_the_proposed_option(tmp_path: Path) -> None:
     pytest.importorskip("xacro")
     main = package(tmp_path / "src/arm", "arm_description", arm=INCLUDE)
     package(tmp_path / "elsewhere", "hand_description", hand=FINGER)

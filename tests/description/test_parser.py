@@ -37,7 +37,7 @@ def test_text_round_trips(expression: Expression) -> None:
     assert str(parse(str(again))) == str(again)
 
 
-def test_limits_of_length_and_depth_of_expressions() -> None:
+def test_expressions_too_long_or_too_deep_are_refused() -> None:
     with pytest.raises(ExpressionError, match=f"longer than {MAX_LENGTH}"):
         parse("1" * (MAX_LENGTH + 1))
     with pytest.raises(ExpressionError, match=f"deeper than {MAX_DEPTH}"):

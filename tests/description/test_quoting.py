@@ -60,7 +60,7 @@ def test_reserved_names_are_time_and_the_constants() -> None:
     assert RESERVED == {"t", *CONSTANTS}
 
 
-def test_alternative_readings_of_quoted_names() -> None:
+def test_unquoted_names_with_operators_are_found_and_quoted() -> None:
     known = ["a", "b", "a-b", "left-hip", "dleft-hip", "1", "c d"]
     assert readings("2*a-b + 1", known) == [("a-b", "2*`a-b` + 1")]
     assert not readings("2*a - b", known) and not readings("`a`-`b`", known) and not readings("sin(1)", known)

@@ -54,7 +54,7 @@ def test_frame_look_ups_grow_linearly(tmp_path: Path, monkeypatch: pytest.Monkey
     assert asked[1] < 5 * asked[0]
 
 
-def test_circular_frame_references_are_reported_once(tmp_path: Path) -> None:
+def test_circular_frame_references_are_reported_once_of_each_kind(tmp_path: Path) -> None:
     file = tmp_path / "circle.sdf"
     file.write_text(chain(50, "f49"))
     with pytest.raises(sf.DescriptionError, match="its frame refers to itself") as raised:

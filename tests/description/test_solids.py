@@ -97,7 +97,7 @@ size = st.floats(1e-3, 1e3)
 
 
 @given(x=size, y=size, z=size, share=st.floats(0.05, 0.95))
-def test_two_half_boxes_make_a_box(x: float, y: float, z: float, share: float) -> None:
+def test_two_parts_of_a_box_add_up_to_the_box(x: float, y: float, z: float, share: float) -> None:
     parts = [
         solids.box(RHO, share * x, y, z, center=((share - 1) * x / 2, 0, 0)),
         solids.box(RHO, (1 - share) * x, y, z, center=(share * x / 2, 0, 0)),

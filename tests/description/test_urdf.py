@@ -44,7 +44,7 @@ def test_urdf_links_and_joints_are_read(tmp_path: Path) -> None:
     assert joint is not None and joint.limits == sf.Limits(-1.0, 1.0)  # Negative sizes are no limits.
 
 
-def test_snapping_only_removes_rounding_by_default(tmp_path: Path) -> None:
+def test_snapping_makes_angles_exact_within_the_tolerance(tmp_path: Path) -> None:
     rough = ROBOT.replace("1.5707963267948966", "1.5708")
     for tolerance, expected in ((1e-14, 1.5708), (1e-4, np.pi / 2)):
         joint = load(tmp_path, rough, snap_tol=tolerance).body("upper").joint

@@ -227,7 +227,7 @@ def test_bodies_without_joints_are_fixed_or_floating(load: Load) -> None:
         assert words in notes
 
 
-def test_names_are_the_shortest_unique_ones() -> None:
+def test_prims_get_the_shortest_unique_names() -> None:
     paths = ("/a/arm/link", "/b/arm/link", "/b/hand", "/world")
     assert names_of(paths) == dict(zip(paths, ("a_arm_link", "b_arm_link", "hand", "world_"), strict=True))
 
@@ -255,14 +255,14 @@ def test_layers_of_other_folders_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "data", [b"", b"#usda 1.0\n(", b"PXR-USDC" + bytes(200), b"PK\x03\x04" + bytes(50), b"\x00" * 99]
 )
-def test_damaged_files_are_refused(tmp_path: Path, data: bytes) -> None:
+def test_damaged_usd_files_are_refused(tmp_path: Path, data: bytes) -> None:
     file = tmp_path / "robot.usd"
     file.write_bytes(data)
     with pytest.raises(sf.DescriptionError, match="OpenUSD can't read|no rigid body"):
         sf.load(file)
 
 
-def test_a_crashed_or_missing_usd_reader_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_or_slow_usd_reader_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))
     monkeypatch.setattr(usd_stage, "_answer", lambda _: {"absent": "usd-core"})
@@ -274,7 +274,7 @@ def test_a_crashed_or_missing_usd_reader_is_reported(tmp_path: Path, monkeypatch
         sf.load(file)
 
 
-def test_visuals_are_placed_solids(load: Load) -> None:
+def test_visual_shapes_become_placed_solids(load: Load) -> None:
     color = "color3f[] primvars:displayColor = [(1, 0, 0)]"
     ball = prim("Sphere", "s", "double radius = 0.5", color, *placed((1, 2, 3)))
     system = load(stage(body("arm", ball, at=(5, 5, 5), **ARM)))

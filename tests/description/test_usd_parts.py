@@ -66,7 +66,7 @@ def test_each_missing_part_is_reported(folder: Path) -> None:
 
 @pytest.mark.parametrize("name", ["[x", "x[y", "x[y]", "part.usda[y]", "[x]", "[x]y", "x]"])
 @pytest.mark.parametrize("suffix", [".usda", ""])
-def test_link_names_cannot_leave_the_folder(folder: Path, name: str, suffix: str) -> None:
+def test_symbolic_links_of_any_name_cannot_leave_the_folder(folder: Path, name: str, suffix: str) -> None:
     inside = folder / "model"
     inside.mkdir()
     (inside / "part.usda").write_text(stage(body("own", **ARM)))
@@ -97,7 +97,7 @@ def test_members_of_a_usdz_package_are_found(folder: Path) -> None:
     assert sf.load(package).bodies[0].name == "arm"
 
 
-def test_openusd_warnings_become_notes(folder: Path) -> None:
+def test_warnings_are_parsed_from_the_output_of_openusd(folder: Path) -> None:
     file = folder / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))
     assert not any("OpenUSD" in note for note in sf.load(file).notes)
@@ -107,7 +107,7 @@ def test_openusd_warnings_become_notes(folder: Path) -> None:
     assert warnings_of(printed) == ["In </a>: odd.", "b"]
 
 
-def test_endless_output_of_a_worker_ends_the_wait(tmp_path: Path) -> None:
+def test_output_of_a_worker_is_bounded_and_its_failures_are_reported(tmp_path: Path) -> None:
     script = tmp_path / "worker.py"
     script.write_text("import sys\nsys.stderr.write('\\x1bxy' * 400_000)\nprint('{\"text\": 1}')\n")
     answer = answer_of(str(script), {}, 60.0, "too much")

@@ -86,7 +86,7 @@ REFUSED += [
 
 
 @pytest.mark.parametrize(("text", "said"), REFUSED)
-def test_expressions_have_no_side_effects(tmp_path: Path, text: str, said: str) -> None:
+def test_expressions_beyond_computation_are_refused(tmp_path: Path, text: str, said: str) -> None:
     (tmp_path / "inner").mkdir()
     (tmp_path / "secret.yaml").write_text("a: 1")
     quoted = text.replace("&", "&amp;").replace('"', "&quot;")

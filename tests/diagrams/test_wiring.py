@@ -94,7 +94,7 @@ def part() -> sf.Diagram:
     return inner
 
 
-def test_a_part_equals_its_blocks() -> None:
+def test_a_part_runs_like_its_blocks_in_the_diagram() -> None:
     whole = arm(PENDULUM, q1=0.3)
     diagram = sf.Diagram("arm", dict(whole.models))
     for name in ("plant", "goal"):

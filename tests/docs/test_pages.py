@@ -185,7 +185,7 @@ def test_links_lead_to_files_that_exist(page: str) -> None:
         assert target.startswith(("http", "mailto:")) or (ROOT / page).parent.joinpath(target).exists(), target
 
 
-def test_the_first_readme_example_is_short_and_complete(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_first_readme_example_is_short_and_prints_what_it_states(capsys: pytest.CaptureFixture[str]) -> None:
     first, *_ = blocks("README.md", "python")
     assert len(first.text.strip().splitlines()) <= 25
     exec(compile(first.text, "README.md", "exec"), {})

@@ -141,7 +141,7 @@ NONSENSE = (
 )
 
 
-def test_invalid_arguments_are_refused_and_the_readme_lists_valid_ones(tmp_path: Path) -> None:
+def test_the_program_refuses_invalid_arguments_and_the_readme_names_its_outputs(tmp_path: Path) -> None:
     exported = sf.export(pendulum(), "c", tmp_path / "c")
     program = build(exported.folder, "program")
     for arguments in NONSENSE:

@@ -23,7 +23,7 @@ def moved(system: sf.System | str | Path, start: dict[str, float]) -> sf.Diagram
 
 
 @pytest.mark.parametrize("angle", [1.0, 2.2])
-def test_the_stated_start_is_kept(angle: float, tmp_path: Path) -> None:
+def test_an_exported_diagram_keeps_its_stated_start(angle: float, tmp_path: Path) -> None:
     """A projection alone, which a package makes of itself, moves the crank as well as what follows it."""
     diagram = moved(MODELS["slider_crank"], {"turn": angle, "dturn": 1.0})
     exported = sf.export(diagram, "c", tmp_path / "c")

@@ -65,14 +65,14 @@ def test_a_new_file_never_lands_on_a_users_own(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["sym", "math", "double", "symofros_model", "fmi2Functions", "end", "CON", "sym_x", "3R"]
 )
-def test_reserved_names_are_refused(name: str) -> None:
+def test_reserved_names_become_other_identifiers(name: str) -> None:
     """Of C, its headers, Windows, FMI, Matlab, and ours."""
     called = identifier(name)
     assert called != name
     assert called.isidentifier()
 
 
-def test_unknown_targets_and_outputs_are_refused(tmp_path: Path) -> None:
+def test_invalid_arguments_of_export_are_refused(tmp_path: Path) -> None:
     with pytest.raises(sf.ArgumentError, match="did you mean 'fmu"):
         sf.export(PENDULUM, "fmu1", tmp_path)  # type: ignore[arg-type]
     with pytest.raises(sf.UnknownNameError, match="no coordinate or speed 'q7'"):

@@ -13,7 +13,7 @@ from reference_models.rigid.chain import chain
 
 
 @pytest.mark.slow
-def test_many_models_run_in_threads() -> None:
+def test_many_models_in_threads_give_the_results_of_one_thread() -> None:
     models = [sf.compile(chain(n)) for n in range(1, 6)]
     states = [model.random_state(np.random.default_rng(i)) for i, model in enumerate(models)]
 

@@ -18,7 +18,7 @@ def as_before() -> Iterator[None]:
     gc.set_threshold(*thresholds)
 
 
-def test_existing_objects_are_frozen_and_collections_become_rare() -> None:
+def test_collect_rarely_freezes_existing_objects_and_raises_the_threshold() -> None:
     gc.set_threshold(700, 10, 10)
     collect_rarely()
     assert gc.get_freeze_count() > 1000

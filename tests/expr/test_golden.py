@@ -77,7 +77,7 @@ FORMED = [name for name in FORMS if name != "folding"]
 
 
 @pytest.mark.parametrize("case", [case for name in FORMS for case in golden_cases(__file__, name)])
-def test_formed_packs_match_the_golden_text(case: Case, request: pytest.FixtureRequest) -> None:
+def test_formed_programs_match_the_golden_text(case: Case, request: pytest.FixtureRequest) -> None:
     assert_golden(case, lambda text: program_text(FORMS[case.path.stem](parse_program(text))), request)
 
 

@@ -74,7 +74,7 @@ def assert_same(found: np.ndarray, expected: np.ndarray, scale: float = 0.0) -> 
 
 
 @pytest.mark.parametrize("case", sampled(CASES, SOME))
-def test_the_mass_matrix_matches_that_of_inverse_dynamics_and_of_energy(case: str) -> None:
+def test_the_mass_matrix_agrees_with_inverse_dynamics_and_kinetic_energy(case: str) -> None:
     m, (q, v) = model(case), state(case)
     M = m.mass_matrix(q)
     forces = m.inverse_dynamics(q, v, np.vstack([np.zeros(m.nv), np.eye(m.nv)]))

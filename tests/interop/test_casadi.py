@@ -100,7 +100,7 @@ def test_structural_zeros_of_hessians_are_left_out(dynamics: Any) -> None:
     ]
 
 
-def test_hessians_are_available_for_loops() -> None:
+def test_casadi_hessians_of_loops_match_the_model() -> None:
     system = MODELS["four_bar"]
     model, dynamics = sf.compile(system), sf.interop.casadi.Dynamics(system)
     given = state(model, model.nu)

@@ -43,7 +43,7 @@ def test_postures_match_the_reference(row: np.ndarray) -> None:
     assert sizes[4] < 1e-11 and sizes[3] > SMALLEST - 1e-9
 
 
-def test_the_cube_posture_is_at_rest() -> None:
+def test_accelerations_from_rest_in_the_cube_shape_match_the_reference() -> None:
     m, rest = model(), np.zeros(5)
     assert np.linalg.svd(m.constraint_jacobian(rest), compute_uv=False)[:4] == pytest.approx(SINGULAR_VALUES, rel=1e-12)
     a, lam, rank = m.constrained_dynamics(rest, rest, [])

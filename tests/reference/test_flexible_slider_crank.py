@@ -62,7 +62,7 @@ def deflection(modes: int, **changed: object) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     ("retain", "bound"), [("first_order", 0.02), pytest.param("all", 0.02, marks=pytest.mark.slow)]
 )
-def test_deflections_with_foreshortening_match(retain: str, bound: float) -> None:
+def test_deflections_with_foreshortening_match_the_reference(retain: str, bound: float) -> None:
     """Three functions on the clamped root frame; the reference's own rod of four elements errs by 0.7 %."""
     across, along = deflection(3, retain=retain)
     assert np.abs(across).max() < 0.02 * LARGEST and np.abs(along).max() < 2e-6

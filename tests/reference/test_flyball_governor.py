@@ -16,7 +16,7 @@ FASTEST = {6.283185307179586: -8117.203311123155, 1.0053096491487339: -8117.2046
 
 
 @pytest.mark.parametrize(("speed", "fastest"), FASTEST.items())
-def test_the_fastest_mode_matches_that_of_reduced_equations(speed: float, fastest: float) -> None:
+def test_the_fastest_mode_matches_reduced_equations(speed: float, fastest: float) -> None:
     m = compiled("flyball_governor")
     assert m.names.q == ("phi", "beta_right", "beta_left", "s")
     q, v = np.array([0.0, np.pi / 6, np.pi / 6, 0.5]), np.array([speed, 0.0, 0.0, 0.0])

@@ -52,7 +52,7 @@ class TestSimplePendulum:
             ("generalized_alpha", {"dt": 1e-3}),
         ],
     )
-    def test_energy_is_kept(self, method: str, settings: dict[str, float]) -> None:
+    def test_energy_of_the_pendulum_is_kept(self, method: str, settings: dict[str, float]) -> None:
         run = sf.simulate(self.model(), [np.pi], t_end=10.0, method=method, **settings)  # type: ignore[arg-type]
         # Generalised alpha damps what it can't resolve: 1e-3 J here with steps of a millisecond, of order h^2.
         bound = 2e-2 if method == "generalized_alpha" else 5e-5
@@ -74,7 +74,7 @@ class TestFourBars:
 
     @pytest.mark.parametrize("stabilisation", ["projection", "baumgarte"])
     @pytest.mark.parametrize("n", [1, 2])
-    def test_ten_seconds_match_the_reference(self, n: int, stabilisation: str) -> None:
+    def test_four_bars_match_the_reference_over_ten_seconds(self, n: int, stabilisation: str) -> None:
         energy, motion = four_bars.MOTION[n]
         run = self.run(n, 10.0, 5e-3, stabilisation, output=1.0)
         assert np.abs(run.energy - energy).max() < 1e-6
@@ -110,7 +110,7 @@ class TestAndrews:
         return run
 
     @pytest.mark.parametrize("method", ["dop853", "dopri5", "rodas4"])
-    def test_eight_digits_match_the_reference(self, method: str) -> None:
+    def test_eight_digits_of_the_angles_match_the_reference(self, method: str) -> None:
         run = self.run(method, rtol=1e-12 if method != "rodas4" else 1e-11, atol=1e-12)
         angles, rates, _ = andrews.MOTION[0.03]
         at = int(np.argmin(np.abs(run.t - 0.03)))
@@ -120,7 +120,7 @@ class TestAndrews:
         # Rates of the test set itself are good to 7 digits: its integrator controls angles.
         np.testing.assert_allclose(run.v[at], andrews.ours(rates), rtol=1e-7)
 
-    def test_all_tabulated_times_match(self) -> None:
+    def test_states_at_all_tabulated_times_match(self) -> None:
         run = self.run("dop853", rtol=1e-12, atol=1e-12)
         for k, time in ((1, 0.01), (2, 0.02), (5, 0.05)):
             angles, rates, _ = andrews.MOTION[time]
@@ -134,7 +134,7 @@ class TestBricard:
     @pytest.mark.parametrize(
         ("method", "settings"), [("dop853", {"rtol": 1e-10, "atol": 1e-10}), ("rk4", {"dt": 5e-3})]
     )
-    def test_ten_seconds_match_the_reference(self, method: str, settings: dict[str, float]) -> None:
+    def test_bricard_matches_the_reference_over_ten_seconds(self, method: str, settings: dict[str, float]) -> None:
         times = [row[0] for row in bricard.MOTION]
         run = sf.simulate(compiled("bricard"), t_end=10.0, method=method, output=times, **settings)  # type: ignore[arg-type]
         assert run.outcome.ok

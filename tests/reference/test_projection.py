@@ -46,7 +46,7 @@ def central(body: sf.RigidBody, numbers: Numbers) -> tuple[float, Array, Array]:
 
 
 @pytest.mark.parametrize("name", sampled(NAMES, SMALL))
-def test_projected_equations_match(name: str, rng: np.random.Generator) -> None:
+def test_equations_match_projected_newton_euler_equations(name: str, rng: np.random.Generator) -> None:
     model, system = reference(name), MODELS[name]
     numbers = Numbers(system)
     gravity = numbers.values(system.gravity)

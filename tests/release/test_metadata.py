@@ -84,7 +84,7 @@ def test_the_conda_recipe_renders() -> None:
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/installation.md", "docs/tutorial/index.md"])
-def test_newcomer_pages_install_only_released_packages(page: str) -> None:
+def test_newcomer_pages_do_not_install_an_unreleased_package(page: str) -> None:
     if "(not released yet)" not in (ROOT / "CHANGELOG.md").read_text().partition("\n### ")[0]:
         pytest.skip("it has been released")
     text = (ROOT / page).read_text()

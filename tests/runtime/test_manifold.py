@@ -143,7 +143,7 @@ def test_difference_undoes_integrate_at_any_angle(seed: int, first: float, secon
 
 @given(SEEDS, ANGLES)
 @settings(max_examples=40)
-def test_the_difference_on_the_graph_matches_that_of_numbers(seed: int, angle: float) -> None:
+def test_graph_and_numeric_differences_of_configurations_agree(seed: int, angle: float) -> None:
     rng = np.random.default_rng(seed)
     q0, dq = configuration(rng), step(rng, (angle, angle))
     q1 = integrate(SEGMENTS, q0, dq)

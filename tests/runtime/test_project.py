@@ -98,7 +98,7 @@ def test_projection_handles_a_massless_body(backend: str) -> None:
     assert q[0] == pytest.approx(0.6, abs=1e-12) and v[0] == pytest.approx(1.0, abs=1e-12)
 
 
-def test_a_loop_that_cannot_close_is_reported() -> None:
+def test_projection_returns_the_residual_of_a_loop_that_cannot_close() -> None:
     system = MODELS["four_bar"]
     other = sf.Rod("too_long", ("crank", "end"), ("rocker", "end"), 1.5)
     m = sf.compile(replace(system, constraints=(*system.constraints, other)))

@@ -66,6 +66,6 @@ def test_a_run_that_fails_ends_with_1() -> None:
         (["--plot", "window"], "of diagrams only"),
     ],
 )
-def test_invalid_arguments_are_refused(arguments: list[str], words: str) -> None:
+def test_invalid_arguments_of_simulate_are_refused(arguments: list[str], words: str) -> None:
     found = run(PENDULUM, "0.01", *arguments)
     assert found.exit_code == 2 and words in found.output

@@ -51,7 +51,7 @@ def test_functions_that_solve_stay_in_double_precision(name: str, way: str) -> N
         assert ours.dtype == np.float64 and np.array_equal(ours, theirs)
 
 
-def test_single_precision_works_in_inverse_kinematics_and_identification() -> None:
+def test_inverse_kinematics_and_base_parameters_of_single_precision_models_are_double() -> None:
     exact = compiled("double_pendulum")
     single, frame = exact.with_precision("single"), exact.names.frames[-1]
     for ours, theirs in zip(motion_of_joints(single, frame), motion_of_joints(exact, frame), strict=True):

@@ -148,7 +148,7 @@ class TestConstraints:
         assert worst("projection", 0.01) < 1e-12 < worst("baumgarte", 0.01) < drift
         assert np.log2(drift / worst("none", 0.005)) == pytest.approx(4.0, abs=0.2)
 
-    def test_an_open_first_state_is_refused(self) -> None:
+    def test_a_first_state_off_the_constraints_is_refused(self) -> None:
         model = compiled("slider_crank")
         turning = sf.assemble(model, [0.3, -0.1, -0.2], [10.0, 0.0, 0.0])
         q, v = turning.q, turning.v
@@ -232,7 +232,7 @@ class TestEnds:
             ({"method": "rodas4", "u": lambda t, q, v: [0.0]}, "derivatives of the inputs"),
         ],
     )
-    def test_contradictory_settings_are_refused(self, pendulum: sf.Model, settings, words: str) -> None:
+    def test_invalid_settings_are_refused(self, pendulum: sf.Model, settings, words: str) -> None:
         with pytest.raises(sf.SymofrosError, match=words):
             sf.simulate(pendulum, **settings)
 

@@ -102,7 +102,7 @@ def test_inputs_of_batches_match_simulate(kind: str, method: str) -> None:
         assert_same(many[i], sf.simulate(m, q[i], v[i], 0.2, u=alone(i), method=method, dt=1e-2, output=0.05))
 
 
-def test_each_trajectory_has_its_parameters() -> None:
+def test_each_trajectory_may_have_its_own_parameters() -> None:
     system, n = MODELS["cart_pole"], 34
     free = tuple(sf.Parameter(one.name, one.value) for one in system.parameters)
     m = sf.compile(replace(system, parameters=free))
@@ -147,7 +147,7 @@ def test_trajectories_may_end_at_different_times(method: str) -> None:
         assert all(np.array_equal(a[i], b, equal_nan=True) for a, b in zip(bits(found), bits(alone), strict=True)), i
 
 
-def test_trajectories_off_the_constraints_are_refused() -> None:
+def test_a_start_off_the_constraints_ends_only_its_own_trajectory() -> None:
     m = model("four_bar")
     q, v = starts(m, 4)
     good = sf.simulate_batch(m, q, v, 0.05)

@@ -43,7 +43,7 @@ def test_a_disc_that_falls_flat_ends_with_its_contact_named(method: str, options
     assert 0.3 < run.outcome.t < 0.5, str(run.outcome)
 
 
-def test_a_disc_falling_flat_in_a_batch_is_not_ok() -> None:
+def test_a_disc_falling_flat_in_a_batch_ends_as_singular() -> None:
     q, v = disc(0.5, 0.0, 0.0)
     runs = sf.simulate_batch(model("rolling_disc"), np.array([q, q]), v, t_end=1.0, dt=1e-3)
     assert not runs.ok.any() and runs.outcome(0).kind == "singular"

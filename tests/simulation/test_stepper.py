@@ -340,7 +340,7 @@ def test_an_unreferenced_stepper_is_freed() -> None:
     assert gone() is None
 
 
-def test_a_long_motion_keeps_only_its_last_inputs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_motion_keeps_only_its_last_inputs_and_notes_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(by_hand, "MOST_NOTED", 600)
     monkeypatch.setattr(front, "MOST_NOTED", 600)
     model, u = compiled("cart_pole"), pushes(compiled("cart_pole"), 1000)

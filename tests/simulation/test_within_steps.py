@@ -95,7 +95,7 @@ def test_a_pulse_gives_its_impulse(cart: sf.Model, shape: str, method: str) -> N
 
 
 @pytest.mark.parametrize("method", [*OWN, *SUNDIALS])
-def test_a_push_and_a_pull_leave_a_displacement(cart: sf.Model, method: str) -> None:
+def test_a_push_and_a_pull_leave_the_right_displacement(cart: sf.Model, method: str) -> None:
     """Their impulses cancel; the moment about the end of the step does not."""
     if method in SUNDIALS:
         pytest.importorskip("sksundae")
@@ -107,7 +107,7 @@ def test_a_push_and_a_pull_leave_a_displacement(cart: sf.Model, method: str) -> 
 
 @pytest.mark.parametrize("method", ["dopri5", "dop853"])
 @pytest.mark.parametrize(("share", "begin"), [(0.05, 6.1), (0.3, 2.3)])
-def test_forces_skipped_by_steps_are_found_without_a_formula_of_time(
+def test_short_forces_of_state_or_python_functions_are_not_stepped_over(
     cart: sf.Model, method: str, share: float, begin: float
 ) -> None:
     """A force on part of the way, and one by a function of the caller's: of one twentieth of the run, or more."""

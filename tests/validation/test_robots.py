@@ -9,7 +9,7 @@ from validation.worker_pool import run_case
 
 
 @pytest.mark.parametrize("label", sampled(("ur5", "kinova", "solo12"), ["ur5"]))
-def test_robots_agree(label: str) -> None:
+def test_engines_agree_on_every_robot(label: str) -> None:
     result = run_case(robot_case(label), Settings(states=20))
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert {row.engine for row in result.comparisons if row.status == "agree"} >= {

@@ -13,7 +13,7 @@ def motion(rng: np.random.Generator, count: int = 8) -> dict[str, np.ndarray]:
     return {name: rng.normal(size=(count, 2)) for name in ("q_desired", "v_desired", "q", "v")}
 
 
-def test_joint_pd_law(rng: np.random.Generator) -> None:
+def test_joint_pd_adds_proportional_and_derivative_terms(rng: np.random.Generator) -> None:
     given = motion(rng)
     found = run(JointPD(name="c", kp=[100.0, 50.0], kd=3.0), given)["effort"]
     expected = [100.0, 50.0] * (given["q_desired"] - given["q"]) + 3.0 * (given["v_desired"] - given["v"])

@@ -20,7 +20,7 @@ from tests.blocks.support import refused
 
 
 @pytest.mark.parametrize(("size", "scale"), [(1, 1.0), (5, 1.0), (5, 300.0), (12, 300.0)])
-def test_gains_match_those_of_scipy(size: int, scale: float, rng: np.random.Generator) -> None:
+def test_gains_match_scipy(size: int, scale: float, rng: np.random.Generator) -> None:
     A, B = scale * rng.normal(size=(size, size)), scale * rng.normal(size=(size, 2))
     Q = np.diag(rng.uniform(0.5, 2, size))
     R = np.array([[2.0, 0.3], [0.3, 1.0]])
@@ -39,7 +39,7 @@ def test_gains_match_those_of_scipy(size: int, scale: float, rng: np.random.Gene
         np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9 * np.abs(expected).max())
 
 
-def test_states_that_no_input_reaches_have_no_gain() -> None:
+def test_an_unstable_state_that_no_input_reaches_gives_no_gain() -> None:
     A, B = np.diag([1.0, -1.0]), np.array([[0.0], [1.0]])
     assert continuous_gain(A, B, np.eye(2), np.eye(1)) is None
     assert sampled_gain(*held_inputs(A, B, 0.1), np.eye(2), np.eye(1)) is None
@@ -79,7 +79,7 @@ def test_a_floating_arm_is_regulated_along_its_manifold() -> None:
     assert "actuate more joints" in caught.value.problems[0].remedy
 
 
-def test_the_gain_in_a_closed_loop_matches_that_of_its_independent_coordinates() -> None:
+def test_the_gain_in_a_closed_loop_equals_the_gain_in_independent_coordinates() -> None:
     system = crank_driven()
     diagram = sf.Diagram("loop")
     q0 = sf.assemble(sf.compile(system), [1.2, -1.2, 1.2]).q

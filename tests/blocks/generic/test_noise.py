@@ -25,7 +25,7 @@ def uniforms(state: list[int], count: int) -> list[float]:
     return found
 
 
-def test_streams_match_those_of_rngstreams() -> None:
+def test_streams_match_rngstreams() -> None:
     # The states that the authors' package RngStreams gives its first three streams.
     assert stream(0, 0) == [12345] * 6
     assert stream(1, 0) == [3692455944, 1366884236, 2968912127, 335948734, 4161675175, 475798818]
@@ -34,7 +34,7 @@ def test_streams_match_those_of_rngstreams() -> None:
     assert uniforms([12345] * 6, 1)[0] == pytest.approx(0.127011122046577, abs=1e-15)
 
 
-def test_double_arithmetic_is_exact_in_python_and_c() -> None:
+def test_uniform_numbers_match_the_streams_in_python_and_c() -> None:
     block = Noise(name="n", seed=3, size=3, kind="uniform", scale=0.5, mean=0.5, period=STEP)
     found = run(block, t_end=5.0, compare=1e-300)["y"]
     expected = np.array([uniforms(stream(3, i), len(found)) for i in range(3)]).T
@@ -42,7 +42,7 @@ def test_double_arithmetic_is_exact_in_python_and_c() -> None:
     np.testing.assert_allclose(found, expected, atol=2.3e-16)
 
 
-def test_normal_numbers_match_those_of_box_and_muller() -> None:
+def test_normal_numbers_follow_box_and_muller() -> None:
     block = Noise(name="n", seed=8, period=STEP, scale=2.0)
     found = run(block, t_end=20.0, compare=1e-300, compiled=True)["y"]
     # NumPy does not fuse the angle into the cosine's reduction: a unit in the last place.

@@ -29,11 +29,11 @@ X, Y = [-1.0, 0.5, 2.0], [3.0, -1.0, 0.0]
         ),
     ],
 )
-def test_static_nonlinearities(block: sf.blocks.Saturation, expected: np.ndarray) -> None:
+def test_static_nonlinearities_match_their_formulas(block: sf.blocks.Saturation, expected: np.ndarray) -> None:
     np.testing.assert_allclose(run(block, {"u": U})["y"], expected, atol=1e-14)
 
 
-def test_a_switch_selects_the_first_input_from_its_threshold() -> None:
+def test_a_switch_selects_its_first_input_at_and_above_the_threshold() -> None:
     u = {"u1": np.ones((3, 2)), "u2": np.zeros((3, 2)), "by": [0.4, 0.5, 0.6]}
     assert run(Switch(name="s", threshold=0.5), u)["y"][:, 0].tolist() == [0, 1, 1]
 

@@ -24,7 +24,7 @@ def test_a_constant_is_a_run_time_parameter() -> None:
 
 
 @pytest.mark.parametrize("gain", [2.0, [1.0, -2.0, 3.0], MATRIX])
-def test_matrix_gain(gain: object, rng: np.random.Generator) -> None:
+def test_a_gain_is_a_scalar_a_vector_or_a_matrix(gain: object, rng: np.random.Generator) -> None:
     u = rng.normal(size=(6, 3))
     expected = u @ np.array(MATRIX).T if gain is MATRIX else u * np.asarray(gain)
     np.testing.assert_allclose(run(Gain(name="g", gain=gain), {"u": u})["y"], expected, rtol=1e-14)
@@ -39,7 +39,7 @@ def test_matrix_gain(gain: object, rng: np.random.Generator) -> None:
         ("rev/min", "rad/s", np.pi / 30),
     ],
 )
-def test_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
+def test_only_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
     found = run(Gain(name="g", gain=3.0, unit_in=unit_in, unit_out=unit_out), {"u": [2.0, 5.0]})["y"]
     assert found == pytest.approx([6.0 * factor, 15.0 * factor], rel=1e-14)
 
@@ -51,7 +51,7 @@ def test_sum_and_product_are_elementwise(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(found, u["u1"] / u["u2"] * u["u3"], rtol=1e-14)
 
 
-def test_pick_join_and_reshape_entries(rng: np.random.Generator) -> None:
+def test_pick_join_and_reshape_rearrange_entries(rng: np.random.Generator) -> None:
     u = rng.normal(size=(4, 6))
     np.testing.assert_array_equal(run(Pick(name="p", entries=[4, 0]), {"u": u})["y"], u[:, [4, 0]])
     np.testing.assert_array_equal(run(Reshape(name="r", shape=(2, 3)), {"u": u})["y"], u.reshape(4, 2, 3))
@@ -113,5 +113,5 @@ def make_pick(**fields: object) -> None:
         (lambda: make_pick(entries="actuated", model="free"), "none", "name the entries"),
     ],
 )
-def test_invalid_fields_are_refused(make: Callable[[], object], found: str, remedy: str) -> None:
+def test_invalid_fields_of_signal_blocks_are_refused(make: Callable[[], object], found: str, remedy: str) -> None:
     refused(make, found, remedy)

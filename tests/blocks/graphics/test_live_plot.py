@@ -55,7 +55,7 @@ def test_the_page_receives_the_samples_sent(shown: LivePlot) -> None:
         assert "EventSource" in text and "frame-ancestors 'none'" in page.headers["Content-Security-Policy"]
 
 
-def test_requests_to_other_addresses_are_refused(shown: LivePlot) -> None:
+def test_requests_of_other_paths_hosts_or_origins_are_refused(shown: LivePlot) -> None:
     root = shown.url.rsplit("/", 2)[0]
     for path in ("/", "/guess/", "/guess/rows", "/favicon.ico"):
         with pytest.raises(urllib.error.HTTPError, match="403"):
@@ -67,7 +67,7 @@ def test_requests_to_other_addresses_are_refused(shown: LivePlot) -> None:
         urllib.request.urlopen(shown.url + "other", timeout=60)
 
 
-def test_packets_from_other_senders_are_dropped(shown: LivePlot) -> None:
+def test_invalid_packets_of_other_senders_are_dropped(shown: LivePlot) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         for data in (b"", b"SYMO", pack(1, 1, 9.0, np.zeros(3)), pack(1, 1, 9.0, np.full(4, np.nan))):
             other.sendto(data, ("127.0.0.1", shown.__dict__["_page"].port))

@@ -101,6 +101,6 @@ def test_a_diagram_without_plots_is_reported() -> None:
         (ExtremityPlot(name="b", model="arm", frames=("tipp",)), "did you mean 'tip'"),
     ],
 )
-def test_signals_that_do_not_fit_a_recorder_are_refused(block: Block, words: str) -> None:
+def test_invalid_fields_of_recorders_are_refused(block: Block, words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         arm((block, {}))

@@ -14,7 +14,7 @@ signal = late("scipy.signal")
 T = 0.01 * np.arange(201)
 
 
-def test_step_and_ramp_signals() -> None:
+def test_step_and_ramp_match_their_formulas() -> None:
     found = run(Step(name="s", time=[0.5, 1.0], before=-1.0, after=[2.0, 3.0], unit="N"), t_end=2.0)["y"]
     np.testing.assert_array_equal(found, np.where(T[:, None] >= [0.5, 1.0], [2.0, 3.0], -1.0))
     ramp = run(Ramp(name="r", time=0.5, slope=4.0, start=1.0, duration=1.0), t_end=2.0)
@@ -39,7 +39,7 @@ def test_a_sine_outputs_its_derivatives() -> None:
 
 
 @pytest.mark.parametrize(("sweep", "method"), [("linear", "linear"), ("exponential", "logarithmic")])
-def test_chirps_match_those_of_scipy(sweep: str, method: str) -> None:
+def test_chirps_match_scipy(sweep: str, method: str) -> None:
     found = run(Chirp(name="c", amplitude=2.0, first=0.5, last=4.0, duration=1.5, sweep=sweep), t_end=2.0)
     during = T <= 1.5
     expected = 2 * signal.chirp(T, 0.5, 1.5, 4.0, method=method, phi=-90)

@@ -68,7 +68,7 @@ def test_an_arm_follows_a_pose(period: float | None) -> None:
     np.testing.assert_allclose((q[2:] - q[:-2]) / (2 * PERIOD), v[1:-1], atol=5e-3 * np.abs(v).max())
 
 
-def test_the_continuous_form_returns_to_its_path() -> None:
+def test_errors_of_continuous_inverse_kinematics_decay_exponentially() -> None:
     diagram, model, q0 = arm_diagram(None, gain=8.0)
     away = dict(zip(model.names.q, q0 + [0.05, -0.04, 0.06, 0.1, -0.08, 0.05], strict=True))
     diagram.models["m"] = replace(diagram.models["m"], start=away)

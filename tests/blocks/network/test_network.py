@@ -156,7 +156,7 @@ def test_hostile_packets_neither_stop_the_loop_nor_are_accepted() -> None:
         (ZenohSubscriber(name="b", key="a", size=1, address="here", period=1.0), "no address"),
     ],
 )
-def test_signals_of_wrong_size_are_refused(block: Block, words: str) -> None:
+def test_invalid_ports_addresses_and_keys_are_refused(block: Block, words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         loop_of(block)
 

@@ -41,7 +41,7 @@ def test_a_rigid_beam_does_not_depend_on_its_segments(segments: int) -> None:
     np.testing.assert_allclose(divided.frame_pose("tip", q)[0], whole.frame_pose("tip", q)[0], atol=1e-15)
 
 
-def test_a_tip_of_a_beam_in_segments_matches_that_of_the_last() -> None:
+def test_joints_connections_and_loads_of_a_divided_beam_go_to_its_segments() -> None:
     divided = arm(3)
     assert [body.name for body in divided.bodies] == ["link", "link.2", "link.3", "hand"]
     assert [body.joint.name for body in divided.bodies if body.joint] == [

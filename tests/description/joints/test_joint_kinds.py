@@ -47,7 +47,7 @@ class TestKind:
             assert rank == 1
             assert np.allclose(np.cross(spins.T, axis), 0.0, atol=1e-12)
 
-    def test_joints_marked_as_series_turn_or_slide_about_one_axis_per_speed(self, kind: JointKind) -> None:
+    def test_each_speed_of_a_series_joint_turns_or_slides_along_its_own_axis(self, kind: JointKind) -> None:
         """Each speed of a series turns or slides about or along its own axis: one part of its partial velocity is 0."""
         model = model_of(kind.name)
         J = model.frame_jacobian("body", model.neutral())

@@ -58,7 +58,7 @@ def test_parameters_are_set_on_the_command_line(tmp_path: Path) -> None:
     assert np.all(ends[1] == 0.0) and np.all(ends[2] == 0.0)
 
 
-def test_real_time_runs_last_as_long_as_stated(tmp_path: Path) -> None:
+def test_real_time_runs_keep_the_stated_speed_and_report_jitter(tmp_path: Path) -> None:
     found = run("simulate", folder_with(tmp_path), "--speed", "2", "--jitter", tmp_path / "j.png", "--json")
     said = json.loads(found.stdout)
     jitter = said["jitter"]

@@ -33,7 +33,7 @@ def test_the_diagram_schema_is_legal() -> None:
     jsonschema.Draft202012Validator.check_schema(json.loads(schema_text()))
 
 
-def test_the_diagram_schema_accepts_readable_files() -> None:
+def test_the_diagram_schema_accepts_what_the_reader_accepts() -> None:
     check(TEXT)
     check(TEXT + PART)
 
@@ -51,7 +51,7 @@ def test_the_diagram_schema_accepts_readable_files() -> None:
         ("{file: x.yaml,", "{file: x.yaml, diagram: {},"),
     ],
 )
-def test_the_diagram_schema_refuses_unreadable_files(old: str, new: str) -> None:
+def test_the_diagram_schema_refuses_what_the_reader_refuses(old: str, new: str) -> None:
     assert old in TEXT + PART
     with pytest.raises(jsonschema.ValidationError):
         check((TEXT + PART).replace(old, new, 1))

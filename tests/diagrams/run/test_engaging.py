@@ -24,7 +24,7 @@ def sliders(gap: float) -> sf.Diagram:
 
 
 @pytest.mark.parametrize("gap", [2.0 * ENGAGE_TOLERANCE, 0.7, 0.5 * ENGAGE_TOLERANCE, 0.0])
-def test_a_large_gap_ends_the_run_without_moving_bodies(gap: float) -> None:
+def test_a_large_gap_ends_the_run_and_a_small_one_is_closed_with_a_note(gap: float) -> None:
     """With its size and the input that engages; a small one is closed and said, none is closed in silence."""
     simulation = sf.Simulation(sliders(gap))
     for run in (simulation.run(0.05, dt=1e-3, record=0.01), simulation.interpret(0.05, dt=1e-3, record=0.01)):

@@ -36,7 +36,7 @@ def test_options_of_single_models_are_refused() -> None:
             bouncing().run(1.0, **option)
 
 
-def test_bounds_of_adaptive_steps_match_those_of_single_models() -> None:
+def test_max_step_bounds_adaptive_steps_and_adaptive_can_be_turned_off() -> None:
     diagram = sf.Diagram("oscillator")
     diagram.add_model("plant", oscillator_system(k=100.0), start={"x": 1.0})
     diagram.add(ForwardDynamics(name="plant", model="plant"))

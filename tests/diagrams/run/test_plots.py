@@ -20,7 +20,7 @@ def circle(plot: Plot) -> sf.Diagram:
     return diagram
 
 
-def test_plane_plots_have_equal_axes() -> None:
+def test_plane_plots_draw_the_second_entry_over_the_first_at_equal_scales() -> None:
     require("matplotlib", "plots")
     run = sf.Simulation(circle(Plot("path", ("both",), xy=True))).run(dt=0.01, record=0.05)
     (axis,) = run.plot().axes

@@ -96,7 +96,7 @@ class Returning(Running):
 
 
 @pytest.mark.parametrize(("returned", "found"), [(1.0, r"\(\)"), ([1.0, 2.0, 3.0], r"\(3,\)"), (None, "nothing")])
-def test_undeclared_outputs_are_refused_compiled_and_interpreted(returned: Any, found: str) -> None:
+def test_outputs_of_wrong_shape_are_refused_compiled_and_interpreted(returned: Any, found: str) -> None:
     d = sf.Diagram("promise")
     d.add(Promising(name="p", returned=returned, period=PERIOD))
     simulation = sf.Simulation(d)

@@ -38,7 +38,7 @@ def test_a_controlled_arm_is_the_same_compiled_and_interpreted(period: float | N
     agree(arm(PENDULUM, period, q1=0.3), 0.05, ["plant.q", "plant.v", "pd.effort", "plant.a"], 100.0)
 
 
-def test_a_continuous_controller_matches_that_of_simulate() -> None:
+def test_a_continuous_controller_moves_as_formulas_of_simulate_do() -> None:
     """The same law as formulas of `simulate`'s, by the same method and steps: another path to the same motion."""
     model = sf.compile(PENDULUM)
     names = model.names
@@ -185,7 +185,7 @@ def test_friction_of_a_diagram_matches_the_model() -> None:
     assert friction[model.names.v.index("e1")] == 0.0
 
 
-def test_a_diagram_can_switch_to_another_model() -> None:
+def test_a_model_of_a_diagram_can_be_replaced_by_its_rigid_form() -> None:
     """The same diagram, rigid: by changing the initialisation."""
     system = sf.load(MODELS / "flexible" / "flexible_pendulum.yaml")
     flexible, rigid = sf.Diagram("swap"), sf.Diagram("rigid")
@@ -203,7 +203,7 @@ def loop_from(**stated: float) -> sf.Diagram:
 
 
 @pytest.mark.parametrize("how", ["run", "interpret"])
-def test_stated_loop_starts_are_kept_or_refused(how: str) -> None:
+def test_stated_start_coordinates_of_a_loop_are_kept_or_refused(how: str) -> None:
     """It was projected with all else: q1 = 1 and dq1 = 1 became other numbers without a word."""
     run = getattr(sf.Simulation(loop_from(q1=1.0, dq1=1.0)), how)(0.002, dt=1e-3, record=1e-3)
     assert run["plant.q"][0][0] == pytest.approx(1.0, abs=1e-9) and run["plant.v"][0][0] == pytest.approx(1.0, abs=1e-9)
@@ -214,7 +214,7 @@ def test_stated_loop_starts_are_kept_or_refused(how: str) -> None:
     assert any("model 'plant': start: q2 = -1.2004 was taken as -1.2001" in note for note in run.outcome.notes)
 
 
-def test_a_zero_coordinate_is_preserved_by_projection() -> None:
+def test_a_stated_zero_coordinate_is_kept_by_projection_of_the_start() -> None:
     """The bob, 0.8 m and 0.6 m from the pivot, is on a rod of 1.1 m: along the rod both coordinates would change."""
     across = sf.Joint("x", "prismatic", position=(0.8, 0.6, 0.0), axis=(1, 0, 0))
     rail = sf.RigidBody("rail", across, sf.Inertia(1.0))

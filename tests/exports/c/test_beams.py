@@ -34,7 +34,7 @@ def judged(program: Path, rows: list[tuple[int, np.ndarray, np.ndarray, float]])
 
 
 @pytest.mark.slow
-def test_packages_report_the_static_beam_error_at_their_parameters(package: Path) -> None:
+def test_packages_report_the_error_of_beams_at_rest_for_their_parameters(package: Path) -> None:
     rests = [at_rest(share, L) for share in SHARES for L in (1e-3, 1.0, 30.0)]
     rows = [(1, model.parameter_values, rest.q, 0.2 * model.parameters["L"] ** 2) for model, rest in rests]
     said = judged(package, rows)
@@ -54,7 +54,7 @@ def test_packages_refuse_the_same_parameters_as_descriptions(package: Path, name
 
 
 @pytest.mark.slow
-def test_exported_diagrams_report_the_static_beam_error(tmp_path: Path) -> None:
+def test_exported_diagrams_report_the_error_of_beams_at_rest(tmp_path: Path) -> None:
     model, rest = at_rest(0.9, 2.0)
     diagram = column_diagram(model, rest.q)
     sf.export(diagram, "c", tmp_path, method="rk4", dt=1e-3, outputs=["first.q"])

@@ -82,7 +82,7 @@ def test_chosen_functions_are_exported_with_those_needed_for_stepping(tmp_path: 
         sf.export(system, "c", tmp_path / "other", functions=["gravity"])
 
 
-def test_invalid_arguments_are_refused(four_bar: Path) -> None:
+def test_the_example_refuses_invalid_arguments(four_bar: Path) -> None:
     build(four_bar, "example")
     for arguments in (["x"], ["1", "0.1x"], ["1", "0.1", "2"], ["--quick"], ["nan"], ["1", "0"], ["-1"]):
         done = subprocess.run(["./example", *arguments], cwd=four_bar, capture_output=True, text=True)
@@ -121,7 +121,7 @@ def test_models_that_lack_functions_of_their_method_are_refused(four_bar: Path) 
             assert run("./partial", str(method), name, cwd=four_bar).split() == [wanted], (method, name)
 
 
-def test_the_package_writes_no_global_memory(four_bar: Path) -> None:
+def test_the_package_has_no_writable_global_memory(four_bar: Path) -> None:
     """No globals: neither data nor zeroed memory in any part but the example."""
     for source in sources(four_bar):
         run("gcc", "-std=c99", "-O0", "-c", source, "-o", f"{source}.o", cwd=four_bar)
@@ -200,7 +200,7 @@ def test_models_without_inputs_or_states_are_exported(tmp_path: Path, name: str,
 
 
 @pytest.mark.parametrize("method", ["semi_implicit_euler", "dopri5", "rodas4", "generalized_alpha", "implicit_euler"])
-def test_other_methods_step_the_four_bar(tmp_path: Path, method: str) -> None:
+def test_packages_of_other_methods_step_the_four_bar(tmp_path: Path, method: str) -> None:
     """The four-bar, by every kind of loop; adaptive ones within their bound."""
     sf.export(system_of("four_bar"), "c", tmp_path, start=STARTS["four_bar"], method=method, frames=[])
     build(tmp_path, "example")

@@ -63,7 +63,7 @@ def test_more_instants_than_memory_holds_shorten_the_search(speeds: Speeds) -> N
 
 
 @pytest.mark.parametrize("target", ["sfunction", "cuda"])
-def test_targets_without_event_location_note_it(target: str, tmp_path: Path) -> None:
+def test_targets_that_cannot_locate_instants_note_formulas_of_time_that_jump(target: str, tmp_path: Path) -> None:
     force, _ = SHAPES["tent"]
     stated = sf.export(cart(force), target, tmp_path / "tent").notes
     assert any("formulas of time bend, jump or are narrow" in note for note in stated)

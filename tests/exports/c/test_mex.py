@@ -48,7 +48,7 @@ SHOW = "function show(name, x), printf('%s', name); printf(' %.17g', x'); printf
 
 
 @pytest.mark.parametrize("name", SAMPLED)
-def test_the_calls_of_the_paper_work(built: Callable[..., Path], name: str) -> None:
+def test_the_calls_of_the_paper_match_the_model(built: Callable[..., Path], name: str) -> None:
     """Section 8.1, literally; `model` is the model's function."""
     code = (
         SHOW
@@ -72,7 +72,7 @@ show('M', Mnl); show('gnl', gnl); show('X', X); show('U', U);
 
 
 @pytest.mark.parametrize("name", SAMPLED)
-def test_octave_simulates_the_mex_function(built: Callable[..., Path], name: str) -> None:
+def test_a_simulation_by_the_mex_function_matches_the_trajectory(built: Callable[..., Path], name: str) -> None:
     code = (
         SHOW
         + f"""
@@ -85,7 +85,7 @@ def test_octave_simulates_the_mex_function(built: Callable[..., Path], name: str
     assert np.abs(found["X"] - x).max() < SAME * np.abs(x).max()
 
 
-def test_every_other_mex_flag_works(built: Callable[..., Path]) -> None:
+def test_every_other_flag_of_the_mex_function_matches_the_model(built: Callable[..., Path]) -> None:
     """Two models loaded at once, called in turn."""
     code = (
         SHOW

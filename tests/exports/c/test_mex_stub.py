@@ -57,7 +57,7 @@ def answers(done: subprocess.CompletedProcess[str]) -> list[np.ndarray]:
     return [np.reshape(line[2:], (int(line[0]), int(line[1])), order="F") for line in lines]
 
 
-def test_matrices_match_those_of_python(program: Path, rng: np.random.Generator) -> None:
+def test_matrices_of_the_mex_function_match_python(program: Path, rng: np.random.Generator) -> None:
     model = sf.compile(ARM)
     (q, v, a), u = rng.normal(size=(3, 3)), rng.normal(size=2)
     x, par = np.concatenate([q, v]), [1.1]
@@ -104,6 +104,8 @@ def test_matrices_match_those_of_python(program: Path, rng: np.random.Generator)
         (([9.0], np.zeros(6), [], [], [0.0, 1.0, 0.0]), ":span"),
     ],
 )
-def test_invalid_states_are_refused(program: Path, arguments: tuple[Sequence[float], ...], words: str) -> None:
+def test_invalid_states_inputs_and_parameters_are_refused(
+    program: Path, arguments: tuple[Sequence[float], ...], words: str
+) -> None:
     done = ask(program, 1, *arguments)
     assert done.returncode == 3 and words in done.stdout

@@ -25,7 +25,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return build(folder, "../move")
 
 
-def test_instances_normalise_quaternions(package: Path) -> None:
+def test_instances_normalise_or_refuse_quaternions(package: Path) -> None:
     m = sf.compile(SYSTEMS["hopper"]())
     q, v = m.random_state(np.random.default_rng(4))
     a = m.forward_dynamics(q, v, np.zeros(m.nu))

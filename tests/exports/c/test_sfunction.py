@@ -32,7 +32,7 @@ def ports(text: str) -> list[np.ndarray]:
     return [np.array(list(map(float, line.split()))) for line in text.splitlines()]
 
 
-def test_direct_dynamics_can_be_integrated(block: tuple[str, Path]) -> None:
+def test_integrated_direct_dynamics_match_the_trajectory(block: tuple[str, Path]) -> None:
     name, folder = block
     found = ports(run("./block", name, "direct_dynamics", "0.2", str(STEP[name]), cwd=folder))
     wanted = trajectory(name, 0.2)
@@ -95,7 +95,9 @@ def test_the_block_accepts_parameters_in_their_order(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("words", [("nothing", "direct_dynamics"), ("MODEL", "fly")])
-def test_wrong_block_parameters_are_refused(block: tuple[str, Path], words: tuple[str, str]) -> None:
+def test_unknown_model_names_or_functions_of_the_block_are_refused(
+    block: tuple[str, Path], words: tuple[str, str]
+) -> None:
     name, folder = block
     with pytest.raises(AssertionError, match="no such ModelName or ModelFunction"):
         run("./block", words[0].replace("MODEL", name), words[1], "0", "1", cwd=folder)

@@ -141,6 +141,6 @@ def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> Non
         (["--recursion"], "\\paragraph{Link 3 (rocker)}"),
     ],
 )
-def test_the_equations_command_writes_its_files(words: list[str], says: str) -> None:
+def test_the_equations_command_prints_text_latex_numpy_or_recursion(words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["equations", "reference_models/closed/four_bar.yaml", *words])
     assert done.exit_code == 0 and says in done.output

@@ -121,7 +121,7 @@ def columns(result: Any, prefix: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("version", "name"), by_version(*SAMPLED, *OWN))
-def test_fmpy_validates_the_unit(made: Any, name: str, version: int) -> None:
+def test_fmpy_validates_the_fmu(made: Any, name: str, version: int) -> None:
     assert validate_fmu(str(made(name, version))) == []
 
 
@@ -159,7 +159,7 @@ def test_shipped_sources_compile_strictly(made: Any, version: int, tmp_path: Pat
     )
 
 
-def test_sources_of_two_units_share_no_symbol(made: Any, version: int, tmp_path: Path) -> None:
+def test_sources_of_two_fmus_share_no_symbol(made: Any, version: int, tmp_path: Path) -> None:
     """FMI 3 asks sources to prefix their functions; FMPy's header of FMI 2 knows no prefix."""
     headers = Path(fmpy.__file__).parent / "c-code"
     defined = []
@@ -403,7 +403,7 @@ def test_beams_beyond_their_theory_are_reported(made: Any, version: int, kind: s
 
 @pytest.mark.parametrize("version", ONE_VERSION)
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_logs_report_the_static_beam_error(made: Any, version: int, kind: str) -> None:
+def test_logs_report_the_error_of_beam_theory_at_rest(made: Any, version: int, kind: str) -> None:
     """Axial loads count, at the present length."""
     for share, L in ((0.95, 1.0), (0.9, 0.1), (0.8, 1.0), (-5.0, 10.0)):
         model, rest = at_rest(share, L)

@@ -115,7 +115,7 @@ def test_arrays_of_a_prepared_batch_survive_memory_growth(answers: dict[str, Any
 
 
 @pytest.mark.tools
-def test_wasmtime_runs_the_module(package: Path) -> None:
+def test_wasmtime_runs_the_module_without_imports(package: Path) -> None:
     """Without a single import: any runtime will do."""
     wasmtime = require("wasmtime", "dev")
     store = wasmtime.Store()

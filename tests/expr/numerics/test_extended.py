@@ -52,7 +52,7 @@ def test_function_values_at_limits_match_the_c_library() -> None:
         assert math.isnan(nearest(*outside))  # type: ignore[arg-type]
 
 
-def test_zero_is_unsigned() -> None:
+def test_atan2_ignores_the_sign_of_zero() -> None:
     """Zeros of graphs have none: an angle must not depend on how its zero came about."""
     assert nearest("atan2", -0.0, -1.0) == nearest("atan2", 0.0, -1.0) == math.pi
 

@@ -12,7 +12,7 @@ from tests.expr.test_derivative import FORMULAS
 
 
 @pytest.mark.parametrize("formula", FORMULAS)
-def test_thirty_digits_match_mpmath(formula: str) -> None:
+def test_precise_evaluation_matches_mpmath_to_thirty_digits(formula: str) -> None:
     """The same formula by mpmath itself."""
     g = Graph()
     edge = lower(parse(formula), g, {"x": g.input("q", 0), "y": g.input("q", 1)})

@@ -32,7 +32,7 @@ def spent(p: Program) -> float:
     return effort(p, p.functions[0])
 
 
-def test_a_pack_counts_as_its_operations() -> None:
+def test_a_pack_costs_its_operations_not_its_lanes() -> None:
     g = Graph()
     x, y = (Pack(tuple(g.input(name, i) for i in range(WIDTH))) for name in ("x", "y"))
     _, pack = linear_combination(g, [(g.input("q", 0), (ONE, x)), (g.input("q", 1), (ONE, y))])

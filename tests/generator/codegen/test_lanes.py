@@ -96,14 +96,14 @@ def test_vectors_match_loops_within_rounding(case: str) -> None:
 
 @pytest.mark.parametrize("width", WIDTHS)
 @pytest.mark.parametrize("case", sampled(("chain7", "friction_arm", "heavy_top"), ("heavy_top",)))
-def test_any_number_of_states_is_evaluated(case: str, width: str) -> None:
+def test_any_number_of_states_agrees_in_lanes(case: str, width: str) -> None:
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
     assert_alike(case, WIDTHS[width], (*CHEAP, *SCALAR), list(range(1, 21)))
 
 
 @pytest.mark.parametrize("width", sampled(tuple(WIDTHS), FORCED))
-def test_columns_hold_any_number_of_states(width: str) -> None:
+def test_columns_of_any_number_of_states_agree_with_rows(width: str) -> None:
     """In place, but for fewer states than lanes; entries that are always zero are cleared."""
     if not HAS[width]:
         pytest.skip("a processor without these vectors")
@@ -145,7 +145,7 @@ def test_nothing_is_written_beyond_the_last_state() -> None:
 
 
 @pytest.mark.parametrize("case", sampled(("rx90", "friction_arm", "operations"), ("friction_arm", "operations")))
-def test_each_state_may_have_its_parameters(case: str) -> None:
+def test_each_state_may_have_its_own_parameters(case: str) -> None:
     """One set for each state, and one for all through the same library."""
     model, loop = (sf.compile(stated(case), sf.Options(batch=batch, flags=EXACT)) for batch in ("vector", "loop"))  # type: ignore[arg-type]
     # Parameters that change one by one are no body's inertia.

@@ -103,7 +103,7 @@ def test_chain_sums_keep_values_and_reduce_instructions(steps: list[tuple[str, i
 
 
 @pytest.mark.parametrize("name", ["tree0", "parametrised0", "parametrised1"])
-def test_models_need_fewer_instructions(name: str) -> None:
+def test_chain_sums_reduce_the_instructions_of_models(name: str) -> None:
     staged = hoist_parameters(form_program(Equations(build_tree(system(name))), [Request("dynamics")]))
     chained = chain_sums(staged)
     check_packs(chained)

@@ -44,7 +44,7 @@ def test_rewritten_programs_have_the_same_values(case: Case) -> None:
 
 
 @pytest.mark.parametrize("case", golden_cases(__file__, "chain"))
-def test_chains_need_no_more_operations(case: Case) -> None:
+def test_chain_sums_add_no_operations(case: Case) -> None:
     stated = parse_program(case.stated)
     before, after = count_program(stated), count_program(chain_sums(stated))
     assert all(after[key].total <= operations.total for key, operations in before.items())

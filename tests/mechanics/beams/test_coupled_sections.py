@@ -90,7 +90,7 @@ def test_a_force_through_the_shear_centre_does_not_twist() -> None:
         assert q[4] == pytest.approx(twist * L / GJ, rel=1e-5, abs=1e-6 * P)
 
 
-def test_a_rod_with_the_maximum_of_sections_is_judged() -> None:
+def test_a_rod_with_the_maximum_number_of_sections_is_judged() -> None:
     """Twice as many would be more than there may be: it is compared with half of them."""
     m = sf.compile(sf.System("s", (rod((2, 0, 0), sections=40),), gravity=(0, 0, 0)))
     run = sf.simulate(m, [0.3, 0.1], t_end=0.01)

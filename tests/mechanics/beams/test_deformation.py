@@ -97,7 +97,7 @@ def turning(shape: Deformation, q: np.ndarray, x: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize("error", [stretch, shear, orthogonality, rotation, curvature])
-def test_position_errors_are_of_third_order(error: Any) -> None:
+def test_errors_of_strains_and_rotations_are_of_third_order(error: Any) -> None:
     shape = deformation()
     for x in STATIONS:
         sizes = [np.linalg.norm(error(shape, scale * STATE, x)) for scale in (0.5, 0.25)]

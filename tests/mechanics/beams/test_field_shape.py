@@ -21,7 +21,7 @@ def beam(family: str = "spline", **more: object) -> sf.Beam:
 
 @pytest.mark.parametrize("family", [family for family in FAMILIES if family != "user"])
 @pytest.mark.parametrize("more", [{}, {"foreshortening": False, "retain": "zeroth_order"}], ids=["all", "linear"])
-def test_the_tip_matches_the_model(family: str, more: dict, rng: np.random.Generator) -> None:
+def test_the_tip_of_the_field_shape_matches_the_model(family: str, more: dict, rng: np.random.Generator) -> None:
     stated = beam(family, **more)
     model = sf.compile(sf.System("s", [stated]), sf.Options(("frame_pose",), ("tip",), backend="interpreter"))
     q = 3 * rng.uniform(-1, 1, (4, stated.modes)) * small_coordinates(stated, LENGTH)

@@ -42,7 +42,7 @@ def number(g: Graph, edge: Edge) -> float:
     return found
 
 
-def test_sums_and_products_match_those_of_values() -> None:
+def test_sums_and_products_of_fields_match_their_values() -> None:
     assert at(A + A.scaled(3)) == pytest.approx(4 * at(A))
     assert at(A - A) == 0.0
     assert at(A.times(B)) == pytest.approx(at(A) * at(B))
@@ -89,7 +89,7 @@ def test_rates_are_derivatives_along_the_motion() -> None:
     assert number(g, found.second_rate(speeds)) == pytest.approx(curvature, rel=1e-5)
 
 
-def test_forms_are_added() -> None:
+def test_forms_are_added_subtracted_and_scaled() -> None:
     g = Graph()
     coordinates = [g.constant(x) for x in Q]
     one, other = (field.at(g, coordinates, g.constant(L), float(XI)) for field in (A, A.times(unit_field(LENGTHS))))

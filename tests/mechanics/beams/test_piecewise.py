@@ -26,7 +26,7 @@ ONE, OTHER = some(THIRDS, 1), some(HALVES, 2)
 
 
 @pytest.mark.parametrize("xi", STATIONS)
-def test_algebra_matches_that_of_values_exactly(xi: Fraction) -> None:
+def test_algebra_of_piecewise_polynomials_is_exact(xi: Fraction) -> None:
     assert (ONE + OTHER)(xi) == ONE(xi) + OTHER(xi)
     assert (ONE * OTHER)(xi) == ONE(xi) * OTHER(xi)
     assert ONE.scaled(Fraction(2, 3))(xi) == Fraction(2, 3) * ONE(xi)

@@ -50,7 +50,7 @@ def test_an_unloaded_coil_stays_at_rest() -> None:
 
 
 @pytest.mark.parametrize("more", [{}, {"sections": 5}])
-def test_slightly_curved_rods_keep_their_sections_and_bits(more: dict[str, object]) -> None:
+def test_rods_of_little_turn_or_stated_sections_are_left_unchanged(more: dict[str, object]) -> None:
     """Their programs, and so their bits, are the same."""
     for system in (coil(0.02, 0.3, **more), coil(3.0, 0.3, sections=5)):
         (beam,) = (link.tip_of for link in build_tree(system).links if link.tip_of is not None)

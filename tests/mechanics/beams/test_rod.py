@@ -44,7 +44,7 @@ def test_energy_is_kept_and_coriolis_matrix_gives_the_rate_of_mass(name: str, rn
 @pytest.mark.parametrize(
     ("counts", "sections", "error"), [((3, 0, 0), 12, 1e-10), ((0, 3, 0), 12, 1e-10), ((2, 2, 2), 16, 1e-8)]
 )
-def test_sections_match_an_integrated_frame(
+def test_rod_sections_match_an_integrated_frame(
     counts: tuple[int, int, int], sections: int, error: float, rng: np.random.Generator
 ) -> None:
     stations = np.array([0.3, 0.75, 1.0])

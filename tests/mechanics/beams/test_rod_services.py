@@ -23,7 +23,7 @@ def pendulum() -> sf.Model:
     return sf.compile(MODELS["soft_pendulum"], sf.Options(("frame_pose",), backend="interpreter"))
 
 
-def test_the_stated_error_of_a_rod_matches_that_of_its_sections(rng: np.random.Generator) -> None:
+def test_the_stated_error_of_a_rod_is_the_error_of_its_sections(rng: np.random.Generator) -> None:
     (judged,) = pendulum().beams()
     for size in (0.3, 1.0, 3.0):
         q = size * rng.standard_normal(3)
@@ -43,7 +43,7 @@ def test_a_rod_that_is_rolled_up_carries_a_note_on_its_sections() -> None:
     assert bent.amplified(1e3) == bent and judged.error_bound(np.array([14.0, 6.0, 0.0])) < 1e-5
 
 
-def test_services_without_rods_refuse_them(tmp_path: Path) -> None:
+def test_urdf_export_refuses_curved_rods(tmp_path: Path) -> None:
     curved = sf.System("s", (rod((1, 0, 0), curvature_z=0.5),))
     with pytest.raises(sf.ExportError, match="rods that URDF can't hold"):
         sf.export(curved, "urdf", tmp_path / "s.urdf")

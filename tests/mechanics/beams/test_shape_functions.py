@@ -96,7 +96,7 @@ def test_high_eigenmodes_keep_their_digits() -> None:
         ("clamped_free", clamped_free(3, 1.0)),
     ],
 )
-def test_values_match_scipy_and_textbooks(family: str, expected: tuple[object, ...]) -> None:
+def test_shape_functions_match_scipy_and_textbooks(family: str, expected: tuple[object, ...]) -> None:
     xi = np.linspace(0, 1, 41)
     for phi, known in zip(made(family, len(expected)), expected, strict=True):
         for order, tolerance in ((0, 1e-10), (1, 1e-9), (2, 1e-8)):

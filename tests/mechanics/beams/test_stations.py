@@ -63,7 +63,7 @@ def test_stations_keep_the_identities_of_the_equations(theory: str, rng: np.rand
     assert dJ == pytest.approx(difference, abs=1e-8)
 
 
-def test_a_closure_at_a_station_matches_that_of_its_frame(rng: np.random.Generator) -> None:
+def test_a_closure_at_a_station_has_position_and_jacobian_of_its_frame(rng: np.random.Generator) -> None:
     ground = sf.RigidBody("ground", frames=(sf.Frame("post", (0.3, 0.4, 0.1)),))
     closure = sf.Closure("stay", ("ground", "post"), ("rod", "middle"))
     system = stated("second_order", constraints=(closure,))

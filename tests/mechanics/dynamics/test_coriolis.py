@@ -36,7 +36,9 @@ def test_the_coriolis_matrix_gives_the_bias_without_gravity(name: str, rng: np.r
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "chain7"])
-def test_coriolis_matrix_is_symmetric_in_both_motions_for_coordinates(name: str, rng: np.random.Generator) -> None:
+def test_coriolis_matrix_is_symmetric_in_both_speeds_for_joints_of_one_freedom(
+    name: str, rng: np.random.Generator
+) -> None:
     """C(v) w = C(w) v for joints of one freedom: no other matrix with C v = h is so and has M' = C + C^T."""
     m = model(name)
     q, v = m.random_state(rng)

@@ -22,7 +22,7 @@ STATES = np.loadtxt(Path(__file__).with_name("open_chain_5r.txt")).reshape(3, 9,
 
 
 @pytest.mark.parametrize("state", STATES, ids=["first", "second", "third"])
-def test_open_chain_matches_the_engines_numbers(state: np.ndarray) -> None:
+def test_an_open_chain_matches_stored_results_of_other_engines(state: np.ndarray) -> None:
     model = sf.compile(MODELS["open_chain_5r"], sf.Options(backend="interpreter"))
     (q, v, bias, free), M = state[:4], state[4:]
     np.testing.assert_allclose(model.mass_matrix(q), M, rtol=0, atol=ROUNDING * np.abs(M).max())

@@ -33,7 +33,7 @@ def problems(one: sf.Beam, **system: Any) -> str:
         ({"loads": [sf.Load((1.0, 0, 0))]}, ["Load on a Beam"]),
     ],
 )
-def test_a_beam_that_cannot_exist_is_refused(changed: dict[str, Any], said: list[str]) -> None:
+def test_beams_with_unusable_functions_or_loads_are_refused(changed: dict[str, Any], said: list[str]) -> None:
     text = problems(beam(**changed))
     assert all(part in text for part in said), text
 
@@ -104,7 +104,7 @@ def test_a_single_clamped_beam_is_a_mechanism() -> None:
         ({"family": "user", "bend_y": 1, "shapes": {"bend_y": ["q*xi^2"]}}, "use xi alone"),
     ],
 )
-def test_joints_on_sections_and_elastic_shapes_are_placed_on_the_root(changed: dict[str, Any], remedy: str) -> None:
+def test_sections_and_shapes_that_depend_on_coordinates_are_refused(changed: dict[str, Any], remedy: str) -> None:
     carrier = sf.RigidBody("hub", sf.Joint("q", "revolute"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
     plain: dict[str, Any] = {"length": 2.0, "rhoA": 0.5, "EI_z": 3.0, "bend_y": 2}
     with pytest.raises(sf.DescriptionError, match="'q' may not be used here") as caught:

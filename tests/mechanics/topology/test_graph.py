@@ -59,7 +59,7 @@ def test_a_cable_with_changing_length_is_refused_with_the_remedy() -> None:
 
 
 @pytest.mark.parametrize("length", [1.0, 2.0])
-def test_the_remedy_for_winch_cables_pulls_only(length: float) -> None:
+def test_the_proposed_formulas_for_a_winch_cable_pull_and_do_not_push(length: float) -> None:
     """As a load on a free body, and as virtual power on a slide 1 m beside the winch."""
     d = "sqrt(m.px^2 + m.py^2 + (m.pz - 2)^2)"
     pull = f"max(0, k*({d} - length))/{d}"

@@ -8,7 +8,7 @@ import symofros as sf
 
 
 @pytest.mark.parametrize("name", ["t", "pi"])
-def test_a_reserved_name_in_backquotes_has_no_declare_remedy(name: str) -> None:
+def test_the_remedy_for_a_reserved_name_in_backquotes_is_not_to_declare_it(name: str) -> None:
     """Nobody can declare a parameter of such a name."""
     inertia = sf.Inertia(1.0, (1, 0, 0))
     body = sf.RigidBody("b", sf.Joint("q", "revolute", "world", effort=f"2*`{name}`"), inertia)

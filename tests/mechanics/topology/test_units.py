@@ -32,7 +32,7 @@ def test_products_powers_and_sums_have_their_units(moment: str) -> None:
     assert list(unit_problems(pendulum(moment))) == []
 
 
-def test_unit_problems_become_notes(tmp_path: Path) -> None:
+def test_inconsistent_units_of_a_file_become_notes(tmp_path: Path) -> None:
     text = (MODELS / "rigid" / "cart_pole.yaml").read_text()
     assert sf.load(MODELS / "rigid" / "cart_pole.yaml").notes == ()
     path = tmp_path / "cart_pole.yaml"

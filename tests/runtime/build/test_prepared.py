@@ -111,7 +111,7 @@ def test_a_changed_file_is_read_again(compiling: Compiling, arm: Path, change: C
     assert compiling.read == 2
 
 
-def test_other_requests_are_not_recognised(compiling: Compiling, tmp_path: Path) -> None:
+def test_other_requests_are_not_served_from_the_cache(compiling: Compiling, tmp_path: Path) -> None:
     robot = tmp_path / "robot.urdf"
     robot.write_text(URDF.format(mass=1))
     requests = [
@@ -136,7 +136,7 @@ def test_other_requests_are_not_recognised(compiling: Compiling, tmp_path: Path)
         (build, "SHARED_FLAGS", (*build.SHARED_FLAGS, "-g")),
     ],
 )
-def test_changed_code_packages_processor_or_flags_are_not_recognised(
+def test_changed_code_packages_processor_or_flags_invalidate_the_cached_model(
     compiling: Compiling, arm: Path, monkeypatch: pytest.MonkeyPatch, of: object, name: str, value: object
 ) -> None:
     compiling(arm)
@@ -145,7 +145,7 @@ def test_changed_code_packages_processor_or_flags_are_not_recognised(
     assert compiling.read == 2
 
 
-def test_changed_compiler_or_flags_are_not_recognised(
+def test_a_changed_compiler_or_flags_invalidate_the_cached_model(
     compiling: Compiling, arm: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("SYMOFROS_CFLAGS", "-O0")
@@ -225,7 +225,7 @@ def test_warnings_are_repeated_for_cached_models(compiling: Compiling, tmp_path:
 
 
 @pytest.mark.parametrize("become", [Path.mkdir, lambda path: None])
-def test_a_source_replaced_by_a_folder_counts_as_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
+def test_an_edited_or_replaced_source_counts_as_changed(tmp_path: Path, become: Callable[[Path], None]) -> None:
     path = tmp_path / "file"
     path.write_bytes(b"text")
     source = Source.of(path, b"text")

@@ -26,7 +26,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_kept_interface_matches_that_of_the_headers(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_cached_interface_equals_the_parsed_one(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     parsed, kept = interface_anew(), interface_anew()
     assert [path.suffix for path in sorted(folder.iterdir())] == [".digest", ".py"]
     for struct in STRUCTS:

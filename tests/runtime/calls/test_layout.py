@@ -64,7 +64,7 @@ def test_every_layout_gives_the_same_bits(name: str, layout: str) -> None:
 
 @pytest.mark.parametrize("n", [2, 9, library.MANY - 1, N])
 @pytest.mark.parametrize("function", ["mass_matrix", "forward_dynamics_derivatives"])
-def test_bound_results_follow_changed_inputs(function: str, n: int) -> None:
+def test_results_have_the_memory_layout_of_their_inputs(function: str, n: int) -> None:
     """By vectors, in a loop, and where a solver finishes the function."""
     q, v, u = given("friction_arm", n)
     arguments = (q,) if function == "mass_matrix" else (q, v, u)

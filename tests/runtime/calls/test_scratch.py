@@ -20,7 +20,7 @@ GUARD, UNTOUCHED = 4096, 4.25e-17
 
 @pytest.mark.parametrize("constraints", ["multipliers", "null_space"])
 @pytest.mark.parametrize("name", sampled(("four_bar", "bricard", "stewart", "slider_crank"), ("four_bar", "bricard")))
-def test_kernels_do_not_write_behind_their_scratch(
+def test_kernels_do_not_write_beyond_their_scratch_memory(
     name: str, constraints: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     arrays = []

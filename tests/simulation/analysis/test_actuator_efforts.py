@@ -85,7 +85,7 @@ def test_the_torque_that_holds_a_parallelogram() -> None:
     assert unlike.efforts == pytest.approx([0.8 * wanted, 0.2 * wanted], rel=1e-12)
 
 
-def test_the_effort_of_an_actuator_matches_that_of_a_drive() -> None:
+def test_an_actuator_and_a_drive_need_the_same_effort() -> None:
     """A crank that is driven as it moves under its actuator: two functions, one torque."""
     free = sf.compile(slider_crank(actuated=True), INTERPRETED)
     driven = sf.compile(slider_crank(prescribed=True), INTERPRETED)

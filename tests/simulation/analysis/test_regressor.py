@@ -19,7 +19,7 @@ FUNCTIONS = sf.Options(functions=("regressor", "bias", "mass_matrix"))
 
 
 @pytest.mark.parametrize("name", sampled(("pendulum", "rx90", "space_arm", "mss"), ("rx90", "space_arm")))
-def test_regressors_match_those_of_pinocchio(name: str) -> None:
+def test_regressors_match_pinocchio(name: str) -> None:
     system = MODELS[name]
     m, engine = sf.compile(system, FUNCTIONS), pin_adapter.build(Subject(name, system))
     rng = np.random.default_rng(0)
@@ -36,7 +36,7 @@ def test_regressors_match_those_of_pinocchio(name: str) -> None:
 
 
 @pytest.mark.parametrize(("name", "count"), [("pendulum", 3), ("rx90", 36)])
-def test_counts_of_base_parameters(name: str, count: int) -> None:
+def test_base_parameters_have_the_known_count_and_reproduce_the_regressor(name: str, count: int) -> None:
     """A swinging body reveals one moment and two first moments; an arm like rx90 36 combinations of 60 parameters."""
     m = sf.compile(MODELS[name], FUNCTIONS)
     base = sf.base_parameters(m)
@@ -98,7 +98,7 @@ def test_terms_of_joints_complete_inverse_dynamics(rng: np.random.Generator) -> 
         ({"joint_terms": ("coulomb",), "minimum_velocity": [1.0, 1.0, 1.0]}, "each of 2 speeds"),
     ],
 )
-def test_wrong_terms_are_refused(given: dict[str, Any], words: str) -> None:
+def test_invalid_terms_of_the_regressor_are_refused(given: dict[str, Any], words: str) -> None:
     m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
     with pytest.raises(sf.SymofrosError, match=words):
         m.regressor([0.1, 0.2], [0.0, 0.0], [0.0, 0.0], **given)

@@ -65,7 +65,7 @@ def test_a_soft_mode_is_not_a_rigid_motion(ratio: float) -> None:
     assert found.frequencies[0] == pytest.approx(ratio / np.sqrt(2 * 1.3), rel=1e-3)
 
 
-def test_absolute_coordinates_have_one_rigid_motion() -> None:
+def test_two_sliding_bodies_joined_by_a_spring_have_one_rigid_motion() -> None:
     """Two bodies joined by a spring, each with a joint to the world: K = k [1, -1; -1, 1], whose zero is rounding."""
     bodies = [
         sf.RigidBody(f"b{i}", sf.Joint(f"q{i}", "prismatic", position=(0, float(i), 0)), SOLID, [sf.Frame(f"f{i}")])

@@ -53,7 +53,7 @@ def by_hand(x: np.ndarray, u: np.ndarray, par: np.ndarray, method: str) -> np.nd
     return x
 
 
-def test_the_gradient_matches_that_of_a_complex_step(method: str, rng: np.random.Generator) -> None:
+def test_the_gradient_matches_complex_steps(method: str, rng: np.random.Generator) -> None:
     m, u = pendulum(), rng.normal(size=N)
     names = {name: m.names.par.index(name) for name in ("m", "L", "d")}
     given = u[:, None].copy()
@@ -98,9 +98,7 @@ def test_adjoint_and_forward_sensitivities_are_transposes(method: str, case: str
 
 
 @pytest.mark.parametrize("case", FLOATING)
-def test_the_gradient_of_turning_bodies_matches_that_of_differences(
-    method: str, case: str, rng: np.random.Generator
-) -> None:
+def test_the_gradient_of_turning_bodies_matches_differences(method: str, case: str, rng: np.random.Generator) -> None:
     """With weights of the quaternions' coordinates, along a random change of start, speeds, inputs and parameters."""
     m, n = of(case), 10
     q0, v0 = m.random_state(rng)
@@ -159,7 +157,7 @@ def record_of(segments: tuple[Segment, ...]) -> ModelRecord:
 
 
 @pytest.mark.parametrize("case", ["double_pendulum", "heavy_top", "torque_free_body"])
-def test_rollout_steps_match_those_of_simulate(method: str, case: str, rng: np.random.Generator) -> None:
+def test_rollouts_step_as_simulate_does(method: str, case: str, rng: np.random.Generator) -> None:
     m = model(case, "c")
     u = rng.normal(size=(N, m.nu))
     if method == "rk4":  # Its last stage stands at the end of the step, where the next sample of a signal holds.
@@ -183,7 +181,9 @@ def test_rollout_steps_match_those_of_simulate(method: str, case: str, rng: np.r
         ("double_pendulum", {"v0": [1e200, 1e200]}, "leaves the finite numbers"),
     ],
 )
-def test_rollouts_without_derivatives_are_refused(case: str, changes: dict[str, object], words: str) -> None:
+def test_rollouts_without_derivatives_and_invalid_starts_are_refused(
+    case: str, changes: dict[str, object], words: str
+) -> None:
     m = model(case, "c")
     given = {"q0": m.neutral(), "v0": np.zeros(m.nv), "u": np.zeros((3, m.nu)), "dt": 0.01} | changes
     with pytest.raises(sf.SymofrosError, match=words):

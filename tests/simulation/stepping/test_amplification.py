@@ -28,7 +28,7 @@ def test_the_factor_errs_by_the_order_of_the_method(name: str) -> None:
 
 @pytest.mark.parametrize("name", JUDGED)
 @pytest.mark.parametrize("z", [0.7j, 1.5j, -0.3 + 0.9j])
-def test_the_factor_matches_that_of_steps(name: str, z: complex) -> None:
+def test_amplification_factors_match_simulated_steps(name: str, z: complex) -> None:
     """The recurrence x_(k+2) - 2 Re R x_(k+1) + |R|^2 x_k = 0 of a factor and its conjugate."""
     factor = METHODS[name].amplification(z)
     run = sf.simulate(
@@ -50,13 +50,13 @@ def test_limits_of_stability_match_the_literature() -> None:
         assert limits[name] == (math.inf, math.inf)
 
 
-def test_the_spectral_radius_matches_that_of_the_integrator() -> None:
+def test_the_spectral_radius_equals_the_integrators_own() -> None:
     model = oscillator()
     stepper = Stepper(model, METHODS["generalized_alpha"], plan_inputs(model, None), (), model.parameter_values)
     assert stepper.run.spectral_radius == SPECTRAL_RADIUS
 
 
-def test_beyond_the_limit_the_factor_of_semi_implicit_euler_matches_that_of_the_growing_mode() -> None:
+def test_beyond_the_stability_limit_the_semi_implicit_euler_factor_is_the_growing_one() -> None:
     """Both factors are real there: the larger one is what the steps grow by."""
     h_omega = 2.2
     factor = METHODS["semi_implicit_euler"].amplification(1j * h_omega)

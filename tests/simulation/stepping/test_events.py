@@ -108,7 +108,7 @@ def test_two_nearby_zeros_are_both_found(rotor: sf.Model, method: str) -> None:
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)
-def test_a_pendulum_passing_a_level_twice_gives_two_events(pendulum: sf.Model, method: str) -> None:
+def test_a_level_just_below_the_turning_point_ends_the_run_on_time(pendulum: sf.Model, method: str) -> None:
     top = float(2 * np.arcsin(1.5 / np.sqrt(G * 0.5 / 0.33)))  # where a start at 3 rad/s turns back
     for share in (0.9, 0.9999):
         options: dict[str, Any] = {
@@ -201,7 +201,7 @@ def test_a_step_that_jumps_in_an_input_is_met_at_its_instant(rotor: sf.Model, me
 
 
 @pytest.mark.parametrize("method", ["rk4", *ADAPTIVE, *SUNDIALS])
-def test_undecidable_events_are_noted_and_no_others(thrown: sf.Model, method: str) -> None:
+def test_events_that_steps_cannot_resolve_are_noted_and_no_others(thrown: sf.Model, method: str) -> None:
     top = 10.0**2 / (2 * G)
     for level, noted in ((top + 1e-13, True), (top - 1e-13, True), (0.99 * top, False), (1.01 * top, False)):
         run = sf.simulate(

@@ -67,7 +67,7 @@ def dragged(v0: float) -> float:
     return float(np.diff(times).mean())
 
 
-def test_the_period_of_stick_and_slip_matches_that_of_the_stated_levels_but_for_smoothing() -> None:
+def test_the_stick_slip_period_matches_the_stated_friction_levels_but_for_smoothing() -> None:
     """Friction jumps from 4 N to 2 N: the spring is stretched by 40 mm, then swings about 20 mm until it sticks."""
     swing = 2.0 * (np.pi - np.arctan2(0.02, 0.005)) / 10.0
     exact = swing + 2 * 0.02 / 0.05

@@ -72,7 +72,7 @@ def test_the_spin_up_keeps_foreshortening() -> None:
 
 
 @pytest.mark.slow  # In every run: the rod that spins up, and beams that may be rigid or must bend.
-def test_advice_for_the_planar_robot() -> None:
+def test_advice_for_the_planar_robot_gains_threefold() -> None:
     robot = advised("planar_robot")
     assert robot.ok and robot.gain >= 3.0
     # A slow motion needs no stiffening, and 50:1 gears no gyroscopic moments; the beams must bend.
@@ -143,7 +143,7 @@ def test_joints_that_a_controller_reads_are_not_removed() -> None:
         ({"inputs": {"swing": "1e9*exp(swing^2*1e6)"}}, "can't be computed to its tolerance"),
     ],
 )
-def test_scenes_that_do_not_fit_are_refused(changed: dict[str, object], words: str) -> None:
+def test_scenes_that_do_not_fit_their_system_are_refused(changed: dict[str, object], words: str) -> None:
     system, scene = crane()
     with pytest.raises(sf.SymofrosError) as raised:
         sf.advise(system, replace(scene, **changed))  # type: ignore[arg-type]
@@ -166,7 +166,7 @@ def test_runs_that_end_early_are_distinguished_from_runs_that_differ(monkeypatch
 
 
 @pytest.mark.slow(minutes=5)
-def test_advice_for_the_space_station() -> None:
+def test_advice_for_the_space_station_gains_threefold() -> None:
     """Fifty-seven coordinates; one boom may be rigid in a slow motion, most elastic joints may be locked."""
     advice = advised("flexible_mss")
     # By articulated bodies an evaluation costs what its coordinates do, 57 or 25; the rest is fewer evaluations.
@@ -223,7 +223,7 @@ def test_two_segments_are_between_one_beam_and_the_rod(absolute: float, names: l
     assert np.linalg.norm(found - right, axis=1).max() <= advice.bounds["end"]
 
 
-def test_segments_can_replace_a_rod() -> None:
+def test_simpler_theories_of_a_rod_include_segments_and_fewer_functions() -> None:
     """Of second order, of the rod itself with fewer functions each; of the rod alone where second order lacks terms."""
     system, _ = bowed(1e-3)
     rod = replace(system.body("rod"), bend_y=4, bend_z=3)
@@ -254,7 +254,7 @@ def test_segments_can_replace_a_rod() -> None:
     assert [*offered(replace(rod, loads=(pressed,)))] == ["second order, first_order", "second order, all"]
 
 
-def test_starts_of_replaced_beam_coordinates_are_refused() -> None:
+def test_a_beam_beyond_its_theory_whose_coordinates_have_starts_is_refused() -> None:
     """Those of a rod are others; without a start, a rod takes its place."""
     beam = sf.Beam("blade", sf.Joint("root", "fixed"), 1.0, 1.0, EI_z=1.0, bend_y=2)
     scene = sf.Scene(0.2, (sf.Output("end", "position", "tip", absolute=5e-2),), samples=50)

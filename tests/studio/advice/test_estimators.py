@@ -42,7 +42,7 @@ def test_residual_vibration_estimates_match_simulation() -> None:
 
 
 @pytest.mark.parametrize(("tolerance", "eta", "eta_hub", "gamma", "load"), THRESHOLDS)
-def test_stiffening_decides_whether_foreshortening_counts(
+def test_stiffening_estimates_match_the_benchmark_thresholds(
     tolerance: float, eta: float, eta_hub: float, gamma: float, load: float
 ) -> None:
     found = (

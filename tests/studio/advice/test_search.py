@@ -54,7 +54,9 @@ def advice(errors: float, unsettled: float) -> sf.Advice:
         ([9.0, 3.0, 1.0], 1.0, False),
     ],
 )
-def test_unsettled_changes_are_counted(changes: list[float], unsettled: float, converged: bool) -> None:
+def test_changes_by_further_functions_count_against_the_advice(
+    changes: list[float], unsettled: float, converged: bool
+) -> None:
     search = settled(changes)
     assert search.unsettled == pytest.approx(unsettled)
     assert any("not converged" in note for note in search.notes) != converged
@@ -64,7 +66,7 @@ def test_unsettled_changes_are_counted(changes: list[float], unsettled: float, c
     assert not advice(1.01, 0.0).ok and advice(1.0, 0.0).ok
 
 
-def test_user_shape_functions_are_not_judged_for_convergence() -> None:
+def test_user_shape_functions_are_noted_as_not_judged_for_convergence() -> None:
     own = sf.Beam("rope", ROPE.joint, 1.2, 0.1, EI_y=0.01, bend_z=1, family="user", shapes={"bend_z": ["xi^2"]})
     (note,) = settled([5.0], own).notes
     assert "'rope'" in note and "functions of yours" in note

@@ -118,7 +118,7 @@ def event(lines: Iterator[str], kind: str) -> str:
     raise AssertionError("the stream ended")
 
 
-def test_a_port_in_use_and_a_missing_file_are_reported(file: Path, tmp_path: Path) -> None:
+def test_a_port_in_use_and_a_file_that_is_not_text_are_reported(file: Path, tmp_path: Path) -> None:
     with served(str(file)) as (_, client):
         taken = CliRunner().invoke(app, ["edit", str(file), "--port", str(client.base_url.port), "--no-browser"])
         assert taken.exit_code == 2 and "in use" in taken.output

@@ -81,7 +81,7 @@ def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> No
         ("m.gif", {"speed": 1e-6}, r"too long\n  found:  \d+ pictures\n  rule:   20000 at most"),
     ],
 )
-def test_invalid_recordings_are_refused(
+def test_invalid_recording_options_are_refused(
     name: str, more: dict, expected: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "imageio_ffmpeg", None)

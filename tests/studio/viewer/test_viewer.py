@@ -67,7 +67,7 @@ def test_section_forces_are_plotted_over_the_span_at_the_instant_shown() -> None
         assert viewer._panel.force_plot is None
 
 
-def test_an_address_that_cannot_be_or_is_taken_is_refused(viewer: sf.Viewer) -> None:
+def test_an_invalid_address_or_a_port_in_use_is_refused(viewer: sf.Viewer) -> None:
     for host, port in (("127.0.0.1", 70000), ("192.0.2.1", 0)):
         with pytest.raises(SymofrosError, match="can't serve at"):
             sf.Viewer(MODELS["pendulum"], host=host, port=port)
@@ -185,7 +185,7 @@ class TestMove:
         assert viewer.state.par[index] == 0.8 and np.flatnonzero(viewer.state.par != before).tolist() == [index]
 
 
-def test_where_loops_cannot_be_closed_a_slider_leaves_the_picture() -> None:
+def test_a_slider_leaves_the_picture_where_loops_cannot_be_closed() -> None:
     stop = sf.Rod("rod", ("world", None), ("b", "end"), 1.0)
     body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0), (sf.Frame("end"),))
     with sf.Viewer(sf.System("s", [body], constraints=[stop]), port=0) as viewer:
@@ -194,7 +194,7 @@ def test_where_loops_cannot_be_closed_a_slider_leaves_the_picture() -> None:
         assert viewer.state.q[0] == 1.0
 
 
-def test_parameters_redraw_only_affected_shapes(viewer: sf.Viewer) -> None:
+def test_only_visible_parameters_and_other_systems_redraw_the_scene(viewer: sf.Viewer) -> None:
     model, scene = viewer.mechanism.model, viewer._scene_state.scene
     q, par = model.neutral(), np.array(model.parameter_values)
     par[model.names.par.index("k1")] *= 2
@@ -218,7 +218,7 @@ def test_parameters_redraw_only_affected_shapes(viewer: sf.Viewer) -> None:
     assert np.all(viewer.state.q == 0.0)
 
 
-def test_controls_name_the_available_choices(viewer: sf.Viewer) -> None:
+def test_controls_follow_what_is_shown(viewer: sf.Viewer) -> None:
     with pytest.raises(sf.UnknownNameError, match=r"no layer 'frame'\n(.*\n)*  remedy: did you mean 'frames'\?"):
         viewer.set_layer("frame", True)
     viewer.set_layer("frames", True)

@@ -62,7 +62,7 @@ def test_constrained_dynamics_match_pinocchio(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", sampled((*REPRESENTED, "delta"), SMALL))
-def test_exudyn_joints_agree(name: str) -> None:
+def test_closed_loops_agree_with_exudyn(name: str) -> None:
     """Every body with Euler parameters of its own: nothing is shared with a tree but what the bodies are.
 
     The rods' crosses have no mass, and some rods stand nearly along an axle of theirs: bodies' accelerations then leave
@@ -156,7 +156,7 @@ def test_a_loop_that_cannot_close_is_not_compared() -> None:
     sampled(((), ("x", "y"), ("y", "z"), ("x", "z"), ("x", "y", "z")), [("x", "y")]),
 )
 @pytest.mark.parametrize("settings", [PINOCCHIO, EXUDYN], ids=["pinocchio", "exudyn"])
-def test_every_kind_of_closure_agrees(rotations: tuple[Any, ...], settings: Settings) -> None:
+def test_every_kind_of_closure_agrees_with_pinocchio_and_exudyn(rotations: tuple[Any, ...], settings: Settings) -> None:
     """Between floating bodies with turned frames: no symmetry hides a sign or an axis."""
     turned = (sf.Frame("e", (0.4, 0.1, -0.2), sf.Rotation.rpy(0.3, -0.5, 0.7)),)
     bodies = [

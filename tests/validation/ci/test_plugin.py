@@ -111,7 +111,7 @@ def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.Mo
         pytest.param((*SMOKE, "--symofros-baseline", "test_own.py"), "can't be read as JSON", marks=pytest.mark.slow),
     ],
 )
-def test_options_of_no_use_are_refused(project: Path, arguments: tuple[str, ...], complaint: str) -> None:
+def test_options_with_invalid_values_are_refused(project: Path, arguments: tuple[str, ...], complaint: str) -> None:
     done = pytest_in(project, *arguments)
     assert done.returncode == 4 and complaint in done.stderr and "Traceback" not in done.stderr
 

@@ -84,7 +84,7 @@ def test_states_are_counted_by_decade() -> None:
     assert BIN_EDGES[k - 1] <= 1.5e-15 < BIN_EDGES[k]
 
 
-def test_the_scale_of_an_error_matches_that_of_its_worst_frame() -> None:
+def test_the_scale_of_an_error_is_taken_from_its_worst_frame() -> None:
     reference = np.array([[[2.0, 1.0], [8.0, 1.0]], [[4.0, 0.0], [1.0, 0.0]]])
     value = reference + np.array([[[0.2, 0.0], [0.4, 0.0]], [[0.1, 0.0], [np.nan, 0.0]]])
     errors, sizes = scaled_errors(QUANTITIES["frame_velocity"], value, reference, ONES)

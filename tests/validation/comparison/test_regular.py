@@ -45,7 +45,7 @@ def test_states_are_sorted_by_the_rank_of_the_jacobian() -> None:
 
 
 @pytest.mark.parametrize(("drawn", "allowed"), [(40, 6), (1000, 71)])
-def test_a_few_per_cent_of_states_may_be_left_out(drawn: int, allowed: int) -> None:
+def test_a_few_per_cent_of_states_and_no_more_may_be_left_out(drawn: int, allowed: int) -> None:
     for omitted, accepted in ((allowed, True), (allowed + 1, False)):
         regular = sorted_states([np.nan] * omitted + [1.0] * (drawn - omitted))
         assert (judge_omissions("m", regular) is None) == accepted

@@ -37,7 +37,7 @@ def rate(of: object) -> np.ndarray:
     return (of(at(STEP)) - of(at(-STEP))) / (2 * STEP)  # type: ignore[operator]
 
 
-def test_quaternion_orders_convert() -> None:
+def test_quaternions_are_reordered_from_xyzw_to_wxyz() -> None:
     assert xyzw_to_wxyz(np.array([1.0, 2.0, 3.0, 4.0])).tolist() == [4.0, 1.0, 2.0, 3.0]
 
 

@@ -17,7 +17,7 @@ from validation.contract.quantities import CONSTRAINED
 from validation.mechanics.assembly import assemble
 
 
-def test_results_follow_arrays_changed_in_place() -> None:
+def test_remembered_results_follow_arrays_changed_in_place() -> None:
     latest: LatestResults[float] = LatestResults()
     x = np.arange(3.0)
     assert latest.get((x,), lambda: float(x.sum())) == 3.0

@@ -131,7 +131,7 @@ def test_a_run_over_other_states_is_refused(stored: Path) -> None:
         Baseline.read(stored).require(21, 0)
 
 
-def test_the_ratio_matches_that_of_processor_times(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_speed_ratios_are_measured_in_processor_time(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = 0
 
     def takes(nanoseconds: int) -> Callable[[], None]:

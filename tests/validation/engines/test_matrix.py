@@ -33,7 +33,7 @@ def test_an_engine_is_right_about_a_joint_between_oblique_links(engine: str, kin
 
 
 @pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("euler xyz", "revolute unbounded oblique")])
-def test_pinocchio_is_right_forevery_kind_of_joint(kind: str) -> None:
+def test_pinocchio_is_right_for_every_kind_of_joint(kind: str) -> None:
     (cell,) = cells(OWN["pinocchio"], tree_of(kind), ("mass_matrix",))
     assert (cell.verdict, cell.words) == ("right", "")
 
@@ -45,7 +45,7 @@ def test_engines_are_right_about_hostile_trees(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", readings())
-def test_engines_read_the_stated_files(name: str) -> None:
+def test_engines_are_right_about_files_that_they_read_themselves(name: str) -> None:
     for engine in ("pinocchio", "mujoco"):
         plugin, reading = OWN[engine], readings()[name]
         functions = ("sizes", "mass_matrix", "bias")

@@ -97,7 +97,7 @@ def test_forward_and_inverse_dynamics_undo_each_other_to_all_digits() -> None:
     assert np.max(np.abs(digits(both))) < 1e-30
 
 
-def test_shrinking_keeps_only_the_faulty_part() -> None:
+def test_shrinking_keeps_the_fault_and_halves_the_case() -> None:
     tree = tree_of("helical oblique")
     case = Case(tree, ((), (), ()))
     smaller = smallest(

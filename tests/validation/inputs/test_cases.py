@@ -36,7 +36,7 @@ def test_states_leave_a_tail_behind_vectors_of_every_width() -> None:
     assert all(DEFAULT_STATES % lanes for lanes in (2, 4, 8))
 
 
-def test_names_are_distinct_unique_and_known(tmp_path: Path) -> None:
+def test_cases_have_distinct_labels_are_taken_once_and_must_be_known(tmp_path: Path) -> None:
     for names, labels in (
         (["a/arm.urdf", "b/arm.urdf"], ["a/arm.urdf", "b/arm.urdf"]),
         (["ur5", "a/arm.urdf", "ur5", "a/arm.urdf"], ["ur5", "arm"]),

@@ -18,7 +18,7 @@ from validation.mechanics.rod import StrainRod
 STEP, FIRST, SECOND = 1e-2, ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60)), ((1, 3 / 2), (2, -3 / 20), (3, 1 / 90))
 
 
-def test_sections_match_an_adaptive_integration(rng: np.random.Generator) -> None:
+def test_rod_sections_match_an_adaptive_integration(rng: np.random.Generator) -> None:
     counts, stations = (3, 2, 2), np.array([0.0, 0.3, 0.75, 1.0])
     q = 0.5 * rng.standard_normal((1, 7))
     one = StrainRod(rod(counts), {})

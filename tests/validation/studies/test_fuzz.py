@@ -48,7 +48,7 @@ def test_the_files_that_mutations_start_from_are_sound(kind: str, tmp_path: Path
 
 @pytest.mark.parametrize("kind", ["stl", "motion.npz", "motion.csv", "samples.csv", "document"])
 @pytest.mark.parametrize("place", ["folder", "pipe", "socket", "loop", "endless", "dangling", "nothing"])
-def test_invalid_files_are_refused_or_read(kind: str, place: str, tmp_path: Path) -> None:
+def test_readers_survive_paths_that_are_not_plain_files(kind: str, place: str, tmp_path: Path) -> None:
     for number in range(1, 5):  # Of a document, its positions, unsaved text and part in turn.
         with contextlib.suppress(sf.SymofrosError):
             feed_file(kind, tmp_path, PLACE + place.encode(), number)

@@ -28,7 +28,7 @@ def number(value: Any, **values: float) -> float:
 
 
 @pytest.mark.parametrize(("ratio", "torsion"), [(1.0, 0.140577), (2.0, 0.228682), (10.0, 0.312325), (1e6, 1 / 3)])
-def test_torsion_of_rectangles_matches_that_of_the_tables(ratio: float, torsion: float) -> None:
+def test_torsion_of_rectangles_matches_published_tables(ratio: float, torsion: float) -> None:
     # Timoshenko and Goodier, Theory of Elasticity, table of k_1: J = k_1 (2a)^3 (2b).
     for y, z in ((ratio, 1.0), (1.0, ratio)):
         assert number(sections.rectangle(STEEL, y, z).GJ) == pytest.approx(torsion * ratio, rel=4e-6)
@@ -59,7 +59,7 @@ def test_closed_forms_match_finite_elements(
 
 
 @pytest.mark.parametrize("nu", [0.0, 0.25, 0.5])
-def test_shear_areas_of_thin_tubes_and_full_circles(nu: float) -> None:
+def test_shear_areas_of_thin_tubes_and_circles_match_known_formulas(nu: float) -> None:
     """Its wall is sheared by 2 V/A sin(theta), whatever Poisson's ratio; 6 (1 + nu)^2/(7 + 14 nu + 8 nu^2) is known."""
     material = Material(E=2.0 * (1.0 + nu), G=1.0, rho=1.0)
     thin = sections.tube(material, 1.0, 1e-5)
@@ -116,7 +116,7 @@ def test_matrices_are_integrals_over_points() -> None:
 
 
 @elements
-def test_an_l_section_has_the_known_principal_axes() -> None:
+def test_an_l_section_turned_to_its_principal_axes_has_no_coupling() -> None:
     angle_section = sections.l_section(STEEL, 2.0, 3.0, 0.2)
     assert abs(number(angle_section.EI_yz)) > 0.1
     with pytest.raises(sf.DescriptionError, match=r"shear_center's y is not zero"):
@@ -158,7 +158,7 @@ bodies:
 """
 
 
-def test_a_section_in_the_file_matches_that_of_python(tmp_path: Path) -> None:
+def test_a_section_in_a_file_equals_the_same_section_in_python(tmp_path: Path) -> None:
     entry = "section: {shape: rectangle, E: 70e9, G: 26e9, rho: 2700, y: b*(2 - x/L), z: 0.005}"
     (tmp_path / "a.yaml").write_text(FILE.format(section=entry))
     (beam,) = sf.load(tmp_path / "a.yaml").bodies

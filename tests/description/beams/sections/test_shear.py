@@ -138,7 +138,7 @@ def test_shear_stress_does_not_depend_on_axes_or_origin(name: str, angle: float)
     np.testing.assert_allclose(moved.shear_stress(about, points + center), expected, rtol=1e-9)
 
 
-def test_section_forces_at_varying_stations_are_evaluated() -> None:
+def test_shear_stress_of_a_varying_section_takes_values_of_its_symbols() -> None:
     section = sections.rectangle(STEEL, "h*(1 - x/2)", 0.02)
     forces = np.random.default_rng(0).normal(size=(4, 3, 6))
     stress = section.shear_stress(forces, [[0.001, 0.002], [0.0, 0.0]], {"h": 0.04, "x": 0.5})
@@ -149,7 +149,7 @@ def test_section_forces_at_varying_stations_are_evaluated() -> None:
         section.shear_stress(forces, [[0.0, 0.0]])
 
 
-def test_sections_without_shape_have_no_shear_stress() -> None:
+def test_shear_stress_without_a_shape_or_outside_it_is_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="shear stress is not known"):
         Section(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0).shear_stress(UNITS, [[0.0, 0.0]])
     for name, point in (

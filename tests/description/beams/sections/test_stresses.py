@@ -64,7 +64,7 @@ def test_stress_integrates_to_the_forces_about_the_axis() -> None:
     np.testing.assert_allclose(sums, FORCES[[0, 4, 5]], rtol=1e-12)
 
 
-def test_sections_without_material_have_no_stress() -> None:
+def test_stresses_without_modulus_or_outline_are_refused() -> None:
     plain = Section(1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
     with pytest.raises(sf.DescriptionError, match="Young's modulus is not known"):
         plain.extreme_stresses(FORCES)

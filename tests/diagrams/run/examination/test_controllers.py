@@ -138,7 +138,7 @@ def test_divergence_of_a_loaded_beam_is_not_attributed_to_a_weak_controller(EI: 
     assert outcome.kind == "beyond theory" and "'pd'" not in str(outcome), str(outcome)
 
 
-def test_a_python_controller_is_named() -> None:
+def test_a_destabilising_python_controller_is_named() -> None:
     """What it gave is replayed: it is the motion that says whether it grows without the law."""
     joint = sf.Joint("q", "revolute", axis=(0, 0, 1), actuated=True)
     body = sf.RigidBody("a", joint, sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))

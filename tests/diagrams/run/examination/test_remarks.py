@@ -98,7 +98,7 @@ def test_phase_drift_from_amplitude_errors_is_reported() -> None:
     assert coarse.outcome.notes and not fine.outcome.notes, (coarse.outcome, fine.outcome)
 
 
-def test_energy_lost_at_repeated_contacts_is_reported() -> None:
+def test_energy_errors_of_repeated_contacts_are_reported() -> None:
     simulation = pushed("python", "-9.81 + max(0, -1e3*x[0])", x=1.0)
     coarse, fine = (simulation.run(20.0, method=m, dt=1e-3, record=0.1) for m in ("euler", "rk4"))
     assert np.abs(coarse.v).max() > 1.5 * np.abs(fine.v).max()
@@ -126,7 +126,7 @@ def test_an_unstable_interpreted_step_is_reported_with_its_mode() -> None:
 
 
 @pytest.mark.parametrize("scale", sampled((1e-6, 1.0, 1e6), (1e-6, 1e6)))
-def test_work_of_dampers_and_sampled_efforts_is_not_a_fault(scale: float) -> None:
+def test_work_of_dampers_and_sampled_efforts_is_not_noted_at_any_scale(scale: float) -> None:
     joint = sf.Joint("q", "revolute", axis=(0, -1, 0), elements=(sf.Damper(0.2 * scale),), actuated=True)
     bar = sf.RigidBody("bar", joint, sf.Inertia(scale, (1.0, 0, 0), (0.01 * scale,) * 3))
     diagram = moving(sf.System("swing", (bar,)), start={"q": 1.0}, u="push.effort")
@@ -145,7 +145,9 @@ def test_work_of_dampers_and_sampled_efforts_is_not_a_fault(scale: float) -> Non
         (15.0, 0.05, 0.1107, ""),
     ],
 )
-def test_forces_singular_between_steps_are_reported(t_end: float, dt: float, instant: float, said: str) -> None:
+def test_forces_that_are_not_finite_between_steps_are_reported(
+    t_end: float, dt: float, instant: float, said: str
+) -> None:
     """A force that is no number for an instant: half the step asks for it there, in a window or in all of the run.
 
     The phase of the third one drifts, so that all of the run is made once more; in the last one no step asks.

@@ -48,7 +48,7 @@ def test_forward_dynamics_of_beams_inverts_inverse_dynamics(name: str, retain: s
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_energy_loss_equals_damping_work(name: str, rng: np.random.Generator) -> None:
+def test_energy_rate_equals_damping_power(name: str, rng: np.random.Generator) -> None:
     """d(T + V)/dt along the motion is the power of the damping forces, if everything is kept."""
     m = model(name, "all")
     q, v = states(m, rng)

@@ -106,7 +106,7 @@ class TestMultipliers:
     """Repeated, contradicting and missing conditions, in C and in NumPy."""
 
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_redundant_conditions_leave_the_motion_unchanged(self, backend: str) -> None:
+    def test_redundant_conditions_are_met_by_the_least_multipliers(self, backend: str) -> None:
         m = sf.compile(MODELS["parallelogram"], sf.Options(functions=_SOLVED, backend=backend))  # type: ignore[arg-type]
         at = sf.assemble(m, [1.0, -1.0, 1.0, 1.0], np.ones(4))
         a, lam, rank = m.constrained_dynamics(at.q, at.v, [0.7])
@@ -117,7 +117,7 @@ class TestMultipliers:
         assert lam == pytest.approx(least, rel=1e-8, abs=1e-9)
 
     @pytest.mark.parametrize("drift", [0.0, 1e-9, 1e-8])
-    def test_slight_drift_does_not_change_accelerations(self, drift: float) -> None:
+    def test_slight_drift_changes_accelerations_only_slightly(self, drift: float) -> None:
         m = sf.compile(MODELS["parallelogram"], sf.Options(functions=_SOLVED))
         at = sf.assemble(m, [1.0, -1.0, 1.0, 1.0], np.ones(4))
         there = m.forward_dynamics(at.q, at.v, [0.7])
@@ -144,7 +144,7 @@ class TestMultipliers:
 
     @pytest.mark.parametrize("form", ["multipliers", "null_space"])
     @pytest.mark.parametrize("backend", ["c", "interpreter"])
-    def test_unsolvable_constraints_give_no_acceleration(self, backend: str, form: str) -> None:
+    def test_a_massless_body_that_no_constraint_holds_gives_nan_accelerations(self, backend: str, form: str) -> None:
         bars = [
             sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID, (sf.Frame("e", (1, 0, 0)),)),
             sf.RigidBody("b", sf.Joint("q2", "revolute", "a", "e"), None, (), ("massless_tip",)),

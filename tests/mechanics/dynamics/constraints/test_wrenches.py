@@ -42,7 +42,7 @@ def ends(system: sf.System, name: str) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("name", CLOSED)
-def test_virtual_power_matches_that_of_the_multipliers(name: str) -> None:
+def test_closure_wrenches_have_the_power_of_the_multipliers(name: str) -> None:
     """G^T lam = the sum of J^T W over the frames of every constraint, on the constraints and off them."""
     m, system = model(name), MODELS[name]
     rng = np.random.default_rng(0)

@@ -106,7 +106,7 @@ def called(name: str, way: str, given: dict[str, np.ndarray]) -> list[np.ndarray
 
 
 @pytest.mark.parametrize("load", LOADS)
-def test_forward_and_reverse_mode_are_equally_accurate(load: float) -> None:
+def test_forward_mode_errs_at_most_twice_as_much_as_reverse_mode(load: float) -> None:
     """Twice the reverse mode's error at most, whatever the load."""
     of = errors(load)
     assert (of[SLOPES, "articulated"] <= 2.0 * of[REVERSE, "articulated"]).all()
@@ -122,7 +122,7 @@ def test_errors_grow_in_proportion_to_the_load_from_a_lower_level() -> None:
     assert (gained > (2.0, 4.0, 10.0)).all()
 
 
-def test_the_option_affects_no_other_function() -> None:
+def test_the_forward_dynamics_option_affects_no_other_function() -> None:
     """Forming all others by either way gives one program; what is solved by M is said in `Options`."""
     system = MODELS["double_pendulum"]
     others = tuple(name for name, row in FUNCTIONS.items() if name not in FOLLOWING and not row.of_frame)

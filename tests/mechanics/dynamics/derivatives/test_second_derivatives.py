@@ -46,7 +46,7 @@ def change(of, along) -> np.ndarray:
     return sum(w * (of(*along(k * STEP)) - of(*along(-k * STEP))) for k, w in pairs) / STEP
 
 
-def test_second_derivatives_match_changes_of_the_first(m: sf.Model, rng: np.random.Generator) -> None:
+def test_second_derivatives_match_differences_of_the_first(m: sf.Model, rng: np.random.Generator) -> None:
     q, v = m.random_state(rng)
     a = rng.normal(size=m.nv)
     second = m.inverse_dynamics_second_derivatives(q, v, a)

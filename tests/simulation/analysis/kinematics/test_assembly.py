@@ -24,7 +24,7 @@ GUESSES = {
 
 
 @pytest.mark.parametrize("name", GUESSES)
-def test_loops_close_from_random_postures(name: str) -> None:
+def test_assembled_loops_close_with_the_least_change_of_speeds(name: str) -> None:
     m = sf.compile(MODELS[name], FUNCTIONS)
     wished = np.random.default_rng(0).normal(size=m.nv)
     found = sf.assemble(m, GUESSES[name], wished)

@@ -51,7 +51,7 @@ def parallelogram(size: float) -> sf.Model:
 
 
 @pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
-def test_events_between_records_do_not_depend_on_the_unit_of_length(size: float) -> None:
+def test_near_singular_postures_between_records_are_found_in_any_unit_of_length(size: float) -> None:
     """The motion is asked for where the straight way comes near; it turns back there."""
     m, lowest = parallelogram(size), 0.02
     times, q = swept(m, np.array([1.0, -0.98]))
@@ -87,7 +87,7 @@ def driven_crank() -> sf.Model:
 
 
 @pytest.mark.parametrize("options", [{"method": "dop853"}, {"dt": 0.01}])
-def test_straight_interpolation_between_records_is_not_the_motion(driven_crank: sf.Model, options: dict) -> None:
+def test_records_radians_apart_cause_no_note_of_a_singular_posture(driven_crank: sf.Model, options: dict) -> None:
     """Records are radians apart, and the driven crank moves between them as well."""
     start = sf.assemble(driven_crank, {"q2": 0.0, "x": A + B}, u=[0.0, SPEED, 0.0])
     run = sf.simulate(driven_crank, start.q, start.v, 20.0, u={"q1": f"{SPEED}*t"}, output=0.01, **options)

@@ -23,7 +23,7 @@ def test_a_start_in_a_singular_posture_is_reported(start: dict[str, float], sing
 
 
 @pytest.mark.parametrize("name", ["slider_crank", "bricard"])
-def test_regular_starts_get_no_such_note(name: str) -> None:
+def test_regular_starts_get_no_note_of_singularity(name: str) -> None:
     model = sf.compile(MODELS[name], sf.Options(backend="interpreter"))
     assert singular_start(model, closed_start(model, model.neutral(), np.zeros(model.nv), (), ()).q) == ()
 

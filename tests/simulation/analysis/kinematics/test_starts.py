@@ -32,7 +32,7 @@ def start(m: sf.Model, guess: list[float] | None = None, **stated: float) -> Clo
     return closed_start(m, q, v, coordinates, speeds)
 
 
-def test_stated_values_are_kept() -> None:
+def test_stated_start_values_are_kept() -> None:
     m = model("four_bar")
     found = start(m, q1=1.0, dq1=1.0)
     assert found.q[0] == 1.0 and found.v[0] == 1.0 and not found.notes

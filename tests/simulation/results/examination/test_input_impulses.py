@@ -103,7 +103,7 @@ def test_a_push_within_an_interval_of_samples_does_work() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in METHODS if not METHODS[name].family.multistep])
-def test_quadrature_nodes_match_those_of_the_steps(name: str) -> None:
+def test_quadrature_nodes_integrate_as_steps_of_the_method_do(name: str) -> None:
     """A resolved force that varies is integrated by a step as by its nodes; generalised alpha by its mean."""
     c, weights, of_rate = nodes(METHODS[name])
     assert abs(weights.sum() - 1.0) < 1e-13

@@ -60,7 +60,7 @@ def test_short_runs_with_large_errors_get_a_note(method: str) -> None:
     assert wrong
 
 
-def test_runs_with_pure_functions_are_compared_with_half_the_step() -> None:
+def test_runs_with_pure_functions_are_compared_with_half_the_step_and_others_noted() -> None:
     """A spring that hardens, as a formula, as a function, as a function with a memory of its calls."""
     calls = []
 
@@ -157,7 +157,7 @@ def test_long_runs_with_late_errors_get_a_note() -> None:
     ],
 )
 @pytest.mark.parametrize("met", [True, False])
-def test_forces_singular_between_steps_are_noted(t_end: float, said: str, met: bool) -> None:
+def test_forces_that_are_not_finite_between_steps_are_noted(t_end: float, said: str, met: bool) -> None:
     """A force that is no number for an instant: half the step asks for it there, or no step does."""
     instant = 0.1125 if met else 0.1107
     force = sf.formula(f"-20*x^3 + 1e-9*sqrt((t - {instant})^2 - 1e-7)")

@@ -65,7 +65,7 @@ def test_a_run_that_records_only_its_start_gives_no_note(method: str) -> None:
     assert run.outcome.kind == "finished" and len(run.t) == 1 and not run.outcome.notes
 
 
-def test_a_run_of_a_batch_gets_the_same_note() -> None:
+def test_a_run_of_a_batch_is_noted_where_its_steps_miss_the_pulse() -> None:
     many = sf.simulate_batch(sf.compile(CART), np.zeros((2, 1)), [[0.0], [0.1]], 10.0, u={"x": PULSE}, method="dopri5")
     exact = 20.0 * 0.05 * np.sqrt(np.pi)
     for i, first in enumerate((0.0, 0.1)):

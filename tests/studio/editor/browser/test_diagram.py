@@ -201,7 +201,7 @@ def wire(page: Page, source: str, target: str) -> None:
     steps.port(page, source).drag_to(steps.port(page, target))
 
 
-def test_ports_of_diagram_blocks_are_shown(opened: Serve, page: Page, tmp_path: Path) -> None:
+def test_ports_of_diagram_blocks_follow_their_fields(opened: Serve, page: Page, tmp_path: Path) -> None:
     shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
     opened("picked.yaml", content=PICKED)
     # The block gets its output when it is told which entries it picks.

@@ -46,7 +46,7 @@ def now(session: Session) -> dict[str, int]:
     return {"revision": session.document.revision}
 
 
-def test_undo_and_redo_restore_the_bytes(file: Path) -> None:
+def test_undo_and_redo_restore_the_text_and_the_autosave(file: Path) -> None:
     session = opened(file)
     texts = [session.document.text]
     for value in (2.0, 3.0, 4.0):
@@ -277,7 +277,7 @@ def test_files_are_listed_by_path(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("content", "says"), [(b"\xff\xfe", "not UTF-8"), (b"#" * (MAX_TEXT + 1), "too large")])
-def test_files_that_are_not_text_are_refused(file: Path, content: bytes, says: str) -> None:
+def test_files_that_are_not_text_or_too_large_are_refused(file: Path, content: bytes, says: str) -> None:
     session = opened(file)
     (file.parent / "odd.yaml").write_bytes(content)
     with pytest.raises(FileError, match=says):
@@ -348,7 +348,7 @@ def test_names_that_are_too_long_are_refused(tmp_path: Path, name: str) -> None:
         Workspace(tmp_path).inside(name)
 
 
-def test_paths_that_are_not_files_are_named(tmp_path: Path) -> None:
+def test_the_kind_of_a_path_that_is_not_a_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "loop.yaml").symlink_to("loop.yaml")
     json.dumps(Session(Workspace(tmp_path), tmp_path / "loop.yaml").as_json(), allow_nan=False)
     os.mkfifo(tmp_path / "pipe.yaml")

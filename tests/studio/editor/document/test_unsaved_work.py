@@ -89,7 +89,7 @@ def test_a_new_document_does_not_overwrite_a_file_that_came_meanwhile(tmp_path: 
     assert "there already" in caught.value.problem.what and file.read_text() == THEIRS
 
 
-def test_diagrams_keep_unsaved_work_too(tmp_path: Path) -> None:
+def test_recovered_work_on_a_diagram_conflicts_with_a_changed_file(tmp_path: Path) -> None:
     file = tmp_path / "law.yaml"
     diagram = "symofros_diagram: 1\nname: law\nmodels: {}\nblocks:\n  one: {kind: constant, value: 1}\n"
     file.write_text(diagram)

@@ -192,6 +192,6 @@ def test_references_follow_a_renaming(renamed: str) -> None:
 
 
 @pytest.mark.parametrize("new", ["pdx", "left", "1x", "a.b", ""])
-def test_taken_and_empty_names_are_refused(new: str) -> None:
+def test_taken_and_invalid_names_are_refused(new: str) -> None:
     with pytest.raises(EditError):
         with_references(DIAGRAM, [Edit("rename", ("blocks", "pd"), key=new)])

@@ -250,7 +250,7 @@ def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_p
     raise AssertionError("a child outlives its worker")
 
 
-def test_a_worker_works_for_jobs_in_turn_and_orders_reach_only_their_job(
+def test_a_worker_serves_jobs_in_turn_and_orders_reach_only_their_job(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     code = """if True:

@@ -195,7 +195,7 @@ def test_shape_functions_are_served(client: TestClient) -> None:
         assert answer.status_code == 422 and answer.json()["error"]["remedy"], wrong
 
 
-def test_parts_are_stored_and_listed(client: TestClient) -> None:
+def test_parts_are_stored_listed_and_inserted(client: TestClient) -> None:
     assert client.get("/api/parts").json() == {"parts": []}
     kept = client.post("/api/parts", json={"name": "bar", "bodies": ["rocker"]}).json()
     assert kept["parts"][0]["bodies"] == ["rocker"]

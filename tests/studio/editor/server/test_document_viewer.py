@@ -92,7 +92,7 @@ def test_a_loop_just_drawn_is_shown_closed_or_with_its_gap(client: TestClient, g
     assert any(abs(value) > 0.1 for value in view["q"].values()) or gap
 
 
-def test_where_loops_cannot_be_closed_it_stays(crank: TestClient) -> None:
+def test_the_view_stays_where_loops_cannot_be_closed(crank: TestClient) -> None:
     view = look(crank)
     found = pose(crank, q={"turn": 1.57}, par={"L2": 0.1})  # The crank's end is 0.15 m above the slider's axis.
     assert found["why"] and found["q"] == view["q"] and found["gap"] < 1e-9

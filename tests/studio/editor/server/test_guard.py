@@ -80,7 +80,7 @@ def test_the_token_in_the_address_opens_events_only(bare: TestClient) -> None:
     assert bare.get("/api/events?token=wrong").status_code == 401
 
 
-def test_a_form_cannot_post(bare: TestClient, session: Session) -> None:
+def test_forms_and_plain_text_cannot_post(bare: TestClient, session: Session) -> None:
     """What a page can send elsewhere without asking: forms and plain text."""
     for kind in ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data", ""):
         answer = bare.post("/api/discard", content=b"{}", headers={**GRANTED, "Content-Type": kind})

@@ -53,7 +53,7 @@ def test_every_edge_has_two_faces_that_run_along_it_both_ways(name: str) -> None
         ("merged", 0.1 * np.pi * WHEEL + 1.0),
     ],
 )
-def test_volumes_of_meshes(name: str, expected: float) -> None:
+def test_meshes_enclose_the_expected_volume(name: str, expected: float) -> None:
     assert volume(MESHES[name]()) == pytest.approx(expected, rel=1e-12)
 
 

@@ -97,7 +97,7 @@ def test_the_socket_accepts_only_its_own_page(viewer: sf.Viewer) -> None:
         ("0.0.0.0", "robot.lab:8080", True),
     ],
 )
-def test_the_names_of_this_machine_are_accepted(bound: str, host: str, allowed: bool) -> None:
+def test_only_names_of_this_machine_are_accepted_as_hosts(bound: str, host: str, allowed: bool) -> None:
     guard = ViewerGuard(bound, "secret")
     assert (guard.refusal("/secret/", [host], []) is None) is allowed
     assert guard.refusal("/secret/", [host, host], []) is not None

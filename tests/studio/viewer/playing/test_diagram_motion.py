@@ -40,7 +40,7 @@ def test_the_chosen_mechanism_moves_as_it_did(two: DiagramRun) -> None:
         assert states.q[0, 0] == 0.5 + i and states.par[2] == 0.6 + i
 
 
-def test_parameters_match_those_of_the_run() -> None:
+def test_a_replay_uses_the_parameters_of_the_run() -> None:
     d = sf.Diagram("arm")
     d.add_model("arm", MODELS["double_pendulum"], {"q1": 0.5})
     d.add(blocks.ForwardDynamics(name="plant", model="arm"))
@@ -50,7 +50,7 @@ def test_parameters_match_those_of_the_run() -> None:
         assert np.linalg.norm(elbow) == pytest.approx(0.9)
 
 
-def test_prescribed_inputs_match_those_of_the_run() -> None:
+def test_a_replay_uses_the_prescribed_inputs_of_the_run() -> None:
     t = np.array([0.0, 1.0])
     d = sf.Diagram("spin")
     d.add_model("beam", MODELS["spinning_beam"])

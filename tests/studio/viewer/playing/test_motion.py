@@ -132,7 +132,7 @@ def test_pickles_in_archives_are_not_opened(pendulum: sf.Model, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".csv", ".parquet"])
-def test_archives_are_unpacked_only_up_to_the_display_limit(
+def test_motion_files_beyond_the_display_limit_are_refused_without_unpacking_them(
     pendulum: sf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str
 ) -> None:
     """A few kilobytes can stand for gigabytes."""

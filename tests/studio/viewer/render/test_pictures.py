@@ -70,7 +70,7 @@ def test_inertia_boxes_are_translucent() -> None:
     assert through[0] > through[2] and beside[2] > beside[0] > 100
 
 
-def test_picture_axes_are_right_and_points_behind_the_camera_are_hidden() -> None:
+def test_x_is_right_and_z_is_up_in_pictures_and_bodies_behind_the_camera_are_hidden() -> None:
     rows, columns = np.nonzero(reddish(drawn((at(box(np.full(3, 0.4)), 1.0, 0, 1.5), RED, "bodies"))))
     assert rows.mean() < 130 and columns.mean() > 220
     assert np.all(drawn((at(box(np.full(3, 1.0)), 0, -20, 0), RED, "bodies")) == 255)
@@ -136,7 +136,7 @@ def test_a_bar_has_a_round_length_and_takes_that_much_of_the_picture(height: flo
     assert bar.share == pytest.approx(length / height, rel=1e-12) and 0.3 / 2.5 < bar.share <= 0.3
 
 
-def test_the_scale_bar_has_the_length_of_the_scene() -> None:
+def test_the_scale_bar_has_its_length_at_the_distance_of_the_target() -> None:
     """Two points at the target, a bar's length apart across the picture, are that many pixels apart (pinhole)."""
     camera = Camera.of(Mechanism(MODELS["planar_robot"]).drawing())
     height = picture_height(camera.position, camera.target, camera.fov)

@@ -54,7 +54,7 @@ def engine_of(subject: Subject, **options: bool) -> exudyn_frf.FloatingFrameEngi
 
 
 @pytest.mark.parametrize("changed", BEAMS.values(), ids=list(BEAMS))
-def test_floating_frame_matches_term_by_term(changed: dict[str, Any]) -> None:
+def test_the_floating_frame_of_exudyn_matches_term_by_term(changed: dict[str, Any]) -> None:
     """Mass matrix, quadratic velocity terms and weight, strain and damping."""
     subject = floating(**changed)
     states, model, engine = states_of(subject), ours(subject), engine_of(subject)
@@ -118,7 +118,7 @@ def test_exudyns_own_weight_forgets_the_displacement() -> None:
     ],
     ids=lambda x: x if isinstance(x, str) else "",
 )
-def test_unsupported_features_are_named(changed: dict[str, Any], word: str) -> None:
+def test_beams_that_exudyn_cannot_represent_are_named(changed: dict[str, Any], word: str) -> None:
     subject = floating()
     beam = replace(subject.system.bodies[0], **changed)
     answer = exudyn_frf.build(replace(subject, system=replace(subject.system, bodies=(beam,))))

@@ -86,7 +86,7 @@ def test_a_rod_of_another_stiffness_is_found() -> None:
 
 
 @pytest.mark.parametrize("kind", sampled(("free", "ball", "universal", "cylindrical", "planar", "screw"), ("screw",)))
-def test_a_tipped_beam_on_every_kind_of_joint_agrees(kind: str) -> None:
+def test_a_beam_with_a_tip_body_on_every_kind_of_joint_agrees(kind: str) -> None:
     joint = sf.Joint("j", kind, position=(0.1, 0.2, 0.3), axis=(1, 2, 2), pitch=0.2)  # type: ignore[arg-type]
     load = sf.RigidBody("load", sf.Joint("elbow", "revolute", "b", "tip", axis=(0, 1, 0)), UNIT)
     rows = checked(sf.System(kind, [beam("b", joint), load]))
@@ -103,7 +103,7 @@ def test_rates_and_orders_are_the_derived_ones() -> None:
 
 
 @pytest.mark.slow  # In every run: uniform beams, and rotary inertia by Lagrange's equations.
-def test_a_damped_tapered_beam_in_space_agrees() -> None:
+def test_a_damped_tapered_beam_in_space_agrees_with_exudyn() -> None:
     """What is of second order in our rotary inertia differs by the second power, elastic forces by the third."""
     stated = {"EI_z": "3*(1 - x/3)^3", "damping": 0.01, "rotary_inertia": True, "rhoI_y": 0.02, "rhoI_z": 0.03}
     rows = checked(sf.System("tapered", [beam("b", sf.Joint("j", "revolute", axis=(1, 2, 2)), **stated)]))

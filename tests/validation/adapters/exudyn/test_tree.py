@@ -71,7 +71,7 @@ def test_a_body_that_is_one_part_in_a_billion_heavier_is_found() -> None:
 
 
 @pytest.mark.parametrize("name", ["four_bar", "gyroscope"])
-def test_closures_and_rotors_agree(name: str) -> None:
+def test_closures_and_rotors_agree_with_exudyn(name: str) -> None:
     subject = Subject(name, reference_models.MODELS[name])
     result = check(subject, Settings(states=20, engines=("exudyn",)))
     assert result.ok

@@ -178,7 +178,7 @@ def test_another_beam_is_found(change: dict[str, Any], quantity: str) -> None:
     assert quantity in {row.quantity for row in result.comparisons if row.status == "disagree"}
 
 
-def test_models_outside_its_scope_are_refused() -> None:
+def test_models_outside_the_scope_of_the_engine_are_refused() -> None:
     built = lagrangian.build(floating_arm())
     assert isinstance(built, Unsupported) and built.reason.startswith("no beams")
     result = check(floating_arm(), Settings(states=5))

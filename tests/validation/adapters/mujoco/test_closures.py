@@ -10,7 +10,7 @@ from validation.stability.closed_loops import four_bars
 
 
 @pytest.mark.parametrize("loops", [1, 2, 5])
-def test_a_row_of_four_bars_agrees(loops: int) -> None:
+def test_a_row_of_four_bars_agrees_with_mujoco(loops: int) -> None:
     """At any posture, closed or not: ours are the same vectors, along the axes of the crank's end."""
     m = four_bars.linkage(loops)
     text = four_bars.mjcf(loops, "Euler", 1e-3, "0.02 1", "0.9 0.95 0.001", stated_at=0.0)

@@ -45,7 +45,7 @@ def compared(result: ModelResult) -> set[str]:
         ("several_joints_on_a_body", "ball_joint", "free_joint", "nameless"), ("several_joints_on_a_body", "free_joint")
     ),
 )
-def test_all_offered_quantities_agree(tmp_path: Path, name: str) -> None:
+def test_all_quantities_offered_by_mujoco_agree(tmp_path: Path, name: str) -> None:
     result = check(subject(tmp_path, MODELS[name]), FEW)
     assert result.ok, [row for row in result.comparisons if not row.ok]
     assert compared(result) == MJCF_ROUTE | {"motion_energy"}
@@ -97,7 +97,7 @@ def test_features_ignored_by_the_importer_are_not_disagreements(tmp_path: Path) 
         ),
     ],
 )
-def test_files_that_it_cannot_represent_are_refused(tmp_path: Path, text: str, reason: str) -> None:
+def test_files_that_the_engine_cannot_represent_are_unsupported(tmp_path: Path, text: str, reason: str) -> None:
     built = mujoco_mjcf.build(subject(tmp_path, text))
     assert isinstance(built, Unsupported) and reason in built.reason
 
@@ -113,7 +113,7 @@ def test_a_file_that_became_unreadable_is_reported(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_only_mjcf_files_are_accepted() -> None:
+def test_models_not_read_from_mjcf_are_unsupported() -> None:
     rod = sf.RigidBody("rod", sf.Joint("q", "revolute"), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
     pendulum = subject_of(sf.System("pendulum", [rod]))
     assert isinstance(mujoco_mjcf.build(pendulum), Unsupported)
@@ -121,7 +121,7 @@ def test_only_mjcf_files_are_accepted() -> None:
 
 
 @pytest.mark.slow
-def test_command_lines_reproduce_the_file(tmp_path: Path) -> None:
+def test_the_command_line_checks_mjcf_files_unless_options_change_their_reading(tmp_path: Path) -> None:
     path = write(tmp_path, MODELS["reference_and_spring_reference"])
     # Where it is read with other joints or forces than it states, MuJoCo's own reading is no second opinion.
     for reading in (ReadingOptions(True), ReadingOptions(dissipation="none"), ReadingOptions(limits="stops")):

@@ -41,7 +41,7 @@ SLOW = pytest.mark.slow
         pytest.param("sympy", "planar3R", ("mass_matrix", "bias", "dynamics", "forward_dynamics"), marks=SLOW),
     ],
 )
-def test_casadi_code_agrees_with_ours(peer: str, label: str, names: tuple[str, ...]) -> None:
+def test_code_generated_by_casadi_and_sympy_agrees_with_ours(peer: str, label: str, names: tuple[str, ...]) -> None:
     """The same loops that are timed; derivatives, too."""
     given = task(label, 12)
     ours = {loop.function: loop for loop in our_loops(given, names) if loop.variant == "symofros"}
