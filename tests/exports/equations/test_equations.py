@@ -64,6 +64,18 @@ def test_the_source_gives_the_compiled_models_numbers(name: str, rng: np.random.
             np.testing.assert_allclose(array, right, rtol=0, atol=1e-12 * max(1.0, np.abs(right).max(initial=0.0)))
 
 
+def test_the_source_of_minima_and_maxima_gives_the_compiled_models_numbers(rng: np.random.Generator) -> None:
+    parameters = (sf.Parameter("k", 30.0), sf.Parameter("a", 0.2))
+    stop = sf.Stop("k", 2.0, "-a", "max(a, min(3*a, min(0.5, k)))")  # type: ignore[arg-type]
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(stop,), effort=("max(u1, max(dx, 0.1))*min(x, u1)",))
+    body = sf.RigidBody("block", joint, sf.Inertia(1.3))
+    system = sf.System("stopped", (body,), parameters, inputs=(sf.Input("u1"),))
+    model, written = sf.compile(system), function(sf.equations(system))
+    for q, v, u in rng.normal(size=(20, 3, 1)):
+        for array, right in zip(written(q, v, u)[:3], model.dynamics(q, v, u), strict=True):
+            np.testing.assert_allclose(array, right, rtol=1e-12, atol=1e-12)
+
+
 def test_the_double_pendulum_matches_the_textbook() -> None:
     system = sf.System(
         "point_masses",

@@ -177,3 +177,19 @@ def test_errors_that_add_up_over_a_long_run_are_noted(force: str, options: dict[
     """Of which no window shows a tenth (simulation.md, 17b); semi-implicit Euler errs by h/2 for ever."""
     run = sf.simulate(oscillator(), [1.0], u={"x": force}, output=0.07, **options)
     assert bool([note for note in run.outcome.notes if "do not determine the motion" in note]) == said, run.outcome
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.05}, {"method": "dopri5"}], ids=str)
+@pytest.mark.parametrize("kind", ["pure", "remembering"])
+def test_an_input_function_is_examined_once_however_many_notes_need_it(options: dict[str, Any], kind: str) -> None:
+    """By its calls at the last record and the ones before it, in that order, which only the examination makes."""
+    calls: list[float] = []
+
+    def law(t: float, q: np.ndarray, v: np.ndarray) -> list[float]:
+        calls.append(t)
+        return [-200.0 * float(q[0]) ** 3 + 1e-3 * len(calls) * (kind == "remembering")]
+
+    run = sf.simulate(oscillator(), [0.0], [2.0], 5.0, u=law, **options)
+    asked = run.t[:: -max(1, len(run.t) // 8)]
+    count = sum(calls[i : i + 3] == [*asked[:3]] for i in range(len(calls)))
+    assert count == 1, run.outcome
