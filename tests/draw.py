@@ -1,7 +1,7 @@
-"""What a plain run takes of tests that take long: on average a second of each, another draw each day.
+"""What a plain run takes of tests that take long: on average half a second of each, another draw each day.
 
 `tests/seconds.txt` has what a case of such a test takes; `python -m pytest --update-seconds` measures it anew. A test
-of twenty cases of a quarter of a second has four of them in each run; one of three seconds runs every third day, or
+of twenty cases of a quarter of a second has two of them in each run; one of three seconds runs every sixth day, or
 whenever its file is named. What is not drawn is slow: it runs with --slow, or as a part of that. `--draw WORD` repeats
 the draw of another run, and the flags of its compiler.
 """
@@ -16,7 +16,7 @@ from typing import Any
 
 FILE = Path(__file__).with_name("seconds.txt")
 HEAD = "# Seconds that a case of a test takes, of tests that take more than {} s: written by --update-seconds.\n"
-SHARE = 1.0  # Of a test in a plain run, on average [s].
+SHARE = 0.5  # Of a test in a plain run, on average [s].
 # Of all files, those whose models compile with the flags that users get.
 OPTIMISED = 1 / 8
 
