@@ -39,6 +39,8 @@ class Stepper(Stepped):
     Steps are those of `simulate`, by the same C: with the same inputs held over the same fixed steps, q and v are the
     same to the last bit. Adaptive methods choose their own steps from one multiple of `dt` to the next.
 
+    ::
+
         stepper = sf.Stepper(model, dt=1e-3)
         stepper.reset(q0)
         while stepper.t < 2.0 and stepper.step(-50.0 * stepper.q - 5.0 * stepper.v):

@@ -35,6 +35,8 @@ class Steppers(Stepped):
     Each takes the steps that `simulate_batch` would take, and does not depend on the others. One that ends stays at its
     last good state, and the others go on.
 
+    ::
+
         steppers = sf.Steppers(model, 1024, dt=1e-3)
         steppers.reset(q0)
         for _ in range(100):
