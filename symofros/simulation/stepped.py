@@ -7,6 +7,7 @@ from secrets import token_hex
 from threading import Lock
 from typing import Any, NoReturn
 
+from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.options import SimulationOptions
 
@@ -30,6 +31,20 @@ class Stepped:
     """Refuses what would silently do nothing, or share the memory that C steps in."""
 
     _stepping: Lock
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (nv), of many (n, nv), at the present states and inputs, without stabilising terms."""
+        return self._dynamics()[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (nc), of many (n, nc), as the accelerations."""
+        return self._dynamics()[1]
+
+    def _dynamics(self: Any) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
 
     def __setattr__(self, name: str, value: object) -> None:
         """Refuse to replace what only looks like the state or the settings."""
@@ -72,6 +87,32 @@ class Stepped:
 def owner_of(what: str, name: str) -> str:
     """A name that no other one has, in no other process either: states go back to where they are of."""
     return f"{what} {token_hex(8)} of '{name}'"
+
+
+def check_owner(state: Any, kind: type, owner: str, refused: tuple[str, str, str]) -> None:
+    """Refuse to restore what `save` did not give.
+
+    Args:
+        state: What is to be restored.
+        kind: Class of saved states.
+        owner: What the state has to be of.
+        refused: What was asked, the rule and the remedy.
+
+    Raises:
+        SymofrosError: It is no state, or one of another owner.
+    """
+    known = isinstance(state, kind)
+    if known and state.owner == owner:
+        return
+    what, rule, remedy = refused
+    found = f"a state of {state.owner}" if known else repr(state)[:60]
+    raise refusal(what, found, rule, remedy)
+
+
+def no_steps(steps: object) -> SymofrosError:
+    """The refusal of what is no number of steps."""
+    rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
+    return refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
 
 
 def options_by_hand(

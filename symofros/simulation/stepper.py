@@ -24,7 +24,7 @@ from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.simulate import prepare_run, run_to_its_end
-from symofros.simulation.stepped import Stepped, options_by_hand, owner_of, refusal
+from symofros.simulation.stepped import Stepped, check_owner, no_steps, options_by_hand, owner_of, refusal
 from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
 from symofros.simulation.stepping.fast_step import fast_step
 from symofros.simulation.stepping.status import Status
@@ -87,9 +87,7 @@ class Stepper(Stepped):
         self._stepping = Lock()
         self.model = model = model.with_precision("double")
         settings = settings_by_hand(model, chosen)
-        values = np.array(model.parameter_values)
-        if par is not None:
-            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
+        values = np.array(model.parameter_values) if par is None else _parameters(model, par)
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
@@ -129,10 +127,7 @@ class Stepper(Stepped):
         configuration = first_configuration(model, q)
         speeds = np.zeros(model.nv) if v is None else vector(model, "v", v, model.nv)
         time = self._first if t is None else float(t)
-        values = None
-        if par is not None:
-            values = np.array(vector(model, "par", model.checked_parameters(par), model.npar))
-        self._hand.reset(time, configuration, speeds, values)
+        self._hand.reset(time, configuration, speeds, None if par is None else _parameters(model, par))
 
     def step(self, u: ArrayLike | None = None, steps: int = 1) -> bool:
         """Make steps with inputs held over them.
@@ -151,8 +146,7 @@ class Stepper(Stepped):
         """
         values = None if u is None else checked_inputs(self.model, self.inputs, u)
         if isinstance(steps, bool) or not isinstance(steps, (int, np.integer)) or not 1 <= steps <= MOST_STEPS:
-            rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
-            raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+            raise no_steps(steps)
         self._begin_alone()
         try:
             return self._step(values, int(steps))
@@ -203,20 +197,6 @@ class Stepper(Stepped):
     def u(self) -> Array:
         """Present inputs (nu), as held; laws at the present state."""
         return self._hand.inputs_now()
-
-    @property
-    def a(self) -> Array:
-        """Accelerations v' (nv) at the present state and inputs, constraints kept, without stabilising terms."""
-        return self._dynamics()[0]
-
-    @property
-    def lam(self) -> Array:
-        """Multipliers (nc), as the accelerations."""
-        return self._dynamics()[1]
-
-    def _dynamics(self) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
-        return a, lam
 
     @property
     def kinetic_energy(self) -> float:
@@ -275,11 +255,9 @@ class Stepper(Stepped):
         Raises:
             SymofrosError: It is none, or of a stepper that was made otherwise.
         """
-        if not isinstance(state, HandState) or state.owner != self._kind:
-            found = f"a state of {state.owner}" if isinstance(state, HandState) else repr(state)[:60]
-            rule = "a state goes back to the stepper that it was saved of, or to a copy, in the same process"
-            remedy = "make other steppers by copy(); elsewhere reset one at the state's t, q, v"
-            raise refusal("restore: no state of this stepper", found, rule, remedy)
+        rule = "a state goes back to the stepper that it was saved of, or to a copy, in the same process"
+        remedy = "make other steppers by copy(); elsewhere reset one at the state's t, q, v"
+        check_owner(state, HandState, self._kind, ("restore: no state of this stepper", rule, remedy))
         self._hand.restore(state)
 
     def copy(self) -> Stepper:
@@ -288,6 +266,11 @@ class Stepper(Stepped):
         other._kind = self._kind
         other.restore(self.save())
         return other
+
+
+def _parameters(model: Model, par: ArrayLike) -> Array:
+    """A copy of run-time parameters (npar) that are given, checked."""
+    return np.array(vector(model, "par", model.checked_parameters(par), model.npar))
 
 
 def fixed_inputs(u: Mapping[str, Any] | None) -> set[str]:

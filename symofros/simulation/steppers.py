@@ -22,7 +22,7 @@ from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import check_fit
 from symofros.simulation.simulate import prepare_run
 from symofros.simulation.simulate_batch import starts_off
-from symofros.simulation.stepped import Stepped, options_by_hand, owner_of, refusal
+from symofros.simulation.stepped import Stepped, check_owner, no_steps, options_by_hand, owner_of, refusal
 from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, read_only, settings_by_hand
 from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
 from symofros.simulation.stepping.methods import METHODS
@@ -166,8 +166,7 @@ class Steppers(Stepped):
             values = checked_inputs(self.model, self.inputs, u, self.n)
             values = np.ascontiguousarray(np.broadcast_to(values, (self.n, size)))
         if not 1 <= steps <= MOST_STEPS:
-            rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
-            raise refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+            raise no_steps(steps)
         self._begin_alone()
         try:
             if self.model.nc and hand.begins.any():
@@ -203,20 +202,6 @@ class Steppers(Stepped):
     def u(self) -> Array:
         """Inputs that are held (n, nu)."""
         return self._hand.constant.copy()
-
-    @property
-    def a(self) -> Array:
-        """Accelerations v' (n, nv) at the present states and held inputs, constraints kept."""
-        return self._dynamics()[0]
-
-    @property
-    def lam(self) -> Array:
-        """Multipliers (n, nc), as the accelerations."""
-        return self._dynamics()[1]
-
-    def _dynamics(self) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
-        return a, lam
 
     @property
     def energy(self) -> Array:
@@ -261,10 +246,9 @@ class Steppers(Stepped):
         Raises:
             SymofrosError: It is none, or of others.
         """
-        if not isinstance(state, BatchState) or state.owner != self._kind:
-            found = f"a state of {state.owner}" if isinstance(state, BatchState) else repr(state)[:60]
-            rule = "a state goes back to the steppers that it was saved of, in the same process"
-            raise refusal("restore: no state of these steppers", found, rule, "reset others at its t, q, v")
+        rule = "a state goes back to the steppers that it was saved of, in the same process"
+        refused = ("restore: no state of these steppers", rule, "reset others at its t, q, v")
+        check_owner(state, BatchState, self._kind, refused)
         self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
         self._par[...] = state.par
 

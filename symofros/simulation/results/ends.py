@@ -1,4 +1,4 @@
-"""How runs end: one row a status, for single runs, batches and diagrams; docs/errors.md shows the table."""
+"""How runs end: one row a status, for single runs, batches and diagrams; docs/howto/simulating.md shows the table."""
 
 from __future__ import annotations
 

@@ -17,6 +17,7 @@ from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates
+from symofros.simulation.stepping.by_hand import held_by_hand
 from symofros.simulation.stepping.status import Status
 
 
@@ -100,8 +101,7 @@ class HandBatch:
     def __init__(
         self, model: Model, settings: Settings, plan: InputPlan, fixed: Container[str], par: Array, n: int, threads: int
     ) -> None:
-        given = {*plan.formulas, *(index for index, *_ in plan.signals)}
-        self.held = tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
+        self.held = held_by_hand(model, plan, fixed)
         self.results = BatchResults.empty(model, n, 0)
         self.q0, self.v0, self.t0 = np.tile(model.neutral(), (n, 1)), np.zeros((n, model.nv)), np.zeros(n)
         self.default, self.constant = plan.constant.copy(), np.tile(plan.constant, (n, 1))

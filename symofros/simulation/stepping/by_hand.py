@@ -126,8 +126,7 @@ class HandRun:
         self.run = run = Stepper(model, settings.method, inputs, events, par)
         settings.apply(run)
         run.reserve(1, 1)
-        given = {*inputs.formulas, *(index for index, *_ in inputs.signals)}
-        self.held = tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
+        self.held = held_by_hand(model, inputs, fixed)
         memory = run.memory
         self.hand = hand = run.ffi.new("sym_hand *")
         hand.run, hand.u, hand.dt = run.run, run.system.u_constant, settings.dt
@@ -327,6 +326,12 @@ class HandRun:
             to[...] = array
         self.start, self._noted, self.events = state.start, state.noted, list(state.events)
         self._known = -np.inf
+
+
+def held_by_hand(model: Model, plan: InputPlan, fixed: Container[str]) -> tuple[int, ...]:
+    """Indices of the inputs that steps hold: those without a signal, a formula, or a number, which `fixed` names."""
+    given = {*plan.formulas, *(index for index, *_ in plan.signals)}
+    return tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
 
 
 class _Numbers:
