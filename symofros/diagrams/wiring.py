@@ -13,6 +13,7 @@ from symofros.description import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fit import check_fit
+from symofros.diagrams.inlets import Inlet, fed_ports, settled
 from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
@@ -178,6 +179,11 @@ def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
             outlets |= {name: source} if source else {}
     sources = _sources(diagram, ports, outlets, silent, problems)
     ports = _settle(diagram, models, ports, sources, problems)
+    if any(isinstance(block, Inlet) for block in diagram.blocks.values()):
+        ports = _settle(diagram, models, ports, sources, problems, last=True)
+        for name, known in ports.items():
+            block = settled(diagram.blocks[name], known)
+            problems += block.misfit() if isinstance(block, Inlet) else ()
     check_fit(diagram, ports, sources, problems)
     return Draft(models, ports, sources, outlets, problems)
 
@@ -200,7 +206,8 @@ def whole(diagram: Diagram, drafted: Draft) -> Wired:
     if drafted.problems:
         raise DescriptionError(list(drafted.problems))
     parts = (drafted.ports, drafted.sources, drafted.models, drafted.outlets)
-    wired = Wired(diagram.name, dict(diagram.blocks), *parts, diagram.origin, diagram.simulation.plots)
+    blocks = {name: settled(block, drafted.ports[name]) for name, block in diagram.blocks.items()}
+    wired = Wired(diagram.name, blocks, *parts, diagram.origin, diagram.simulation.plots)
     problems = _unseen(wired)
     if problems:
         raise DescriptionError(problems)
@@ -375,8 +382,9 @@ def _settle(
     ports: dict[str, Ports],
     sources: Mapping[Source, Source],
     problems: list[Problem],
+    last: bool = False,
 ) -> dict[str, Ports]:
-    """Carry shapes along the wires until nothing changes."""
+    """Carry shapes along the wires until nothing changes; in the last round inlets take those of what is given."""
     for _ in range(len(ports) + 1):
         outputs = {(block, item.name): item for block, known in ports.items() for item in known.outputs}
         now = {}
@@ -390,8 +398,12 @@ def _settle(
                     inputs[item.name] = shape
                 if given is not None and any(given.entry_units):
                     units[item.name] = given.entry_units
+            block = diagram.blocks[name]
             try:
-                stated_ports = diagram.blocks[name].ports(_Surroundings(models, inputs, units))
+                if isinstance(block, Inlet):
+                    stated_ports = fed_ports(block, sources, ports, last)
+                else:
+                    stated_ports = block.ports(_Surroundings(models, inputs, units))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports
