@@ -25,7 +25,7 @@ from symofros.exports.c.reference import POINTS, checks
 from symofros.exports.c.sfunction import write_sfunction
 from symofros.exports.cuda.cuda_package import write_cuda_package
 from symofros.exports.diagram import write_diagram
-from symofros.exports.fmi.fmu import write_fmu2, write_fmu3
+from symofros.exports.fmi.fmu import write_diagram_fmu2, write_diagram_fmu3, write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
@@ -57,6 +57,8 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
 }
 _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, str], Exported]] = {
     "c": write_diagram,
+    "fmu2": write_diagram_fmu2,
+    "fmu3": write_diagram_fmu3,
 }
 # Functions of reactions, in packages of C alone.
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
