@@ -1,4 +1,4 @@
-"""Inlets of an outermost diagram as blocks: what comes from outside, held, by samples over time, or by formulas of t."""
+"""Inlets of an outermost diagram as blocks: what comes from outside, held, by samples, or by formulas of t."""
 
 from __future__ import annotations
 
@@ -51,7 +51,9 @@ class Inlet(Block):
             raise DescriptionError(error.problem_of(f"inlet '{self.name}'")) from None
         for names in (item.symbols() - {"t"} for item in read):
             if names:
-                raise _refused(self.name, sorted(names)[0], "formulas of inlets are of the time t", "write numbers for it")
+                raise _refused(
+                    self.name, sorted(names)[0], "formulas of inlets are of the time t", "write numbers for it"
+                )
         return read
 
     @cached_property
@@ -97,7 +99,11 @@ class Inlet(Block):
         """A shape that nothing says, or of what is given another than the signal's."""
         if self.port.shape is None:
             rule = "a shape follows from an input that it feeds, from what is given, or is stated"
-            return list(_refused(self.name, "its shape is unknown", rule, "add_inlet(..., shape=(n,)); () is one number").problems)
+            return list(
+                _refused(
+                    self.name, "its shape is unknown", rule, "add_inlet(..., shape=(n,)); () is one number"
+                ).problems
+            )
         size, own = int(np.prod(self.port.shape or ())), int(np.prod(self.own_shape))
         if own in (1, size):
             return []
@@ -151,7 +157,10 @@ def with_inlets(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Di
 def _misnamed(diagram: Diagram, inputs: Mapping[str, Any] | None) -> Iterable[Problem]:
     for name in diagram.inlets:
         if name in diagram.blocks:
-            what, rule = f"diagram '{diagram.name}': an inlet and a block are named '{name}'", "signals bear these names"
+            what, rule = (
+                f"diagram '{diagram.name}': an inlet and a block are named '{name}'",
+                "signals bear these names",
+            )
             yield Problem(what, f"'{name}'", rule, "rename one")
     if inputs is None:
         return
@@ -159,7 +168,9 @@ def _misnamed(diagram: Diagram, inputs: Mapping[str, Any] | None) -> Iterable[Pr
     for name in inputs:
         if name not in diagram.inlets:
             meant = did_you_mean(name, diagram.inlets) or "leave it out"
-            yield Problem(f"diagram '{diagram.name}': no inlet '{name:.60}'", f"'{name:.60}'", f"inlets: {known}", meant)
+            yield Problem(
+                f"diagram '{diagram.name}': no inlet '{name:.60}'", f"'{name:.60}'", f"inlets: {known}", meant
+            )
     for name in diagram.inlets:
         if inputs.get(name) is None:
             yield not_given(diagram.name, name)
@@ -184,7 +195,9 @@ def settled(block: Block, ports: Ports) -> Block:
     return replace(block, port=ports.outputs[0]) if isinstance(block, Inlet) else block
 
 
-def fed_ports(block: Inlet, sources: Mapping[tuple[str, str], tuple[str, str]], ports: Mapping[str, Ports], last: bool) -> Ports:
+def fed_ports(
+    block: Inlet, sources: Mapping[tuple[str, str], tuple[str, str]], ports: Mapping[str, Ports], last: bool
+) -> Ports:
     """Ports of an inlet, as far as the inputs that it feeds are known."""
     fed = [target for target, source in sources.items() if source[0] == block.name]
     taken = [port for name, key in fed if name in ports for port in ports[name].inputs if port.name == key]

@@ -92,7 +92,11 @@ class Interface:
     def enumerations(self, prefix: str) -> list[str]:
         """Lines of C: where each quantity begins in its array, and how many entries it has."""
         lines, taken = list[str](), set[str]()
-        groups = (("IN", "INPUTS", self.inputs), ("OUT", "OUTPUTS", self.outputs), ("PAR", "PARAMETERS", self.parameters))
+        groups = (
+            ("IN", "INPUTS", self.inputs),
+            ("OUT", "OUTPUTS", self.outputs),
+            ("PAR", "PARAMETERS", self.parameters),
+        )
         for kind, total, quantities in groups:
             at, rows = 0, []
             for quantity in quantities:

@@ -45,9 +45,7 @@ class FirstMotion:
     notes: tuple[str, ...]
 
 
-def first_motion(
-    diagram: Diagram, interface: Interface, outputs: Sequence[str], stepping: Stepping
-) -> FirstMotion:
+def first_motion(diagram: Diagram, interface: Interface, outputs: Sequence[str], stepping: Stepping) -> FirstMotion:
     """Begin a diagram as its package is to begin, and note what a run from Python notes there.
 
     Args:
@@ -61,7 +59,10 @@ def first_motion(
         SymofrosError: The first accelerations are not finite.
     """
     starts = {item.name: np.reshape(item.start, item.shape) for item in interface.inputs}
-    given = {item.name: starts[item.name] + _PROBED * (1.0 + np.arange(item.width).reshape(item.shape)) for item in interface.inputs}
+    given = {
+        item.name: starts[item.name] + _PROBED * (1.0 + np.arange(item.width).reshape(item.shape))
+        for item in interface.inputs
+    }
     resolved = resolve(diagram, starts)
     base = float(resolved.schedule.base) if resolved.schedule.instants else stepping.dt
     until = _CHECKED * max(base, stepping.dt)

@@ -80,7 +80,9 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
         (f"{name}_fmi{version}.c",),
         judged=bool(material.beams),
     )
-    return _packed(unit, folder, version, token, {**sources, **_core("symofros_fmu.h")}, variables(material), material.notes)
+    return _packed(
+        unit, folder, version, token, {**sources, **_core("symofros_fmu.h")}, variables(material), material.notes
+    )
 
 
 def write_diagram_fmu2(

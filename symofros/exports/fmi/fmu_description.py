@@ -78,9 +78,7 @@ def description_xml(unit: Unit, variables: Sequence[Variable], version: int, tok
     categories = Tree.SubElement(root, "LogCategories")
     for name in ("logStatusWarning", "logStatusError", "logStatusDiscard"):
         Tree.SubElement(categories, "Category", {"name": name})
-    Tree.SubElement(
-        root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(unit.interval)}
-    )
+    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(unit.interval)})
     into = Tree.SubElement(root, "ModelVariables")
     for variable in variables:
         (_variable2 if version == 2 else _variable3)(into, variable)

@@ -1,5 +1,6 @@
-"""The variables of an FMU, in the order of their value references: symofros_fmu.h, and of diagrams
-symofros_fmu_program.h, count the same way.
+"""The variables of an FMU, in the order of their value references.
+
+symofros_fmu.h counts the same way, of diagrams symofros_fmu_program.h.
 """
 
 from __future__ import annotations
@@ -55,7 +56,11 @@ def quoted(name: str) -> str:
 def diagram_variables(shown: Interface) -> list[Variable]:
     """All variables of an FMU of a diagram, in the order of their references."""
     listed = [Variable(0, "time", "independent", "continuous", unit="s")]
-    kinds = (("input", "", shown.inputs), ("output", "calculated", shown.outputs), ("parameter", "exact", shown.parameters))
+    kinds = (
+        ("input", "", shown.inputs),
+        ("output", "calculated", shown.outputs),
+        ("parameter", "exact", shown.parameters),
+    )
     for causality, initial, quantities in kinds:
         variability = "tunable" if causality == "parameter" else "continuous"
         starts: Sequence[float | None] = entry_starts(quantities) or [None] * len(entry_names(quantities))
