@@ -8,8 +8,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.base.arrays import Array
-from symofros.description import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fit import check_fit
@@ -17,9 +15,8 @@ from symofros.diagrams.inlets import Inlet, fed_ports, settled
 from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
+from symofros.diagrams.surroundings import Surroundings
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.record import ModelRecord
-from symofros.simulation.analysis.state_space import StateSpace
 
 Source = tuple[str, str]
 
@@ -88,50 +85,11 @@ class Wired:
         return next(port.unit for port in self.ports[source[0]].outputs if port.name == source[1])
 
 
-class _Surroundings:
-    """Surroundings of a block while its ports are determined."""
-
-    def __init__(self, models: Models, inputs: Mapping[str, Shape], units: Mapping[str, tuple[str, ...]]) -> None:
-        self._models, self._inputs, self._units = models, inputs, units
-
-    @property
-    def inputs(self) -> Mapping[str, Shape]:
-        return self._inputs
-
-    @property
-    def units(self) -> Mapping[str, tuple[str, ...]]:
-        return self._units
-
-    def model(self, name: str) -> ModelRecord:
-        return self._models.record(name)
-
-    def start(self, name: str) -> tuple[Array, Array]:
-        return self._models.start(name)
-
-    def frame(self, model: str, frame: str) -> str:
-        return self._models.frame(model, frame)
-
-    def linear(self, name: str, u: Array) -> StateSpace:
-        return self._models.linear(name, u)
-
-    def system(self, name: str) -> System:
-        return self._models.system(name)
-
-    def parameters(self, name: str) -> Array:
-        return self._models.parameters(name)
-
-    def has_friction(self, model: str) -> list[bool]:
-        return self._models.has_friction(model)
-
-    def has_elastic_beams(self, model: str) -> bool:
-        return self._models.has_elastic_beams(model)
-
-
-def surroundings(wired: Wired, block: str) -> _Surroundings:
+def surroundings(wired: Wired, block: str) -> Surroundings:
     """Environment of a block in a wired diagram: models, shapes and units of its inputs."""
     shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
     units = {port.name: port.entry_units for port in wired.ports[block].inputs}
-    return _Surroundings(wired.models, shapes, units)
+    return Surroundings(wired.models, shapes, units)
 
 
 @dataclass(frozen=True)
@@ -267,7 +225,7 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
     ports = {}
     for name, block in diagram.blocks.items():
         try:
-            ports[name] = block.ports(_Surroundings(models, {}, {}))
+            ports[name] = block.ports(Surroundings(models, {}, {}))
         except DescriptionError as error:
             problems += located(error.problems, diagram.where(name))
     return ports
@@ -403,7 +361,7 @@ def _settle(
                 if isinstance(block, Inlet):
                     stated_ports = fed_ports(block, sources, ports, last)
                 else:
-                    stated_ports = block.ports(_Surroundings(models, inputs, units))
+                    stated_ports = block.ports(Surroundings(models, inputs, units))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports
