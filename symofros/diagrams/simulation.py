@@ -78,9 +78,12 @@ class Simulation:
             SymofrosError: As `run_compiled`; or nobody says where to end.
         """
         stated = self.diagram.simulation
+        return run_compiled(self.compiled_with(inputs), _end(self.diagram, t_end), **{**stated.keywords(), **settings})
+
+    def compiled_with(self, inputs: Mapping[str, Any] | None) -> CompiledDiagram:
+        """The diagram as C functions, with what is given for its inlets, as of `run`."""
         given = self._given(inputs)
-        compiled = compile_diagram(given, self.options) if self.diagram.inlets else self.compiled
-        return run_compiled(compiled, _end(self.diagram, t_end), **{**stated.keywords(), **settings})
+        return compile_diagram(given, self.options) if self.diagram.inlets else self.compiled
 
     def _given(self, inputs: Mapping[str, Any] | None) -> Resolved:
         """The diagram with what is given for its inlets."""

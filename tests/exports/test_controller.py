@@ -71,7 +71,8 @@ def closed(diagram: sf.Diagram, values: Mapping[str, np.ndarray]) -> sf.Diagram:
     whole = sf.Diagram("whole")
     for name, rows in values.items():
         whole.add(blocks.Sequence(name=name, t=RUN, values=rows, kind="hold"))
-    whole.include("part", diagram, **{name: name for name in values})
+    fed: dict[str, Any] = {name: name for name in values}
+    whole.include("part", diagram, **fed)
     return whole
 
 
@@ -182,4 +183,4 @@ def test_open_diagrams_that_cannot_leave_are_refused(tmp_path: Path) -> None:
         sf.export(same, "c", tmp_path / "c")
     for target in ("mex", "sfunction", "wasm"):
         with pytest.raises(sf.ExportError, match="becomes a C program or an FMU"):
-            sf.export(rates(), target, tmp_path / "c")  # type: ignore[arg-type]
+            sf.export(rates(), target, tmp_path / "c")
