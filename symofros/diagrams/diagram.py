@@ -48,8 +48,8 @@ class Diagram(metaclass=CheckedCalls):
         inlet_ports: Inlet -> its shape, units and start (`default`), where the inputs that it feeds do not say them.
         simulation: Settings of a run, as its author stated them.
         parts: Name -> what was included, for those who write the diagram down again.
-        origin: ("block", name), ("input", block, port), ("model", name) or ("outlet", name) -> "file:line" of what
-            came from a file.
+        origin: ("block", name), ("input", block, port), ("model", name), ("inlet", name) or ("outlet", name) ->
+            "file:line" of what came from a file.
         file: File that it was read from; "" for none.
     """
 

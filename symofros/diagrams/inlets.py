@@ -49,11 +49,8 @@ class Inlet(Block):
             read = tuple(parse(str(text)) for text in texts)
         except ExpressionError as error:
             raise DescriptionError(error.problem_of(f"inlet '{self.name}'")) from None
-        for names in (item.symbols() - {"t"} for item in read):
-            if names:
-                raise _refused(
-                    self.name, sorted(names)[0], "formulas of inlets are of the time t", "write numbers for it"
-                )
+        for name in sorted(set[str]().union(*(item.symbols() for item in read)) - {"t"}):
+            raise _refused(self.name, name, "formulas of inlets are of the time t", "write a number for it")
         return read
 
     @cached_property
@@ -95,20 +92,15 @@ class Inlet(Block):
         unit = {"unit": units[0]} if len(units) == 1 else {"units": units}
         return Port(VALUE, shape, default=starts[0] if starts else None, **unit)
 
-    def misfit(self) -> list[Problem]:
+    def misfit(self) -> Sequence[Problem]:
         """A shape that nothing says, or of what is given another than the signal's."""
+        found, rule, remedy = f"shape {self.own_shape}", f"it feeds inputs of shape {self.port.shape}", "mend it"
         if self.port.shape is None:
+            found, remedy = "its shape is unknown", "add_inlet(..., shape=(n,)); () is one number"
             rule = "a shape follows from an input that it feeds, from what is given, or is stated"
-            return list(
-                _refused(
-                    self.name, "its shape is unknown", rule, "add_inlet(..., shape=(n,)); () is one number"
-                ).problems
-            )
-        size, own = int(np.prod(self.port.shape or ())), int(np.prod(self.own_shape))
-        if own in (1, size):
-            return []
-        error = _refused(self.name, f"shape {self.own_shape}", f"it feeds inputs of shape {self.port.shape}", "mend it")
-        return list(error.problems)
+        elif int(np.prod(self.own_shape)) in (1, int(np.prod(self.port.shape))):
+            return ()
+        return _refused(self.name, found, rule, remedy).problems
 
     def ports(self, environment: Environment) -> Ports:
         """The signal."""
@@ -151,7 +143,9 @@ def with_inlets(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Di
             wires[block, input_name] = name
     if problems:
         raise DescriptionError(problems)
-    return replace(diagram, blocks={**inlets, **diagram.blocks}, wires=wires) if inlets else diagram
+    lines = {("block", name): diagram.origin[kind, name] for kind, name, *_ in diagram.origin if kind == "inlet"}
+    opened = {"blocks": {**inlets, **diagram.blocks}, "wires": wires, "origin": {**diagram.origin, **lines}}
+    return replace(diagram, **opened) if inlets else diagram
 
 
 def _misnamed(diagram: Diagram, inputs: Mapping[str, Any] | None) -> Iterable[Problem]:

@@ -141,7 +141,7 @@ def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
         ports = _settle(diagram, models, ports, sources, problems, last=True)
         for name, known in ports.items():
             block = settled(diagram.blocks[name], known)
-            problems += block.misfit() if isinstance(block, Inlet) else ()
+            problems += located(block.misfit(), diagram.where(name)) if isinstance(block, Inlet) else ()
     check_fit(diagram, ports, sources, problems)
     return Draft(models, ports, sources, outlets, problems)
 

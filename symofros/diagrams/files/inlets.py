@@ -37,6 +37,7 @@ def read_inlets(entries: Entries, diagram: Diagram, node: Node) -> None:
         if entries.missing(one, what, "to", stated, "an inlet feeds inputs"):
             continue
         to = stated["to"]
+        diagram.origin["inlet", name] = entries.where(one)
         items = [to] if isinstance(to.value, str) else entries.listed(to, what)
         diagram.inlets[name] = tuple(entries.text(item, what) for item in items)
         if len(stated) > 1:
