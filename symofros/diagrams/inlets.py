@@ -143,9 +143,12 @@ def with_inlets(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Di
             wires[block, input_name] = name
     if problems:
         raise DescriptionError(problems)
-    lines = {("block", name): diagram.origin[kind, name] for kind, name, *_ in diagram.origin if kind == "inlet"}
-    opened = {"blocks": {**inlets, **diagram.blocks}, "wires": wires, "origin": {**diagram.origin, **lines}}
-    return replace(diagram, **opened) if inlets else diagram
+    lines: dict[tuple[str, ...], str] = {
+        ("block", name): diagram.origin[kind, name] for kind, name, *_ in diagram.origin if kind == "inlet"
+    }
+    if not inlets:
+        return diagram
+    return replace(diagram, blocks={**inlets, **diagram.blocks}, wires=wires, origin={**diagram.origin, **lines})
 
 
 def _misnamed(diagram: Diagram, inputs: Mapping[str, Any] | None) -> Iterable[Problem]:

@@ -28,7 +28,8 @@ typedef struct fmu_snapshot { /* followed by the instance's memory, which holds 
 
 static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_t), void (*release)(void *)) {
     const size_t size = sym_program_size(SYM_FMU_PROGRAM()), length = name == NULL ? 0 : strlen(name);
-    double *memory = cosim ? allocate(sym_doubles(sizeof(fmu)) + sym_doubles(size) + sym_doubles(length + 1), sizeof *memory) : NULL;
+    const size_t doubles = sym_doubles(sizeof(fmu)) + sym_doubles(size) + sym_doubles(length + 1);
+    double *memory = cosim ? allocate(doubles, sizeof *memory) : NULL;
     fmu *f = (fmu *)(void *)memory;
     if (memory == NULL) return NULL;
     memset(f, 0, sizeof *f);
