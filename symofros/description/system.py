@@ -234,6 +234,11 @@ class System:
         return tuple(body for body in self.bodies if isinstance(body, Beam))
 
     @property
+    def springs(self) -> tuple[Connection, ...]:
+        """The connections that are springs and dampers, in their order."""
+        return tuple(item for item in self.connections if isinstance(item, Connection))
+
+    @property
     def contacts(self) -> tuple[Contact, ...]:
         """The connections that are compliant contacts, in their order."""
         return tuple(item for item in self.connections if isinstance(item, Contact))

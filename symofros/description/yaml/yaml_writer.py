@@ -22,7 +22,7 @@ from symofros.description.constraints import (
     Rod,
     Rolling,
 )
-from symofros.description.forces import Anchor, Connection
+from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.quoting import text_among
 from symofros.description.system import Body, Inertia, System
@@ -133,8 +133,7 @@ def _document(system: System) -> Plain:
     document["parameters"] = {item.name: _entry(ParameterEntry, item) for item in system.parameters}
     document["inputs"] = {item.name: _entry(InputEntry, item) for item in system.inputs}
     document["bodies"] = {item.name: _body(item) for item in system.bodies}
-    springs = [item for item in system.connections if isinstance(item, Connection)]
-    document["connections"] = {item.name: _entry(ConnectionEntry, item) for item in springs}
+    document["connections"] = {item.name: _entry(ConnectionEntry, item) for item in system.springs}
     document["contacts"] = {item.name: _entry(ContactEntry, item) for item in system.contacts}
     document["virtual_power"] = {
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power

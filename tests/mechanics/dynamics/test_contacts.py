@@ -273,3 +273,16 @@ def test_files_keep_contacts(name: str, tmp_path: Any) -> None:
     m = sf.compile(again, INTERPRETED)
     with pytest.raises(sf.SymofrosError, match="contact 'touch': stiffness -1"):
         m.contact_forces(m.neutral(), np.zeros(m.nv), par=[-1.0])
+
+
+@pytest.mark.parametrize(("stiffness", "deep"), [(1e5, False), (50.0, True)])
+def test_runs_in_which_a_ball_sinks_to_its_centre_say_so(stiffness: float, deep: bool) -> None:
+    contact = sf.Contact("floor", ("ball", None), ("world", None), stiffness, radius=0.05, dissipation=2.0)
+    m = sf.compile(falling(contact, sf.Joint("z", "prismatic", axis=(0, 0, 1))))
+    for run in (
+        sf.simulate(m, [0.2], t_end=1.0, method="dopri5"),
+        sf.simulate_batch(m, [[0.2]], t_end=1.0, method="dopri5", output=0.01)[0],
+    ):
+        assert (
+            any("contact 'floor' is" in note and "times its radius deep" in note for note in run.outcome.notes) == deep
+        )

@@ -127,10 +127,7 @@ class _Line:
 
 def connection_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     """The energy that connections and contacts store."""
-    parts: list[Edge] = []
-    for connection in kinematics.tree.system.connections:
-        if isinstance(connection, Connection):
-            parts.append(_Line(kinematics, frames, connection).energy())
-        else:
-            parts += [ball.energy for ball in touching_balls(kinematics, frames, connection)]
+    system = kinematics.tree.system
+    parts = [_Line(kinematics, frames, spring).energy() for spring in system.springs]
+    parts += [ball.energy for contact in system.contacts for ball in touching_balls(kinematics, frames, contact)]
     return kinematics.g.sum(parts)
