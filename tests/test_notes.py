@@ -23,7 +23,7 @@ from symofros.simulation.results.notes import NOTES
 ROOT = Path(__file__).parents[1]
 # Names of what collects notes, and of functions that return them in words.
 COLLECTED, RETURNED = ("notes", "remarks"), re.compile(r"note|_lost$|_remark")
-# The same where they have other names: a beam's bending, a run that ends otherwise, starts that change, blocks in Python.
+# The same where names differ: a beam's bending, a run that ends otherwise, starts that change, blocks in Python.
 ELSEWHERE = {
     "beams.py": re.compile(r"^__str__$"),
     "finer_steps.py": re.compile(r"note|^_unlike$"),

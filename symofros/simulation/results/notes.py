@@ -23,7 +23,7 @@ class NoteKind(NamedTuple):
 _SMALLER = "a smaller dt or an adaptive method"
 NOTES: Mapping[str, NoteKind] = {
     "step past stability": NoteKind(
-        "the step of … s is past the limit of stability: '…' is … for the mode that …, and multiplies it by … each step",
+        "the step of … s is past the limit of stability: '…' is … for the mode that …",
         "the method multiplies a mode of the motion, or the way back to the constraints by gains, at each step",
         "dt below the limit, an implicit method, or smaller gains",
     ),

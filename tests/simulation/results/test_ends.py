@@ -1,4 +1,4 @@
-"""The tables of how runs end and of what they note: a row for each status and kind, shown by docs/howto/simulating.md."""
+"""The tables of how runs end and what they note: a row a status and a kind, shown in docs/howto/simulating.md."""
 
 from __future__ import annotations
 
