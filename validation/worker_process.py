@@ -53,7 +53,8 @@ class WorkerProcess:
         preload: Names of modules to load before the first job.
         fresh: Whether each job gets a process of its own, forked once these are loaded: nothing of another job is in
             it, and processor time and memory can be bounded. Where the system can't fork, the whole is started anew.
-        log: File that gets what the jobs print, that of the latest alone; None: the standard error of this process.
+        log: File that gets what the jobs print, that of the latest alone, the last line of which says why one crashed;
+            None: the standard error of this process.
     """
 
     def __init__(
@@ -117,7 +118,7 @@ class WorkerProcess:
                     failure = WorkerError(value, "raised")
                 else:
                     has_ended = True
-                    failure = failure if value is None else _crashed(value)
+                    failure = failure if value is None else self._crashed(value)
         finally:
             # Where the system can't fork, a process that is to be fresh for each job has done its only one.
             if not has_ended or (self._fresh and self._doing == process.pid):
@@ -125,11 +126,6 @@ class WorkerProcess:
             self._doing = 0
         if failure is not None:
             raise failure
-
-    def last_words(self) -> str:
-        """The last line of the log; "" where there is none."""
-        text = self._log.read_text(encoding="utf-8", errors="replace") if self._log and self._log.exists() else ""
-        return next(reversed(text.strip().splitlines()), "")
 
     def close(self) -> None:
         """End the process, and whatever its job has started."""
@@ -189,8 +185,14 @@ class WorkerProcess:
         except queue.Empty:
             raise WorkerError(f"no answer in {limit:g} s", "timed out") from None
         if message is None:
-            raise _crashed(process.wait(_ENDING))
+            raise self._crashed(process.wait(_ENDING))
         return message
+
+    def _crashed(self, code: int) -> WorkerError:
+        """What the code of a process says of its end, with the last line of its log."""
+        reason = f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+        said = self._log.read_text(encoding="utf-8", errors="replace").strip() if self._log else ""
+        return WorkerError(": ".join([reason, *said.splitlines()[-1:]]), "crashed", code)
 
 
 def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message | None]) -> None:
@@ -199,7 +201,3 @@ def _listen(stream: IO[bytes], messages: queue.SimpleQueue[Message | None]) -> N
         while (message := received(stream)) is not None:
             messages.put(message)
     messages.put(None)
-
-
-def _crashed(code: int) -> WorkerError:
-    return WorkerError(f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}", "crashed", code)

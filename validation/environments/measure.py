@@ -2,6 +2,8 @@
 
 # Annotations are values here: the options of a command name the environments.
 from collections.abc import Callable, Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any
 
 import typer
@@ -46,7 +48,10 @@ def run_environment(
         RuntimeError: The process ended before its time; with its last words.
     """
     try:
-        with WorkerProcess(environment=SETTINGS[name]) as worker:
+        with (
+            TemporaryDirectory() as folder,
+            WorkerProcess(environment=SETTINGS[name], log=Path(folder) / "log") as worker,
+        ):
             for message in worker.call(work, name, models, STATES, turns):
                 take(message, record, doing)
     except WorkerError as error:

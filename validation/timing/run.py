@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import subprocess
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from symofros.tools import find_toolchain
@@ -39,7 +39,7 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
     """
     record.forget([job.model], [LEFT], [])
     try:
-        with WorkerProcess() as worker:
+        with TemporaryDirectory() as folder, WorkerProcess(log=Path(folder) / "log") as worker:
             for message in worker.call(work, job):
                 take(message, job, record, doing)
     except WorkerError as error:
@@ -121,7 +121,7 @@ def facts() -> Mapping[str, Any]:
 def peaks() -> dict[str, float]:
     """Measured limits of one core: operations a second in fused multiply-adds (two each), bytes copied a second."""
     compiler = first_compiler()
-    with tempfile.TemporaryDirectory() as private:
+    with TemporaryDirectory() as private:
         text, program = Path(private) / "peak.c", Path(private) / "peak"
         text.write_text(source("peak.c"), encoding="utf-8")
         subprocess.run([compiler.path, "-O3", "-march=native", str(text), "-o", str(program)], check=True)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from ...worker_process import WorkerError, WorkerProcess
 from ..contestants.programs import BuildError
@@ -60,7 +62,10 @@ def run_flexible(repeats: int, counts: Sequence[int] = COUNTS, calls: int = CALL
         BuildError: It failed; with its last words.
     """
     try:
-        with WorkerProcess(environment={"EXUDYN_MODULE": "fast"}) as worker:
+        with (
+            TemporaryDirectory() as folder,
+            WorkerProcess(environment={"EXUDYN_MODULE": "fast"}, log=Path(folder) / "log") as worker,
+        ):
             return list(worker.call(_MEASURE, repeats, tuple(counts), calls))
     except WorkerError as error:
         raise BuildError(f"{LABEL} against Exudyn: the worker: {error}") from None
