@@ -65,6 +65,7 @@ def _serve_in_children(requests: IO[bytes], answers: IO[bytes]) -> None:
         child = os.fork()
         if child == 0:
             os.close(reading)
+            os.close(answers.fileno())  # So that the end of this process is the end of its answers.
             _do_as_child(job, writing, requests)
         os.close(writing)
         message: tuple[str, Any] | None = None

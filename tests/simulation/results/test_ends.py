@@ -13,7 +13,9 @@ from symofros.simulation.stepping.status import Status
 
 PAGE = Path(__file__).parents[3] / "docs" / "howto" / "simulating.md"
 TABLES: dict[str, Iterable[tuple[str, ...]]] = {
-    "| `outcome.kind` | what it means | what to try |\n| --- | --- | --- |\n": ENDS.values(),
+    "| `outcome.kind` | what it means | what to try | in C |\n| --- | --- | --- | --- |\n": [
+        (*end, f"`SYM_{Status(status).name}`, {int(status)}") for status, end in ENDS.items()
+    ],
     "| a note that says | is said when | what to try |\n| --- | --- | --- |\n": NOTES.values(),
 }
 
