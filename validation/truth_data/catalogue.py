@@ -7,9 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..engines.interface import Joint, Link, Slot, Tree, Vector, rows
-from ..engines.models.kinds import OBLIQUE, link, placed
+from ..engines.models.kinds import link, placed
 from ..engines.proving.pieces import Layout
-from ..engines.truth.charts import CHARTS as ALL_CHARTS
 
 # Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.truth.charts`).
 CHARTS = {
@@ -19,6 +18,7 @@ CHARTS = {
     "ball": "quaternion xyzw, body speeds",
     "free": "free xyzw, body speeds",
 }
+_SIZES = {"revolute": (1, 1), "prismatic": (1, 1), "helical": (1, 1), "ball": (4, 3), "free": (7, 6)}
 
 # Functions of `validation.engines.functions.FUNCTIONS` that have their values in the data.
 FUNCTIONS = (
@@ -63,6 +63,7 @@ class Model:
         return self.tree.name
 
 
+_OBLIQUE: Vector = (2 / 3, -1 / 3, 2 / 3)
 _X: Vector = (1.0, 0.0, 0.0)
 _Y: Vector = (0.0, 1.0, 0.0)
 _Z: Vector = (0.0, 0.0, 1.0)
@@ -76,10 +77,9 @@ def layout(tree: Tree) -> Layout:
         kept = []
         for joint in item.joints:
             if joint.kind != "fixed":
-                chart = CHARTS[joint.kind]
-                q, v = range(nq, nq + ALL_CHARTS[chart].nq), range(nv, nv + ALL_CHARTS[chart].nv)
-                kept.append(Slot(chart, tuple(q), tuple(v)))
-                nq, nv = q.stop, v.stop
+                q, v = _SIZES[joint.kind]
+                kept.append(Slot(CHARTS[joint.kind], tuple(range(nq, nq + q)), tuple(range(nv, nv + v))))
+                nq, nv = nq + q, nv + v
         slots.append(tuple(kept))
     return Layout(nq, nv, tuple(slots))
 
@@ -109,14 +109,16 @@ def models() -> tuple[Model, ...]:
     serial = [(k - 1, _hinge((_X, _Y, _Z)[k % 3])) for k in range(6)]
     return (
         Model(_tree("two_hinges", 1, (-1, _hinge(_Y)), (0, _hinge(_Y))), "the smallest tree with everything in it"),
-        Model(_tree("oblique_hinges", 2, *((k - 1, _hinge(OBLIQUE)) for k in range(3))), "axes along no axis"),
+        Model(_tree("oblique_hinges", 2, *((k - 1, _hinge(_OBLIQUE)) for k in range(3))), "axes along no axis"),
         Model(
-            _tree("slides_and_hinges", 3, (-1, _slide(_X)), (0, _hinge(_Z)), (1, _slide(OBLIQUE)), (2, _hinge(_X))),
+            _tree("slides_and_hinges", 3, (-1, _slide(_X)), (0, _hinge(_Z)), (1, _slide(_OBLIQUE)), (2, _hinge(_X))),
             "prismatic joints between rotating links",
         ),
         Model(_tree("arm", 4, *serial), "a serial arm of six joints"),
         Model(
-            _tree("tree", 5, (-1, _hinge(_Z)), (0, _hinge(_X)), (1, _hinge(_Y)), (0, _slide(_Y)), (3, _hinge(OBLIQUE))),
+            _tree(
+                "tree", 5, (-1, _hinge(_Z)), (0, _hinge(_X)), (1, _hinge(_Y)), (0, _slide(_Y)), (3, _hinge(_OBLIQUE))
+            ),
             "two branches",
         ),
         Model(
@@ -124,11 +126,11 @@ def models() -> tuple[Model, ...]:
             "links fixed to others, in the middle and at the end",
         ),
         Model(
-            _tree("heavy_on_light", 7, *((k - 1, _hinge(OBLIQUE)) for k in range(3)), sizes=(1e-4, 1.0, 1e3)),
+            _tree("heavy_on_light", 7, *((k - 1, _hinge(_OBLIQUE)) for k in range(3)), sizes=(1e-4, 1.0, 1e3)),
             "masses seven decades apart",
         ),
         Model(
-            _tree("floating", 8, (-1, Joint("free")), (0, _hinge(_Y)), (1, _slide(_Z)), (0, _hinge(OBLIQUE))),
+            _tree("floating", 8, (-1, Joint("free")), (0, _hinge(_Y)), (1, _slide(_Z)), (0, _hinge(_OBLIQUE))),
             "a floating base with two limbs",
         ),
         Model(_tree("balls", 9, (-1, Joint("ball")), (0, Joint("ball"))), "ball joints in series"),
@@ -137,7 +139,7 @@ def models() -> tuple[Model, ...]:
                 "screws",
                 10,
                 (-1, Joint("helical", axis=_Z, pitch=0.25)),
-                (0, Joint("helical", axis=OBLIQUE, pitch=-0.5)),
+                (0, Joint("helical", axis=_OBLIQUE, pitch=-0.5)),
             ),
             "helical joints",
         ),
