@@ -15,7 +15,6 @@ import numpy as np
 
 from ..contract.conventions import Chart, Slot
 from ..contract.interface import NotOffered, SolvedEngine, States, Subject, Unsupported
-from ..contract.quantities import QUANTITIES
 from ..engines.interface import (
     ORIGIN,
     EngineModel,
@@ -30,6 +29,7 @@ from ..engines.interface import (
 )
 from ..engines.plugins import OWN
 from ..engines.plugins.writing.source import SourceModel
+from ..engines.workers import layout_of
 from ..mechanics.assembly import BASE, Assembly, Mover
 from ..mechanics.geometry import Array
 from ..mechanics.joint_kinds import PartKind
@@ -61,6 +61,7 @@ FUNCTIONS = {
 }
 # Quantities that follow from others where an engine does not give them -> functions that they follow from.
 FOLLOWING = {
+    "bias": {"gravity"},  # At rest.
     "kinetic_energy": {"mass_matrix"},
     "potential_energy": {"link_poses"},
     "inverse_dynamics": {"mass_matrix", "bias"},
@@ -249,7 +250,7 @@ class ChartedEngine(SolvedEngine):
 
     def bias(self, states: States) -> Array:
         """Coriolis, centrifugal and gravity forces h (N, nv)."""
-        h = self.asked("bias", states)
+        h = self.asked("gravity" if "bias" in self.following else "bias", states)
         if not self.chart.turns:
             return self.chart.our_forces(states.q, h)
         return self.chart.bias(states.q, states.v, h, self.asked("mass_matrix", states))
@@ -327,7 +328,7 @@ def _each(model: EngineModel, function: str, states: Iterable[State]) -> Array |
 
 def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:
     """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs."""
-    names = frozenset(name for name, function in FUNCTIONS.items() if function in functions) & QUANTITIES.keys()
+    names = frozenset(name for name, function in FUNCTIONS.items() if {name, function} & {*functions})
     return names - ({"potential_energy"} if stores_energy(subject.system) else set())
 
 
@@ -363,10 +364,9 @@ def build(
         assert not isinstance(bare, Unsupported)  # As the whole is not.
         return bare
 
-    following = frozenset(
-        name for name, needs in FOLLOWING.items() if name not in plugin.functions and needs <= plugin.functions.keys()
-    )
-    chart = chart_of(model, described)
+    given = plugin.functions.keys()
+    following = frozenset(name for name, needs in FOLLOWING.items() if name not in given and needs <= given)
+    chart = chart_of(layout_of(described.tree, model), described)
     for slot in chart.slots:
         if slot.turns and armature(subject.system, slot.mover):
             # The rate of components along other axes is another acceleration than the rate of body components.
@@ -377,7 +377,7 @@ def build(
         model,
         chart,
         described.frames,
-        offered({*plugin.functions, *following}, subject),
+        offered(given | (following - {"bias"}), subject),
         without_frames=without_frames,
         joints=described.joints,
         following=following,

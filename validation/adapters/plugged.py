@@ -27,7 +27,8 @@ def found() -> tuple[list[str], dict[str, str]]:
 def build(name: str, subject: Subject) -> ChartedEngine | Unsupported:
     """A plug-in's model of a rigid description.
 
-    Each joint is stated whole, and all that is fixed to a link is one mass with it. Where the engine refuses links without mass for the subject's frames, it is asked without them.
+    Each joint is stated whole, and all that is fixed to a link is one mass with it. Where the engine refuses links
+    without mass for the subject's frames, it is asked without them.
 
     Args:
         name: Name of the plug-in.
