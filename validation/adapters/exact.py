@@ -5,22 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..contract.interface import Subject
-from ..engines.interface import Slot
 from ..engines.proving.pieces import Layout
 from ..engines.truth.arithmetic import exact, many_digits
 from ..engines.truth.dynamics import Truth, digits
 from ..mechanics.geometry import Array
-from ..mechanics.joint_kinds import PartKind
 from .charted import stated
-
-# Simple joints -> our charts of them.
-_CHARTS: dict[PartKind, str] = {
-    "revolute": "angle",
-    "prismatic": "length",
-    "screw": "screw angle",
-    "ball": "quaternion xyzw, body speeds",
-    "free": "free xyzw, body speeds",
-}
 
 
 def accelerations(subject: Subject, q: Array, v: Array, tau: Array) -> Array:
@@ -32,12 +21,12 @@ def accelerations(subject: Subject, q: Array, v: Array, tau: Array) -> Array:
         v: Speeds (nv).
         tau: Forces (nv), all but the weight.
     """
-    assembly, tree = subject.assembly, stated(subject, whole=False, merged=True).tree
-    slots = [
-        (Slot(_CHARTS[one.kind], tuple(range(one.q.start, one.q.stop)), tuple(range(one.v.start, one.v.stop))),)
-        for one in assembly.movers
-    ]
-    fixed: list[tuple[Slot, ...]] = [()] * (len(tree.links) - len(slots))
-    layout = Layout(assembly.nq, assembly.nv, (*slots, *fixed))
+    movers, tree = subject.assembly.movers, stated(subject, whole=False, merged=True).tree
+    # Links follow the movers, whose coordinates need not be in their order.
+    coordinates = np.concatenate([np.arange(subject.assembly.nq)[one.q] for one in movers])
+    speeds = np.concatenate([np.arange(subject.assembly.nv)[one.v] for one in movers])
     with many_digits():
-        return digits(Truth(tree, layout).FD(*(exact(np.asarray(x)) for x in (q, v, tau))))
+        found = digits(Truth(tree, Layout.ours(tree)).FD(exact(q[coordinates]), exact(v[speeds]), exact(tau[speeds])))
+    result = np.zeros_like(found)
+    result[speeds] = found
+    return result
