@@ -79,10 +79,11 @@ class Route:
     def load(self) -> EngineFactory | Missing:
         """The engine's factory; this imports its package and no other engine's."""
         try:
-            factory: EngineFactory = import_module(self.module).build
+            build = import_module(self.module).build
         except ImportError as error:
             return Missing(f"{error}; pip install 'symofros[validation]'")
-        return partial(factory, self.plugin) if self.plugin else factory
+        factory: EngineFactory = partial(build, self.plugin) if self.plugin else build
+        return factory
 
 
 # In the order of reports. The generated C itself is not among them: it is what they are compared with.

@@ -43,13 +43,17 @@ def about(axis: SX, s: SX, c: SX) -> SX:
 
 def of_quaternion(e: SX) -> SX:
     """R of a unit quaternion (x, y, z, w)."""
-    x, y, z, w = ca.vertsplit(e)
+    x, y, z, w = _entries(e)
     rows = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
         [2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
         [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
     ]
     return ca.blockcat(rows)
+
+
+def _entries(a: SX) -> list[SX]:
+    return list(ca.vertsplit(a))
 
 
 def solve(A: SX, columns: Sequence[SX]) -> SX:
@@ -70,7 +74,7 @@ def solve(A: SX, columns: Sequence[SX]) -> SX:
 
 
 def _substituted(L: dict[tuple[int, int], SX], D: dict[int, SX], b: SX) -> SX:
-    n, x = b.shape[0], ca.vertsplit(b)
+    n, x = b.shape[0], _entries(b)
     for i in range(n - 1, -1, -1):
         x[i] = x[i] - sum((L[k, i] * x[k] for k in range(i + 1, n)), ca.SX(0))
     x = [x[i] / D[i] for i in range(n)]
