@@ -2,7 +2,8 @@
  *
  * Active trajectories step together, each by its own step size; the accelerations at one stage of all of them are one
  * call of the model's batch function, by vectors. A trajectory that ends frees its slot for the next. Apart from that call
- * everything is the code of a single run (run.c), so that no trajectory depends on the others.
+ * everything is the code of a single run (run.c), so that no trajectory depends on the others; where steps are simple, all of
+ * a step is done by vectors, with the same numbers (batch_columns.c).
  */
 #ifndef SYMOFROS_BATCH_H
 #define SYMOFROS_BATCH_H
@@ -30,6 +31,7 @@ typedef struct sym_batch {
     /* By the caller. */
     const sym_run *prototype; /* settings, and the system of a single run, which only this batch uses */
     sym_batch_function forward_dynamics, law, project;
+    const sym_lanes *lanes;   /* forward_dynamics by vectors of doubles, for steps by columns; NULL: steps by rows alone */
     int32_t slots;            /* most trajectories active at once; 2 at least */
     sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
     const double *t0;         /* (n) first times; NULL: that of the prototype for all */
@@ -60,6 +62,13 @@ typedef struct sym_batch {
     double *y1, *stage, *magnitude, *end_slope, *k, *y0, *length;
     double *end_state, *unseen; /* (nq + nv), (3 nv) while one slot accepts its step */
     double *defects;   /* of the inputs while one slot proposes its step: input_moments.c */
+    /* Steps by columns: number k of slot i is entry (k, i) of (size, slots). */
+    int32_t in_columns; /* whether `states` is (nq + nv, slots), and times and numbers of steps are not in the runs but here: */
+    int32_t n_begun;    /* number of slots whose first slope is known */
+    double *column_t, *column_t0, *column_steps, *column_record, *column_u; /* (slots) each, time of the next record; (nu, slots) */
+    double *column_slope, *lost; /* (nv, slots) first accelerations that are known; (slots) not zero: a number is none */
+    double *column_work;
+    sym_strided column_in[SYM_MAX_INPUTS], column_out[SYM_MAX_OUTPUTS];
 } sym_batch;
 
 /* Doubles of memory that the slots take; *shared: those of them that hold nothing between two calls, so that batches of one
