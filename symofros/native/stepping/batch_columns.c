@@ -3,7 +3,6 @@
  * A step at which one slot needs more than that, because it ends, fails or records within the step, is made by rows. */
 
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory);
-static void sym_batch_combine_slopes(const sym_batch *b, int32_t n, int32_t stages, const double *weights, double *restrict y);
 
 /* Whether steps are made by columns: of trees in scalar coordinates under constant inputs, by explicit methods of fixed steps
  * whose slopes no later step takes over. */
@@ -21,9 +20,9 @@ static int32_t sym_batch_has_columns(const sym_batch *b) {
 static void sym_columns_allocate(sym_batch *b, sym_arena *own, sym_arena *scratch) {
     const sym_system *s = b->prototype->system;
     const size_t slots = (size_t)b->slots;
-    b->column_u = sym_allocate(own, slots * (size_t)s->nu);
     b->column_t = sym_allocate(own, slots), b->column_t0 = sym_allocate(own, slots);
     b->column_steps = sym_allocate(own, slots), b->column_record = sym_allocate(own, slots);
+    b->column_u = sym_allocate(own, slots * (size_t)s->nu);
     b->column_slope = sym_allocate(scratch, slots * (size_t)s->nv), b->lost = sym_allocate(scratch, slots);
     b->column_work = sym_allocate(scratch, b->lanes->work);
 }
@@ -34,11 +33,12 @@ static void sym_columns_bind(sym_batch *b) {
     const sym_function *function = f->function;
     const ptrdiff_t slots = b->slots;
     int32_t k;
+    b->column_v = -1;
     b->column_in[0].at = (void *)f->in[0], b->column_in[0].step = 1, b->column_in[0].stride = (ptrdiff_t)f->in_stride[0];
     for (k = 1; k < function->n_in; ++k) {
         sym_strided *in = &b->column_in[k];
         in->at = f->in[k] == b->u ? b->column_u : (void *)f->in[k];
-        if (f->in[k] == b->v) in->at = b->stage + b->prototype->system->nv * slots;
+        if (f->in[k] == b->v) b->column_v = k;
         in->step = slots, in->stride = 1;
     }
     for (k = 0; k < function->n_out; ++k)
@@ -112,16 +112,16 @@ static void sym_columns_leave(sym_batch *b) {
 static int32_t sym_columns_propose(sym_batch *b) {
     const sym_run *r = b->prototype;
     const double h = r->h, last = r->t_end - 1e-9 * h, most = b->max_steps > 0 ? (double)b->max_steps : HUGE_VAL;
-    double special = 0.0;
-    int32_t i;
-    for (i = 0; i < b->n_active; ++i) {
+    int32_t i, n = b->n_active, special = 0;
+    for (i = 0; i < n; ++i) {
         double t1 = b->column_t0[i] + (b->column_steps[i] + 1.0) * h;
         t1 = fabs(t1) < SYM_ROUNDED_ZERO * h ? 0.0 : t1; /* sym_multiple */
         b->t1[i] = t1, b->h[i] = t1 - b->column_t[i];
-        special += t1 >= last || b->column_steps[i] + 1.0 >= most ? 1.0 : 0.0;
-        special += (b->column_record[i] - b->column_t[i]) / b->h[i] > 1.0 - SYM_GRID_BEFORE ? 0.0 : 1.0;
+        special |= (t1 >= last) | (b->column_steps[i] + 1.0 >= most);
     }
-    return special == 0.0;
+    for (i = 0; i < n && r->n_grid > 0; ++i)
+        special |= !((b->column_record[i] - b->column_t[i]) / b->h[i] > 1.0 - SYM_GRID_BEFORE);
+    return special == 0;
 }
 
 /* Add to `lost` what is not zero where a number is none that a motion may have: sym_all_finite. */
@@ -133,56 +133,61 @@ static void sym_columns_check(sym_batch *b, int32_t size, const double *restrict
         for (i = 0; i < n; ++i) lost[i] += x[SYM_INDEX(k, b->slots, i)] * SYM_BEYOND_MOTION * 0.0;
 }
 
-/* Slope number `stage`, whose (theta, v) is in b->stage, its q in b->q, its time in b->t. */
+/* Entries of q, or of v, in all columns. */
+static size_t sym_columns_half(const sym_batch *b) { return (size_t)b->prototype->system->nv * (size_t)b->slots; }
+
+/* Slope number `stage`: its v is there, its q in b->q, its time in b->t; its accelerations are evaluated. */
 static void sym_columns_evaluate(sym_batch *b, int32_t stage) {
-    const size_t nv = (size_t)b->prototype->system->nv, half = nv * (size_t)b->slots;
-    double *k = b->k + (size_t)stage * 2 * half, *a = k + half;
+    const int32_t nv = b->prototype->system->nv;
+    double *v = b->k + (size_t)stage * 2 * sym_columns_half(b), *a = v + sym_columns_half(b);
     int32_t i, l;
+    if (b->column_v >= 0) b->column_in[b->column_v].at = v;
     b->column_out[0].at = a;
-    memcpy(k, b->stage + half, half * sizeof *k);
     b->lanes->batch((size_t)b->n_active, b->column_in, b->column_out, b->column_work);
     for (i = 0; i < b->n_active && stage == 0 && b->n_begun > 0; ++i)
-        for (l = 0; l < (int32_t)nv && b->runs[i].slope_valid; ++l) a[SYM_INDEX(l, b->slots, i)] = b->column_slope[SYM_INDEX(l, b->slots, i)];
-    sym_columns_check(b, (int32_t)nv, a);
+        for (l = 0; l < nv && b->runs[i].slope_valid; ++l) a[SYM_INDEX(l, b->slots, i)] = b->column_slope[SYM_INDEX(l, b->slots, i)];
+    sym_columns_check(b, nv, a);
 }
 
-/* Evaluation points of a stage that is not the first. */
-static void sym_columns_load_stage(sym_batch *b, int32_t stage) {
-    const sym_tableau *method = &b->prototype->tableau;
-    const size_t half = (size_t)b->prototype->system->nv * (size_t)b->slots;
-    const double *restrict theta = b->stage, *restrict q = b->states, c = method->c[stage];
-    double *restrict at = b->q;
-    size_t l;
-    int32_t i;
-    sym_batch_combine_slopes(b, b->slots, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
-    for (l = 0; l < half; ++l) at[l] = q[l] + theta[l];
-    for (i = 0; i < b->n_active; ++i) {
-        const double first = b->column_t[i], last = b->t1[i], t = first + c * b->h[i];
-        b->t[i] = t > last ? last : t < first ? first : t; /* sym_stage_time */
+/* y = (0, v) + h times the weighted sum of slopes: sym_batch_combine_slopes. Of a stage, theta becomes q (+) theta. */
+static void sym_columns_combine(const sym_batch *b, int32_t stages, const double *weights, int32_t at_end, double *q1, double *v1) {
+    const size_t half = sym_columns_half(b), slots = (size_t)b->slots;
+    size_t i, l;
+    sym_weighted_sum(2 * half, stages, weights, b->k, 2 * half, b->stage);
+    for (l = 0; l < half; l += slots) {
+        const double *restrict sum = b->stage + l, *restrict sum_v = b->stage + half + l, *restrict h = b->h;
+        const double *restrict q = b->states + l, *restrict v = b->states + half + l;
+        double *restrict q_to = q1 + l, *restrict v_to = v1 + l;
+        if (at_end)
+            for (i = 0; i < slots; ++i) q_to[i] = h[i] * sum[i] + 0.0;
+        else
+            for (i = 0; i < slots; ++i) q_to[i] = q[i] + (h[i] * sum[i] + 0.0); /* zero keeps the product rounded by itself */
+        for (i = 0; i < slots; ++i) v_to[i] = h[i] * sum_v[i] + v[i];
     }
 }
 
-/* y0 = (0, v) and the lengths of the step, and the evaluation points of the first stage. */
-static void sym_columns_begin_step(sym_batch *b) {
-    const size_t half = (size_t)b->prototype->system->nv * (size_t)b->slots, slots = (size_t)b->slots;
-    size_t l;
-    memset(b->y0, 0, half * sizeof *b->y0);
-    memcpy(b->y0 + half, b->states + half, half * sizeof *b->y0);
-    memcpy(b->stage + half, b->states + half, half * sizeof *b->stage);
-    memcpy(b->q, b->states, half * sizeof *b->q);
-    memcpy(b->t, b->column_t, slots * sizeof *b->t);
-    for (l = 0; l < 2 * half; l += slots) memcpy(b->length + l, b->h, slots * sizeof *b->length);
-    memset(b->lost, 0, slots * sizeof *b->lost);
+/* One stage: sym_batch_evaluate_stage. */
+static void sym_columns_evaluate_stage(sym_batch *b, int32_t stage) {
+    const sym_tableau *method = &b->prototype->tableau;
+    const double c = method->c[stage];
+    int32_t i, n = b->n_active;
+    sym_columns_combine(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, 0, b->q,
+                        b->k + (size_t)stage * 2 * sym_columns_half(b));
+    for (i = 0; i < n; ++i) {
+        const double first = b->column_t[i], last = b->t1[i], t = first + c * b->h[i];
+        b->t[i] = t > last ? last : t < first ? first : t; /* sym_stage_time */
+    }
+    sym_columns_evaluate(b, stage);
 }
 
 /* y1 of semi-implicit Euler: sym_semi_implicit_step. */
 static void sym_columns_semi_implicit(sym_batch *b) {
-    const size_t half = (size_t)b->prototype->system->nv * (size_t)b->slots;
-    const double *restrict h = b->length, *restrict v = b->states + half, *restrict a = b->k + half;
-    double *restrict theta = b->y1, *restrict v1 = b->y1 + half;
-    size_t l;
-    for (l = 0; l < half; ++l) v1[l] = v[l] + h[l] * a[l];
-    for (l = 0; l < half; ++l) theta[l] = h[l] * v1[l];
+    const size_t half = sym_columns_half(b), slots = (size_t)b->slots;
+    size_t i, l;
+    for (l = 0; l < half; l += slots)
+        for (i = 0; i < slots; ++i) b->y1[half + l + i] = b->states[half + l + i] + b->h[i] * b->k[half + l + i];
+    for (l = 0; l < half; l += slots)
+        for (i = 0; i < slots; ++i) b->y1[l + i] = b->h[i] * b->y1[half + l + i];
 }
 
 /* Record the states of slots at whose present time the grid records: sym_record_grid_at_end. */
@@ -204,39 +209,36 @@ static void sym_columns_record(sym_batch *b) {
 
 /* The states become y1, at the ends of the step. */
 static void sym_columns_accept(sym_batch *b) {
-    const size_t half = (size_t)b->prototype->system->nv * (size_t)b->slots;
-    double *restrict q = b->states, recorded = 0.0;
+    const size_t half = sym_columns_half(b);
+    double *restrict q = b->states;
     const double *restrict theta = b->y1;
     size_t l;
-    int32_t i;
+    int32_t i, n = b->n_active, recorded = 0;
     for (l = 0; l < half; ++l) q[l] += theta[l];
     memcpy(b->states + half, b->y1 + half, half * sizeof *b->y1);
-    for (i = 0; i < b->n_active; ++i) {
-        b->column_t[i] = b->t1[i], b->column_steps[i] += 1.0;
-        recorded += b->column_record[i] <= b->t1[i] + SYM_GRID_AFTER * b->h[i] ? 1.0 : 0.0;
-    }
-    for (i = 0; i < b->n_active && b->n_begun > 0; ++i) b->runs[i].slope_valid = 0;
+    for (i = 0; i < n; ++i) b->column_t[i] = b->t1[i], b->column_steps[i] += 1.0;
+    for (i = 0; i < n && b->prototype->n_grid > 0; ++i) recorded |= b->column_record[i] <= b->t1[i] + SYM_GRID_AFTER * b->h[i];
+    for (i = 0; i < n && b->n_begun > 0; ++i) b->runs[i].slope_valid = 0;
     b->n_begun = 0;
-    if (recorded > 0.0) sym_columns_record(b);
+    if (recorded) sym_columns_record(b);
 }
 
 /* One step of all active trajectories. Returns 0, and nothing is changed, where it has to be made by rows. */
 static int32_t sym_columns_step(sym_batch *b) {
     const sym_tableau *method = &b->prototype->tableau;
-    double lost = 0.0;
-    int32_t i, stage;
+    const size_t half = sym_columns_half(b);
+    int32_t i, stage, lost = 0;
     if (!sym_columns_propose(b)) return 0;
-    sym_columns_begin_step(b);
+    memset(b->lost, 0, (size_t)b->slots * sizeof *b->lost);
+    memcpy(b->q, b->states, half * sizeof *b->q), memcpy(b->k, b->states + half, half * sizeof *b->k);
+    memcpy(b->t, b->column_t, (size_t)b->slots * sizeof *b->t);
     sym_columns_evaluate(b, 0);
-    for (stage = 1; stage < method->stages; ++stage) {
-        sym_columns_load_stage(b, stage);
-        sym_columns_evaluate(b, stage);
-    }
-    if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_batch_combine_slopes(b, b->slots, method->stages, method->b, b->y1);
+    for (stage = 1; stage < method->stages; ++stage) sym_columns_evaluate_stage(b, stage);
+    if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_columns_combine(b, method->stages, method->b, 1, b->y1, b->y1 + half);
     else sym_columns_semi_implicit(b);
     sym_columns_check(b, 2 * b->prototype->system->nv, b->y1);
-    for (i = 0; i < b->n_active; ++i) lost += b->lost[i];
-    if (!(lost == 0.0)) return 0;
+    for (i = 0; i < b->n_active; ++i) lost |= b->lost[i] != 0.0;
+    if (lost) return 0;
     sym_columns_accept(b);
     return 1;
 }

@@ -33,21 +33,23 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *share
     const size_t slopes = b->prototype->tableau.dense_stages > 1 ? (size_t)b->prototype->tableau.dense_stages : 1;
     b->systems = sym_allocate_bytes(scratch, slots * sizeof *b->systems);
     b->runs = sym_allocate_bytes(own, slots * sizeof *b->runs);
-    b->signals = sym_allocate_bytes(scratch, slots * (size_t)s->n_signals * sizeof *b->signals);
     b->trajectory_of_slot = sym_allocate_bytes(own, slots * sizeof *b->trajectory_of_slot);
     b->status = sym_allocate_bytes(scratch, slots * sizeof *b->status);
     b->h = sym_allocate(scratch, slots), b->t1 = sym_allocate(scratch, slots);
     b->q = sym_allocate(scratch, slots * nq), b->v = sym_allocate(scratch, slots * nv);
-    b->u = sym_allocate(scratch, slots * (size_t)s->nu), b->t = sym_allocate(scratch, slots);
+    b->t = sym_allocate(scratch, slots);
     b->states = sym_allocate(own, slots * (nq + nv));
     b->y1 = sym_allocate(scratch, slots * m), b->stage = sym_allocate(scratch, slots * m);
     b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
     b->k = sym_allocate(scratch, slopes * slots * m);
-    b->end_state = sym_allocate(scratch, nq + nv), b->unseen = sym_allocate(scratch, 3 * nv);
-    b->defects = sym_allocate_defects(s, scratch).impulse; /* the first of them */
     b->y0 = sym_allocate(scratch, slots * m), b->length = sym_allocate(scratch, slots * m);
     if (!sym_batch_has_columns(b)) b->lanes = NULL;
     else sym_columns_allocate(b, own, scratch);
+    /* Where there are slots enough, all above begins at lines of cache. */
+    b->u = sym_allocate(scratch, slots * (size_t)s->nu);
+    b->signals = sym_allocate_bytes(scratch, slots * (size_t)s->n_signals * sizeof *b->signals);
+    b->end_state = sym_allocate(scratch, nq + nv), b->unseen = sym_allocate(scratch, 3 * nv);
+    b->defects = sym_allocate_defects(s, scratch).impulse; /* the first of them */
     return sym_batch_bind(b, own, scratch, &b->forward_dynamics) && sym_batch_bind(b, own, scratch, &b->law);
 }
 
@@ -270,9 +272,9 @@ static void sym_batch_begin_step(sym_batch *b) {
     }
 }
 
-/* y = (0, v) + h times the weighted sum of slopes, of the first n slots: sym_combine_slopes. */
-static void sym_batch_combine_slopes(const sym_batch *b, int32_t n, int32_t stages, const double *weights, double *restrict y) {
-    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)n * m;
+/* y = (0, v) + h times the weighted sum of slopes, of all active trajectories: sym_combine_slopes. */
+static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const double *weights, double *restrict y) {
+    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * m;
     const double *restrict y0 = b->y0, *restrict length = b->length;
     size_t l;
     sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * m, y);
@@ -284,7 +286,7 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     const sym_tableau *method = &b->prototype->tableau;
     double *k = sym_batch_row(b, b->k, stage * b->slots);
     int32_t i;
-    sym_batch_combine_slopes(b, b->n_active, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
+    sym_batch_combine_slopes(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, b->stage);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
         sym_load_chart_state(r, sym_stage_time(r->system, r->t + method->c[stage] * b->h[i]), sym_batch_row(b, b->stage, i));
@@ -312,7 +314,7 @@ static void sym_batch_step(sym_batch *b) {
     if (b->n_active == 0) return;
     sym_batch_begin_step(b);
     for (stage = 1; stage < method->stages; ++stage) sym_batch_evaluate_stage(b, stage);
-    if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_batch_combine_slopes(b, b->n_active, method->stages, method->b, b->y1);
+    if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_batch_combine_slopes(b, method->stages, method->b, b->y1);
     for (i = b->n_active - 1; i >= 0; --i) {
         sym_run *r = b->runs + i;
         sym_workspace w = sym_batch_workspace(b, i);

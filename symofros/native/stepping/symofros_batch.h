@@ -68,6 +68,7 @@ typedef struct sym_batch {
     double *column_t, *column_t0, *column_steps, *column_record, *column_u; /* (slots) each, time of the next record; (nu, slots) */
     double *column_slope, *lost; /* (nv, slots) first accelerations that are known; (slots) not zero: a number is none */
     double *column_work;
+    int32_t column_v;   /* number of the input v; -1: none */
     sym_strided column_in[SYM_MAX_INPUTS], column_out[SYM_MAX_OUTPUTS];
 } sym_batch;
 

@@ -16,7 +16,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates
+from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates, lines
 from symofros.simulation.stepping.by_hand import held_by_hand
 from symofros.simulation.stepping.status import Status
 
@@ -64,8 +64,8 @@ class _Part(BatchStepper):
             group = groups[i]
             group.next, group.stride, group.n, group.slots = end, 1, end, slots
             own, size = self._sizes(ffi.addressof(group))
-            shared = self._memory.zeros(size) if shared is None else shared
-            self.memory.append(np.zeros(own))
+            shared = lines(size) if shared is None else shared
+            self.memory.append(lines(own))
             self._start(ffi.addressof(group), self.memory[-1], shared)
         self.hand = hand = ffi.new("sym_hand_batch *")
         hand.groups, hand.n_groups = groups, len(groups)
