@@ -73,9 +73,8 @@ class Stepped:
         return self.copy()
 
     def copy(self) -> Any:
-        """Refused, where a class has none."""
-        rule = "motions that are stepped together are not copied"
-        raise refusal(f"{type(self).__name__}: no copy", repr(self), rule, "make others, and reset them at its t, q, v")
+        """Another one in the same state."""
+        raise NotImplementedError
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         """Refuse to pickle memory of C."""

@@ -86,6 +86,7 @@ class Steppers(Stepped):
             what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
             raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
         n, threads = int(n), int(model.threads if threads is None else threads)
+        self._given: dict[str, Any] = {"u": u, "threads": threads, "options": chosen}
         for name, number in (("n", n), ("threads", threads)):
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
@@ -237,17 +238,25 @@ class Steppers(Stepped):
         """The present states, with all that later steps depend on."""
         return self._hand.save(self._kind, self._par)
 
+    def copy(self) -> Steppers:
+        """Others in the same states, which share nothing that steps change."""
+        others = Steppers(self.model, self.n, par=self._par, **self._given)
+        others._kind = self._kind
+        others.restore(self.save())
+        return others
+
     def restore(self, state: BatchState) -> None:
         """Go on from saved states, bit by bit as from there.
 
         Args:
-            state: What `save` gave, of these steppers.
+            state: What `save` gave, of these steppers or of a copy.
 
         Raises:
             SymofrosError: It is none, or of others.
         """
-        rule = "a state goes back to the steppers that it was saved of, in the same process"
-        refused = ("restore: no state of these steppers", rule, "reset others at its t, q, v")
+        rule = "a state goes back to the steppers that it was saved of, or to a copy, in the same process"
+        remedy = "make others by copy(); elsewhere reset some at the state's t, q, v"
+        refused = ("restore: no state of these steppers", rule, remedy)
         check_owner(state, BatchState, self._kind, refused)
         self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
         self._par[...] = state.par
