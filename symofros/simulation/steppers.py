@@ -22,14 +22,22 @@ from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import check_fit
 from symofros.simulation.simulate import prepare_run
 from symofros.simulation.simulate_batch import starts_off
-from symofros.simulation.stepped import Stepped, check_owner, no_steps, options_by_hand, owner_of, refusal
-from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, read_only, settings_by_hand
+from symofros.simulation.stepped import (
+    MOST_STEPS,
+    SteppedModel,
+    check_owner,
+    no_steps,
+    options_by_hand,
+    owner_of,
+    refusal,
+)
+from symofros.simulation.stepper import checked_inputs, fixed_inputs, read_only, settings_by_hand
 from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
 
 
-class Steppers(Stepped):
+class Steppers(SteppedModel):
     """Motions of one model that are stepped by hand together, several in the lanes of a vector, shared by threads.
 
     Each takes the steps that `simulate_batch` would take, and does not depend on the others. One that ends stays at its
