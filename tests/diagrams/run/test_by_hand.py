@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import PythonBlock
+from symofros.blocks import Formula, PythonBlock
+from symofros.diagrams import stepper as stepper_module
 from tests.diagrams.parts import Ball, Counter, Lag, Spoken, arm, moving, ramp
 from tests.simulation.oscillator import oscillator_system
 
@@ -86,6 +87,20 @@ def test_parameters_of_a_reset_are_those_of_the_motion() -> None:
     stepper.step(steps=5)
     np.testing.assert_array_equal(stepper["plant.q"], run["plant.q"][-1])
     assert stepper.outcome.ok
+
+
+@pytest.mark.parametrize(("method", "tolerance"), [("rk4", 0.0), ("dopri5", 1e-9)])
+def test_steps_end_where_formulas_of_time_jump(method: str, tolerance: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stepper_module, "_AHEAD", 8)  # Jumps are found for so many steps at a time.
+    diagram = sf.Diagram("jumps")
+    diagram.add(Formula(name="jump", formulas={"y": "sign(t - 0.0303) + sign(t - 0.2707)"}))
+    diagram.add(Lag(name="lag", tau=0.05), x="jump.y")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(0.4, output=0.01, method=method, dt=1e-3)
+    stepper = simulation.stepper(output=0.01, method=method, dt=1e-3)
+    for k in range(1, 41):
+        assert stepper.step() and stepper.t == run.t[k]
+        np.testing.assert_allclose(stepper["lag.y"], run["lag.y"][k], rtol=tolerance, atol=tolerance)
 
 
 def pushed(function: Callable[[float, Any], Any]) -> sf.Diagram:
