@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,6 @@ def pushes(model: sf.Model, steps: int, n: int = N) -> np.ndarray:
     ],
 )
 def test_each_step_has_the_bits_of_simulate_batch(name: str, method: str, threads: int) -> None:
-    # By rows, since inputs are sampled; steppers of the cart go by columns.
     model, (q, v) = compiled(name), starts(name)
     u, options = pushes(model, 6), {"method": method, "dt": DT, "adaptive": False if method == "dopri5" else None}
     runs = sf.simulate_batch(
@@ -84,14 +84,23 @@ def test_saved_states_and_copies_go_on_to_the_same_bits(name: str, method: str) 
         sf.Steppers(model, N, **options).restore(saved)
 
 
+INPUTS: dict[str, Callable[[np.ndarray], Any]] = {
+    "constant": lambda u: u[:, 0],
+    "held": lambda u: sf.Signal(0.7 * DT * np.arange(u.shape[1]), u, "hold"),
+    "linear": lambda u: sf.Signal(0.7 * DT * np.arange(u.shape[1]), u, "linear"),
+    "law": lambda _: {"F": "-3*q + 0.1*dx + sin(t)"},
+}
+
+
 @pytest.mark.parametrize("method", ["rk4", "euler", "semi_implicit_euler"])
+@pytest.mark.parametrize("inputs", INPUTS)
 @pytest.mark.parametrize("n", [1, 3, 70])
-def test_steps_by_columns_have_the_bits_of_steps_by_rows(method: str, n: int) -> None:
+def test_steps_by_columns_have_the_bits_of_steps_by_rows(method: str, inputs: str, n: int) -> None:
     model, (q, v) = compiled("cart_pole"), starts("cart_pole", n)
-    u, options = np.random.default_rng(n).standard_normal((n, 1)), {"method": method, "dt": DT}
-    u[n // 2] = 1e120 if n > 1 else 1.0  # One is not finite within its first step.
+    u = np.random.default_rng(n).standard_normal((n, 20, 1))
+    u[n // 2] *= 1e120 if n > 1 else 1.0  # One is not finite within its first steps.
     ends = [
-        sf.simulate_batch(model, q, v, 20 * DT, u=u, output=times, **options)
+        sf.simulate_batch(model, q, v, 20 * DT, u=INPUTS[inputs](u), output=times, method=method, dt=DT)
         for times in (None, DT * np.arange(21), DT * (np.arange(20) + 0.5))  # Records within a step take it by rows.
     ]
     for run in ends[1:]:

@@ -4,16 +4,16 @@
 
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory);
 
-/* Whether steps are made by columns: of trees in scalar coordinates under constant inputs, by explicit methods of fixed steps
- * whose slopes no later step takes over. */
+/* Whether steps are made by columns: of trees in scalar coordinates whose inputs are no functions of the caller's, by
+ * explicit methods of fixed steps whose slopes no later step takes over. */
 static int32_t sym_batch_has_columns(const sym_batch *b) {
     const sym_run *r = b->prototype;
     const sym_system *s = r->system;
     int32_t i, scalar = 1;
     for (i = 0; i < s->n_segments; ++i) scalar &= s->segments[i].kind == SYM_SEGMENT_LINEAR && s->segments[i].q == s->segments[i].v;
-    return b->lanes != NULL && scalar && r->method <= SYM_METHOD_SEMI_IMPLICIT && !r->adaptive && !r->project &&
-           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_signals + s->n_stops == 0 &&
-           s->n_quaternion_inputs == 0 && s->law.function == NULL && s->callback == NULL;
+    return b->forward_dynamics.lanes != NULL && scalar && r->method <= SYM_METHOD_SEMI_IMPLICIT && !r->adaptive && !r->project &&
+           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_stops == 0 &&
+           s->n_quaternion_inputs == 0 && s->callback == NULL && (b->law.function == NULL || b->law.lanes != NULL);
 }
 
 /* Memory of the columns. Where they are evaluated, and what is summed, is memory of the rows. */
@@ -24,25 +24,26 @@ static void sym_columns_allocate(sym_batch *b, sym_arena *own, sym_arena *scratc
     b->column_steps = sym_allocate(own, slots), b->column_record = sym_allocate(own, slots);
     b->column_u = sym_allocate(own, slots * (size_t)s->nu);
     b->column_slope = sym_allocate(scratch, slots * (size_t)s->nv), b->lost = sym_allocate(scratch, slots);
-    b->column_work = sym_allocate(scratch, b->lanes->work);
+    b->forward_dynamics.column_work = sym_allocate(scratch, b->forward_dynamics.lanes->work);
+    if (b->law.function != NULL) b->law.column_work = sym_allocate(scratch, b->law.lanes->work);
 }
 
-/* Point the accelerations by columns at their inputs and outputs; those that differ from stage to stage are pointed anew. */
-static void sym_columns_bind(sym_batch *b) {
-    const sym_batch_function *f = &b->forward_dynamics;
+/* Point a function by columns at its inputs and outputs; those that differ from stage to stage are pointed anew. */
+static void sym_columns_bind(const sym_batch *b, sym_batch_function *f) {
     const sym_function *function = f->function;
     const ptrdiff_t slots = b->slots;
     int32_t k;
-    b->column_v = -1;
-    b->column_in[0].at = (void *)f->in[0], b->column_in[0].step = 1, b->column_in[0].stride = (ptrdiff_t)f->in_stride[0];
+    if (function == NULL) return;
+    f->column_v = -1;
+    f->column_in[0].at = (void *)f->in[0], f->column_in[0].step = 1, f->column_in[0].stride = (ptrdiff_t)f->in_stride[0];
     for (k = 1; k < function->n_in; ++k) {
-        sym_strided *in = &b->column_in[k];
+        sym_strided *in = &f->column_in[k];
         in->at = f->in[k] == b->u ? b->column_u : (void *)f->in[k];
-        if (f->in[k] == b->v) b->column_v = k;
+        if (f->in[k] == b->v) f->column_v = k;
         in->step = slots, in->stride = 1;
     }
     for (k = 0; k < function->n_out; ++k)
-        b->column_out[k].at = f->out[k], b->column_out[k].step = slots, b->column_out[k].stride = 1;
+        f->column_out[k].at = f->out[k], f->column_out[k].step = slots, f->column_out[k].stride = 1;
 }
 
 /* The time at which a run records next; HUGE_VAL where there is none. */
@@ -136,14 +137,39 @@ static void sym_columns_check(sym_batch *b, int32_t size, const double *restrict
 /* Entries of q, or of v, in all columns. */
 static size_t sym_columns_half(const sym_batch *b) { return (size_t)b->prototype->system->nv * (size_t)b->slots; }
 
+/* Evaluate a function by columns at speeds v. */
+static void sym_columns_call(const sym_batch *b, sym_batch_function *f, double *v) {
+    if (f->column_v >= 0) f->column_in[f->column_v].at = v;
+    f->lanes->batch((size_t)b->n_active, f->column_in, f->column_out, f->column_work);
+}
+
+/* Inputs that are sampled, at the times b->t, and those by formulas: sym_batch_evaluate_acceleration. */
+static void sym_columns_evaluate_inputs(sym_batch *b, int32_t in_step, double *v) {
+    const sym_system *s = b->prototype->system;
+    const size_t slots = (size_t)b->slots;
+    int32_t i, k;
+    for (k = 0; k < s->n_signals; ++k) {
+        double *u = b->column_u + (size_t)s->signals[k].input * slots;
+        for (i = 0; i < b->n_active; ++i) {
+            sym_signal signal = s->signals[k];
+            signal.value += b->trajectory_of_slot[i] * b->signal_stride[k];
+            u[i] = sym_signal_at(&signal, b->t[i], in_step ? b->t1[i] : HUGE_VAL);
+        }
+    }
+    if (b->law.function == NULL) return;
+    sym_columns_call(b, &b->law, v);
+    for (k = 0; k < s->n_law; ++k)
+        memcpy(b->column_u + (size_t)s->law_inputs[k] * slots, b->law.out[0] + (size_t)k * slots, slots * sizeof(double));
+}
+
 /* Slope number `stage`: its v is there, its q in b->q, its time in b->t; its accelerations are evaluated. */
 static void sym_columns_evaluate(sym_batch *b, int32_t stage) {
     const int32_t nv = b->prototype->system->nv;
     double *v = b->k + (size_t)stage * 2 * sym_columns_half(b), *a = v + sym_columns_half(b);
     int32_t i, l;
-    if (b->column_v >= 0) b->column_in[b->column_v].at = v;
-    b->column_out[0].at = a;
-    b->lanes->batch((size_t)b->n_active, b->column_in, b->column_out, b->column_work);
+    sym_columns_evaluate_inputs(b, stage > 0, v);
+    b->forward_dynamics.column_out[0].at = a;
+    sym_columns_call(b, &b->forward_dynamics, v);
     for (i = 0; i < b->n_active && stage == 0 && b->n_begun > 0; ++i)
         for (l = 0; l < nv && b->runs[i].slope_valid; ++l) a[SYM_INDEX(l, b->slots, i)] = b->column_slope[SYM_INDEX(l, b->slots, i)];
     sym_columns_check(b, nv, a);
@@ -192,15 +218,13 @@ static void sym_columns_semi_implicit(sym_batch *b) {
 
 /* Record the states of slots at whose present time the grid records: sym_record_grid_at_end. */
 static void sym_columns_record(sym_batch *b) {
-    const sym_system *s = b->prototype->system;
-    int32_t i, k;
+    int32_t i;
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
         while (b->column_record[i] <= b->column_t[i] + SYM_GRID_AFTER * b->h[i]) {
-            const int64_t n = r->n_records++;
-            r->record_t[n] = b->column_record[i];
-            sym_column_state(b, i, r->record_q + n * s->nq, r->record_v + n * s->nv);
-            for (k = 0; k < s->nu; ++k) r->record_u[n * s->nu + k] = b->column_u[SYM_INDEX(k, b->slots, i)];
+            sym_column_state(b, i, r->system->q, r->system->v);
+            *r->system->t = b->column_record[i];
+            (void)sym_record(r); /* fails by a function of the caller's only */
             ++r->next_grid;
             b->column_record[i] = sym_next_record(r);
         }

@@ -43,7 +43,7 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *share
     b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
     b->k = sym_allocate(scratch, slopes * slots * m);
     b->y0 = sym_allocate(scratch, slots * m), b->length = sym_allocate(scratch, slots * m);
-    if (!sym_batch_has_columns(b)) b->lanes = NULL;
+    if (!sym_batch_has_columns(b)) b->forward_dynamics.lanes = NULL;
     else sym_columns_allocate(b, own, scratch);
     /* Where there are slots enough, all above begins at lines of cache. */
     b->u = sym_allocate(scratch, slots * (size_t)s->nu);
@@ -86,7 +86,7 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         r->q = b->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
     }
     b->n_active = b->in_columns = b->n_begun = 0;
-    if (b->lanes != NULL) sym_columns_bind(b);
+    if (b->forward_dynamics.lanes != NULL) sym_columns_bind(b, &b->forward_dynamics), sym_columns_bind(b, &b->law);
     return 1;
 }
 
@@ -335,7 +335,7 @@ SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
         if (b->n_active < b->slots && b->next < b->n) sym_columns_leave(b);
         while (b->n_active < b->slots && b->next < b->n) sym_batch_activate_next(b);
         if (b->n_active == 0) return 0;
-        if (b->lanes != NULL) {
+        if (b->forward_dynamics.lanes != NULL) {
             if (!b->in_columns) sym_columns_enter(b);
             if (sym_columns_step(b)) continue;
             sym_columns_leave(b);

@@ -18,6 +18,7 @@ typedef struct sym_batch_rows { /* one row per trajectory */
 
 typedef struct sym_batch_function { /* a model function that is evaluated for all active trajectories at once */
     const sym_function *function; /* NULL: absent, or evaluated one by one */
+    const sym_lanes *lanes;       /* the same by vectors of doubles, for steps by columns; NULL: steps by rows alone */
     sym_batch_rows pre;           /* the parameters' part, of all trajectories */
     /* By sym_batch_start: memory, and where the inputs of all slots lie. */
     double *pre_active; /* (slots, npre) where trajectories have parameters of their own */
@@ -25,13 +26,15 @@ typedef struct sym_batch_function { /* a model function that is evaluated for al
     const double *in[SYM_MAX_INPUTS];
     size_t in_stride[SYM_MAX_INPUTS];
     double *out[SYM_MAX_OUTPUTS]; /* (slots, ...) each */
+    sym_strided column_in[SYM_MAX_INPUTS], column_out[SYM_MAX_OUTPUTS]; /* the same by columns, (..., slots) each */
+    int32_t column_v;             /* number of the input v; -1: none */
+    double *column_work;
 } sym_batch_function;
 
 typedef struct sym_batch {
     /* By the caller. */
     const sym_run *prototype; /* settings, and the system of a single run, which only this batch uses */
     sym_batch_function forward_dynamics, law, project;
-    const sym_lanes *lanes;   /* forward_dynamics by vectors of doubles, for steps by columns; NULL: steps by rows alone */
     int32_t slots;            /* most trajectories active at once; 2 at least */
     sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
     const double *t0;         /* (n) first times; NULL: that of the prototype for all */
@@ -67,9 +70,6 @@ typedef struct sym_batch {
     int32_t n_begun;    /* number of slots whose first slope is known */
     double *column_t, *column_t0, *column_steps, *column_record, *column_u; /* (slots) each, time of the next record; (nu, slots) */
     double *column_slope, *lost; /* (nv, slots) first accelerations that are known; (slots) not zero: a number is none */
-    double *column_work;
-    int32_t column_v;   /* number of the input v; -1: none */
-    sym_strided column_in[SYM_MAX_INPUTS], column_out[SYM_MAX_OUTPUTS];
 } sym_batch;
 
 /* Doubles of memory that the slots take; *shared: those of them that hold nothing between two calls, so that batches of one

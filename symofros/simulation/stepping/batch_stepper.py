@@ -167,8 +167,8 @@ class BatchStepper:
             precision = self.single.model.precision if name == "forward_dynamics" else "double"
             by_vectors = kernel.in_lanes(LaneOptions(function.pre.stride != 0, precision))
             function.function = by_vectors.function
-            if name == "forward_dynamics" and precision == "double":
-                self._batch.lanes = by_vectors.vectors
+            if precision == "double":
+                function.lanes = by_vectors.vectors
             self._memory.keep(by_vectors)
 
     def _fill_shared_rows(self, rows: Any, values: Array) -> None:
