@@ -92,10 +92,12 @@ class Simulation:
             return self.resolved
         return resolve(self.diagram, inputs or {})
 
-    def stepper(self, **settings: Any) -> DiagramStepper:
+    @checked
+    def stepper(self, *, inputs: Mapping[str, Any] | None = None, **settings: Any) -> DiagramStepper:
         """The diagram, stepped by hand from its first state.
 
         Args:
+            inputs: What is given for inlets, as of `run`.
             settings: Fields of `SimulationOptions` in place of the diagram's own. `output` is the time of one step, by
                 default the longest of which all sample times of the diagram are multiples; without samples `dt`.
 
@@ -105,7 +107,7 @@ class Simulation:
         """
         stated = self.diagram.simulation.keywords()
         of_steps = {name: value for name, value in stated.items() if name not in ("record", "realtime", "threads")}
-        return DiagramStepper(self.compiled, **{**of_steps, **settings})
+        return DiagramStepper(self.compiled_with(inputs), **{**of_steps, **settings})
 
     @checked
     def interpret(

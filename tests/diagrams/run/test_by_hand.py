@@ -89,6 +89,18 @@ def test_parameters_of_a_reset_are_those_of_the_motion() -> None:
     assert stepper.outcome.ok
 
 
+def test_inlets_have_what_is_given_for_them() -> None:
+    diagram = sf.Diagram("lagging")
+    diagram.add(Lag(name="lag", tau=0.05))
+    diagram.add_inlet("x", "lag.x", shape=())
+    simulation, given = sf.Simulation(diagram), {"x": "sin(9*t)"}
+    run, stepper = simulation.run(0.1, output=0.01, inputs=given), simulation.stepper(output=0.01, inputs=given)
+    assert stepper.step(steps=10)
+    np.testing.assert_array_equal(stepper["lag.y"], run["lag.y"][-1])
+    with pytest.raises(sf.DescriptionError, match="'x'"):
+        simulation.stepper()
+
+
 @pytest.mark.parametrize(("method", "tolerance"), [("rk4", 0.0), ("dopri5", 1e-9)])
 def test_steps_end_where_formulas_of_time_jump(method: str, tolerance: float, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stepper_module, "_AHEAD", 8)  # Jumps are found for so many steps at a time.
