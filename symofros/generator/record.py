@@ -7,7 +7,7 @@ import math
 
 from symofros.base.names import TIME
 from symofros.base.options import Options
-from symofros.description.constraints import AXES, Closure
+from symofros.description.constraints import AXES, BETWEEN_FRAMES, Closure
 from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
 from symofros.description.values import symbols
@@ -18,8 +18,9 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
+from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
 from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
-from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment
+from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, SwitchRecord
 
 GENERATOR = "symofros 0.1.0"
 
@@ -82,7 +83,29 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         timed=any(TIME in symbols(stated.value) for stated in stated_values(tree.system)),
         joint_limits=joint_limits(tree),
         friction_speeds=_friction_speeds(tree),
+        switches=_switches(tree),
     )
+
+
+def _switches(tree: SpanningTree) -> tuple[SwitchRecord, ...]:
+    switches, names, first, records = switches_of(tree.system), tree.coordinates.par, 0, []
+    for item in tree.system.constraints:
+        rows = range(first, first := first + len(item.conditions))
+        switch = switches.get(item.name)
+        if switch is None:
+            continue
+        moment = switch.pose == "moment"
+        offsets = offset_names(item) if moment else {}
+        offset_places = tuple(
+            (row, names.index(offsets[name]))
+            for row, name in zip(rows, item.conditions, strict=True)
+            if name in offsets
+        )
+        rotation = tuple(map(names.index, rotation_names(item) if moment else ()))
+        between = isinstance(item, BETWEEN_FRAMES)
+        frames = tuple(frame_of(tree, *anchor).name for anchor in ((item.first, item.second) if between else ()))
+        records.append(SwitchRecord(item.name, str(switch.engaged), moment, offset_places, rotation, frames))
+    return tuple(records)
 
 
 def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
@@ -120,7 +143,8 @@ def _friction_speeds(tree: SpanningTree) -> tuple[int, ...]:
 
 def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:
     first, second = (frame_of(tree, *anchor).name for anchor in (closure.first, closure.second))
-    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations))
+    switched = closure.name in switches_of(tree.system)
+    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations), switched)
 
 
 def _segments(tree: SpanningTree) -> tuple[Segment, ...]:

@@ -50,18 +50,40 @@ class ClosureRecord(NamedTuple):
         first: Public name of the reference frame.
         second: Second of the other frame.
         rotations: Blocked axes of rotation, 0 to 2.
+        switched: Whether it may be released, or hold another pose than the stated one.
     """
 
     name: str
     first: str
     second: str
     rotations: tuple[int, ...]
+    switched: bool = False
 
     @property
     def parallel(self) -> tuple[int, ...]:
         """Axes that stay parallel in the closed posture: all three, or the one that may turn; of one blocked, none."""
         free = tuple(k for k in range(3) if k not in self.rotations)
         return {3: self.rotations, 2: free}.get(len(self.rotations), ())
+
+
+class SwitchRecord(NamedTuple):
+    """A constraint that engages and releases.
+
+    Attributes:
+        name: Name of the constraint.
+        engaged: Formula of parameters: 1 where it holds, 0 where it is released.
+        moment: Whether it holds the pose of the moment in which it engages.
+        offsets: Row of G, and parameter that is the offset of its condition; of those that hold a position.
+        rotation: Parameters (x, y, z, w) of the rotation that it holds; none where it holds none.
+        frames: Public names of the frames that it joins, if it joins frames.
+    """
+
+    name: str
+    engaged: str
+    moment: bool
+    offsets: tuple[tuple[int, int], ...]
+    rotation: tuple[int, ...]
+    frames: tuple[str, ...]
 
 
 class JointLimit(NamedTuple):
@@ -110,6 +132,7 @@ class ModelRecord:
         timed: Whether a formula depends on the time t.
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
         friction_speeds: Indices of the speeds that have friction.
+        switches: Constraints that engage and release.
     """
 
     name: str
@@ -141,6 +164,7 @@ class ModelRecord:
     timed: bool = False
     joint_limits: tuple[JointLimit, ...] = ()
     friction_speeds: tuple[int, ...] = ()
+    switches: tuple[SwitchRecord, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:

@@ -20,12 +20,18 @@ class Event(metaclass=CheckedCalls):
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
         name: ArrayLike by the mapping it stands in.
+        action: What happens at each crossing that counts: run-time parameter or speed ("grip", "dq1") -> number, or
+            formula of the state before. Then the speeds meet the constraints that hold, by a plastic impact
+            (docs/theory/constraints.md, section 13). `simulate` has actions.
+        once: Whether only the first crossing counts.
     """
 
     formula: Any
     direction: Literal["both", "rising", "falling"] = "both"
     terminal: bool = False
     name: str = ""
+    action: Mapping[str, Any] | None = None
+    once: bool = False
 
     def __post_init__(self) -> None:
         """The direction must be known."""
@@ -35,6 +41,11 @@ class Event(metaclass=CheckedCalls):
     def sign(self) -> int:
         """1 rising, -1 falling, 0 both."""
         return _SIGNS[self.direction]
+
+    @property
+    def cuts(self) -> bool:
+        """Whether a crossing ends the integration, for good or until the action is done."""
+        return self.terminal or bool(self.action)
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -145,6 +145,11 @@ class Settings:
             beam_limit=options.beam_limit,
             realtime=float(options.realtime),
         )
+
+    def onwards(self, t: float, steps: int, records: int) -> Settings:
+        """Settings of the rest of a run that begins anew at a time [s], after so many steps and records."""
+        left = None if self.max_steps is None else self.max_steps - steps
+        return replace(self, t0=t, max_steps=left, grid=self.grid if self.every else self.grid[records:])
 
     def apply(self, stepper: Stepper) -> None:
         """Write the settings into a run."""

@@ -38,7 +38,7 @@ def facings(model: Model, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLi
     """
     faced = []
     for closure in model.record.closures:
-        if not closure.parallel:
+        if not closure.parallel or closure.switched:  # Which of those holds, projections ask.
             continue
         R_A, R_B = (
             np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
