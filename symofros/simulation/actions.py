@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,7 +33,7 @@ class Acted:
     """What an instant's actions have done; the stepper is at the state after them, or, where they failed, before.
 
     Attributes:
-        found: Events of the instant; the last one bears what was done.
+        found: Events, with what was done at each.
         notes: Remarks.
         failure: Why the run ends here; None if it goes on.
     """
@@ -68,45 +68,55 @@ class Actions:
         self._last: dict[int, float] = {}
 
     def act(self, stepper: Stepper, which: Sequence[int]) -> Acted:
-        """Do the actions of the events met at the present state, in the order in which the events are stated.
+        """Do the actions of the events met at the present state, one after the other, as the events are stated.
 
         Args:
             stepper: Its run has been cut there.
             which: Indices of the events met.
         """
-        (t, q, v), par = stepper.state, stepper.par
-        which = sorted(which)
-        met = tuple(Found(self.events[i].name, t, q, v) for i in which)
-        acting = [i for i in which if i in self._assignments]
-        names = ", ".join(f"'{self.events[i].name}'" for i in acting)
-        if any(t - self._last.get(i, -np.inf) <= _AT_ONCE * self.span for i in acting):
-            return Acted(met, failure=_without_end(t, names))
-        self._last |= dict.fromkeys(acting, t)
-        u = stepper.inputs_at(t, q, v)
+        found, notes, failure = list[Found](), tuple[str, ...](), None
+        for i in sorted(which):
+            t, q, v = stepper.state
+            met = Found(self.events[i].name, t, q, v)
+            if i in self._assignments and failure is None:
+                acted = self._act(stepper, i, met)
+                met, notes, failure = acted.found[0], (*notes, *acted.notes), acted.failure
+            found.append(met)
+        return Acted(tuple(found), notes, failure)
+
+    def _act(self, stepper: Stepper, which: int, met: Found) -> Acted:
+        """Do the action of one event."""
+        event, par, (_, t, q, v, *_) = self.events[which], stepper.par, met
+        if t - self._last.get(which, -np.inf) <= _AT_ONCE * self.span:
+            return Acted((met,), failure=_without_end(t, event.name))
+        self._last[which] = t
+        state = t, q, v, stepper.inputs_at(t, q, v)
         try:
-            after, speeds = self._assigned(acting, (t, q, v, u), par)
-            after, engaging = self._held(after, par, (t, q, v, u))
+            after, speeds = self._assigned(which, state, par)
+            after, engaging = self._held(after, par, state)
             self.model.checked_parameters(after)
             self._refuse_other_beams(stepper, after)
         except SymofrosError as error:
-            reason = f"what event {names} sets is refused: {error.problem.what}; {error.problem.rule}"
-            return Acted(met, failure=Outcome("input failed", t, reason, error.problem.remedy))
-        for i in acting:
-            if self.events[i].once:
-                stepper.ignore_event(i)
+            reason = f"what event '{event.name}' sets is refused: {error.problem.what}; {error.problem.rule}"
+            return Acted((met,), failure=Outcome("input failed", t, reason, error.problem.remedy))
+        if event.once:
+            stepper.ignore_event(which)
         stepper.set_parameters(after)
         stepper.set_state(q, speeds)
         status, gap = stepper.engage() if self.model.nc else (int(Status.RUNNING), 0.0)
         if status != Status.RUNNING:
-            failure = ENDS[status].outcome(t)
-            if status == Status.ENGAGED_APART:
-                failure = engaged_apart(t, gap, ", ".join(engaging) or names.strip("'"))
+            apart = status == Status.ENGAGED_APART
+            failure = engaged_apart(t, gap, ", ".join(engaging) or event.name) if apart else ENDS[status].outcome(t)
             stepper.set_parameters(par)
             stepper.set_state(q, v)
-            return Acted(met, failure=failure)
+            return Acted((met,), failure=failure)
         _, q_after, v_after = stepper.state
-        done = self._done((q, q_after), (v, speeds, v_after), (par, after), u, t)
-        return Acted((*met[:-1], met[-1]._replace(v_after=v_after, **done)), engaging_notes(t, gap))
+        if event.restitution is not None:  # (32)
+            v_after = v_after + event.restitution * (v_after - speeds)
+            stepper.set_parameters(par)
+            stepper.set_state(q_after, v_after)
+        done = self._done((q, q_after), (v, speeds, v_after), (par, after), state[3], t)
+        return Acted((met._replace(v_after=v_after, **done),), engaging_notes(t, gap))
 
     def _values(self, state: tuple[float, Array, Array, Array], par: Array) -> Array:
         """Values of all formulas at a state (t, q, v, u): what says whether constraints hold, then assignments."""
@@ -115,16 +125,11 @@ class Actions:
         values = self._kernel.run(1, self._kernel.prepare(par[np.newaxis]), inputs)[0]
         return np.asarray(values, dtype=np.float64).reshape(-1)
 
-    def _assigned(
-        self, acting: Sequence[int], state: tuple[float, Array, Array, Array], par: Array
-    ) -> tuple[Array, Array]:
-        """Parameters and speeds as the actions set them, one event after the other."""
-        t, q, v, u = state
-        par, speeds = par.copy(), v.copy()
-        for i in acting:
-            values = self._values((t, q, speeds, u), par)
-            for group, index, place in self._assignments[i]:
-                (par if group == "par" else speeds)[index] = values[place]
+    def _assigned(self, which: int, state: tuple[float, Array, Array, Array], par: Array) -> tuple[Array, Array]:
+        """Parameters and speeds as the action of an event sets them, all by the state before."""
+        values, speeds, par = self._values(state, par), state[2].copy(), par.copy()
+        for group, index, place in self._assignments[which]:
+            (par if group == "par" else speeds)[index] = values[place]
         if not np.isfinite(speeds).all():
             name = self.model.names.v[int(np.argmin(np.isfinite(speeds)))]
             fault = Problem(f"speed '{name}' is not a finite number", "", "speeds are finite", "mend its formula")
@@ -202,11 +207,11 @@ def _holding(model: Model, switch: SwitchRecord, par: Array, state: tuple[float,
     return par
 
 
-def _without_end(t: float, names: str) -> Outcome:
+def _without_end(t: float, name: str) -> Outcome:
     return Outcome(
         "interrupted",
         t,
-        f"event {names} acts again at the same instant: actions follow each other without end",
+        f"event '{name}' acts again at the same instant: actions follow each other without end",
         "once=True, or a formula that is not zero after the action, such as 'gap + grip'; bodies that come to rest on"
         " each other need a constraint that engages there",
     )
@@ -217,14 +222,13 @@ def plan_actions(model: Model, events: Sequence[Event], span: float) -> Actions 
     return Actions(model, events, span) if any(event.action for event in events) else None
 
 
-def refuse_actions(events: Mapping[str, Any] | Sequence[Event], what: str, remedy: str) -> None:
+def refuse_actions(events: Sequence[Event], what: str, remedy: str) -> None:
     """Refuse events with actions where these can't be done.
 
     Raises:
         SymofrosError: One has an action.
     """
-    listed = events.values() if isinstance(events, Mapping) else events
-    named = [event.name for event in listed if isinstance(event, Event) and event.action]
+    named = [event.name for event in events if event.action]
     if named:
         rule = "an action begins the motion anew in the middle of a run, which `simulate` by a one-step method does"
         raise SymofrosError(Problem(f"{what}: event '{named[0]}' has an action", "action", rule, remedy))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from symofros.base.arguments import CheckedCalls, check_fields
+from symofros.errors import Problem, SymofrosError
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -24,6 +25,8 @@ class Event(metaclass=CheckedCalls):
             formula of the state before. Then the speeds meet the constraints that hold, by a plastic impact
             (docs/theory/constraints.md, section 13). `simulate` has actions.
         once: Whether only the first crossing counts.
+        restitution: Newton's coefficient e, 0 to 1, of an action that lets constraints strike: they hold for the
+            instant alone, and what they take of the speeds comes back e times; parameters are then as before.
     """
 
     formula: Any
@@ -32,10 +35,15 @@ class Event(metaclass=CheckedCalls):
     name: str = ""
     action: Mapping[str, Any] | None = None
     once: bool = False
+    restitution: float | None = None
 
     def __post_init__(self) -> None:
-        """The direction must be known."""
+        """The direction must be known, restitution a share, and have an action."""
         check_fields(self)
+        if self.restitution is not None and not (self.action and 0.0 <= self.restitution <= 1.0):
+            found = f"restitution = {self.restitution}, action = {self.action!r:.60}"
+            rule = "restitution is a number from 0 to 1, of an action that engages what strikes"
+            raise SymofrosError(Problem("event: no restitution", found, rule, "action={'contact': 1}, restitution=0.8"))
 
     @property
     def sign(self) -> int:

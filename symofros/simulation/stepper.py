@@ -92,7 +92,7 @@ class Stepper(Stepped):
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
         refuse_actions(
-            events or {}, "Stepper", "between two steps set parameters and states by reset(), or use simulate"
+            named_events(events), "Stepper", "between two steps set parameters and states by reset(), or use simulate"
         )
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)

@@ -25,14 +25,14 @@ from symofros.simulation.results.section_forces import SectionForces, section_fo
 
 
 class Found(NamedTuple):
-    """An event that was met: its name, when, and the state; of the actions of an instant, the last one says more.
+    """An event that was met: its name, when, the state, and what its action did.
 
     Attributes:
         name: Name of the event.
         t: Instant [s].
         q: Configuration (nq).
-        v: Speeds (nv), before actions.
-        v_after: Speeds (nv) after the actions of the instant; None where this event does not tell of any.
+        v: Speeds (nv), before the action.
+        v_after: Speeds (nv) after the action; None where there is none.
         impulse: Impulse of the constraints in an impact (nc), of least norm where conditions repeat each other: M dv =
             G^T impulse [N s, N m s].
         energy_lost: Kinetic energy that the impact took [J].
