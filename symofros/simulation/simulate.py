@@ -200,6 +200,8 @@ def _joined(stepper: Stepper, par: Array, phases: Sequence[_Phase]) -> Trajector
     for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
         notes.setdefault(_NUMBER.sub("#", note) if len(phases) > 1 else f"{len(notes)}", note)
     outcome = replace(last.outcome, notes=tuple(notes.values()))
+    if outcome.kind == "finished" and len(phases) > 1:
+        outcome = replace(outcome, reason=f"{statistics.steps} steps of {statistics.method}")
     firsts = np.cumsum([0, *(len(phase.states[0]) for phase in phases)])[1:].tolist()
     changes = tuple((first, phase.par) for first, phase in zip(firsts, phases[1:], strict=False))
     met = tuple(found for phase in phases for found in phase.met)
