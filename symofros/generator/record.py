@@ -7,7 +7,7 @@ import math
 
 from symofros.base.names import TIME
 from symofros.base.options import Options
-from symofros.description.constraints import AXES, BETWEEN_FRAMES, Closure
+from symofros.description.constraints import AXES, Closure
 from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
 from symofros.description.values import symbols
@@ -102,8 +102,8 @@ def _switches(tree: SpanningTree) -> tuple[SwitchRecord, ...]:
             if name in offsets
         )
         rotation = tuple(map(names.index, rotation_names(item) if moment else ()))
-        between = isinstance(item, BETWEEN_FRAMES)
-        frames = tuple(frame_of(tree, *anchor).name for anchor in ((item.first, item.second) if between else ()))
+        anchors = (item.first, item.second) if isinstance(item, Closure) else ()
+        frames = tuple(frame_of(tree, *anchor).name for anchor in anchors)
         records.append(SwitchRecord(item.name, str(switch.engaged), moment, offset_places, rotation, frames))
     return tuple(records)
 
@@ -143,8 +143,7 @@ def _friction_speeds(tree: SpanningTree) -> tuple[int, ...]:
 
 def _closure(tree: SpanningTree, closure: Closure) -> ClosureRecord:
     first, second = (frame_of(tree, *anchor).name for anchor in (closure.first, closure.second))
-    switched = closure.name in switches_of(tree.system)
-    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations), switched)
+    return ClosureRecord(closure.name, first, second, tuple(AXES.index(axis) for axis in closure.rotations))
 
 
 def _segments(tree: SpanningTree) -> tuple[Segment, ...]:

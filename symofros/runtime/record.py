@@ -50,14 +50,12 @@ class ClosureRecord(NamedTuple):
         first: Public name of the reference frame.
         second: Second of the other frame.
         rotations: Blocked axes of rotation, 0 to 2.
-        switched: Whether it may be released, or hold another pose than the stated one.
     """
 
     name: str
     first: str
     second: str
     rotations: tuple[int, ...]
-    switched: bool = False
 
     @property
     def parallel(self) -> tuple[int, ...]:
@@ -75,7 +73,7 @@ class SwitchRecord(NamedTuple):
         moment: Whether it holds the pose of the moment in which it engages.
         offsets: Row of G, and parameter that is the offset of its condition; of those that hold a position.
         rotation: Parameters (x, y, z, w) of the rotation that it holds; none where it holds none.
-        frames: Public names of the frames that it joins, if it joins frames.
+        frames: Public names of the frames that it joins, of a closure.
     """
 
     name: str

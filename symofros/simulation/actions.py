@@ -172,10 +172,10 @@ class Actions:
                 float(model.kinetic_energy(q[0], speeds, u=u, par=at) + model.potential_energy(q[0], u=u, par=at, t=t))
                 for speeds, at in ((before, par[0]), (set_to, par[1]))
             ]
-            impulse = np.zeros(0)
+            M, G = model.mass_matrix(q[1], **given), np.zeros((0, model.nv))
             if model.nc:
-                M, G = model.mass_matrix(q[1], **given), model.constraint_jacobian(q[1], t=t, **given)
-                impulse = np.linalg.lstsq(G.T, M @ (after - set_to), rcond=_RANK)[0]
+                G = model.constraint_jacobian(q[1], t=t, **given)
+            impulse = np.linalg.lstsq(G.T, M @ (after - set_to), rcond=_RANK)[0]
         except SymofrosError:  # Options.functions left them out.
             return {}
         return {"impulse": impulse, "energy_lost": lost, "energy_added": energies[1] - energies[0]}

@@ -11,6 +11,7 @@ import pytest
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
 from symofros.description.yaml.yaml_writer import write_yaml
+from symofros.simulation.analysis.kinematics.facing import facings
 from tests.simulation.mechanisms import slide
 
 _SIDE = sf.Inertia(1.0, (0.5, 0.02, 0.01), (0.01, 0.1, 0.11))
@@ -98,6 +99,7 @@ def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, f
     d, C = np.einsum("nji,nj->ni", R_A, p_B - p_A), np.einsum("nji,njk->nik", R_A, R_B)
     assert max(np.abs(x[held:free] - x[held - 1]).max() for x in (d, C)) < 1e-12
     assert np.abs(d[-1] - d[held]).max() > 1e-3
+    assert facings(model, run.q[held], par=run.parameters[held])[0].cosines == pytest.approx(1.0)
     released = run.events[1]
     assert np.abs(released.v_after - released.v).max() < 1e-12 and abs(released.energy_lost) < 1e-12
     assert np.abs(run.lam[held:free]).max() > 1e-6 and not run.lam[free:].any() and not run.lam[:held].any()
@@ -145,6 +147,8 @@ def test_functions_of_a_switched_model_are_those_with_and_without_its_constraint
         held, released = (switched.evaluate(name, par=par, **_read_by(switched, name, given)) for par in (on, off))
         for x, y, value in zip(held, released, loop.evaluate(name, **_read_by(loop, name, given)), strict=True):
             assert np.array_equal(x, value) and not y.any(), name
+    ((_, faces),), ((_, anywhere),) = (facings(switched, q, par=par) for par in (on, off))
+    assert faces == facings(loop, q)[0].cosines < 0.9 and anywhere == 1.0
     u = np.zeros(0)
     assert np.abs(switched.forward_dynamics(q, v, u, par=off) - tree.forward_dynamics(q, v, u)).max() < 1e-12
     assert np.abs(switched.forward_dynamics(q, v, u, par=on) - loop.forward_dynamics(q, v, u)).max() < 1e-10
