@@ -114,26 +114,37 @@ def run_to_its_end(
         show: Called with the time reached [s], now and then.
         actions: Actions of the events, at which the motion begins anew (docs/theory/simulation.md, section 2).
     """
-    begun, phases, ended = stepper.par, list[_Phase](), False
+    phases, whole, ended = list[_Phase](), settings, False
     while not ended:
         phase, which = _phase(stepper, settings, q, v, show)
-        phases.append(phase)
-        ended = actions is None or phase.outcome.kind != "event" or not any(stepper.events[i].action for i in which)
-        if actions is None or ended:
+        repeats = settings.every and phases and not phases[-1].acted
+        phases.append(phase.without_first() if repeats else phase)
+        phase = phases[-1]
+        acts = phase.outcome.kind == "event" and any(stepper.events[i].action for i in which)
+        if actions is not None and acts:
+            ended = _act(actions, stepper, which, phases)
+        elif phase.outcome.kind != "finished" or stepper.t >= whole.t_end:
             break
-        acted = actions.act(stepper, which)
-        phase.met[len(phase.met) - len(which) :] = acted.found
-        phase.notes += acted.notes
-        ended = acted.failure is not None or any(stepper.events[i].terminal for i in which)
         t, q, v = stepper.state
-        if acted.failure is not None:
-            phase.outcome = acted.failure
-        elif ended:
-            phases.append(_after(phase, stepper))
-        else:
-            settings = settings.onwards(t, int(phase.statistics.steps), len(phase.states[0]))
-            settings.apply(stepper)
-    return _joined(stepper, np.array(begun), phases)
+        steps, records = (sum(counts) for counts in zip(*(phase.counts for phase in phases), strict=True))
+        settings = whole.onwards(t, steps, records)
+        settings.apply(stepper)
+    return _joined(stepper, phases)
+
+
+def _act(actions: Actions, stepper: Stepper, which: list[int], phases: list[_Phase]) -> bool:
+    """Do the actions that the last phase has come to; whether the run ends with them."""
+    phase, acted = phases[-1], actions.act(stepper, which)
+    phase.met[len(phase.met) - len(which) :] = acted.found
+    phase.notes += acted.notes
+    if acted.failure is not None:
+        phase.outcome = acted.failure
+        return True
+    phase.acted = True
+    ended = any(stepper.events[i].terminal for i in which)
+    if ended:
+        phases.append(_after(phase, stepper))
+    return ended
 
 
 @dataclass
@@ -148,6 +159,7 @@ class _Phase:
         statistics: Cost.
         bendings: Largest bending of each beam so far.
         notes: Remarks on the actions at its end.
+        acted: Whether there were any.
     """
 
     states: list[Array]
@@ -157,6 +169,16 @@ class _Phase:
     statistics: Statistics
     bendings: tuple[BeamBending, ...]
     notes: tuple[str, ...] = ()
+    acted: bool = False
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Numbers of steps and records."""
+        return self.statistics.steps, len(self.states[0])
+
+    def without_first(self) -> _Phase:
+        """The same without a first record that is the last of the phase before."""
+        return replace(self, states=[x[1:] for x in self.states])
 
 
 def _phase(
@@ -183,15 +205,15 @@ def _after(phase: _Phase, stepper: Stepper) -> _Phase:
     t, q, v = stepper.state
     states = [np.array([t]), q[np.newaxis], v[np.newaxis], stepper.inputs_at(t, q, v)[np.newaxis]]
     none = replace(phase.statistics, steps=0, rejected=0, evaluations=0, jacobians=0, seconds=0.0, worked=0.0)
-    return replace(phase, states=states, par=stepper.par, met=[], statistics=none, notes=())
+    return replace(phase, states=states, par=stepper.par, met=[], statistics=none, notes=(), acted=False)
 
 
 # Numbers within notes: of notes that differ in them alone, the first is kept.
 _NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
 
 
-def _joined(stepper: Stepper, par: Array, phases: Sequence[_Phase]) -> Trajectory:
-    """The run that phases make, which began with parameters `par`."""
+def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
+    """The run that phases make."""
     last, statistics = phases[-1], phases[0].statistics
     for phase in phases[1:]:
         statistics = statistics.and_then(phase.statistics)
@@ -199,12 +221,12 @@ def _joined(stepper: Stepper, par: Array, phases: Sequence[_Phase]) -> Trajector
     notes: dict[str, str] = {}
     for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
         notes.setdefault(_NUMBER.sub("#", note) if len(phases) > 1 else f"{len(notes)}", note)
-    outcome = replace(last.outcome, notes=tuple(notes.values()))
-    if outcome.kind == "finished" and len(phases) > 1:
-        outcome = replace(outcome, reason=f"{statistics.steps} steps of {statistics.method}")
-    firsts = np.cumsum([0, *(len(phase.states[0]) for phase in phases)])[1:].tolist()
-    changes = tuple((first, phase.par) for first, phase in zip(firsts, phases[1:], strict=False))
-    met = tuple(found for phase in phases for found in phase.met)
+    reason = last.outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
+    outcome = replace(last.outcome, notes=tuple(notes.values()), reason=reason)
+    firsts = np.cumsum([len(phase.states[0]) for phase in phases]).tolist()
+    pairs = zip(firsts, phases, phases[1:], strict=False)
+    changes = tuple((first, after.par) for first, before, after in pairs if before.acted)
+    met, par = tuple(found for phase in phases for found in phase.met), np.array(phases[0].par)
     return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes)
 
 

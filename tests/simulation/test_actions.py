@@ -205,6 +205,26 @@ def test_parameters_and_speeds_that_are_set() -> None:
     assert not run.outcome.ok and "without end" in run.outcome.reason and run.outcome.t == pytest.approx(3.0)
 
 
+@pytest.mark.parametrize("every", [1, 5])
+def test_fixed_steps_stay_where_they_were(every: int) -> None:
+    """After an action within a step the next one ends where this would have: held samples begin at ends of steps."""
+    cart = slide(actuated=True, mass="m", parameters=(sf.Parameter("m", 1.0),))
+    model, marks = sf.compile(cart), np.arange(0.0, 1.05, 0.1)
+    force = sf.Signal(marks, np.sin(7.0 * marks)[:, np.newaxis], kind="hold")
+    events = {"drop": sf.Event("t - 0.3123", action={"m": "m/2"}), "stop": sf.Event("t - 0.4", action={"dx": "dx/3"})}
+    run = sf.simulate(model, t_end=1.0, u=force, events=events, dt=0.02, every=every)
+    assert not run.outcome.notes and run.statistics.steps == 51
+    twice = [0.3123, 0.4]
+    expected = np.sort([*np.arange(51) * 0.02, 0.3123, *twice]) if every == 1 else run.t
+    assert np.abs(run.t - expected).max() < 1e-12 and [found.t for found in run.events] == pytest.approx(twice)
+    u, m, v = np.sin(7.0 * marks), 1.0, 0.0  # The closed form, interval by interval.
+    for i in range(10):
+        v += u[i] / m * (0.0123 if i == 3 else 0.1)
+        v += u[i] / 0.5 * 0.0877 if i == 3 else 0.0
+        m, v = (0.5, v / 3) if i == 3 else (m, v)
+    assert run.v[-1, 0] == pytest.approx(v, abs=1e-12)
+
+
 @pytest.mark.parametrize("e", [0.05, 0.3, 1.0])
 def test_bodies_that_strike_by_a_constraint_rebound(e: float) -> None:
     """At e times the speed of approach; 1 - e^2 of the energy of a plastic impact is lost, and nothing stays held."""
