@@ -14,7 +14,7 @@ import numpy as np
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending
-from symofros.runtime.calls import native_library
+from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.actions import Actions, plan_actions, refuse_actions
 from symofros.simulation.events import event_notes, named_events
@@ -217,16 +217,19 @@ def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
     last, statistics = phases[-1], phases[0].statistics
     for phase in phases[1:]:
         statistics = statistics.and_then(phase.statistics)
-    t, q, v, u = (np.concatenate(parts) for parts in zip(*(phase.states for phase in phases), strict=True))
-    notes: dict[str, str] = {}
-    for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
-        notes.setdefault(_NUMBER.sub("#", note) if len(phases) > 1 else f"{len(notes)}", note)
-    reason = last.outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
-    outcome = replace(last.outcome, notes=tuple(notes.values()), reason=reason)
+    parts = zip(*(phase.states for phase in phases), strict=True)
+    t, q, v, u = (np.concatenate(arrays) for arrays in parts) if len(phases) > 1 else last.states
+    outcome, met = last.outcome, tuple(found for phase in phases for found in phase.met)
+    if len(phases) > 1 or last.notes:
+        notes: dict[str, str] = {}
+        for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
+            notes.setdefault(_NUMBER.sub("#", note), note)
+        reason = outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
+        outcome = replace(outcome, notes=tuple(notes.values()), reason=reason)
     firsts = np.cumsum([len(phase.states[0]) for phase in phases]).tolist()
     pairs = zip(firsts, phases, phases[1:], strict=False)
     changes = tuple((first, after.par) for first, before, after in pairs if before.acted)
-    met, par = tuple(found for phase in phases for found in phase.met), np.array(phases[0].par)
+    par = np.array(phases[0].par)
     return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes)
 
 
@@ -241,6 +244,9 @@ def prepare_run(model: Model, settings: Settings | None = None) -> None:
     names = ["forward_dynamics", *settings.method.family.functions, "kinetic_energy"]
     names += ["project", "constraint"] if model.nc else []
     names += ["dynamics"] if settings.judged else []
+    if native_library_is_loaded():  # A thread would take longer than a short run.
+        model.prepare(*names)
+        return
     with ThreadPoolExecutor(1) as pool:
         integrator = pool.submit(native_library)
         model.prepare(*names)
