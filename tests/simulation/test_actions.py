@@ -69,7 +69,7 @@ def momentum(model: sf.Model, q: Any, v: Any, par: Any) -> Any:
 def check_impact(run: sf.Trajectory, first: int = 0) -> None:
     """Momentum stays, the energy of the speed lost is lost, and the impulse is what changes the momenta."""
     model, found = run.model, run.events[first]
-    after = run.parameters[run.changes[first][0]]
+    after = run.par_over_time[run.changes[first][0]]
     before = momentum(model, found.q, found.v, after)
     assert np.abs(momentum(model, found.q, found.v_after, after) - before).max() <= 1e-12 * np.abs(before).max()
     M, dv = model.mass_matrix(found.q, par=after), found.v_after - found.v
@@ -99,7 +99,7 @@ def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, f
     d, C = np.einsum("nji,nj->ni", R_A, p_B - p_A), np.einsum("nji,njk->nik", R_A, R_B)
     assert max(np.abs(x[held:free] - x[held - 1]).max() for x in (d, C)) < 1e-12
     assert np.abs(d[-1] - d[held]).max() > 1e-3
-    assert facings(model, run.q[held], par=run.parameters[held])[0].cosines == pytest.approx(1.0)
+    assert facings(model, run.q[held], par=run.par_over_time[held])[0].cosines == pytest.approx(1.0)
     released = run.events[1]
     assert np.abs(released.v_after - released.v).max() < 1e-12 and abs(released.energy_lost) < 1e-12
     assert np.abs(run.lam[held:free]).max() > 1e-6 and not run.lam[free:].any() and not run.lam[:held].any()
@@ -131,7 +131,7 @@ def test_a_switched_motion_is_that_of_two_models(method: str) -> None:
     assert np.abs(free.q[-1] - run.q[first - 1]).max() < 1e-12 and np.abs(free.v[-1] - found.v).max() < 1e-11
     shut = sf.simulate(loop, run.q[first], found.v_after, 0.05, t0=found.t, **options)
     assert np.abs(shut.q[-1] - run.q[-1]).max() < 1e-10 and np.abs(shut.v[-1] - run.v[-1]).max() < 1e-10
-    again = sf.simulate(model, run.q[first], run.v[first], 0.05, t0=found.t, par=run.parameters[-1], **options)
+    again = sf.simulate(model, run.q[first], run.v[first], 0.05, t0=found.t, par=run.par_over_time[-1], **options)
     assert np.array_equal(again.q, run.q[first:]) and np.array_equal(again.v, run.v[first:])
     assert np.array_equal(again.lam, run.lam[first:]) and np.array_equal(again.energy, run.energy[first:])
 
@@ -195,7 +195,7 @@ def test_parameters_and_speeds_that_are_set() -> None:
     names, instants = zip(*((found.name, found.t) for found in run.events), strict=True)
     # Falls for 1 s; leaves at -10 times -0.5 times 2; comes back after 2 s at -10.
     assert names == ("contact", "same") and np.abs(np.array(instants) - 1.0).max() < 1e-9
-    assert run.parameters[-1] == 0.5 and run.events[1].v_after == pytest.approx([10.0], abs=1e-8)
+    assert run.par_over_time[-1] == 0.5 and run.events[1].v_after == pytest.approx([10.0], abs=1e-8)
     first, second = run.events
     assert np.array_equal(first.v_after, second.v) and first.energy_added == pytest.approx(6.25 - 50.0)
     assert second.energy_added == pytest.approx(25.0 - 6.25)
@@ -241,7 +241,7 @@ def test_bodies_that_strike_by_a_constraint_rebound(e: float) -> None:
     assert found.v_after == pytest.approx([1.0 - 0.75 * (1 + e), 0.25 * (1 + e)], abs=1e-12)
     assert found.energy_lost == pytest.approx(0.5 * 0.75 * (1 - e**2), abs=1e-12)
     assert abs(found.impulse[0]) == pytest.approx(0.75 * (1 + e), abs=1e-12)
-    assert not run.lam.any() and np.array_equal(run.parameters[-1], run.par)
+    assert not run.lam.any() and np.array_equal(run.par_over_time[-1], run.par)
 
 
 def test_what_is_refused() -> None:

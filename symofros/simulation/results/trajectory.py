@@ -121,7 +121,7 @@ class Trajectory:
         q: Configurations (n, nq).
         v: Speeds (n, nv).
         u: Inputs (n, nu).
-        par: Run-time parameters (npar), at the start where events change them: see `parameters`.
+        par: Run-time parameters (npar), at the start where events change them: see `par_over_time`.
         outcome: Outcome: how the run ended.
         events: Events met, in the order of time.
         statistics: Cost of the run: steps, evaluations, time.
@@ -146,7 +146,7 @@ class Trajectory:
         return len(self.t)
 
     @cached_property
-    def parameters(self) -> Array:
+    def par_over_time(self) -> Array:
         """Run-time parameters at each record (n, npar)."""
         rows = np.tile(self.par, (len(self), 1))
         for first, par in self.changes:
@@ -156,7 +156,7 @@ class Trajectory:
     @property
     def _par(self) -> Array:
         """Run-time parameters, of all records (npar) or of each (n, npar)."""
-        return self.parameters if self.changes else self.par
+        return self.par_over_time if self.changes else self.par
 
     @cached_property
     def _dynamics(self) -> tuple[Array, Array]:
@@ -292,7 +292,7 @@ class Trajectory:
         if path.suffix == ".npz":
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
             names = self.model.names
-            arrays |= {"parameters": self.parameters} if self.changes else {}
+            arrays |= {"par_over_time": self.par_over_time} if self.changes else {}
             write_npz(
                 path,
                 {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u, "outcome": str(self.outcome)},
