@@ -172,7 +172,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     """
     assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
-    obstacle = _unsampled_motion(subject.system, assembly)
+    obstacle = _unsampled_motion(subject.system, assembly) or _released(subject.system)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
     start = time.perf_counter()
@@ -244,6 +244,16 @@ def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
             return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
     if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
         return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
+    return ""
+
+
+def _released(system: sf.System) -> str:
+    """The reason why a constraint that does not hold prevents a comparison; "" if all hold at the stated values."""
+    for switch in system.switches:
+        if sf.evaluate(switch.engaged, system.parameter_values()) != 1.0:
+            return (
+                f"constraint '{switch.constraint}': released by its switch, which engines do not know; set it to hold"
+            )
     return ""
 
 

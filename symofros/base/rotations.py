@@ -7,6 +7,7 @@ take them as they are, and so do arrays of objects with arithmetic and methods `
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -84,6 +85,21 @@ def quaternion_matrix(quaternion: Array) -> Array:
     second = xy + wz, 1.0 - (xx + zz), yz - wx
     third = xz - wy, yz + wx, 1.0 - (xx + yy)
     return np.concatenate([*first, *second, *third], axis=-1).reshape((*quaternion.shape[:-1], 3, 3))
+
+
+def matrix_quaternion(R: Array) -> Array:
+    """The unit quaternion (4) of one rotation matrix, of numbers; by its largest entry, which loses no digits."""
+    K = np.array(
+        [
+            [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
+            [0.0, R[1, 1] - R[0, 0] - R[2, 2], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
+            [0.0, 0.0, R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
+            [0.0, 0.0, 0.0, R[0, 0] + R[1, 1] + R[2, 2]],
+        ]
+    )
+    outer = K + K.T - np.diag(np.diag(K)) + np.eye(4)  # 4 q q^T
+    largest = outer[int(np.argmax(np.diag(outer)))]
+    return np.asarray(largest / math.hypot(*largest))
 
 
 def rotate(quaternion: Array, x: Array) -> Array:

@@ -254,6 +254,38 @@ class Nonholonomic(_OnSpeeds):
             )
 
 
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Switch:
+    """When a constraint holds. A released one is as if it were not stated: its rows are zero, and so is its force.
+
+    Attributes:
+        constraint: Name of the constraint.
+        engaged: Formula of parameters: 1 where the constraint holds, 0 where it is released.
+        pose: What holds: "stated", the constraint as it is described; or "moment", the relative pose, distance or
+            residual that there is at the moment in which an action of an event engages it. Until then, "moment" is as
+            "stated".
+    """
+
+    constraint: str
+    engaged: Value
+    pose: Literal["stated", "moment"] = "stated"
+
+    def __post_init__(self) -> None:
+        """Convert the formula, check the choice."""
+        what = f"switch of '{self.constraint}'"
+        object.__setattr__(self, "engaged", as_value(self.engaged, f"{what}: engaged"))
+        if self.pose not in ("stated", "moment"):
+            raise DescriptionError(
+                Problem(
+                    f"{what}: unknown pose",
+                    f"'{self.pose}'",
+                    "a constraint engages at the pose that is 'stated', or at that of the 'moment'",
+                    did_you_mean(str(self.pose), ("stated", "moment")),
+                )
+            )
+
+
 Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic
 # What joins two frames.
 BETWEEN_FRAMES = (Closure, Rod)

@@ -7,14 +7,14 @@ sense as a whole (names exist, the tree is connected, inertias are physical) is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
 from symofros.base.arguments import entries_of, shown
 from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
-from symofros.description.constraints import Constraint, section_order
+from symofros.description.constraints import Constraint, Switch, section_order
 from symofros.description.contacts import Contact
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
@@ -189,6 +189,7 @@ class System:
         notes: Remarks of an importer on what it ignored or changed.
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
         visuals: Body -> how it looks, as an importer read it; not part of equality, nor of what is compiled.
+        switches: Constraints that can be released and engaged while a mechanism moves.
     """
 
     name: str
@@ -203,6 +204,7 @@ class System:
     notes: tuple[str, ...] = field(default=(), compare=False, repr=False)
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
     visuals: Mapping[str, tuple[Visual, ...]] = field(default_factory=dict, compare=False, repr=False)
+    switches: tuple[Switch, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
@@ -215,6 +217,7 @@ class System:
             "potentials",
             "constraints",
             "notes",
+            "switches",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if any(body.segments > 1 for body in self.beams):
@@ -274,7 +277,13 @@ class System:
             self.notes,
             dict(self.origin),
             dict(self.visuals),
+            self.switches,
         )
+
+    def __repr__(self) -> str:
+        """Each field that counts; no switches where there are none, as hashes of descriptions are made of this text."""
+        names = [item.name for item in fields(self) if item.repr and (item.name != "switches" or self.switches)]
+        return f"System({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
 
     def body(self, name: str) -> Body:
         """The body of that name.

@@ -18,6 +18,7 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
+from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
 from symofros.mechanics.topology.tree import (
     SpanningTree,
     ball_names,
@@ -26,7 +27,7 @@ from symofros.mechanics.topology.tree import (
     prescribed_speeds,
     section_names,
 )
-from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment
+from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, SwitchRecord
 
 GENERATOR = "symofros 0.1.0"
 
@@ -90,7 +91,29 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         joint_limits=joint_limits(tree),
         friction_speeds=_friction_speeds(tree),
         contact_names=ball_names(tree),
+        switches=_switches(tree),
     )
+
+
+def _switches(tree: SpanningTree) -> tuple[SwitchRecord, ...]:
+    switches, names, first, records = switches_of(tree.system), tree.coordinates.par, 0, []
+    for item in tree.system.constraints:
+        rows = range(first, first := first + len(item.conditions))
+        switch = switches.get(item.name)
+        if switch is None:
+            continue
+        moment = switch.pose == "moment"
+        offsets = offset_names(item) if moment else {}
+        offset_places = tuple(
+            (row, names.index(offsets[name]))
+            for row, name in zip(rows, item.conditions, strict=True)
+            if name in offsets
+        )
+        rotation = tuple(map(names.index, rotation_names(item) if moment else ()))
+        anchors = (item.first, item.second) if isinstance(item, Closure) else ()
+        frames = tuple(frame_of(tree, *anchor).name for anchor in anchors)
+        records.append(SwitchRecord(item.name, str(switch.engaged), moment, offset_places, rotation, frames))
+    return tuple(records)
 
 
 def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:

@@ -64,6 +64,26 @@ class ClosureRecord(NamedTuple):
         return {3: self.rotations, 2: free}.get(len(self.rotations), ())
 
 
+class SwitchRecord(NamedTuple):
+    """A constraint that engages and releases.
+
+    Attributes:
+        name: Name of the constraint.
+        engaged: Formula of parameters: 1 where it holds, 0 where it is released.
+        moment: Whether it holds the pose of the moment in which it engages.
+        offsets: Row of G, and parameter that is the offset of its condition; of those that hold a position.
+        rotation: Parameters (x, y, z, w) of the rotation that it holds; none where it holds none.
+        frames: Public names of the frames that it joins, of a closure.
+    """
+
+    name: str
+    engaged: str
+    moment: bool
+    offsets: tuple[tuple[int, int], ...]
+    rotation: tuple[int, ...]
+    frames: tuple[str, ...]
+
+
 class JointLimit(NamedTuple):
     """Limit of a joint, which no force keeps.
 
@@ -111,6 +131,7 @@ class ModelRecord:
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
         friction_speeds: Indices of the speeds that have friction.
         contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
+        switches: Constraints that engage and release.
     """
 
     name: str
@@ -143,6 +164,7 @@ class ModelRecord:
     joint_limits: tuple[JointLimit, ...] = ()
     friction_speeds: tuple[int, ...] = ()
     contact_names: tuple[str, ...] = ()
+    switches: tuple[SwitchRecord, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from symofros.base.arguments import CheckedCalls, check_fields
+from symofros.errors import Problem, SymofrosError
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -20,21 +21,39 @@ class Event(metaclass=CheckedCalls):
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
         name: ArrayLike by the mapping it stands in.
+        action: What happens at each crossing that counts: run-time parameter or speed ("grip", "dq1") -> number, or
+            formula of the state before. Then the speeds meet the constraints that hold, by a plastic impact
+            (docs/theory/constraints.md, section 13). `simulate` has actions.
+        once: Whether only the first crossing counts.
+        restitution: Newton's coefficient e, 0 to 1, of an action that lets constraints strike: they hold for the
+            instant alone, and what they take of the speeds comes back e times; parameters are then as before.
     """
 
     formula: Any
     direction: Literal["both", "rising", "falling"] = "both"
     terminal: bool = False
     name: str = ""
+    action: Mapping[str, Any] | None = None
+    once: bool = False
+    restitution: float | None = None
 
     def __post_init__(self) -> None:
-        """The direction must be known."""
+        """The direction must be known, restitution a share, and have an action."""
         check_fields(self)
+        if self.restitution is not None and not (self.action and 0.0 <= self.restitution <= 1.0):
+            found = f"restitution = {self.restitution}, action = {self.action!r:.60}"
+            rule = "restitution is a number from 0 to 1, of an action that engages what strikes"
+            raise SymofrosError(Problem("event: no restitution", found, rule, "action={'contact': 1}, restitution=0.8"))
 
     @property
     def sign(self) -> int:
         """1 rising, -1 falling, 0 both."""
         return _SIGNS[self.direction]
+
+    @property
+    def cuts(self) -> bool:
+        """Whether a crossing ends the integration, for good or until the action is done."""
+        return self.terminal or bool(self.action)
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:

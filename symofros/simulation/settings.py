@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,8 @@ from symofros.simulation.stepping.stepper import Stepper
 LOSS_LIMIT = 0.01
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
 LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
+# Share of a step within which the end of one is another's.
+_AT_MARK = 1e-9
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
@@ -145,6 +147,20 @@ class Settings:
             beam_limit=options.beam_limit,
             realtime=float(options.realtime),
         )
+
+    def onwards(self, t: float, steps: int, records: int) -> Settings:
+        """Settings of the next part of a run that begins anew at a time [s], after so many steps and records.
+
+        Fixed steps stay where they were: the first one ends where it would have, and is a part of its own.
+        """
+        left = None if self.max_steps is None else self.max_steps - steps
+        part = replace(self, t0=t, max_steps=left, grid=self.grid if self.every else self.grid[records:])
+        if self.adaptive:
+            return part
+        mark = self.t0 + self.dt * math.ceil((t - self.t0) / self.dt)
+        if min(mark - t, self.dt - (mark - t)) <= _AT_MARK * self.dt or mark >= self.t_end:
+            return part
+        return replace(part, t_end=mark, dt=mark - t, grid=part.grid[part.grid <= mark])
 
     def apply(self, stepper: Stepper) -> None:
         """Write the settings into a run."""

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import re
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
+from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.actions import Actions, plan_actions, refuse_actions
 from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
 from symofros.simulation.results.examination.diagnosis import diagnose
+from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
@@ -79,18 +83,26 @@ def simulate(
     looked_for = named_events(events)
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
+    if settings.method.family.multistep:
+        refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
+    actions = plan_actions(model, looked_for, settings.t_end - settings.t0)
     settings.apply(stepper)
     span = settings.t0, settings.t_end
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     with bar(progress, settings.t0, t_end) as show:
-        return run_to_its_end(stepper, settings, q, v, show)
+        return run_to_its_end(stepper, settings, q, v, show, actions)
 
 
 def run_to_its_end(
-    stepper: Stepper, settings: Settings, q: Array, v: Array, show: Callable[[float], None] = lambda t: None
+    stepper: Stepper,
+    settings: Settings,
+    q: Array,
+    v: Array,
+    show: Callable[[float], None] = lambda t: None,
+    actions: Actions | None = None,
 ) -> Trajectory:
     """Run a prepared stepper to its end; returns the trajectory with its outcome.
 
@@ -100,21 +112,125 @@ def run_to_its_end(
         q: First configuration (nq).
         v: First speeds (nv).
         show: Called with the time reached [s], now and then.
+        actions: Actions of the events, at which the motion begins anew (docs/theory/simulation.md, section 2).
     """
-    model, inputs, looked_for = stepper.model, stepper.inputs, stepper.events
+    phases, whole, ended = list[_Phase](), settings, False
+    while not ended:
+        phase, which = _phase(stepper, settings, q, v, show)
+        repeats = settings.every and phases and not phases[-1].acted
+        phases.append(phase.without_first() if repeats else phase)
+        phase = phases[-1]
+        acts = phase.outcome.kind == "event" and any(stepper.events[i].action for i in which)
+        if actions is not None and acts:
+            ended = _act(actions, stepper, which, phases)
+        elif phase.outcome.kind != "finished" or stepper.t >= whole.t_end:
+            break
+        t, q, v = stepper.state
+        steps, records = (sum(counts) for counts in zip(*(phase.counts for phase in phases), strict=True))
+        settings = whole.onwards(t, steps, records)
+        settings.apply(stepper)
+    return _joined(stepper, phases)
+
+
+def _act(actions: Actions, stepper: Stepper, which: list[int], phases: list[_Phase]) -> bool:
+    """Do the actions that the last phase has come to; whether the run ends with them."""
+    phase, acted = phases[-1], actions.act(stepper, which)
+    phase.met[len(phase.met) - len(which) :] = acted.found
+    phase.notes += acted.notes
+    if acted.failure is not None:
+        phase.outcome = acted.failure
+        return True
+    phase.acted = True
+    ended = any(stepper.events[i].terminal for i in which)
+    if ended:
+        phases.append(_after(phase, stepper))
+    return ended
+
+
+@dataclass
+class _Phase:
+    """A part of a run without actions within it.
+
+    Attributes:
+        states: Its records: t (n), q (n, nq), v (n, nv), u (n, nu).
+        par: Run-time parameters (npar).
+        outcome: How it ended.
+        met: Events met.
+        statistics: Cost.
+        bendings: Largest bending of each beam so far.
+        notes: Remarks on the actions at its end.
+        acted: Whether there were any.
+    """
+
+    states: list[Array]
+    par: Array
+    outcome: Outcome
+    met: list[Found]
+    statistics: Statistics
+    bendings: tuple[BeamBending, ...]
+    notes: tuple[str, ...] = ()
+    acted: bool = False
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Numbers of steps and records."""
+        return self.statistics.steps, len(self.states[0])
+
+    def without_first(self) -> _Phase:
+        """The same without a first record that is the last of the phase before."""
+        return replace(self, states=[x[1:] for x in self.states])
+
+
+def _phase(
+    stepper: Stepper, settings: Settings, q: Array, v: Array, show: Callable[[float], None]
+) -> tuple[_Phase, list[int]]:
+    """Run to the end or to the next action, and examine that; indices of the events met at its last instant."""
     began, worked = time.perf_counter(), time.thread_time()
     drive = run_sundials if settings.method.family.multistep else run_own
     recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
-    outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, looked_for)))
-    if inputs.callback is not None:
-        outcome = replace(outcome, notes=(*outcome.notes, *recorded_notes(model.record, states[0], states[3])))
-    met = tuple(Found(looked_for[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events)
-    statistics = _statistics(stepper, seconds, worked)
-    t, q_all, v_all, u_all = states
-    return Trajectory(model, t, q_all, v_all, u_all, np.array(stepper.par), outcome, met, statistics, bendings)
+    outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, stepper.events)))
+    if stepper.inputs.callback is not None:
+        notes = recorded_notes(stepper.model.record, states[0], states[3])
+        outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    met = [Found(stepper.events[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events]
+    phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings)
+    return phase, [which for which, when, *_ in recorded.events if when == stepper.t]
+
+
+def _after(phase: _Phase, stepper: Stepper) -> _Phase:
+    """The state that the actions of a terminal event leave."""
+    t, q, v = stepper.state
+    states = [np.array([t]), q[np.newaxis], v[np.newaxis], stepper.inputs_at(t, q, v)[np.newaxis]]
+    none = replace(phase.statistics, steps=0, rejected=0, evaluations=0, jacobians=0, seconds=0.0, worked=0.0)
+    return replace(phase, states=states, par=stepper.par, met=[], statistics=none, notes=(), acted=False)
+
+
+# Numbers within notes: of notes that differ in them alone, the first is kept.
+_NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
+
+
+def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
+    """The run that phases make."""
+    last, statistics = phases[-1], phases[0].statistics
+    for phase in phases[1:]:
+        statistics = statistics.and_then(phase.statistics)
+    parts = zip(*(phase.states for phase in phases), strict=True)
+    t, q, v, u = (np.concatenate(arrays) for arrays in parts) if len(phases) > 1 else last.states
+    outcome, met = last.outcome, tuple(found for phase in phases for found in phase.met)
+    if len(phases) > 1 or last.notes:
+        notes: dict[str, str] = {}
+        for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
+            notes.setdefault(_NUMBER.sub("#", note), note)
+        reason = outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
+        outcome = replace(outcome, notes=tuple(notes.values()), reason=reason)
+    firsts = np.cumsum([len(phase.states[0]) for phase in phases]).tolist()
+    pairs = zip(firsts, phases, phases[1:], strict=False)
+    changes = tuple((first, after.par) for first, before, after in pairs if before.acted)
+    par = np.array(phases[0].par)
+    return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes)
 
 
 def prepare_run(model: Model, settings: Settings | None = None) -> None:

@@ -16,6 +16,7 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.actions import refuse_actions
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
@@ -95,6 +96,9 @@ class Stepper(SteppedModel):
         values = np.array(model.parameter_values) if par is None else _parameters(model, par)
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
+        refuse_actions(
+            named_events(events), "Stepper", "between two steps set parameters and states by reset(), or use simulate"
+        )
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
         self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from symofros.base.names import rate_symbol, symbol_of
 from symofros.base.sources import Source
-from symofros.description.constraints import Constraint, Coupling
+from symofros.description.constraints import Constraint, Coupling, Switch
 from symofros.description.contacts import Contact
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
@@ -42,6 +42,7 @@ _SECTIONS = {
     "closures": "constraint",
     "couplings": "constraint",
     "nonholonomic": "constraint",
+    "switches": "switch",
 }
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
@@ -82,6 +83,7 @@ class _Merger:
     virtual_power: list[VirtualPower] = field(default_factory=list)
     potentials: list[Potential] = field(default_factory=list)
     constraints: list[Constraint] = field(default_factory=list)
+    switches: list[Switch] = field(default_factory=list)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
@@ -109,6 +111,7 @@ class _Merger:
             tuple(self.potentials),
             tuple(self.constraints),
             origin=self.origin,
+            switches=tuple(self.switches),
         )
         return Reading(system, problems, broken, self.all_sources())
 
@@ -254,6 +257,7 @@ class _Merger:
         self.constraints += [closure.build(name) for name, closure in fresh("closures")]
         self.constraints += [Coupling(name, residual) for name, residual in fresh("couplings")]
         self.constraints += [condition.build(name) for name, condition in fresh("nonholonomic")]
+        self.switches += [switch.build(constraint=name) for name, switch in fresh("switches")]
 
     def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
         """Record where a named thing stands; whether no other file has one of that name."""

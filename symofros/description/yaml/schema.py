@@ -38,7 +38,7 @@ from symofros.description.yaml.fields import (
     parameter_mapping,
 )
 from symofros.description.yaml.schema_beam import BeamEntry
-from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry
+from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry, SwitchEntry
 from symofros.description.yaml.schema_forces import ConnectionEntry, ContactEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.yaml.schema_solid import SolidEntry
 from symofros.errors import Problem
@@ -189,6 +189,8 @@ class NativeFile(Entry):
     """Conditions on coordinates: formulas of coordinates and parameters that stay zero (`q2 - 3*q1`)."""
     nonholonomic: Annotated[dict[Name, NonholonomicEntry], Field(max_length=10_000)] | None = None
     """Conditions on speeds."""
+    switches: Annotated[dict[Name, SwitchEntry], Field(max_length=10_000)] | None = None
+    """When constraints hold: for each that can be released, by its name."""
     options: Reserved = None
 
 

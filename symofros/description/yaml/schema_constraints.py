@@ -14,6 +14,7 @@ from symofros.description.constraints import (
     Nonholonomic,
     Rod,
     Rolling,
+    Switch,
 )
 from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import AnchorEntry, Entry, Formula, Name, fault
@@ -112,3 +113,7 @@ class NonholonomicEntry(Entry):
             return condition
         pairs = tuple((self.coefficients or {}).items())
         return Nonholonomic(name, pairs, 0.0 if self.right is None else self.right)
+
+
+class SwitchEntry(NounEntry, noun=Switch, without=("constraint",)):
+    pass

@@ -42,7 +42,7 @@ from symofros.description.yaml.schema import (
     default_joint_name,
 )
 from symofros.description.yaml.schema_beam import BeamEntry, BeamLoadEntry, SamplesEntry
-from symofros.description.yaml.schema_constraints import KnifeEdgeEntry, RollingEntry
+from symofros.description.yaml.schema_constraints import KnifeEdgeEntry, RollingEntry, SwitchEntry
 from symofros.description.yaml.schema_forces import (
     ELEMENTS,
     ConnectionEntry,
@@ -74,6 +74,7 @@ _OPEN = frozenset(
         "closures",
         "couplings",
         "nonholonomic",
+        "switches",
         "virtual_power",
         "potentials",
     }
@@ -142,6 +143,7 @@ def _document(system: System) -> Plain:
     for item in system.constraints:
         section, entry = _constraint(item)
         document.setdefault(section, {})[item.name] = entry
+    document["switches"] = {item.constraint: _entry(SwitchEntry, item) for item in system.switches}
     return {section: entries for section, entries in document.items() if entries}
 
 

@@ -13,7 +13,6 @@ from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.engaging import EngagedApartError, engaged_apart, engaging_notes
 from symofros.diagrams.run.examination.faults import first_fault
 from symofros.diagrams.run.projection import engage, project_all
 from symofros.diagrams.run.python_blocks import Called
@@ -22,6 +21,7 @@ from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, b
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory
+from symofros.simulation.results.engaging import EngagedApartError, engaged_apart, engaging_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.tableaus import Tableau

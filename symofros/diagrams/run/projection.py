@@ -7,9 +7,9 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.engaging import ENGAGE_TOLERANCE, EngagedApartError
 from symofros.runtime.constrained import project
 from symofros.runtime.manifold import retract
+from symofros.simulation.results.engaging import ENGAGE_TOLERANCE, EngagedApartError
 
 
 def project_all(blocks: Blocks) -> float:

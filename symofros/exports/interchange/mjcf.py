@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.names import identifier
-from symofros.base.rotations import matrix_product
+from symofros.base.rotations import matrix_product, matrix_quaternion
 from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
@@ -157,23 +157,7 @@ def _kept(element: object) -> bool:
 
 
 def _pose(position: Array, rotation: Array) -> dict[str, str]:
-    return {"pos": numbers_text(position), "quat": numbers_text(_quaternion(rotation))}
-
-
-def _quaternion(R: Array) -> Array:
-    """Scalar first; by the largest of its entries, which loses no digits."""
-    K = np.array(
-        [
-            [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
-            [0.0, R[1, 1] - R[0, 0] - R[2, 2], R[1, 2] + R[2, 1], R[0, 2] - R[2, 0]],
-            [0.0, 0.0, R[2, 2] - R[0, 0] - R[1, 1], R[1, 0] - R[0, 1]],
-            [0.0, 0.0, 0.0, R[0, 0] + R[1, 1] + R[2, 2]],
-        ]
-    )
-    outer = K + K.T - np.diag(np.diag(K)) + np.eye(4)  # 4 q q^T, of q = (x, y, z, w).
-    largest = int(np.argmax(np.diag(outer)))
-    x, y, z, w = outer[largest] / math.hypot(*outer[largest])
-    return np.array([w, x, y, z])
+    return {"pos": numbers_text(position), "quat": numbers_text(np.roll(matrix_quaternion(rotation), 1))}
 
 
 def _sites(into: Tree.Element, link: RigidLink) -> None:
@@ -279,6 +263,8 @@ def _limits(limits: Limits) -> dict[str, str]:
 
 
 def _equalities(root: Tree.Element, system: System, links: list[RigidLink], numbers: Numbers, notes: list[str]) -> None:
+    if system.switches:
+        notes.append("constraints hold always: " + ", ".join(switch.constraint for switch in system.switches))
     couplings = polynomial_couplings(system, links, numbers)
     names = {coupling.name for coupling in couplings}
     stated = [item for item in system.constraints if _stated(item) or item.name in names]

@@ -105,6 +105,8 @@ def stated_values(system: System) -> Iterator[Stated]:
             yield Stated(f"virtual power '{power.name}': force on {speed}", value, key, "motion")
     for constraint in system.constraints:
         yield from _constraint_values(constraint)
+    for switch in system.switches:
+        yield Stated(f"switch of '{switch.constraint}': engaged", switch.engaged, ("switch", switch.constraint))
     for potential in system.potentials:
         key = ("potential", potential.name)
         yield Stated(f"potential '{potential.name}'", potential.energy, key, "configuration")

@@ -28,6 +28,7 @@ from symofros.mechanics.topology.joints import joint_number_problems, joint_prob
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
 from symofros.mechanics.topology.run_time import rotations_of, value_conditions
+from symofros.mechanics.topology.switches import switch_conditions, switch_problems
 
 # Systems in which no problem was found, by identity: nothing in a system can change, and `replace` makes another one.
 _sound: WeakValueDictionary[int, System] = WeakValueDictionary()
@@ -316,6 +317,7 @@ class _Checker:
         yield from contact_problems(self.system)
         yield from self._unique("constraint", [item.name for item in self.system.constraints])
         yield from constraint_problems(self.system, self.bodies, self.base, self.broken)
+        yield from switch_problems(self.system)
         yield from power_problems(self.system, self.broken)
 
     def _load(self, body: Body, load: Load | BeamLoad) -> Iterator[Problem]:
@@ -362,7 +364,5 @@ class _Checker:
             where = self.where("body", beam.name)
             sections = list(violations(beam_conditions(beam, where), numbers))
             yield from sections or beam_number_problems(beam, numbers, where)
-        conditions = chain(
-            *(of(self.system) for of in (constraint_conditions, friction_conditions, contact_conditions))
-        )
-        yield from violations(conditions, numbers)
+        others = (constraint_conditions, switch_conditions, friction_conditions, contact_conditions)
+        yield from violations(chain.from_iterable(of(self.system) for of in others), numbers)

@@ -31,6 +31,7 @@ from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_conditions, massless_tip_conditions, moment_conditions
+from symofros.mechanics.topology.switches import switch_conditions
 
 
 def value_conditions(system: System) -> Iterator[Condition]:
@@ -81,6 +82,7 @@ class RunTimeCheck:
         system, names = self.system, frozenset(self.names)
         conditions = [*value_conditions(system), *constraint_conditions(system), *friction_conditions(system)]
         conditions += contact_conditions(system)
+        conditions += switch_conditions(system)
         for beam in system.beams:
             conditions += beam_conditions(beam, system.origin.get(("body", beam.name), ""))
         conditions += [*inertia_conditions(system), *massless_tip_conditions(system), *moment_conditions(system)]

@@ -99,20 +99,11 @@ static int32_t sym_locks_changed(sym_diagram *d) {
     return changed;
 }
 
-/* Largest |phi| by weight that engaging closes by moving bodies, which no force does (docs/theory/diagrams.md). */
-#define SYM_ENGAGE_TOLERANCE 1e-3
-
 /* Project a part whose constraints have just changed: a plastic impact. Returns 0 or a status. */
 static int32_t sym_engage(sym_diagram *d, sym_run *r, double t) {
-    const sym_call *project = &r->system->project;
-    int32_t status;
     double gap;
-    sym_load_state(r); /* the inputs are those of the instant */
-    status = sym_project_point(r->system);
-    gap = project->out[5][0];
+    const int32_t status = sym_run_engage(r, &gap);
     if (gap > d->engaged_gap) d->engaged_gap = gap, d->engaged_t = t;
-    if (gap > SYM_ENGAGE_TOLERANCE) return SYM_ENGAGED_APART;
-    if (status == 0) sym_store_state(r);
     return status;
 }
 

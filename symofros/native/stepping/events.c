@@ -3,9 +3,10 @@
 /* Values of all events at the evaluation point. Returns 0 or a status. */
 static int32_t sym_event_values(sym_run *r, double *values) {
     const sym_system *s = r->system;
+    int32_t i;
     if (!s->events_free_of_inputs && sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->events);
-    memcpy(values, s->events.out[0], (size_t)s->n_events * sizeof *values);
+    for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] < 0 ? 1.0 : s->events.out[0][i];
     return 0;
 }
 
@@ -138,7 +139,7 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
             break;
         }
         last_x = x;
-        if (s->event_terminal[which] && r->terminal_event < 0) r->terminal_event = which, *stop_x = x;
+        if (s->event_terminal[which] > 0 && r->terminal_event < 0) r->terminal_event = which, *stop_x = x;
         status = sym_load_state_within_step(r, w, h, dense_ready, x);
         if (status == 0) sym_record_event(r, which);
     }

@@ -26,7 +26,7 @@ typedef enum sym_status {
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
     SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
     SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
-    SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled; of diagrams only */
+    SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled */
 } sym_status;
 
 typedef enum sym_method {
@@ -115,7 +115,7 @@ typedef struct sym_system {
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
-    const int32_t *event_terminal;  /* (n_events) whether the event ends the run */
+    const int32_t *event_terminal;  /* (n_events) 1: the event ends the run; -1: it is not looked for any more */
     const double *u_constant;       /* (nu) inputs that nothing else gives */
     /* Inputs by a function of the caller's; not 0 stops the run. NULL: none. */
     int32_t (*callback)(void *data, double t, const double *q, const double *v, double *u);
@@ -252,6 +252,9 @@ int32_t sym_system_bind(sym_system *system, sym_call *call);
 int32_t sym_run_start(sym_run *run);
 /* At most max_steps further steps, accepted or rejected. Returns a status. */
 int32_t sym_run_advance(sym_run *run, int64_t max_steps);
+/* Take the present state onto constraints that have just changed, a plastic impact (docs/theory/constraints.md, (31)); *gap: |phi|
+ * by weight that this closes. Returns 0 or a status. */
+int32_t sym_run_engage(sym_run *run, double *gap);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);
 /* Judge beams in the present state that wait for the next step: the largest errors are complete then. */

@@ -324,6 +324,19 @@ static int32_t sym_project_state(sym_run *r) {
     return status;
 }
 
+/* Largest |phi| by weight that engaging closes by moving bodies, which no force does (docs/theory/diagrams.md). */
+#define SYM_ENGAGE_TOLERANCE 1e-3
+
+SYM_EXPORT int32_t sym_run_engage(sym_run *r, double *gap) {
+    int32_t status;
+    sym_load_state(r); /* the inputs are those of the instant */
+    status = sym_project_point(r->system);
+    *gap = r->system->project.out[5][0];
+    if (*gap > SYM_ENGAGE_TOLERANCE) return SYM_ENGAGED_APART;
+    if (status == 0) sym_store_state(r);
+    return status;
+}
+
 /* Evaluation point <- y = (theta, v) in the chart about r->q at time t, projected where the run projects. Returns 0 or a
  * status. */
 static int32_t sym_load_projected_state(sym_run *r, double t, const double *y) {

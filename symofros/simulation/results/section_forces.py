@@ -111,7 +111,7 @@ def section_forces_of(
         beam: Name of an elastic beam.
         t: Times (n) [s].
         states: q, v, v', u and multipliers (n, ...).
-        par: Run-time parameters (npar).
+        par: Run-time parameters (npar), or (n, npar) that have the same beams.
 
     Raises:
         UnknownNameError: The model has no such elastic beam with stations.
@@ -128,7 +128,7 @@ def section_forces_of(
                 did_you_mean(beam, known) or "state stations, and shape functions in one direction at least",
             )
         )
-    length = next(one.length for one in model.beams(par) if one.name == beam)
+    length = next(one.length for one in model.beams(par if par.ndim == 1 else par[0]) if one.name == beam)
     x = length * np.array([sections[k][1] for k in rows])
     values = model.section_forces(*states, par=par, t=t)[..., rows, :]
     return SectionForces(beam, x, t, values)

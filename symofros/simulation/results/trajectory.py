@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
@@ -23,12 +25,28 @@ from symofros.simulation.results.section_forces import SectionForces, section_fo
 
 
 class Found(NamedTuple):
-    """An event that was met: its name, when, and the state."""
+    """An event that was met: its name, when, the state, and what its action did.
+
+    Attributes:
+        name: Name of the event.
+        t: Instant [s].
+        q: Configuration (nq).
+        v: Speeds (nv), before the action.
+        v_after: Speeds (nv) after the action; None where there is none.
+        impulse: Impulse of the constraints in an impact (nc), of least norm where conditions repeat each other: M dv =
+            G^T impulse [N s, N m s].
+        energy_lost: Kinetic energy that the impact took [J].
+        energy_added: Energy that came with parameters and speeds that were set [J].
+    """
 
     name: str
     t: float
     q: Array
     v: Array
+    v_after: Array | None = None
+    impulse: Array | None = None
+    energy_lost: float = 0.0
+    energy_added: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -59,6 +77,13 @@ class Statistics:
     rank_max: int = -1
     worked: float = math.nan
 
+    def and_then(self, other: Statistics) -> Statistics:
+        """The cost of two parts of a run together; what is late was counted on."""
+        summed = ("steps", "rejected", "evaluations", "jacobians", "seconds", "worked")
+        sums = {name: getattr(self, name) + getattr(other, name) for name in summed}
+        ranks = min(self.rank_min, other.rank_min), max(self.rank_max, other.rank_max)
+        return replace(other, **sums, rank_min=ranks[0], rank_max=ranks[1])
+
 
 class Frames(Mapping[str, tuple[Array, Array]]):
     """Frame name -> p_WF (n, 3) and R_WF (n, 3, 3) along a trajectory, computed when asked for."""
@@ -75,7 +100,7 @@ class Frames(Mapping[str, tuple[Array, Array]]):
         run = self._trajectory
         if not isinstance(name, str):
             raise KeyError(name)
-        return run.model.frame_pose(name, run.q, u=run.u, par=run.par)
+        return run.model.frame_pose(name, run.q, u=run.u, par=run._par)
 
     def __iter__(self) -> Iterator[str]:
         """Names."""
@@ -96,11 +121,12 @@ class Trajectory:
         q: Configurations (n, nq).
         v: Speeds (n, nv).
         u: Inputs (n, nu).
-        par: Run-time parameters (npar).
+        par: Run-time parameters (npar), at the start where events change them: see `par_over_time`.
         outcome: Outcome: how the run ended.
         events: Events met, in the order of time.
         statistics: Cost of the run: steps, evaluations, time.
         bendings: Bending of each beam at the step where its theory errs most.
+        changes: Parameters (npar) that actions of events left, each with the number of the first record with them.
     """
 
     model: Model
@@ -113,14 +139,28 @@ class Trajectory:
     events: tuple[Found, ...] = ()
     statistics: Statistics = field(default_factory=lambda: Statistics("", 0, 0, 0, 0, 0.0))
     bendings: tuple[BeamBending, ...] = ()
+    changes: tuple[tuple[int, Array], ...] = ()
 
     def __len__(self) -> int:
         """Number of recorded states."""
         return len(self.t)
 
     @cached_property
+    def par_over_time(self) -> Array:
+        """Run-time parameters at each record (n, npar)."""
+        rows = np.tile(self.par, (len(self), 1))
+        for first, par in self.changes:
+            rows[first:] = par
+        return rows
+
+    @property
+    def _par(self) -> Array:
+        """Run-time parameters, of all records (npar) or of each (n, npar)."""
+        return self.par_over_time if self.changes else self.par
+
+    @cached_property
     def _dynamics(self) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self._par, t=self.t)
         return a, lam
 
     @property
@@ -136,12 +176,12 @@ class Trajectory:
     @cached_property
     def kinetic_energy(self) -> Array:
         """(n) [J]."""
-        return self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par)
+        return self.model.kinetic_energy(self.q, self.v, u=self.u, par=self._par)
 
     @cached_property
     def potential_energy(self) -> Array:
         """(n) [J]."""
-        return self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t)
+        return self.model.potential_energy(self.q, u=self.u, par=self._par, t=self.t)
 
     @property
     def energy(self) -> Array:
@@ -159,7 +199,7 @@ class Trajectory:
             UnknownNameError: There is no such elastic beam.
         """
         states = self.q, self.v, self.a, self.u, self.lam
-        return section_forces_of(self.model, beam, self.t, states, self.par)
+        return section_forces_of(self.model, beam, self.t, states, self._par)
 
     @property
     def frames(self) -> Frames:
@@ -252,6 +292,7 @@ class Trajectory:
         if path.suffix == ".npz":
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
             names = self.model.names
+            arrays |= {"par_over_time": self.par_over_time} if self.changes else {}
             write_npz(
                 path,
                 {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u, "outcome": str(self.outcome)},

@@ -142,7 +142,7 @@ class BoundRun:
         system, memory, events = self.system, self.memory, self.events
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
-        system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
+        system.event_terminal = memory.own("int32_t[]", [int(event.cuts) for event in events])
         if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
             written, names = " ".join(str(event.formula) for event in events), self.model.names
             system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))

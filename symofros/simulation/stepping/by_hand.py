@@ -176,7 +176,7 @@ class HandRun:
     def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
         """Begin anew at a state, the inputs those of the description until a step gives others."""
         if par is not None:
-            self._set_parameters(par)
+            self.run.set_parameters(par)
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
         run.run.t = run.run.t0 = t
@@ -190,21 +190,6 @@ class HandRun:
         self.start, self.events = Start(t, q.copy(), v.copy()), []
         self._noted: Noted | None = None
         self._known = -np.inf
-
-    def _set_parameters(self, par: Array) -> None:
-        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
-        stepper, view = self.run, self.run.memory.view
-        run, system = stepper.run, stepper.system
-        stepper.par, stepper.beams = par, stepper.model.beams(par)
-        for slot, kernel in stepper.kernels.items():
-            prepared = kernel.prepare(par.reshape(1, -1))
-            view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
-        for i, beam in enumerate(stepper.beams):
-            of = system.beams[i]
-            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
-            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
-            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
-        run.slope_valid = run.jacobian_valid = 0
 
     def _forget_bendings(self) -> None:
         """Nothing is known of how far beams bend, as at the start of a run."""
@@ -319,7 +304,7 @@ class HandRun:
     def restore(self, state: HandState) -> None:
         """Go on from a state that `save` gave, bit by bit as from there."""
         if state.par is not self.run.par:
-            self._set_parameters(state.par)
+            self.run.set_parameters(state.par)
         for of, numbers in zip(self._numbers, state.numbers, strict=True):
             of.write(numbers)
         for to, array in zip(self._arrays, state.arrays, strict=True):

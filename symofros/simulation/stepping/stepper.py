@@ -29,7 +29,8 @@ class Stepper(BoundRun):
         Returns:
             A Status.
         """
-        self.reserve(capacity, _DIAGNOSTIC_ROWS)
+        if capacity > self.run.capacity:
+            self.reserve(capacity, _DIAGNOSTIC_ROWS)
         self.set_state(q, v)
         return int(self.native.sym_run_start(self.run))
 
@@ -52,6 +53,29 @@ class Stepper(BoundRun):
         """Write q (nq) and v (nv) into the run's memory as its present state."""
         self.memory.view(self.run.q, self.model.nq)[:] = q
         self.memory.view(self.run.v, self.model.nv)[:] = v
+
+    def set_parameters(self, par: Array) -> None:
+        """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
+        run, system, view = self.run, self.system, self.memory.view
+        self.par, self.beams = par, self.model.beams(par)
+        for slot, kernel in self.kernels.items():
+            prepared = kernel.prepare(par.reshape(1, -1))
+            view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
+        for i, beam in enumerate(self.beams):
+            of = system.beams[i]
+            of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
+            view(run.beam_scale + of.first, beam.size)[:] = beam.scale
+            view(run.beam_reach + of.first, beam.size)[:] = beam.reach
+        run.slope_valid = run.jacobian_valid = 0
+
+    def ignore_event(self, which: int) -> None:
+        """An event is not looked for any more."""
+        self.system.event_terminal[which] = -1
+
+    def engage(self) -> tuple[int, float]:
+        """Take the present state onto the constraints, a plastic impact: a Status, and the |phi| that this closes."""
+        gap = self.ffi.new("double *")
+        return int(self.native.sym_run_engage(self.run, gap)), float(gap[0])
 
     def advance(self, steps: int) -> int:
         """Make at most `steps` steps. The interpreter lock is released meanwhile.

@@ -7,7 +7,7 @@ import pytest
 
 import symofros as sf
 import symofros.blocks as blocks
-from symofros.diagrams.run.engaging import ENGAGE_TOLERANCE
+from symofros.simulation.results.engaging import ENGAGE_TOLERANCE
 from tests.diagrams.parts import moving
 
 

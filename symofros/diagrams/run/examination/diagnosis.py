@@ -11,7 +11,6 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout, Part
-from symofros.diagrams.run.engaging import engaged_apart, engaging_notes
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
@@ -22,6 +21,7 @@ from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.analysis.kinematics.postures import MAX_BETWEEN
 from symofros.simulation.events import event_notes
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
+from symofros.simulation.results.engaging import engaged_apart, engaging_notes
 from symofros.simulation.results.examination.constraint_faults import constraint_notes
 from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.run import ExaminedRun

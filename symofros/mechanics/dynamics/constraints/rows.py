@@ -11,7 +11,17 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from symofros.base.names import TIME
-from symofros.description.constraints import AXES, AxisName, Closure, Coupling, KnifeEdge, Nonholonomic, Rod, Rolling
+from symofros.description.constraints import (
+    AXES,
+    AxisName,
+    Closure,
+    Constraint,
+    Coupling,
+    KnifeEdge,
+    Nonholonomic,
+    Rod,
+    Rolling,
+)
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
@@ -21,6 +31,7 @@ from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
 from symofros.mechanics.topology.tree import frame_of
 
 
@@ -52,6 +63,17 @@ class Row:
     gamma: Edge
     levers: tuple[Lever, ...] = ()
     facing: tuple[Edge, ...] = ()
+
+    def scaled(self, g: Graph, e: Edge) -> Row:
+        """The row times e: as it is for 1, without effect for 0."""
+
+        def acting(vector: Vec3 | None) -> Vec3 | None:
+            return None if vector is None else vector.scaled(e)
+
+        levers = tuple(x._replace(force=acting(x.force), moment=acting(x.moment)) for x in self.levers)
+        facing = tuple(g.add(g.mul(e, cosine), g.sub(ONE, e)) for cosine in self.facing)
+        phi, rate, gamma = (g.mul(e, edge) for edge in (self.phi, self.rate, self.gamma))
+        return Row(phi, tuple(g.mul(e, entry) for entry in self.G), rate, gamma, levers, facing)
 
 
 @dataclass(frozen=True)
@@ -85,6 +107,7 @@ class Constraints:
     def __init__(self, frames: FrameKinematics) -> None:
         self.frames, self.kinematics, self.g = frames, frames.kinematics, frames.g
         self.nv = self.kinematics.nv
+        self.switches = switches_of(self.kinematics.tree.system)
         self._states: dict[str, FrameState] = {}
 
     def rows(self) -> list[Row]:
@@ -97,7 +120,32 @@ class Constraints:
             Rolling: self._rolling,
             Nonholonomic: self._stated,
         }
-        return [row for item in self.kinematics.tree.system.constraints for row in make[type(item)](item)]
+        return [
+            row
+            for item in self.kinematics.tree.system.constraints
+            for row in self._switched(item, list(make[type(item)](item)))
+        ]
+
+    def _switched(self, item: Constraint, rows: list[Row]) -> list[Row]:
+        """The rows of a constraint less what it holds, by whether it holds: e (phi - phi_e), e G, ... (eqs. 29, 30)."""
+        switch, symbol = self.switches.get(item.name), self.kinematics.lowering.symbol
+        if switch is None:
+            return rows
+        if switch.pose == "moment":
+            offsets = offset_names(item)
+            rows = [
+                replace(row, phi=self.g.sub(row.phi, symbol(offsets[name]))) if name in offsets else row
+                for name, row in zip(item.conditions, rows, strict=True)
+            ]
+        return [row.scaled(self.g, self.kinematics.lowering.value(switch.engaged)) for row in rows]
+
+    def _turned(self, closure: Closure, B: FrameState) -> FrameState:
+        """The second frame of a closure, turned by the rotation that it holds, if it holds any (eq. 30)."""
+        names = rotation_names(closure)
+        if not names or closure.name not in self.switches or self.switches[closure.name].pose != "moment":
+            return B
+        held = Quaternion.of(self.g, *(self.kinematics.lowering.symbol(name) for name in names))
+        return replace(B, R=B.R @ held.normalized.matrix)
 
     def _state(self, anchor: Anchor) -> FrameState:
         frame = frame_of(self.kinematics.tree, *anchor)
@@ -117,6 +165,7 @@ class Constraints:
         A, B = self._state(closure.first), self._state(closure.second)
         for axis in closure.translations:
             yield self._offset(A, B, A.R.column(AXES.index(axis)))
+        B = self._turned(closure, B)
         blocked = [AXES.index(axis) for axis in closure.rotations]
         parallel = {3: blocked, 2: [k for k in range(3) if k not in blocked]}.get(len(blocked), [])
         facing = tuple(A.R.column(k).dot(B.R.column(k)) for k in parallel)

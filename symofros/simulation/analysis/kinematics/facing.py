@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.rotations import normalized, quaternion_matrix
 from symofros.errors import AssemblyError, Problem
 from symofros.runtime.model import ArrayLike, Model
 
@@ -44,8 +45,16 @@ def facings(model: Model, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLi
             np.eye(3) if frame is None else model.frame_pose(frame, q, u=u, par=par)[1]
             for frame in (closure.first, closure.second)
         )
-        cosines = (R_A * R_B).sum(axis=-2)[..., list(closure.parallel)]  # a_k . b_k, the axes are columns.
-        faced.append(Facing(closure.name, cosines.min(axis=-1)))
+        switch = next((item for item in model.record.switches if item.name == closure.name), None)
+        if switch is not None and switch.rotation:
+            held = np.asarray(model.parameter_values if par is None else model.checked_parameters(par))
+            R_B = R_B @ quaternion_matrix(normalized(held[..., list(switch.rotation)]))
+        cosines = (R_A * R_B).sum(axis=-2)[..., list(closure.parallel)].min(axis=-1)  # a_k . b_k, the axes are columns.
+        if switch is not None:  # One that is released has rows of zeros, and faces anywhere.
+            rows = [i for i, name in enumerate(model.names.constraints) if name.rpartition(".")[0] == closure.name]
+            G = model.constraint_jacobian(q, u=u, par=par)[..., rows, :]
+            cosines = np.where(G.any(axis=(-2, -1)), cosines, 1.0)
+        faced.append(Facing(closure.name, cosines))
     return faced
 
 

@@ -1,0 +1,277 @@
+"""Events with actions: grasp, dock, release, lock, new parameters, new speeds (docs/theory/constraints.md, 13)."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.base.functions import FUNCTIONS
+from symofros.description.yaml.yaml_writer import write_yaml
+from symofros.simulation.analysis.kinematics.facing import facings
+from tests.simulation.mechanisms import slide
+
+_SIDE = sf.Inertia(1.0, (0.5, 0.02, 0.01), (0.01, 0.1, 0.11))
+_AXES = ("x", "y", "z")
+
+
+def grabbing(pose: str = "", *, closed: bool = True, flexible: bool = False, noise: float = 0.0) -> sf.System:
+    """An arm on a free base and a free target without weight, which the tip of the arm may hold.
+
+    Args:
+        pose: That the switch of the closure states; "" for none.
+        closed: Whether there is a closure.
+        flexible: Whether the outer link is a beam.
+        noise: By which the rotation of the target's handle is no rotation about z alone.
+    """
+    end = sf.Frame("end", (1, 0, 0))
+    base = sf.RigidBody("base", sf.Joint("root", "free"), sf.Inertia(5.0, (0.1, 0, 0), (1, 2, 3)), (end,))
+    shoulder = sf.Joint("q1", "revolute", "base", axis=(0, 0, 1), frame="end")
+    elbow = sf.Joint("q2", "revolute", "upper", axis=(0, 1, 0), frame="end")
+    fore: Any = sf.RigidBody("fore", elbow, _SIDE, (sf.Frame("tip", (1, 0, 0)),))
+    if flexible:
+        fore = sf.Beam("fore", elbow, 1.0, 1.0, EI_z=50.0, bend_y=2, retain="all")
+    handle = sf.Frame("handle", (0.2, 0.1, -0.05), sf.Rotation.rpy(noise, -noise, 0.7))
+    target = sf.RigidBody(
+        "target", sf.Joint("f", "free"), sf.Inertia("m", (0.1, 0.05, -0.03), (0.3, 0.2, 0.25)), (handle,)
+    )
+    held = sf.Closure("grasp", ("fore", "tip"), ("target", "handle"), rotations=_AXES)
+    return sf.System(
+        "grabbing",
+        (base, sf.RigidBody("upper", shoulder, _SIDE, (end,)), fore, target),
+        (sf.Parameter("m", 2.0), sf.Parameter("grip", 0.0)),
+        gravity=(0, 0, 0),
+        constraints=(held,) if closed else (),
+        switches=(sf.Switch("grasp", "grip", pose),) if pose else (),  # type: ignore[arg-type]
+    )
+
+
+@cache
+def model_of(**options: Any) -> sf.Model:
+    """Its model."""
+    return sf.compile(grabbing(**options))
+
+
+def tumbling(model: sf.Model, seed: int = 1) -> tuple[Any, Any]:
+    """A state in which nothing is held."""
+    q, v = model.random_state(np.random.default_rng(seed))
+    return q, v
+
+
+def momentum(model: sf.Model, q: Any, v: Any, par: Any) -> Any:
+    """Linear momentum, and angular momentum about the mass centre."""
+    return model.centroidal_momentum(q, v, par=par)
+
+
+def check_impact(run: sf.Trajectory, first: int = 0) -> None:
+    """Momentum stays, the energy of the speed lost is lost, and the impulse is what changes the momenta."""
+    model, found = run.model, run.events[first]
+    after = run.par_over_time[run.changes[first][0]]
+    before = momentum(model, found.q, found.v, after)
+    assert np.abs(momentum(model, found.q, found.v_after, after) - before).max() <= 1e-12 * np.abs(before).max()
+    M, dv = model.mass_matrix(found.q, par=after), found.v_after - found.v
+    assert found.energy_lost == pytest.approx(0.5 * dv @ M @ dv, rel=1e-10) and found.energy_lost > 1e-3
+    G = model.constraint_jacobian(found.q, par=after)
+    assert np.abs(G @ found.v_after).max() < 1e-12
+    assert np.abs(M @ dv - G.T @ found.impulse).max() < 1e-12 * np.abs(found.impulse).max() * len(dv)
+
+
+@pytest.mark.parametrize(
+    ("method", "noise", "flexible"),
+    [("rk4", 0.0, False), ("dopri5", 1e-6, False), ("rodas4", 0.0, True), ("rk4", 1e-16, True)],
+)
+def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, flexible: bool) -> None:
+    """To where it is released; then both parts move on at the same speeds."""
+    model = model_of(pose="moment", noise=noise, flexible=flexible)
+    q, v = tumbling(model)
+    if flexible:
+        q, v = model.integrate(model.neutral(), 0.02 * model.difference(model.neutral(), q)), 0.3 * v
+    grab, drop = sf.Event("t - 0.1", action={"grip": 1}), sf.Event("t - 0.2", action={"grip": "1 - grip"})
+    events = {"grab": grab, "drop": drop}
+    run = sf.simulate(model, q, v, 0.3, events=events, method=method, dt=1e-3, rtol=1e-9, atol=1e-11)
+    assert run.outcome.ok and [found.name for found in run.events] == ["grab", "drop"], run.outcome
+    check_impact(run)
+    (held, _), (free, _) = run.changes
+    (p_A, R_A), (p_B, R_B) = run.frames["tip"], run.frames["handle"]
+    d, C = np.einsum("nji,nj->ni", R_A, p_B - p_A), np.einsum("nji,njk->nik", R_A, R_B)
+    assert max(np.abs(x[held:free] - x[held - 1]).max() for x in (d, C)) < 1e-12
+    assert np.abs(d[-1] - d[held]).max() > 1e-3
+    assert facings(model, run.q[held], par=run.par_over_time[held])[0].cosines == pytest.approx(1.0)
+    released = run.events[1]
+    assert np.abs(released.v_after - released.v).max() < 1e-12 and abs(released.energy_lost) < 1e-12
+    assert np.abs(run.lam[held:free]).max() > 1e-6 and not run.lam[free:].any() and not run.lam[:held].any()
+
+
+@cache
+def docking() -> tuple[sf.Model, Any, Any]:
+    """A start from which the frames are at their stated relative pose after 5 ms of free motion, at unlike speeds."""
+    model = model_of(pose="stated")
+    q, v = model.neutral(), np.zeros(model.nv)
+    q[model.names.q.index("q2")] = 0.4
+    shut = sf.assemble(model, q, par=model.checked_parameters({**model.parameters, "grip": 1.0})).q
+    v = np.random.default_rng(2).uniform(-1, 1, model.nv)
+    back = sf.simulate(model, shut, -v, 5e-3, dt=1e-4)
+    return model, back.q[-1], -back.v[-1]
+
+
+@pytest.mark.parametrize("method", ["rk4", "dop853"])
+def test_a_switched_motion_is_that_of_two_models(method: str) -> None:
+    """The tree without the closure, then the loop: to rounding, and bit by bit as begun anew with other parameters."""
+    model, q, v = docking()
+    options: dict[str, Any] = {"dt": 1e-4, "method": method, "rtol": 1e-11, "atol": 1e-13}
+    run = sf.simulate(model, q, v, 0.05, events={"dock": sf.Event("t - 5e-3", action={"grip": 1})}, **options)
+    assert run.outcome.ok and not run.outcome.notes, run.outcome
+    check_impact(run)
+    first, (found,) = run.changes[0][0], run.events
+    tree, loop = model_of(closed=False), model_of()
+    free = sf.simulate(tree, q, v, found.t, **options)
+    assert np.abs(free.q[-1] - run.q[first - 1]).max() < 1e-12 and np.abs(free.v[-1] - found.v).max() < 1e-11
+    shut = sf.simulate(loop, run.q[first], found.v_after, 0.05, t0=found.t, **options)
+    assert np.abs(shut.q[-1] - run.q[-1]).max() < 1e-10 and np.abs(shut.v[-1] - run.v[-1]).max() < 1e-10
+    again = sf.simulate(model, run.q[first], run.v[first], 0.05, t0=found.t, par=run.par_over_time[-1], **options)
+    assert np.array_equal(again.q, run.q[first:]) and np.array_equal(again.v, run.v[first:])
+    assert np.array_equal(again.lam, run.lam[first:]) and np.array_equal(again.energy, run.energy[first:])
+
+
+def test_functions_of_a_switched_model_are_those_with_and_without_its_constraint() -> None:
+    """Exactly, where it holds; where it is released the conditions are zero and the motion is that of the tree."""
+    switched, tree, loop = model_of(pose="stated"), model_of(closed=False), model_of()
+    rng = np.random.default_rng(3)
+    (q, v), a, lam = switched.random_state(rng), rng.normal(size=switched.nv), rng.normal(size=switched.nc)
+    on, off = (switched.checked_parameters({**switched.parameters, "grip": x}) for x in (1.0, 0.0))
+    for name in ("constraint", "constraint_jacobian", "constraint_rate", "constraint_bias", "closure_wrenches"):
+        given = {"q": q, "v": v, "a": a, "lam": lam}
+        held, released = (switched.evaluate(name, par=par, **_read_by(switched, name, given)) for par in (on, off))
+        for x, y, value in zip(held, released, loop.evaluate(name, **_read_by(loop, name, given)), strict=True):
+            assert np.array_equal(x, value) and not y.any(), name
+    ((_, faces),), ((_, anywhere),) = (facings(switched, q, par=par) for par in (on, off))
+    assert faces == facings(loop, q)[0].cosines < 0.9 and anywhere == 1.0
+    u = np.zeros(0)
+    assert np.abs(switched.forward_dynamics(q, v, u, par=off) - tree.forward_dynamics(q, v, u)).max() < 1e-12
+    assert np.abs(switched.forward_dynamics(q, v, u, par=on) - loop.forward_dynamics(q, v, u)).max() < 1e-10
+
+
+def _read_by(model: sf.Model, name: str, given: dict[str, Any]) -> dict[str, Any]:
+    """Those of some arguments that a function reads."""
+    return {key: given[key] for key in FUNCTIONS[name].inputs if key in given}
+
+
+def test_a_joint_locks_and_a_rope_tautens_where_they_are() -> None:
+    """A coupling and a rod hold the coordinate and the distance of the moment, and switches may say the opposite."""
+    hinge = sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), _SIDE, (sf.Frame("end", (1, 0, 0)),))
+    cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0), position=(0, 1, 0)), sf.Inertia(2.0))
+    system = sf.System(
+        "brake",
+        (hinge, cart),
+        (sf.Parameter("on", 0.0),),
+        constraints=(sf.Coupling("lock", "q"), sf.Rod("rope", ("arm", "end"), ("cart", None), 0.3)),
+        switches=(sf.Switch("lock", "on", "moment"), sf.Switch("rope", "1 - on", "moment")),
+    )
+    model = sf.compile(system)
+    start, off = np.array([0.2, 0.5]), {"on": 1.0, "lock.held": 0.2, "rope.held": 0.0}
+    events = {
+        "rope": sf.Event("t - 0.05", action={"on": 0}),
+        "lock": sf.Event("t - 0.1", action={"on": 1}),
+        "end": sf.Event("t - 0.15", terminal=True, action={"dx": "dx/2"}),
+    }
+    run = sf.simulate(model, start, [0.0, 1.0], 1.0, par={**model.parameters, **off}, events=events)
+    assert run.outcome.kind == "event" and run.t[-1] == run.t[-2] and run.v[-1, 1] == run.v[-2, 1] / 2
+    taut, locked, _ = (first for first, _ in run.changes)
+    distance = np.linalg.norm(run.frames["end"][0] - run.frames["cart"][0], axis=1)
+    assert np.ptp(distance[taut - 1 : locked]) < 1e-9 and np.ptp(run.q[taut:locked, 0]) > 1e-3
+    assert np.ptp(run.q[locked:, 0]) < 1e-12 and np.ptp(run.q[:taut, 0]) < 1e-12
+
+
+def test_parameters_and_speeds_that_are_set() -> None:
+    """A ball bounces as the closed form says; its mass halves at each contact; several actions at an instant follow."""
+    ball = slide(mass="m", name="z", axis=(0, 0, 1), gravity=(0, 0, -10), parameters=(sf.Parameter("m", 1.0),))
+    model = sf.compile(ball)
+    contact = sf.Event("z", "falling", action={"m": "m/2", "dz": "-0.5*dz"})
+    events = {"contact": contact, "same": sf.Event("z", "falling", once=True, action={"dz": "2*dz"})}
+    run = sf.simulate(model, [5.0], [0.0], 2.4, events=events, method="dopri5", max_step=0.02)
+    names, instants = zip(*((found.name, found.t) for found in run.events), strict=True)
+    # Falls for 1 s; leaves at -10 times -0.5 times 2; comes back after 2 s at -10.
+    assert names == ("contact", "same") and np.abs(np.array(instants) - 1.0).max() < 1e-9
+    assert run.par_over_time[-1] == 0.5 and run.events[1].v_after == pytest.approx([10.0], abs=1e-8)
+    first, second = run.events
+    assert np.array_equal(first.v_after, second.v) and first.energy_added == pytest.approx(6.25 - 50.0)
+    assert second.energy_added == pytest.approx(25.0 - 6.25)
+    run = sf.simulate(model, [5.0], [0.0], 4.0, events={"contact": contact}, method="dopri5", max_step=0.02)
+    bounces = [found.t for found in run.events][:8]
+    assert np.abs(np.array(bounces) - (1.0 + 2.0 * (1.0 - 0.5 ** np.arange(8)))).max() < 1e-9
+    assert not run.outcome.ok and "without end" in run.outcome.reason and run.outcome.t == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize("every", [1, 5])
+def test_fixed_steps_stay_where_they_were(every: int) -> None:
+    """After an action within a step the next one ends where this would have: held samples begin at ends of steps."""
+    cart = slide(actuated=True, mass="m", parameters=(sf.Parameter("m", 1.0),))
+    model, marks = sf.compile(cart), np.arange(0.0, 1.05, 0.1)
+    force = sf.Signal(marks, np.sin(7.0 * marks)[:, np.newaxis], kind="hold")
+    events = {"drop": sf.Event("t - 0.3123", action={"m": "m/2"}), "stop": sf.Event("t - 0.4", action={"dx": "dx/3"})}
+    run = sf.simulate(model, t_end=1.0, u=force, events=events, dt=0.02, every=every)
+    assert not run.outcome.notes and run.statistics.steps == 51
+    twice = [0.3123, 0.4]
+    expected = np.sort([*np.arange(51) * 0.02, 0.3123, *twice]) if every == 1 else run.t
+    assert np.abs(run.t - expected).max() < 1e-12 and [found.t for found in run.events] == pytest.approx(twice)
+    u, m, v = np.sin(7.0 * marks), 1.0, 0.0  # The closed form, interval by interval.
+    for i in range(10):
+        v += u[i] / m * (0.0123 if i == 3 else 0.1)
+        v += u[i] / 0.5 * 0.0877 if i == 3 else 0.0
+        m, v = (0.5, v / 3) if i == 3 else (m, v)
+    assert run.v[-1, 0] == pytest.approx(v, abs=1e-12)
+
+
+@pytest.mark.parametrize("e", [0.05, 0.3, 1.0])
+def test_bodies_that_strike_by_a_constraint_rebound(e: float) -> None:
+    """At e times the speed of approach; 1 - e^2 of the energy of a plastic impact is lost, and nothing stays held."""
+    rail = [
+        sf.RigidBody(n, sf.Joint(n, "prismatic", axis=(1, 0, 0)), sf.Inertia(m)) for n, m in (("x", 1.0), ("y", 3.0))
+    ]
+    touch = sf.Closure("touch", ("x", None), ("y", None), ("x",))
+    switched = sf.Switch("touch", "contact")
+    system = sf.System("rail", tuple(rail), (sf.Parameter("contact", 0.0),), constraints=(touch,), switches=(switched,))
+    strike = sf.Event("x - y", "rising", action={"contact": 1}, restitution=e)
+    run = sf.simulate(sf.compile(system), [-0.5, 0.0], [1.0, 0.0], 1.0, events={"strike": strike}, method="dopri5")
+    found = run.events[0]
+    assert len(run.events) == 1 and run.outcome.kind == "finished" and found.t == pytest.approx(0.5, abs=1e-9)
+    assert found.v_after == pytest.approx([1.0 - 0.75 * (1 + e), 0.25 * (1 + e)], abs=1e-12)
+    assert found.energy_lost == pytest.approx(0.5 * 0.75 * (1 - e**2), abs=1e-12)
+    assert abs(found.impulse[0]) == pytest.approx(0.75 * (1 + e), abs=1e-12)
+    assert not run.lam.any() and np.array_equal(run.par_over_time[-1], run.par)
+
+
+def test_what_is_refused() -> None:
+    """With the event or the constraint by name: before a run where it is known, as its outcome where it happens."""
+    model, q, v = docking()
+
+    def outcome(**action: Any) -> sf.Outcome:
+        return sf.simulate(model, q, v, 0.01, events={"dock": sf.Event("t - 1e-3", action=action)}).outcome
+
+    assert outcome(grip=1).kind == "constraints lost" and "'grasp' engages is apart" in outcome(grip=1).reason
+    assert outcome(grip=0.5).kind == "input failed" and "engaged = 0.5" in outcome(grip=0.5).reason
+    assert outcome(dq1="1/grip").kind == "input failed" and "speed 'q1'" in outcome(dq1="1/grip").reason
+    with pytest.raises(sf.UnknownNameError, match="its action sets 'girp'.*(?s:.)*did you mean 'grip'"):
+        outcome(girp=1)
+    event = {"dock": sf.Event("t - 1e-3", action={"grip": 1})}
+    with pytest.raises(sf.SymofrosError, match="'dock' has an action"):
+        sf.Stepper(model, events=event, dt=1e-3)
+    with pytest.raises(sf.SymofrosError, match="engaged = 2"):
+        model.with_parameters(grip=2.0)
+    edge = slide(constraints=(sf.KnifeEdge("edge", ("body", None), "x"),))
+    for switch, said in ((sf.Switch("egde", 1), "did you mean 'edge'"), (sf.Switch("edge", 1, "moment"), "no pose")):
+        with pytest.raises(sf.DescriptionError, match=said):
+            sf.compile(sf.System("s", edge.bodies, constraints=edge.constraints, switches=(switch,)))
+
+
+def test_switches_are_kept_by_files(tmp_path: Any) -> None:
+    """As stated, with the line."""
+    system = grabbing("moment")
+    file = tmp_path / "grabbing.yaml"
+    file.write_text(write_yaml(system))
+    read = sf.load(file)
+    assert read == system and "grabbing.yaml:" in read.origin["switch", "grasp"]
+    assert "switches" not in repr(grabbing()) and hash(read) == hash(system)
