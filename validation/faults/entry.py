@@ -18,6 +18,7 @@ KINDS = (
     "dynamics",
     "kinematics",
     "step",
+    "reaction",
     "sensor",
     "reader",
     "writer",
