@@ -24,7 +24,8 @@ def show(
 ) -> None:
     """List real faults of public releases of engines, or reproduce some, each in an environment of its own.
 
-    Exit code: 0 listed, or each answer was as recorded; 1 another answer, or a release that can't be asked; 2 bad input.
+    Exit code: 0 listed, or each answer was as recorded; 1 another answer, or a release that can't be asked; 2 bad
+    input.
     """
     if not names:
         listing()
