@@ -51,12 +51,13 @@ def printed(python: Path, script: str) -> float:
     Raises:
         NotAskedError: It ended without a number, with its last words.
     """
-    done = subprocess.run([str(python), "-c", script], capture_output=True, text=True, timeout=SCRIPT_SECONDS)
+    words = f"no end in {SCRIPT_SECONDS} s"
     try:
-        return float(done.stdout.strip().splitlines()[-1])
-    except (IndexError, ValueError):
-        remedy = "pin, in 'requires' of the entry, the packages that the release needs"
+        done = subprocess.run([str(python), "-c", script], capture_output=True, text=True, timeout=SCRIPT_SECONDS)
         words = _last_words(done.stderr or done.stdout)
+        return float(done.stdout.strip().splitlines()[-1])
+    except (IndexError, ValueError, subprocess.TimeoutExpired):
+        remedy = "pin, in 'requires' of the entry, the packages that the release needs"
         problem = sf.Problem("run the script of a fault", words, "a script prints its value last", remedy)
         raise NotAskedError(str(problem)) from None
 
