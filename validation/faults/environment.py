@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import venv
+from collections.abc import Sequence
 from pathlib import Path
 
 import symofros as sf
@@ -45,15 +46,21 @@ def make(folder: Path, requirements: list[str]) -> Path:
     return python
 
 
-def printed(python: Path, script: str) -> float:
+def printed(python: Path, script: str, path: Sequence[str] = ()) -> float:
     """The number that a script prints last.
+
+    Args:
+        python: Python of the environment.
+        script: The script.
+        path: Further folders in which Python looks for packages; those of the caller's PYTHONPATH are none.
 
     Raises:
         NotAskedError: It ended without a number, with its last words.
     """
-    words = f"no end in {SCRIPT_SECONDS} s"
+    words, command = f"no end in {SCRIPT_SECONDS} s", [str(python), "-c", script]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
     try:
-        done = subprocess.run([str(python), "-c", script], capture_output=True, text=True, timeout=SCRIPT_SECONDS)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=SCRIPT_SECONDS, env=environment)
         words = _last_words(done.stderr or done.stdout)
         return float(done.stdout.strip().splitlines()[-1])
     except (IndexError, ValueError, subprocess.TimeoutExpired):
