@@ -7,7 +7,6 @@ import shutil
 import subprocess
 import sys
 import venv
-from collections.abc import Sequence
 from pathlib import Path
 
 import symofros as sf
@@ -46,19 +45,18 @@ def make(folder: Path, requirements: list[str]) -> Path:
     return python
 
 
-def printed(python: Path, script: str, path: Sequence[str] = ()) -> float:
+def printed(python: Path, script: str) -> float:
     """The number that a script prints last.
 
     Args:
         python: Python of the environment.
         script: The script.
-        path: Further folders in which Python looks for packages; those of the caller's PYTHONPATH are none.
 
     Raises:
         NotAskedError: It ended without a number, with its last words.
     """
     words, command = f"no end in {SCRIPT_SECONDS} s", [str(python), "-c", script]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path)}
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=SCRIPT_SECONDS, env=environment)
         words = _last_words(done.stderr or done.stdout)

@@ -52,9 +52,9 @@ def test_a_file_that_breaks_a_rule_is_refused(old: str, new: str, rule: str, tmp
 @pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow(5)) for name in faults()])
 def test_an_installed_release_shows_its_fault(name: str) -> None:
     fault, version = faults()[name], installed(faults()[name].engine)
-    if version not in (fault.wrong, fault.right):
+    if version is None or version not in (fault.wrong, fault.right):
         pytest.skip(f"{fault.engine} {fault.wrong} is not installed")
-    assert fault.is_right(printed(Path(sys.executable), fault.script, sys.path)) == (version == fault.right)
+    assert fault.is_right(printed(Path(sys.executable), fault.script)) == (version == fault.right)
 
 
 def test_a_script_without_a_number_is_said_in_words() -> None:
