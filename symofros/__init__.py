@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from symofros.description.constraints import Nonholonomic as Nonholonomic
     from symofros.description.constraints import Rod as Rod
     from symofros.description.constraints import Rolling as Rolling
+    from symofros.description.contacts import Contact as Contact
     from symofros.description.forces import Connection as Connection
     from symofros.description.forces import Damper as Damper
     from symofros.description.forces import Friction as Friction
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     from symofros.diagrams.files.writer import save_diagram as save_diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
+    from symofros.diagrams.stepper import DiagramStepper as DiagramStepper
     from symofros.errors import ActuationError as ActuationError
     from symofros.errors import ArgumentError as ArgumentError
     from symofros.errors import AssemblyError as AssemblyError

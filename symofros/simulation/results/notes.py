@@ -127,6 +127,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a coordinate, a speed or an effort leaves the limits of its joint, which are data and stop nothing",
         "stops as forces, bounded inputs, or another motion",
     ),
+    "contact too deep": NoteKind(
+        "contact '…' is … times its radius deep at t = … s: …",
+        "the centre of a ball came to lie within the solid that should push it back",
+        "a larger stiffness, or a smaller dt",
+    ),
     "motions contradict": NoteKind(
         "inputs '…' and '…' prescribe no one motion",
         "a recorded input for a rate is not the rate of the coordinate that is prescribed beside it",
