@@ -119,6 +119,7 @@ HARNESS = table("""
 STUDIES = table("""
     oracle:
     truth_data:
+    faults:
     cross_check:
     ci:          cross_check
     campaigns:

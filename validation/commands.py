@@ -44,6 +44,10 @@ COMMANDS = {
         "engines.report",
         "Hold engines against thirty digits of truth: every kind of joint, every function that they offer.",
     ),
+    "faults": Command(
+        "faults.command",
+        "List real faults of public releases of engines, or reproduce some, each in an environment of its own.",
+    ),
     "accuracy": Command("accuracy.catalogue", "Measure beams against closed forms, tables and exact rods."),
     "diagrams": Command("diagrams.catalogue", "Run the paper's simulations from their block diagrams."),
     "stability": Command("stability.report", "Map where simulations fail, against closed forms and other engines."),

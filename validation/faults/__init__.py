@@ -1,0 +1,1 @@
+"""Real faults: wrong numbers of public releases of engines, each with a script and the right value."""
