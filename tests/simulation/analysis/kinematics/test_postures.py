@@ -69,6 +69,13 @@ def test_near_singular_postures_between_records_are_found_in_any_unit_of_length(
     assert stands is not None and stands[1] < 0.05, "where short steps can't follow, the straight way counts"
 
 
+def test_a_run_that_ends_near_a_singular_posture_is_found(row: sf.Model) -> None:
+    m = parallelogram(1.0)
+    times, q = swept(m, np.array([1.0, 0.5, 0.02]))
+    close = nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, nothing_between)
+    assert close is not None and close == pytest.approx((1.0, np.sin(0.02)), rel=0.7)
+
+
 A, B, SPEED = 0.3, 1.0, 20.0
 
 

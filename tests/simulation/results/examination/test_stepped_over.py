@@ -91,7 +91,9 @@ def test_a_path_between_records_is_the_motion(name: str) -> None:
         stepper.start(q, v, 16)
         path = path_within(stepper, coarse, np.full(len(coarse[0]) - 1, 5))
         assert path is not None
-        np.testing.assert_allclose(path.x.reshape(-1, 5), [[0.1, 0.3, 0.5, 0.7, 0.9]] * (len(coarse[0]) - 1), rtol=1e-12)
+        np.testing.assert_allclose(
+            path.x.reshape(-1, 5), [[0.1, 0.3, 0.5, 0.7, 0.9]] * (len(coarse[0]) - 1), rtol=1e-12
+        )
         rows = np.rint(path.states[0] / (dt / 10)).astype(int)
         np.testing.assert_allclose(path.states[0], fine.t[rows], atol=1e-12)
         a = model.forward_dynamics(fine.q[rows], fine.v[rows], fine.u[rows], t=fine.t[rows])
