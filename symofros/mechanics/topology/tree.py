@@ -126,6 +126,17 @@ class SpanningTree:
         raise KeyError(name)
 
 
+def coupled_speeds(tree: SpanningTree) -> float:
+    """Mean number of other speeds between a speed and the base, those of its own joint counted half: 0 without any."""
+    before = {BASE: 0}  # Speeds up to a link, its own among them.
+    entries = 0.0
+    for index, link in enumerate(tree.links):
+        above, own = before[link.parent], link.v[1]
+        entries += own * (above + (own - 1) / 2)
+        before[index] = above + own
+    return entries / max(1, len(tree.coordinates.v))
+
+
 def joint_names(tree: SpanningTree) -> tuple[str, ...]:
     """Name of each link's joint; of what a beam carries, that of the section."""
     return tuple(link.name if link.is_section else link.joint.name for link in tree.links)
