@@ -62,7 +62,7 @@ class Held(HeldRun):
         return float(fine[0][0]), "arm"
 
     def jumps(self, fine: States) -> bool:
-        return self.jumping
+        return self.jumping or super().jumps(fine)
 
 
 def listed(shares: Sequence[float]) -> Callable[[int, int], float]:
