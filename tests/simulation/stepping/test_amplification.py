@@ -7,13 +7,32 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.stepping.amplification import SPECTRAL_RADIUS
 from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.resolution import pull_rates
 from symofros.simulation.stepping.stepper import Stepper
 from tests.simulation.oscillator import fixed, oscillator
+
+GAIN = st.floats(0.1, 100.0)
+
+
+@given(st.lists(st.tuples(GAIN, GAIN, st.booleans()), min_size=1, max_size=3))
+def test_gains_lead_back_at_the_roots_of_their_equation(constraints: list[tuple[float, float, bool]]) -> None:
+    """z^2 + 2 alpha z + beta^2 = 0, one of each pair; of conditions on speeds z + 2 alpha = 0."""
+    alphas, betas, on_speeds = (list(column) for column in zip(*constraints, strict=True))
+    rates = pull_rates(np.array([*alphas, *betas]), on_speeds)
+    expected = np.concatenate(
+        [[-2.0 * a] if on_speed else np.roots([1.0, 2.0 * a, b * b]) for a, b, on_speed in constraints]
+    )
+    expected = expected[np.imag(expected) >= 0.0]
+    assert all(np.abs(np.array(rates) - z).min() <= 1e-6 * abs(z) for z in expected)
+    assert all(np.abs(expected - z).min() <= 1e-6 * abs(z) for z in rates)
+
 
 JUDGED = tuple(name for name, method in METHODS.items() if method.family.judged)
 
