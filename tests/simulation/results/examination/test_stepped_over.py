@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.examination.paths import path_within
+from symofros.simulation.results.examination.paths import _cubic, path_within
 from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
@@ -71,6 +71,18 @@ def test_a_run_of_a_batch_is_noted_where_its_steps_miss_the_pulse() -> None:
     exact = 20.0 * 0.05 * np.sqrt(np.pi)
     for i, first in enumerate((0.0, 0.1)):
         assert (abs(many.v[i, -1, 0] - first - exact) < 1e-3) != bool(noted(many[i])), str(many.outcome(i))
+
+
+def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
+    """Values and rates of any cubic, wherever they are asked for."""
+    c, x, h = rng.standard_normal((4, 5, 2)), rng.uniform(size=5), rng.uniform(0.1, 2.0, (5, 1))
+
+    def at(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        t = share * h
+        return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
+
+    found = _cubic(x, h, at(np.zeros((5, 1))), at(np.ones((5, 1))))
+    np.testing.assert_allclose(found, at(x[:, np.newaxis]), atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["torque_free_body", "slider_crank"])
