@@ -28,7 +28,7 @@ def test_no_fixed_step_passes_over_a_pulse_in_silence(pulse: sf.Model, method: s
     assert any("smaller dt" in note for note in run.outcome.notes), run.v[-1]
 
 
-@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "generalized_alpha", "dopri5"])
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "generalized_alpha", "dopri5", "rodas4"])
 def test_resolved_pulses_get_no_note(pulse: sf.Model, method: str) -> None:
     """Wherever between two steps they begin."""
     for place in PLACES:
