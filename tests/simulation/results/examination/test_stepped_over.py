@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.examination import stepped_over
 from symofros.simulation.results.examination.paths import _cubic, path_within
 from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
@@ -71,6 +73,21 @@ def test_a_run_of_a_batch_is_noted_where_its_steps_miss_the_pulse() -> None:
     exact = 20.0 * 0.05 * np.sqrt(np.pi)
     for i, first in enumerate((0.0, 0.1)):
         assert (abs(many.v[i, -1, 0] - first - exact) < 1e-3) != bool(noted(many[i])), str(many.outcome(i))
+
+
+def test_the_steps_that_leave_out_most_are_doubted_first(rng: np.random.Generator, monkeypatch: Any) -> None:
+    """By the largest sum of what their states change the speeds by, beside the fastest motion."""
+    missed = rng.standard_normal((10, 8, 2)) * rng.uniform(0.1, 3.0, (10, 1, 1))
+    path = SimpleNamespace(interval=np.repeat(np.arange(10), 8), a=missed.reshape(-1, 2), path_a=0.0)
+    monkeypatch.setattr(stepped_over, "path_within", lambda *_: path)
+    metric = np.tile(np.diag([4.0, 1.0]), (10, 1, 1))
+    run: Any = SimpleNamespace(stepper=None, span=5.0, fastest=50.0, metrics=lambda q, u: metric[: len(q)])
+    ends = [np.arange(11) * 0.5, np.zeros((11, 2)), np.zeros((11, 2)), np.zeros((11, 1))]
+    sums = np.linalg.norm(np.cumsum(missed, axis=1) * [2.0, 1.0] * 0.5 / 8, axis=-1).max(axis=1) / 50.0
+    order = np.argsort(-sums)
+    for least, count in ((0.0, stepped_over._PROVED), (float(sums[order[2]]) * 1.001, 2)):
+        doubted = stepped_over._doubted(run, ends, 80, least)
+        assert doubted == [(i, 0.5 / 8) for i in order[:count]]
 
 
 def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
