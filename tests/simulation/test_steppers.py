@@ -141,6 +141,7 @@ def test_a_beam_that_was_beyond_its_theory_is_judged_again() -> None:
     assert steppers.step().tolist() == [True, False, True] and steppers.outcome(1).kind == "beyond theory"
     steppers.reset()
     assert steppers.step(steps=2).all() and steppers.outcome(1).ok
+    assert not any("second-order theory errs" in note for note in steppers.outcome(1).notes)
     unlimited = sf.Steppers(model, 3, dt=1e-4, beam_limit=np.inf)
     unlimited.reset(bent)
     assert unlimited.step().all() and unlimited.outcome(1).reason == "the end asked for"
