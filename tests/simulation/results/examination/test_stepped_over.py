@@ -13,6 +13,7 @@ from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination import stepped_over
 from symofros.simulation.results.examination.paths import _cubic, path_within
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
@@ -88,6 +89,18 @@ def test_the_steps_that_leave_out_most_are_doubted_first(rng: np.random.Generato
     for least, count in ((0.0, stepped_over._PROVED), (float(sums[order[2]]) * 1.001, 2)):
         doubted = stepped_over._doubted(run, ends, 80, least)
         assert doubted == [(i, 0.5 / 8) for i in order[:count]]
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "cart_pole", "torque_free_body"])
+def test_speeds_are_compared_by_their_kinetic_energy(name: str, rng: np.random.Generator) -> None:
+    """In the norm of the mass matrix, in which units of speeds do not count."""
+    model = compiled(name)
+    q, v = (np.array(x) for x in zip(*(model.random_state(rng) for _ in range(5)), strict=True))
+    u = rng.standard_normal((5, model.nu))
+    settings = Settings.of(model, SimulationOptions(method="rk4", dt=0.1), 0.4)
+    stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
+    run = ExaminedRun(stepper, settings, (q[0], v[0]), [np.arange(5) * 0.1, q, v, u], 4)
+    np.testing.assert_allclose(run.norms(q, u, v), np.sqrt(2.0 * model.kinetic_energy(q, v, u=u)), rtol=1e-12)
 
 
 def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
