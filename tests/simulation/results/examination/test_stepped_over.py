@@ -17,6 +17,7 @@ from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 from tests.models import compiled
 from tests.simulation.mechanisms import slide
@@ -101,6 +102,22 @@ def test_speeds_are_compared_by_their_kinetic_energy(name: str, rng: np.random.G
     stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
     run = ExaminedRun(stepper, settings, (q[0], v[0]), [np.arange(5) * 0.1, q, v, u], 4)
     np.testing.assert_allclose(run.norms(q, u, v), np.sqrt(2.0 * model.kinetic_energy(q, v, u=u)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("stabilisation", ["projection", "baumgarte", "none"])
+def test_what_is_made_once_more_is_the_run(stabilisation: Any) -> None:
+    """To the bit, from any record on, the constraints kept as the run keeps them."""
+    model = compiled("four_bar")
+    start = sf.assemble(model, [1.2, -1.2, 1.2], [2.0, 0.0, 0.0])
+    options = SimulationOptions(method="rk4", dt=0.01, stabilisation=stabilisation)
+    made = sf.simulate(model, start.q, start.v, 0.2, method="rk4", dt=0.01, stabilisation=stabilisation)
+    settings = Settings.of(model, options, 0.2)
+    stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
+    run = ExaminedRun(stepper, settings, (start.q, start.v), [made.t, made.q, made.v, made.u], 20)
+    status, (t, q, v, _) = run.repeated([x[4] for x in run.states[:3]], float(made.t[14]), 0.01, every=2)
+    assert status == Status.FINISHED
+    np.testing.assert_allclose(t, made.t[4:15:2], rtol=1e-14)
+    np.testing.assert_array_equal(np.hstack([q, v]), np.hstack([made.q, made.v])[4:15:2])
 
 
 def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
