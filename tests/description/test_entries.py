@@ -57,3 +57,13 @@ def test_positional_entries_of_beams_keep_their_order() -> None:
     assert (beam.length, beam.rhoA, beam.EI_z, beam.EI_y, beam.GJ) == (1.0, 2.0, 3.0, 4.0, 5.0)
     assert (beam.rhoJ, beam.rhoI_y, beam.rhoI_z) == (0.6, 0.7, 0.8)
     assert (beam.bend_y, beam.bend_z, beam.twist, beam.family) == (1, 2, 3, "legendre")
+
+
+@pytest.mark.parametrize("theory", ["second_order", "strain"])
+def test_loads_along_sections_are_taken_by_theories_of_any_bending_alone(theory: Any) -> None:
+    given: Any = {"bend_y": 1, "EI_z": 1.0, "theory": theory, "loads": (sf.BeamLoad((1.0, 0.0, 0.0), axes="section"),)}
+    if theory == "strain":
+        assert sf.Beam("rod", sf.Joint("q", "revolute"), 1.0, 1.0, **given).loads
+        return
+    with pytest.raises(sf.DescriptionError, match=r"along the axes of the sections[\s\S]*state theory: strain"):
+        sf.Beam("rod", sf.Joint("q", "revolute"), 1.0, 1.0, **given)

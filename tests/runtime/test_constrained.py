@@ -14,6 +14,7 @@ from symofros.runtime.constrained import (
     WEAK_LEAST,
     WEAK_SIZE,
     WEAK_WORTH,
+    deviation,
     eliminate,
     natural_sizes,
     null_space,
@@ -21,6 +22,16 @@ from symofros.runtime.constrained import (
 )
 
 PLANAR_LOOP = Measures((0, 0, 0), (LENGTH, LENGTH, LENGTH), (ROTATION, ROTATION, ROTATION))
+
+
+@pytest.mark.parametrize(
+    ("phi", "share"), [([0.1, -0.2, 0.05, 0.0], 0.4), ([0.0, 0.0, -0.3, 0.0], 0.3), ([0.0, 0.0, 0.0, 0.7], 0.7)]
+)
+def test_a_deviation_is_an_angle_or_a_share_of_the_reach(phi: list[float], share: float) -> None:
+    """Of a place that turns move by half a metre a radian, of a rotation, of a place that slides alone move."""
+    measures = Measures((0, 0, 2, 3), (LENGTH, LENGTH, ANGLE, LENGTH), (ROTATION, TRANSLATION))
+    G = np.array([[0.5, 1.0], [0.3, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    assert deviation(G, measures, np.array(phi)) == pytest.approx(share)
 
 
 @pytest.mark.parametrize("L", [1e-7, 1e-3, 1.0, 1e6])

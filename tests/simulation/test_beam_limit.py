@@ -62,6 +62,44 @@ def test_the_steps_judge_as_python_does() -> None:
     assert runs.beam_errors[:, 0] == pytest.approx(errors, rel=1e-12)
 
 
+def strips(*factors: str) -> sf.Model:
+    """Strips beside each other that do not touch, with so many times a stiffness."""
+    made = tuple(
+        sf.Beam(
+            f"strip_{k}",
+            sf.Joint(f"root_{k}", "fixed"),
+            0.5,
+            1.0,
+            EI_z=f"16*{k}",
+            EI_y=k,
+            GJ=f"2*{k}",
+            rhoJ=0.1,
+            bend_y=2,
+            bend_z=2,
+            twist=1,
+        )
+        for k in factors
+    )
+    parameters = tuple(sf.Parameter(k, 1.0 + i) for i, k in enumerate(factors))
+    return sf.compile(sf.System("strips", made, parameters=parameters, gravity=(0, 0, 0)))
+
+
+def test_each_beam_of_a_mechanism_is_judged_as_if_it_were_alone() -> None:
+    """They bend across their stiff side first, and further across the other later."""
+    beside, alone = strips("k0", "k1", "k2"), strips("k0")
+    rng = np.random.default_rng(4)
+    v, n = rng.normal(size=beside.nv) * np.tile([2, 2, 1, 1, 10], 3), alone.nv
+    options = {"t_end": 0.2, "dt": 1e-3, "method": "rk4", "beam_limit": math.inf}
+    together = sf.simulate(beside, None, v, **options)
+    for i, bending in enumerate(together.bendings):
+        single = sf.simulate(alone.with_parameters(k0=1.0 + i), None, v[i * n : (i + 1) * n], **options).bendings[0]
+        assert (
+            bending.t > 0.0
+            and bending.error == pytest.approx(single.error, rel=1e-9)
+            and bending.t == pytest.approx(single.t)
+        )
+
+
 def test_each_trajectory_of_a_batch_is_judged_by_its_own_length() -> None:
     model = cantilever()
     lengths = np.array([0.5, 1.0, 2.0])

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 import symofros.blocks as blocks
+from symofros.simulation.prescribed_motions import _INTERVALS, _between_samples
 from tests.diagrams.parts import moving
 from tests.simulation.mechanisms import turned
 
@@ -127,3 +128,15 @@ def test_prescribed_motions_of_wires_are_judged_by_their_values(rate: float, not
     for run in (simulation.run(0.5, dt=1e-3, record=0.01), simulation.interpret(0.5, dt=1e-3, record=0.01)):
         assert run.outcome.kind == "finished"
         assert noted == any("prescribe no one motion" in note for note in run.outcome.notes)
+
+
+@pytest.mark.parametrize("samples", [3, _INTERVALS, 5 * _INTERVALS])
+def test_intervals_between_samples_reach_over_the_run(samples: int) -> None:
+    """All of a few, some of many."""
+    times = np.linspace(-1.0, 3.0, samples)
+    pairs = _between_samples([times, times[::2]], (0.0, 2.5))
+    assert pairs[0][0] == 0.0 and pairs[-1][1] == 2.5 and len(pairs) <= _INTERVALS
+    inner = times[(times > 0.0) & (times < 2.5)]
+    if len(inner) < _INTERVALS:
+        assert [pair[1] for pair in pairs] == [*inner, 2.5]
+    assert all(np.searchsorted(inner, a, side="right") == np.searchsorted(inner, b, side="left") for a, b in pairs)

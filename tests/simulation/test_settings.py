@@ -35,3 +35,10 @@ def test_option_names_of_other_tools_are_answered_with_ours(top: sf.Model, writt
     for simulate in (sf.simulate, sf.simulate_batch):
         with pytest.raises(sf.UnknownNameError, match=f"no option '{written}'(.|\n)*did you mean '{meant}'"):
             simulate(top, **{written: 1.0})
+
+
+@pytest.mark.parametrize("output", [[0.2, 0.1], [0.2, 0.2], [-0.1, 0.2], [0.5, 1.5], [[0.1]], [], [np.nan]])
+def test_output_times_are_within_the_run_and_increase(top: sf.Model, output: list[float]) -> None:
+    with pytest.raises(sf.ShapeError, match="output times do not fit"):
+        sf.simulate(top, t_end=1.0, dt=0.1, output=output)
+    assert sf.simulate(top, t_end=1.0, dt=0.1, output=[0.0, 0.3, 1.0]).t.tolist() == [0.0, 0.3, 1.0]

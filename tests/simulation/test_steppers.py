@@ -72,6 +72,7 @@ def test_saved_states_and_copies_go_on_to_the_same_bits(name: str, method: str) 
     steppers.step(u[:, 2])
     saved, copied, ends = steppers.save(), steppers.copy(), []
     for steps_of in (steppers, copied, steppers, copied):
+        steps_of.step()  # With the inputs that are held since before.
         for k in range(3, 6):
             steps_of.step(u[:, k])
         ends.append((steps_of.q.tobytes(), steps_of.v.tobytes(), steps_of.t.tobytes()))
@@ -175,6 +176,11 @@ def test_a_beam_that_was_beyond_its_theory_is_judged_again() -> None:
     assert steppers.step().tolist() == [True, False, True] and steppers.outcome(1).kind == "beyond theory"
     steppers.reset()
     assert steppers.step(steps=2).all() and steppers.outcome(1).ok
+    assert not any("second-order theory errs" in note for note in steppers.outcome(1).notes)
+    unlimited = sf.Steppers(model, 3, dt=1e-4, beam_limit=np.inf)
+    unlimited.reset(bent)
+    assert unlimited.step().all() and unlimited.outcome(1).reason == "the end asked for"
+    assert [any("second-order theory errs" in note for note in unlimited.outcome(i).notes) for i in (0, 1)] == [0, 1]
 
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {

@@ -7,8 +7,11 @@ from functools import partial
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import symofros as sf
+from symofros.simulation.inputs import _straight_until
 from tests.models import compiled
 from tests.simulation.mechanisms import slide
 
@@ -157,3 +160,24 @@ def test_a_model_s_own_formula_of_time_is_not_stepped_over(pull: str) -> None:
     for method in OWN:
         run = sf.simulate(model, t_end=END, method=method)
         assert run.v[-1, 0] == pytest.approx(want, rel=1e-4)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.02, 0.1, 1.0]))
+def test_lines_count_as_straight_until_they_leave_their_chord(seed: int, noise: float) -> None:
+    """By a tenth of what they change by: up to the returned corner they do not, up to the next one they do."""
+    rng = np.random.default_rng(seed)
+    times = np.cumsum(rng.uniform(0.1, 1.0, 12))
+    values = rng.normal() * times + noise * rng.normal(size=12)
+    t, end = np.sort(rng.uniform(times[0], times[-1], 2))
+
+    def departure(until: float) -> float:
+        inner = times[(times > t) & (times < until)]
+        ends, lines = np.interp([t, until], times, values), np.interp(inner, times, values)
+        if not len(inner):
+            return 0.0
+        return float(np.abs(lines - np.interp(inner, [t, until], ends)).max() / np.ptp([*ends, *lines]))
+
+    until = _straight_until(times, values, t, end)
+    assert departure(until) <= 0.1 + 1e-12
+    if until < end:
+        assert departure(min(end, float(times[np.searchsorted(times, until, side="right")]))) > 0.1 - 1e-12

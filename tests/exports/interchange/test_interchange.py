@@ -12,6 +12,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.exports.interchange.rigid import _beam_inertia
 from symofros.exports.interchange.urdf import _rpy
 from symofros.mechanics.topology.numbers import Numbers
 from tests.exports.cases import system_of
@@ -176,3 +177,33 @@ def test_angles_near_right_angles_give_the_rotation(noise: float) -> None:
     for quarters in product(range(4), repeat=3):
         R = numbers.rotation(sf.Rotation.rpy(*(np.array(quarters) * np.pi / 2 + noise * rng.standard_normal(3))))
         np.testing.assert_allclose(numbers.rotation(sf.Rotation.rpy(*_rpy(R))), R, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("rotary", [False, True])
+def test_a_rigid_beam_has_the_inertia_of_its_sections(rotary: bool) -> None:
+    """Of a taper whose centres leave the axis, by a sum over thin slices."""
+    moments = {"rhoJ": 0.05, "rhoI_y": 0.03, "rhoI_z": 0.02, "rhoI_yz": 0.004}
+    stiff = dict.fromkeys(("EA", "GA_y", "GA_z", "GJ", "EI_y", "EI_z"), 100.0)
+    beam = sf.Beam(
+        "taper",
+        sf.Joint("q", "revolute"),
+        2.0,
+        "1 + x",
+        theory="strain",
+        rotary_inertia=rotary,
+        bend_y=1,
+        bend_z=1,
+        mass_center=("0.1*x", "x^2/8 - 0.2"),
+        **moments,
+        **stiff,
+    )
+    x = (np.arange(4000) + 0.5) / 2000.0
+    slices = (1.0 + x) / 2000.0
+    places = np.column_stack([x, 0.1 * x, x**2 / 8 - 0.2])
+    center = slices @ places / slices.sum()
+    expected = sum(m * (r @ r * np.eye(3) - np.outer(r, r)) for m, r in zip(slices, places - center, strict=True))
+    J, y, z, yz = (2.0 * moment for moment in moments.values())
+    expected = expected + (np.array([[J, 0, 0], [0, y, -yz], [0, -yz, z]]) if rotary else np.diag([J, 0.0, 0.0]))
+    mass, found, inertia = _beam_inertia(beam, Numbers(sf.System("taper", (beam,))))
+    assert mass == pytest.approx(4.0) and found == pytest.approx(center, abs=1e-6)
+    np.testing.assert_allclose(inertia, expected, atol=1e-6)

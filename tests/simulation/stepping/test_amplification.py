@@ -7,13 +7,45 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.stepping.amplification import SPECTRAL_RADIUS
 from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.resolution import Pull, pull_rates, resolution
 from symofros.simulation.stepping.stepper import Stepper
 from tests.simulation.oscillator import fixed, oscillator
+
+GAIN = st.floats(0.1, 100.0)
+
+
+@given(st.lists(st.tuples(GAIN, GAIN, st.booleans()), min_size=1, max_size=3))
+def test_gains_lead_back_at_the_roots_of_their_equation(constraints: list[tuple[float, float, bool]]) -> None:
+    """z^2 + 2 alpha z + beta^2 = 0, one of each pair; of conditions on speeds z + 2 alpha = 0."""
+    alphas, betas, on_speeds = (list(column) for column in zip(*constraints, strict=True))
+    rates = pull_rates(np.array([*alphas, *betas]), on_speeds)
+    expected = np.concatenate(
+        [[-2.0 * a] if on_speed else np.roots([1.0, 2.0 * a, b * b]) for a, b, on_speed in constraints]
+    )
+    expected = expected[np.imag(expected) >= 0.0]
+    assert all(np.abs(np.array(rates) - z).min() <= 1e-6 * abs(z) for z in expected)
+    assert all(np.abs(expected - z).min() <= 1e-6 * abs(z) for z in rates)
+
+
+@pytest.mark.parametrize(
+    ("rate", "share", "amplified"), [(-400.0, 0.5, True), (-50.0, 0.5, False), (-400.0, 0.0, True)]
+)
+def test_a_way_back_to_constraints_that_steps_amplify_is_the_mode(rate: float, share: float, amplified: bool) -> None:
+    """Of h z = -4 Runge-Kutta steps make five times as much, whatever its share; of -0.5 they make less."""
+    pull = Pull((complex(rate),), share, 2.0)
+    mode = resolution(METHODS["rk4"], 0.01, 1000, [0.0], lambda _: None, [1.0], np.eye(1)[None], pull).worst
+    assert (mode is not None) == amplified
+    if mode is not None:
+        assert (mode.rate, mode.t, mode.of_gains, mode.amplified) == (rate, 2.0, True, True)
+        assert mode.factor == pytest.approx(5.0) and mode.error > 1.0
+
 
 JUDGED = tuple(name for name, method in METHODS.items() if method.family.judged)
 

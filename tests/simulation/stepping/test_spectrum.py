@@ -28,8 +28,8 @@ PINNED = sf.System(
 STEP = 1e-2
 
 
-def rates(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP) -> np.ndarray:
-    """The rates [1/s] of the modes about a state, in order; slow ones, which rounding hides, left out."""
+def spectrum(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP) -> Any:
+    """Basis, derivative and motion about a state."""
     plan = plan_inputs(model, u)
     settings = Settings.of(model, SimulationOptions(method="rk4", dt=step), 1.0)
     stepper = Stepper(model, METHODS["rk4"], plan, (), model.parameter_values)
@@ -37,8 +37,27 @@ def rates(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP) ->
     inputs = stepper.inputs_at(0.0, np.asarray(q), np.asarray(v))
     seen = stepper.spectrum(0.0, np.asarray(q), np.asarray(v), inputs, step, 2 * model.nv)
     assert seen is not None
+    return seen
+
+
+def rates(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP) -> np.ndarray:
+    """The rates [1/s] of the modes about a state, in order; slow ones, which rounding hides, left out."""
+    seen = spectrum(model, q, v, u, step)
     values = np.linalg.eigvals(seen[1]) / step
     return np.sort_complex(values[np.abs(values) > 1.0])
+
+
+@pytest.mark.parametrize("speed", [0.0, -3.0, 2.0])
+def test_the_motion_of_a_loop_is_that_of_the_state(speed: float) -> None:
+    """Of a state just beside the constraints as well: h v and h^2 a of the nearest one on them."""
+    model = compiled("slider_crank")
+    start = sf.assemble(model, {"turn": 0.6}, {"turn": speed}, held=("turn",))
+    a = model.constrained_dynamics(start.q, start.v, np.zeros(model.nu))[0]
+    for beside in (0.0, 1e-6):
+        basis, _, motion = spectrum(model, start.q + beside, start.v)
+        found = basis.T @ motion
+        expected = np.concatenate([STEP * start.v, STEP**2 * a])
+        np.testing.assert_allclose(found, expected, atol=1e-12 + 1e2 * beside * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("yaw", [0.7, 2.5])

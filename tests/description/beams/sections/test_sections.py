@@ -198,6 +198,13 @@ def test_a_section_is_recovered_from_its_matrices(axis: str) -> None:
     assert not found.stiffness
 
 
+def test_noise_in_a_matrix_has_no_side() -> None:
+    """Entries of a program's output that differ across the diagonal count half each."""
+    noise = 1.0 + 1e-8 * np.random.default_rng(2).standard_normal((6, 6))
+    K, M = COUPLED.stiffness_matrix() * noise, COUPLED.mass_matrix()
+    assert Section.of_matrices(K, M) == Section.of_matrices(K.T, M) == Section.of_matrices(0.5 * (K + K.T), M)
+
+
 def test_a_matrix_with_more_couplings_is_kept() -> None:
     K = COUPLED.stiffness_matrix()
     K[3, 4] = K[4, 3] = 0.7

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import Formula, PythonBlock
+from symofros.diagrams.run.examination.examined import _change, _largest
+from symofros.runtime.record import Segment
 from tests.diagrams.parts import moving
 from tests.models import GUESSES, compiled, sampled
 from tests.simulation.oscillator import oscillator_system
@@ -39,6 +43,18 @@ def pushed(law: str, force: str, **start: float) -> sf.Simulation:
 def bounce(law: str, damping: float) -> sf.Simulation:
     """A ball on a floor that it touches for 10 ms at a time."""
     return pushed(law, f"-9.81 + max(0, -1e5*x[0] - {damping}*v[0])*(0.5 - 0.5*sign(x[0]))", x=1.0)
+
+
+@pytest.mark.parametrize(("first", "whole", "size"), [(0, False, 1.4), (0, True, 5.0), (5, True, 3.4)])
+def test_a_change_is_relative_to_the_motion_until_then(first: int, whole: bool, size: float) -> None:
+    """A window at the start is beside all of the run, which gets faster; a later one beside what led to it."""
+    layout: Any = SimpleNamespace(v={"arm": SimpleNamespace(slice=slice(0, 1))}, segments=(Segment("linear", 0, 0, 1),))
+    t, still = np.arange(11.0), np.zeros((11, 1))
+    v = 1.0 + 0.4 * t[:, np.newaxis]
+    rows = slice(first, first + 2)
+    fine, coarse = [t[rows], still[rows], v[rows]], [t[rows], still[rows], v[rows] + 0.05]
+    found = _change(layout, "arm", [t, still, v] if whole else None, coarse, fine, _largest)
+    assert found == pytest.approx(0.05 / size)
 
 
 @pytest.mark.parametrize("law", ["formula", "python"])

@@ -8,6 +8,7 @@ import pytest
 import symofros as sf
 from reference_models.closed.spatial import delta_guess
 from tests.models import compiled as model
+from tests.simulation.mechanisms import links
 
 
 def tip(name: str) -> str:
@@ -72,3 +73,15 @@ def test_a_motion_of_position_and_rotation_is_followed_by_arms_of_any_size(L: fl
     _, speeds, rates = sf.joint_motion(arm, "b5.e", [p], [V], [A], [R], q=q)
     np.testing.assert_allclose(speeds[0], v, atol=1e-9)
     np.testing.assert_allclose(rates[0], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("elbow", [1.0, -1.0])
+def test_of_two_postures_the_one_near_rest_is_taken(elbow: float) -> None:
+    """Whichever the guess leads to."""
+    options = sf.Options(("frame_pose", "frame_jacobian"), backend="interpreter")
+    m = sf.compile(sf.System("arm", links((1.0, 0.8))), options)
+    wanted = np.array([0.3, elbow * 1.1])
+    target = {"b1.end": sf.Target(m.frame_pose("b1.end", wanted)[0])}
+    across = np.array([0.3 + 2.0 * elbow * np.arctan2(0.8 * np.sin(1.1), 1.0 + 0.8 * np.cos(1.1)), -elbow * 1.1])
+    assert sf.inverse_kinematics(m, target, across + 0.05).q == pytest.approx(across, abs=1e-6)
+    assert sf.inverse_kinematics(m, target, across + 0.05, rest=wanted + 0.1).q == pytest.approx(wanted, abs=1e-6)

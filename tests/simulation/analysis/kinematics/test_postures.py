@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any, cast
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from reference_models.closed.four_bars import n_four_bar
 from symofros import blocks
-from symofros.simulation.analysis.kinematics.postures import nearest_to_singular
+from symofros.simulation.analysis.kinematics.postures import MAX_CHANGE, jump_ahead, nearest_to_singular
 from tests.diagrams.parts import moving
 from tests.simulation.mechanisms import loop, slide
 
@@ -67,6 +70,32 @@ def test_near_singular_postures_between_records_are_found_in_any_unit_of_length(
         m, recorded(m, times, q), m.parameter_values, m.nc, lambda first, last: [x[:0] for x in along(first, last)]
     )
     assert stands is not None and stands[1] < 0.05, "where short steps can't follow, the straight way counts"
+
+
+def test_a_run_that_ends_near_a_singular_posture_is_found(row: sf.Model) -> None:
+    m = parallelogram(1.0)
+    times, q = swept(m, np.array([1.0, 0.5, 0.02]))
+    close = nearest_to_singular(m, recorded(m, times, q), m.parameter_values, m.nc, nothing_between)
+    assert close is not None and close == pytest.approx((1.0, np.sin(0.02)), rel=0.7)
+
+
+@pytest.mark.parametrize("speed", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("way", [-2.0, -0.5, 0.5, 2.0])
+def test_a_row_that_jumps_is_found_as_far_ahead_at_any_speed(speed: float, way: float) -> None:
+    """Or behind; beyond MAX_CHANGE of the coordinate nothing is looked at."""
+    place = way * MAX_CHANGE
+
+    def jacobian(q: np.ndarray, **_: Any) -> np.ndarray:
+        return np.stack([np.where(q < place, 1.0, -1.0)[..., None], np.ones((*q.shape, 1))], axis=-2)[..., 0, :, :]
+
+    fake = SimpleNamespace(
+        integrate=lambda q, dq: q + dq, constraint_jacobian=jacobian, names=SimpleNamespace(constraints=("edge", "pin"))
+    )
+    fake.with_precision = lambda _: fake
+    none: Any = np.zeros(0)
+    found = jump_ahead(cast(Any, fake), 0.0, np.zeros(1), np.array([speed]), none, none)
+    assert (found is not None) == (abs(way) < 1.0)
+    assert found is None or found[:2] == ("edge", pytest.approx(2.0))
 
 
 A, B, SPEED = 0.3, 1.0, 20.0

@@ -181,6 +181,27 @@ def test_a_weld_closed_half_a_turn_off_is_not_a_solution() -> None:
     assert found.converged and abs(found.q[3]) == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_weld_that_is_closed_to_rounding_is_a_solution(seed: int, rng: np.random.Generator) -> None:
+    """Of frames that are turned anyhow: cosines of axes that are parallel are one but for rounding, on either side."""
+    turns = [sf.Rotation.rpy(*np.random.default_rng(seed).uniform(-3.0, 3.0, 3)) for _ in range(2)]
+    bodies = (
+        sf.RigidBody("a", sf.Joint("fixed", "fixed", rotation=turns[0]), sf.Inertia(1.0), (sf.Frame("f"),)),
+        sf.RigidBody(
+            "b",
+            sf.Joint("ball", "ball", rotation=turns[1]),
+            sf.Inertia(1.0),
+            (sf.Frame("f"), sf.Frame("tip", (1, 0, 0))),
+        ),
+    )
+    weld = sf.Closure("weld", ("a", "f"), ("b", "f"), translations=(), rotations=("x", "y", "z"))
+    m = sf.compile(sf.System("welded", bodies, constraints=(weld,)), sf.Options(backend="interpreter"))
+    closed = sf.assemble(m, m.neutral()).q
+    target = {"b.tip": sf.Target(m.frame_pose("b.tip", closed)[0])}
+    found = sf.inverse_kinematics(m, target, m.integrate(closed, 0.2 * rng.standard_normal(3)), starts=1)
+    assert found.converged and not found.notes
+
+
 def test_paths_do_not_change_branches() -> None:
     """A limit lies between two samples, which other starts reach: not without leaving the path."""
     m, still = two_arms("frame_jacobian_rate"), np.zeros((2, 3))

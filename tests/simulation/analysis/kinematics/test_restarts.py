@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.simulation.analysis.kinematics.restarts import nearest_turns
+from symofros.simulation.analysis.kinematics.restarts import _window, default_start, nearest_turns
 from symofros.simulation.analysis.kinematics.targets import Task
 from tests.simulation.mechanisms import links
 
@@ -47,3 +47,26 @@ def test_angles_end_within_half_a_turn_of_the_guess_where_limits_let_them(
     assert whole == pytest.approx(round(whole), abs=1e-12)
     others = [x for k in (-1, 1) if abs(x := found[2] + 2.0 * np.pi * k) <= LIMIT]
     assert all(abs(found[2] - guess[2]) <= abs(x - guess[2]) + 1e-12 for x in others)
+
+
+def test_searches_start_within_limits() -> None:
+    """Neutral where that is allowed, amid two limits, at the only one."""
+    limits = {0: sf.Limits(1.0, 3.0), 1: sf.Limits(0.5), 2: sf.Limits(None, -0.25), 3: sf.Limits(-1.0, 2.0)}
+    m = sf.compile(
+        sf.System("arm", links((1.0,) * 4, limits=limits)), sf.Options(("mass_matrix",), backend="interpreter")
+    )
+    np.testing.assert_array_equal(default_start(m), [2.0, 0.5, -0.25, 0.0])
+
+
+SIDE = st.one_of(st.just(np.inf), st.floats(0.0, 10.0))
+
+
+@given(lower=SIDE, upper=SIDE, far=st.floats(0.1, 8.0))
+def test_starts_are_drawn_from_as_much_room_beside_a_limit_as_far_from_it(
+    lower: float, upper: float, far: float
+) -> None:
+    """Within the limits, and nearer to the guess than what is left out."""
+    low, high = _window(-lower, upper, far)
+    assert -lower <= low <= 0.0 <= high <= upper
+    assert high - low == pytest.approx(min(lower + upper, 2.0 * far), rel=1e-12)
+    assert low == -far or low == -lower or high == upper

@@ -10,7 +10,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess
-from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, stated_names
+from symofros.simulation.analysis.kinematics.starts import ClosedStart, _holding, closed_start, stated_names
 
 FUNCTIONS = ("constraint", "constraint_rate", "constraint_jacobian", "frame_pose")
 GUESSES = {"four_bar": [1.2, -1.0, 1.3], "slider_crank": [0.5, -0.7, 0.4], "delta": delta_guess()}
@@ -69,3 +69,22 @@ def test_values_that_cannot_be_kept_are_refused_with_nearby_ones() -> None:
     near = str(refused.value).partition("what is near: ")[2].splitlines()[0]
     stated = {name: float(value) for name, value in (part.split(" = ") for part in near.split(", "))}
     assert not start(m, **stated).notes
+
+
+@pytest.mark.parametrize(
+    ("stated", "held", "of_joints"),
+    [
+        (["x", "hip.qx"], ["x", "hip.wx", "hip.wy", "hip.wz"], ["x"]),
+        (["base.py"], ["base.vx", "base.vy", "base.vz"], []),
+        (["base.qw"], ["base.wx", "base.wy", "base.wz"], []),
+        (["base.px", "base.qx"], ["base.vx", "base.vy", "base.vz", "base.wx", "base.wy", "base.wz"], []),
+    ],
+)
+def test_rotations_and_places_are_held_as_wholes(stated: list[str], held: list[str], of_joints: list[str]) -> None:
+    bodies = [
+        sf.RigidBody("a", sf.Joint("base", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))),
+        sf.RigidBody("b", sf.Joint("hip", "ball", "a"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))),
+        sf.RigidBody("c", sf.Joint("x", "prismatic", "b", axis=(1, 0, 0)), sf.Inertia(1.0)),
+    ]
+    m = sf.compile(sf.System("free", bodies), sf.Options(("mass_matrix",), backend="interpreter"))
+    assert _holding(m, stated) == tuple(dict.fromkeys([tuple(held), tuple(of_joints)]))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.analysis.friction import friction_curve
 from tests.simulation.mechanisms import slide
 
 ADAPTIVE = ("dopri5", "rodas4")
@@ -40,6 +41,18 @@ def test_a_joint_that_creeps_is_named_with_its_load(load: float, v0: float) -> N
         else None
     )
     assert many is None or creeps(many[0])
+
+
+@pytest.mark.parametrize("force", [1e-9, 1.0, 1e9])
+def test_friction_levels_off_at_the_same_speed_whatever_its_unit(force: float) -> None:
+    parameters = (sf.Parameter("F", force),)
+    system = slide(sf.Friction("F", minimum_velocity=1e-3), parameters=parameters)
+    m = sf.compile(system, sf.Options(("dynamics",), backend="interpreter"))
+    speeds = np.concatenate([[0.0], np.geomspace(1e-5, 1.0, 51)])
+    state = m.neutral(), np.zeros(1), np.zeros(0)
+    curve = friction_curve(m, 0, speeds, state, None, 0.0)
+    assert curve is not None and 5e-4 < speeds[curve.flat] < 1e-2
+    assert curve.reached == pytest.approx(force, rel=0.05) and curve.carried.max() == pytest.approx(force, rel=1e-3)
 
 
 @pytest.mark.parametrize("method", ADAPTIVE)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.inputs import plan_inputs
+from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.examination.formula_impulses import _missed
+from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.stepper import Stepper
 from tests.pulses import END, SHAPES, cart
 from tests.simulation.results.examination.test_input_impulses import FIXED
 
@@ -33,6 +40,21 @@ def test_resolved_pulses_get_no_note(pulse: sf.Model, method: str) -> None:
     """Wherever between two steps they begin."""
     for place in PLACES:
         assert not _run(pulse, method, place, 0.5).outcome.notes
+
+
+@pytest.mark.parametrize("method", FIXED)
+def test_what_a_step_makes_of_a_force_that_grows_with_time_is_known(method: str) -> None:
+    """Methods of first order take its value at one end of the step, h/2 from the middle; others miss nothing."""
+    model, h, slope = sf.compile(cart("1 + width*t")), 0.1, 3.0
+    model = model.with_parameters(width=slope)
+    settings = Settings.of(model, SimulationOptions(method=method, dt=h, **FIXED[method]), 1.0)
+    stepper = Stepper(model, METHODS[method], plan_inputs(model, None), (), model.parameter_values)
+    settings.apply(stepper)
+    held = np.zeros((2, 1)), np.zeros((2, 1)), np.zeros((2, 0))
+    begin = np.array([0.2, 0.7])
+    missed = _missed(stepper, settings, held, np.array([0.25]), begin, begin + h)
+    late = {"euler": 0.5, "semi_implicit_euler": 0.5, "implicit_euler": -0.5}.get(method, 0.0)
+    np.testing.assert_allclose(missed, np.full((2, 1), late * slope * h**2), atol=1e-8)
 
 
 def _run(model: sf.Model, method: str, place: float, width: float) -> Any:

@@ -85,6 +85,14 @@ def test_missed_impulses_of_small_effect_are_not_noted() -> None:
     assert not noted(by_state.outcome)
 
 
+@pytest.mark.parametrize(("begin", "said"), [(0.5013, True), (15.0013, False)])
+def test_an_effect_is_judged_where_the_impulse_is_missed(begin: float, said: bool) -> None:
+    """A push that acts less the farther the cart has come: e^-x of it."""
+    cart = sf.compile(slide(mass=2.0, effort=("push*exp(-x)",), inputs=(sf.Input("push"),)))
+    run = sf.simulate(cart, [0.0], [1.0], SPAN, u={"push": push("lines", begin, 0.003)}, method="rk4", dt=STEP)
+    assert noted(run.outcome) == said
+
+
 def test_each_run_of_a_batch_has_its_own_note() -> None:
     t = [0.0, 3.0013, 3.0025, 3.0037]
     values = np.array([[0.0, 0.0, 1e3, 0.0], [0.0, 0.0, 0.0, 0.0]])[..., np.newaxis]

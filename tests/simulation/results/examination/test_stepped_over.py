@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,13 @@ import pytest
 import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.examination.paths import path_within
+from symofros.simulation.results.examination import stepped_over
+from symofros.simulation.results.examination.paths import _cubic, path_within
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 from tests.models import compiled
 from tests.simulation.mechanisms import slide
@@ -73,6 +77,61 @@ def test_a_run_of_a_batch_is_noted_where_its_steps_miss_the_pulse() -> None:
         assert (abs(many.v[i, -1, 0] - first - exact) < 1e-3) != bool(noted(many[i])), str(many.outcome(i))
 
 
+def test_the_steps_that_leave_out_most_are_doubted_first(rng: np.random.Generator, monkeypatch: Any) -> None:
+    """By the largest sum of what their states change the speeds by, beside the fastest motion."""
+    missed = rng.standard_normal((10, 8, 2)) * rng.uniform(0.1, 3.0, (10, 1, 1))
+    path = SimpleNamespace(interval=np.repeat(np.arange(10), 8), a=missed.reshape(-1, 2), path_a=0.0)
+    monkeypatch.setattr(stepped_over, "path_within", lambda *_: path)
+    metric = np.tile(np.diag([4.0, 1.0]), (10, 1, 1))
+    run: Any = SimpleNamespace(stepper=None, span=5.0, fastest=50.0, metrics=lambda q, u: metric[: len(q)])
+    ends = [np.arange(11) * 0.5, np.zeros((11, 2)), np.zeros((11, 2)), np.zeros((11, 1))]
+    sums = np.linalg.norm(np.cumsum(missed, axis=1) * [2.0, 1.0] * 0.5 / 8, axis=-1).max(axis=1) / 50.0
+    order = np.argsort(-sums)
+    for least, count in ((0.0, stepped_over._PROVED), (float(sums[order[2]]) * 1.001, 2)):
+        doubted = stepped_over._doubted(run, ends, 80, least)
+        assert doubted == [(i, 0.5 / 8) for i in order[:count]]
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "cart_pole", "torque_free_body"])
+def test_speeds_are_compared_by_their_kinetic_energy(name: str, rng: np.random.Generator) -> None:
+    """In the norm of the mass matrix, in which units of speeds do not count."""
+    model = compiled(name)
+    q, v = (np.array(x) for x in zip(*(model.random_state(rng) for _ in range(5)), strict=True))
+    u = rng.standard_normal((5, model.nu))
+    settings = Settings.of(model, SimulationOptions(method="rk4", dt=0.1), 0.4)
+    stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
+    run = ExaminedRun(stepper, settings, (q[0], v[0]), [np.arange(5) * 0.1, q, v, u], 4)
+    np.testing.assert_allclose(run.norms(q, u, v), np.sqrt(2.0 * model.kinetic_energy(q, v, u=u)), rtol=1e-12)
+
+
+@pytest.mark.parametrize("stabilisation", ["projection", "baumgarte", "none"])
+def test_what_is_made_once_more_is_the_run(stabilisation: Any) -> None:
+    """To the bit, from any record on, the constraints kept as the run keeps them."""
+    model = compiled("four_bar")
+    start = sf.assemble(model, [1.2, -1.2, 1.2], [2.0, 0.0, 0.0])
+    options = SimulationOptions(method="rk4", dt=0.01, stabilisation=stabilisation)
+    made = sf.simulate(model, start.q, start.v, 0.2, method="rk4", dt=0.01, stabilisation=stabilisation)
+    settings = Settings.of(model, options, 0.2)
+    stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
+    run = ExaminedRun(stepper, settings, (start.q, start.v), [made.t, made.q, made.v, made.u], 20)
+    status, (t, q, v, _) = run.repeated([x[4] for x in run.states[:3]], float(made.t[14]), 0.01, every=2)
+    assert status == Status.FINISHED
+    np.testing.assert_allclose(t, made.t[4:15:2], rtol=1e-14)
+    np.testing.assert_array_equal(np.hstack([q, v]), np.hstack([made.q, made.v])[4:15:2])
+
+
+def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
+    """Values and rates of any cubic, wherever they are asked for."""
+    c, x, h = rng.standard_normal((4, 5, 2)), rng.uniform(size=5), rng.uniform(0.1, 2.0, (5, 1))
+
+    def at(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        t = share * h
+        return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
+
+    found = _cubic(x, h, at(np.zeros((5, 1))), at(np.ones((5, 1))))
+    np.testing.assert_allclose(found, at(x[:, np.newaxis]), atol=1e-12)
+
+
 @pytest.mark.parametrize("name", ["torque_free_body", "slider_crank"])
 def test_a_path_between_records_is_the_motion(name: str) -> None:
     """Of rotations and loops as well: the states within steps are those of a run with short steps, to h^4."""
@@ -92,6 +151,9 @@ def test_a_path_between_records_is_the_motion(name: str) -> None:
         stepper.start(q, v, 16)
         path = path_within(stepper, coarse, np.full(len(coarse[0]) - 1, 5))
         assert path is not None
+        np.testing.assert_allclose(
+            path.x.reshape(-1, 5), [[0.1, 0.3, 0.5, 0.7, 0.9]] * (len(coarse[0]) - 1), rtol=1e-12
+        )
         rows = np.rint(path.states[0] / (dt / 10)).astype(int)
         np.testing.assert_allclose(path.states[0], fine.t[rows], atol=1e-12)
         a = model.forward_dynamics(fine.q[rows], fine.v[rows], fine.u[rows], t=fine.t[rows])
