@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import os
 import re
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -93,7 +96,13 @@ PLUGINS = {
         Plugin("uncharted", slots=((Slot("angel", (0,), (0,)),),) * 3),
         Plugin("beyond", slots=((Slot("angle", (3,), (0,)),),) * 3),
         Plugin("leaving", leaves),
+        Plugin("unnumbered", lambda value: value * math.nan),
     )
+}
+# What ends a process, or does not end.
+DEADLY = {
+    plugin.name: plugin
+    for plugin in (Plugin("dying", lambda value: os.abort()), Plugin("hanging", lambda value: time.sleep(60)))
 }
 # What is no plug-in, by the contract.
 REFUSED = {"empty": object(), "unknown": Plugin("unknown", functions=("mass_metrix",)), "other": Plugin("another")}
@@ -101,8 +110,9 @@ REFUSED = {"empty": object(), "unknown": Plugin("unknown", functions=("mass_metr
 
 def install(folder: Path) -> None:
     """A package in a folder whose entry points are all of these."""
-    text = "from tests.validation.engines.fakes import PLUGINS, REFUSED\nglobals().update(PLUGINS | REFUSED)\n"
-    _package(folder, "fake_engines", text, {name: name for name in (*PLUGINS, *REFUSED, "absent")})
+    text = "from tests.validation.engines.fakes import DEADLY, PLUGINS, REFUSED\n"
+    text += "globals().update(PLUGINS | DEADLY | REFUSED)\n"
+    _package(folder, "fake_engines", text, {name: name for name in (*PLUGINS, *DEADLY, *REFUSED, "absent")})
 
 
 def install_toy(folder: Path) -> str:
