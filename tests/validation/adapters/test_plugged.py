@@ -116,8 +116,7 @@ def test_an_engine_of_another_package_judges_a_model(tmp_path: Path) -> None:
 
 
 def test_what_a_plug_in_does_wrong_harms_its_own_rows_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    undefined = Plugin("undefined", lambda value: value * np.nan)
-    plugins = PLUGINS | {"undefined": undefined, "right": Plugin("right")}
+    plugins = PLUGINS | {"right": Plugin("right")}
     monkeypatch.setattr(Plugin, "kinds", {"revolute z": "hinge"})
     monkeypatch.setattr(plugged, "registry", lambda: Registry(dict(plugins)))
     result = check(subject_of(MODELS["double_pendulum"]), Settings(4, engines=("mujoco", *plugins, "absent")))
@@ -129,4 +128,4 @@ def test_what_a_plug_in_does_wrong_harms_its_own_rows_alone(monkeypatch: pytest.
     for name in plugins.keys() - {"right"}:
         assert rows[name] and not any(row.ok for row in rows[name]), name
     assert rows["slotless"][0].note.startswith("raises ValueError: slots of 3 links for a tree of 4")
-    assert {row.note for row in rows["undefined"]} >= {"not a finite number in some state"}
+    assert {row.note for row in rows["unnumbered"]} >= {"not a finite number in some state"}
