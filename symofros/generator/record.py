@@ -19,7 +19,14 @@ from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
 from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
-from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
+from symofros.mechanics.topology.tree import (
+    SpanningTree,
+    ball_names,
+    frame_of,
+    joint_names,
+    prescribed_speeds,
+    section_names,
+)
 from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, SwitchRecord
 
 GENERATOR = "symofros 0.1.0"
@@ -84,6 +91,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         joint_limits=joint_limits(tree),
         friction_speeds=_friction_speeds(tree),
         switches=_switches(tree),
+        contact_names=ball_names(tree),
     )
 
 

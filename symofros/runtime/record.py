@@ -131,6 +131,7 @@ class ModelRecord:
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
         friction_speeds: Indices of the speeds that have friction.
         switches: Constraints that engage and release.
+        contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
     """
 
     name: str
@@ -163,6 +164,7 @@ class ModelRecord:
     joint_limits: tuple[JointLimit, ...] = ()
     friction_speeds: tuple[int, ...] = ()
     switches: tuple[SwitchRecord, ...] = ()
+    contact_names: tuple[str, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:

@@ -149,6 +149,11 @@ def section_names(tree: SpanningTree) -> tuple[tuple[str, float], ...]:
     return tuple((beam.name, xi) for beam in beams for xi in beam.stations)
 
 
+def ball_names(tree: SpanningTree) -> tuple[str, ...]:
+    """The balls of all contacts, in order."""
+    return tuple(name for contact in tree.system.contacts for name in contact.ball_names)
+
+
 def prescribed_speeds(tree: SpanningTree) -> tuple[str, ...]:
     """Names of the speeds of prescribed motions, in order."""
     return tuple(name for link in tree.links if link.joint.prescribed for name in speed_names(link.joint))
