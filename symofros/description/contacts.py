@@ -31,7 +31,7 @@ class Contact:
     """Balls that a surface pushes back where they penetrate it: one-sided, dissipative, with friction.
 
     At a penetration d > 0 the surface pushes by N = stiffness d^exponent max(0, 1 + dissipation d'), and friction drags
-    by up to `friction` N against the slip (docs/theory/rigid.md, section 10.1). It never pulls, and what it stores,
+    by up to `friction` N against the slip (docs/theory/rigid.md, section 10.2). It never pulls, and what it stores,
     stiffness d^(exponent + 1)/(exponent + 1), is potential energy. Friction is smooth through zero slip: it holds
     nothing at rest, and a body on an incline creeps, as a joint with `Friction` does.
 

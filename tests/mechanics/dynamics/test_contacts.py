@@ -286,3 +286,14 @@ def test_runs_in_which_a_ball_sinks_to_its_centre_say_so(stiffness: float, deep:
         assert (
             any("contact 'floor' is" in note and "times its radius deep" in note for note in run.outcome.notes) == deep
         )
+
+
+@pytest.mark.parametrize(("stiffness", "dt"), [(1e6, 1e-2), (1e8, 1e-2), (1e8, 1e-3), (1e4, 5e-3), (1e8, 1e-4)])
+def test_fixed_steps_that_do_not_follow_an_impact_say_so(stiffness: float, dt: float) -> None:
+    """No mode of the flight between impacts shows them: short runs with contacts are held against half the step."""
+    contact = sf.Contact("floor", ("ball", None), ("world", None), stiffness, radius=0.1)
+    m = sf.compile(falling(contact, sf.Joint("z", "prismatic", axis=(0, 0, 1))))
+    options: dict[str, Any] = {"t_end": 1.0, "method": "rk4", "dt": dt}
+    for run in (sf.simulate(m, [1.0], **options), sf.simulate_batch(m, [[1.0]], output=0.1, **options)[0]):
+        energy = m.kinetic_energy(run.q, run.v) + m.potential_energy(run.q)
+        assert bool(run.outcome.notes) == bool(np.ptp(energy) > 0.05 * energy[0]), run.outcome

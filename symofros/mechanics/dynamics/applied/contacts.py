@@ -1,4 +1,4 @@
-"""Compliant contacts: distances of surfaces, and the forces of penetrations (docs/theory/rigid.md, section 10.1)."""
+"""Compliant contacts: distances of surfaces, and the forces of penetrations (docs/theory/rigid.md, section 10.2)."""
 
 from __future__ import annotations
 

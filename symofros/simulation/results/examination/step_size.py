@@ -57,7 +57,9 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
         notes.append(step_size_note(mode, run.settings.method, run.settings.dt, energy))
     if not ended_well:
         return mode, tuple(notes)
-    evident = resolution.evident and not _samples_within_steps(run.stepper.inputs, run.settings)
+    # No mode of a free flight shows the impact after it.
+    unseen = bool(run.model.record.contact_names) or _samples_within_steps(run.stepper.inputs, run.settings)
+    evident = resolution.evident and not unseen
     if mode is None:
         notes.append(halved_step_note(run, evident=evident))
     notes.append(input_impulse_note(run))
