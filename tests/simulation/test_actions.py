@@ -275,3 +275,21 @@ def test_switches_are_kept_by_files(tmp_path: Any) -> None:
     read = sf.load(file)
     assert read == system and "grabbing.yaml:" in read.origin["switch", "grasp"]
     assert "switches" not in repr(grabbing()) and hash(read) == hash(system)
+
+
+def test_what_an_impact_leaves_at_rest_has_no_energy_to_speak_of() -> None:
+    """All speed is taken: what still moves is rounding, whose energy is not held against work."""
+    joints = [sf.Joint(name, "prismatic", axis=(1, 0, 0)) for name in ("x", "y")]
+    bodies = [sf.RigidBody(joint.name, joint, sf.Inertia(k)) for k, joint in enumerate(joints, 2)]
+    ties = (sf.Coupling("tie", "x - y"), sf.Coupling("lock", "x"))
+    switches = tuple(sf.Switch(tie.name, f"s_{tie.name}", "moment") for tie in ties)
+    parameters = tuple(sf.Parameter(f"s_{tie.name}", 0) for tie in ties)
+    model = sf.compile(sf.System("train", bodies, parameters, gravity=(0, 0, 0), constraints=ties, switches=switches))
+    events = {
+        "tie": sf.Event("t - 0.4", action={"s_tie": 1}),
+        "lock": sf.Event("t - 0.6", action={"s_lock": 1}),
+        "push": sf.Event("t - 0.8", action={"dy": 5}),
+    }
+    run = sf.simulate(model, [0.0, 1.0], [1.0, 0.0], t_end=1.0, method="dopri5", events=events)
+    assert [found.energy_lost for found in run.events] == pytest.approx([0.6, 0.4, 37.5])
+    assert (run.outcome.kind, run.outcome.notes) == ("finished", ())

@@ -52,7 +52,8 @@ def energy_note(run: ExaminedRun) -> str:
             if growth > EXPLODED and not _driven(run, energies, first):
                 return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
         change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
-        if not change > _NOTED_CHANGE * largest > 0.0:
+        # At rest, as after an impact that takes all speed, only rounding moves.
+        if not change > _NOTED_CHANGE * largest > 0.5 * _NOTED_CHANGE * run.rounding(states) ** 2:
             return ""
         # Most forces that do work are seen at once; a short contact is seen among all states, or between them.
         for shown in (few, states, *_between(run, energy)):
