@@ -297,3 +297,11 @@ def test_fixed_steps_that_do_not_follow_an_impact_say_so(stiffness: float, dt: f
     for run in (sf.simulate(m, [1.0], **options), sf.simulate_batch(m, [[1.0]], output=0.1, **options)[0]):
         energy = m.kinetic_energy(run.q, run.v) + m.potential_energy(run.q)
         assert bool(run.outcome.notes) == bool(np.ptp(energy) > 0.05 * energy[0]), run.outcome
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4", "dop853"])
+def test_a_thin_wall_that_a_step_of_a_long_flight_passes_is_noted(method: str) -> None:
+    wall = sf.Contact("wall", ("ball", None), ("world", None), 1e9, "box", size=(0.02, 1.0, 1.0))
+    m = sf.compile(falling(wall, sf.Joint("x", "prismatic", axis=(1, 0, 0)), gravity=(0.0, 0.0, 0.0)))
+    run = sf.simulate(m, [-10.0], [3.0], t_end=6.0, method=method)
+    assert run.q[-1, 0] < 0.0 or any("passes over what acts within it" in note for note in run.outcome.notes)

@@ -18,7 +18,8 @@ from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
 
 # States within steps, about: this share of the run's evaluations within these numbers; of a function of the user's,
-# which each state calls, this many where steps adapt and the share, if that is less, where they are fixed. Steps with
+# which each state calls, this many where steps adapt and the share, if that is less, where they are fixed; most where
+# bodies may touch, as obstacles are small against the way of a flight, which is one step. Steps with
 # fewer than the last are short against the run; what acts in them their own stages see.
 _SHARE, _LEAST, _MOST, _CALLS, _FEWEST = 0.25, 512, 4096, 256, 4
 # Of intervals of several steps the longest are made once more: about so many steps, or this share of all where that is
@@ -41,7 +42,9 @@ def stepped_over_note(run: ExaminedRun) -> str:
     if function and not run.same_inputs_again:
         return ""
     share = _SHARE * steps * max(1, run.stepper.method.tableau.stages)
-    least, most = (_CALLS if settings.adaptive else 0, _CALLS) if function else (_LEAST, _MOST)
+    least, most = _MOST if run.model.record.contact_names else _LEAST, _MOST
+    if function:
+        least, most = _CALLS if settings.adaptive else 0, _CALLS
     number = int(min(max(share, least), most))
     noted = min(max(_BOUNDS * settings.rtol, _NOTED[0]), _NOTED[1]) if settings.adaptive else TOLERANCE
     for ends in _single_steps(run, number):
