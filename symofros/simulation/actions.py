@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.names import coordinate_of, speed_of
+from symofros.base.names import coordinate_of, speed_column, speed_of
 from symofros.base.rotations import matrix_quaternion
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
@@ -186,9 +186,15 @@ def _target(model: Model, event: Event, name: str) -> tuple[str, int]:
     names = model.names
     if found := coordinate_of(name, names.par):
         return "par", names.par.index(found)
+    speeds = [speed_column(speed, names.q) for speed in names.v]
+    if coordinate := coordinate_of(name, names.q):
+        what = f"event '{event.name}': its action sets the coordinate '{name}'"
+        rule = "an action sets run-time parameters and speeds: bodies do not move within an instant"
+        remedy = f"'{speed_column(coordinate, names.q)}' for its speed" if coordinate in names.v else "set speeds"
+        raise UnknownNameError(Problem(what, ", ".join(speeds[:12]), rule, remedy))
     if found := speed_of(name, names.v):
         return "v", names.v.index(found)
-    known = [*names.par, *names.v]
+    known = [*names.par, *speeds]
     rule = "an action sets run-time parameters, and speeds: their names, or d and the coordinate's name"
     what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
     raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
