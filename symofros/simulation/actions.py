@@ -95,6 +95,7 @@ class Actions:
             after, speeds = self._assigned(which, state, par)
             after, engaging = self._held(after, par, state)
             self.model.checked_parameters(after)
+            _refuse_no_strike(event, engaging)
             self._refuse_other_beams(stepper, after)
         except SymofrosError as error:
             reason = f"what event '{event.name}' sets is refused: {error.problem.what}; {error.problem.rule}"
@@ -198,6 +199,13 @@ def _target(model: Model, event: Event, name: str) -> tuple[str, int]:
     rule = "an action sets run-time parameters, and speeds: their names, or d and the coordinate's name"
     what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
     raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
+
+
+def _refuse_no_strike(event: Event, engaging: tuple[str, ...]) -> None:
+    """Refuse restitution where nothing strikes: parameters would be as before, and the action nothing."""
+    if event.restitution is not None and not engaging:
+        rule = "restitution is that of constraints which the action engages"
+        raise SymofrosError(Problem("no constraint engages", "restitution", rule, "a Switch by what the action sets"))
 
 
 def _holding(model: Model, switch: SwitchRecord, par: Array, state: tuple[float, Array, Array, Array]) -> Array:

@@ -258,6 +258,8 @@ def test_what_is_refused() -> None:
         outcome(girp=1)
     with pytest.raises(sf.UnknownNameError, match="sets the coordinate 'q1'.*(?s:.)*'dq1' for its speed"):
         outcome(q1=0.0)
+    idle = sf.simulate(model, q, v, 0.01, events={"idle": sf.Event("t - 1e-3", action={"grip": 0}, restitution=0.5)})
+    assert idle.outcome.kind == "input failed" and "no constraint engages" in idle.outcome.reason
     event = {"dock": sf.Event("t - 1e-3", action={"grip": 1})}
     with pytest.raises(sf.SymofrosError, match="'dock' has an action"):
         sf.Stepper(model, events=event, dt=1e-3)
