@@ -32,6 +32,8 @@ from symofros.description.joints.joint_kinds import KINDS as KINDS
 from symofros.description.parser import ExpressionError as ExpressionError
 from symofros.description.parser import parse as parse
 from symofros.description.parser import tokenize as tokenize
+from symofros.description.pose import IDENTITY_POSE as IDENTITY_POSE
+from symofros.description.pose import Pose as Pose
 from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
 from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
 from symofros.description.reading import in_order as in_order

@@ -1,0 +1,358 @@
+"""From two mechanisms to their differences, parents first."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import replace
+
+import numpy as np
+
+from symofros.base.arrays import Array
+from symofros.description import IDENTITY_POSE, Pose
+from symofros.studio.differences.alignment import Alignment, Alignments, Close
+from symofros.studio.differences.difference import Difference, entries_of_joint, likelier
+from symofros.studio.differences.mechanism import Body, Mechanism, Move, moved
+from symofros.studio.differences.motion import (
+    Moving,
+    adjoint,
+    gravity_forces,
+    jacobians,
+    mass_matrix,
+    poses,
+    posture,
+    spatial_inertia,
+)
+
+# Postures that an inertia is asked at, and what of its largest possible effect is rounding.
+POSTURES, _ROUNDING = 4, 1e-11
+# Differences beyond which no more are looked for: who has as many compares two robots.
+MOST_DIFFERENCES = 200
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+class Findings:
+    """The differences of two mechanisms.
+
+    Args:
+        a: First.
+        b: Second.
+        tolerance: Relative one.
+        seed: Of the postures.
+
+    Attributes:
+        differences: What differs, parents first.
+        pairs: Part of the first -> part of the second, and how it lies.
+        errors: Largest relative differences over random postures, of "kinematics", "M", "g"; empty where parts are left
+            over.
+        reframed: Links whose frames are placed otherwise, which nothing shows.
+    """
+
+    def __init__(self, a: Mechanism, b: Mechanism, tolerance: float, seed: int) -> None:
+        self.a, self.b, self.rng = a, b, np.random.default_rng(seed)
+        self.close = Close(tolerance, max(a.size, b.size))
+        self.aligned = Alignments(a, b, self.close)
+        self.differences: list[Difference] = []
+        self.pairs: dict[int, tuple[int, Alignment]] = {0: (0, Alignment(IDENTITY_POSE))}
+        self.reframed: list[str] = []
+        self.complete = True
+        self._moving = [self._moved(a, k) for k in range(len(a.parts))]
+        qs = [posture(self._moving, self.close.size, self.rng) for _ in range(POSTURES)]
+        self._postures = [(q, poses(self._moving, q)) for q in qs]
+        self._jacobians = [jacobians(self._moving, placed) for _, placed in self._postures]
+        self._laid: dict[int, Pose] = {}  # Of bodies of b.
+        self._compare()
+        self.errors = self._errors() if self.complete else {}
+
+    def _compare(self) -> None:
+        if not self.close.points(self.a.gravity / 9.81, self.b.gravity / 9.81):
+            self._add("gravity", None, None, self.a.gravity.tolist(), self.b.gravity.tolist(), ("g",))
+        queue = deque([0])
+        while queue and len(self.differences) < MOST_DIFFERENCES:
+            c = queue.popleft()
+            d, alignment = self.pairs[c]
+            bodies = self._place_bodies(c, d, alignment.T)
+            pairs = self.aligned.pairs(c, d, lambda y: self._carrier(y))
+            is_whole = self._left_over(c, d, pairs)
+            if is_whole:
+                self._inertias(c, d, bodies, alignment.T)
+            for x, y in pairs:
+                self.pairs[x] = (y, self._joint(x, y))
+                queue.append(x)
+        self.complete &= not queue
+
+    def _carrier(self, part: int) -> Pose:
+        """Displacement of what a joint of the second file hangs on."""
+        move = self.b.parts[part].move
+        if move is not None and move.carrier >= 0:
+            return self._laid[move.carrier]
+        parents = {d: alignment.T for d, alignment in self.pairs.values()}
+        return parents[self.b.parts[part].parent]
+
+    # What is there.
+
+    def _left_over(self, c: int, d: int, pairs: list[tuple[int, int]]) -> bool:
+        """Joints of a part that the other file's lacks; whether there are none."""
+        ours = set(self.a.parts[c].children) - {x for x, _ in pairs}
+        theirs = set(self.b.parts[d].children) - {y for _, y in pairs}
+        for x in sorted(ours):
+            self._lone(self.a, self.b, x, flipped=False)
+        for y in sorted(theirs):
+            self._lone(self.b, self.a, y, flipped=True)
+        self.complete &= not ours and not theirs
+        return not ours and not theirs
+
+    def _lone(self, a: Mechanism, b: Mechanism, x: int, flipped: bool) -> None:
+        """A joint without counterpart: fixed in the other file, on another parent, or not there."""
+        move = a.parts[x].move
+        assert move is not None
+        body = _body(a, x)
+        other = b.bodies[b.index[body.name]] if body.name in b.index else None
+        entry, here, there = "joint", move.stated, "no such joint"
+        if other is not None:
+            joint = b.parts[other.part].move if b.bodies[b.parts[other.part].bodies[0]] is other else None
+            if joint is None:
+                entry, there = "joint kind", "fixed"
+            else:
+                entry, here, there = "parent", _carrier_name(a, move), _carrier_name(b, joint)
+        values = (there, here) if flipped else (here, there)
+        bodies = (other or body, body) if flipped else (body, other)
+        if entry == "parent" and flipped:  # Reported from the first file's side.
+            return
+        self._add(entry, bodies, (move, move), *values, ("kinematics", "M", "g"))
+
+    # Bodies.
+
+    def _place_bodies(self, c: int, d: int, T: Pose) -> list[tuple[Body, Body]]:
+        """Counterparts by name of a part's bodies; where each of the second file lies."""
+        for k in self.b.parts[d].bodies:
+            self._laid[k] = T
+        there = {self.b.bodies[k].name: k for k in self.b.parts[d].bodies}
+        ours, pairs = self.a.parts[c].bodies, list[tuple[Body, Body]]()
+        laid = dict.fromkeys(ours, T)
+        for k in ours:
+            body = self.a.bodies[k]
+            if body.parent in laid:
+                laid[k] = laid[body.parent]
+            if body.name not in there:
+                continue
+            other = self.b.bodies[there[body.name]]
+            if (body.parent in laid or c == 0) and body.joint:
+                way = self.aligned.of_body(body, other, laid[k], (c, d))
+                if way.is_moved:
+                    self._origin(body, other, None, body.pose, laid[k] @ other.pose)
+                laid[k] = way.T
+            if not self.close.poses(body.pose, laid[k] @ other.pose):
+                self.reframed.append(body.name)
+            self._laid[there[body.name]] = laid[k]
+            self._frames(body, other, laid[k])
+            pairs.append((body, other))
+        return pairs
+
+    def _frames(self, body: Body, other: Body, T: Pose) -> None:
+        for name in body.frames.keys() & other.frames.keys():
+            frame, placed = body.frames[name], T @ other.frames[name]
+            if not self.close.poses(frame, placed):
+                inside = body.pose.inverse()
+                here, there = (_shown(inside @ pose) for pose in (frame, placed))
+                self._add(f"frame '{name}'", (body, other), None, here, there, ("kinematics",))
+
+    def _inertias(self, c: int, d: int, named: list[tuple[Body, Body]], T: Pose) -> None:
+        """Inertias body by body, where both files have the same ones, or else those of the whole part."""
+        ours, theirs = self.a.massive(c), self.b.massive(d)
+        pairs = [(x, y) for x, y in named if x in ours or y in theirs]
+        lone = [x for x in ours if x not in [pair[0] for pair in pairs]]
+        lone_there = [y for y in theirs if y not in [pair[1] for pair in pairs]]
+        if len(lone) == len(lone_there) == 1:  # Renamed.
+            pairs.append((lone[0], lone_there[0]))
+        elif lone or lone_there:
+            pairs = [(_whole(self.a, c), _whole(self.b, d))]
+        for body, other in pairs:
+            index = self.b.index.get(other.name, -1)
+            self._inertia(c, body, other, T if len(pairs) == 1 else self._laid.get(index, T))
+
+    def _inertia(self, c: int, body: Body, other: Body, T: Pose) -> None:
+        """Entries of one body's inertia."""
+        center, turned = moved(T, other.center), T.R @ other.inertia @ T.R.T
+        new = (body.mass, body.center, body.inertia)
+        if not self.close.numbers(body.mass, other.mass):
+            changes = self._shown_by(c, new, (other.mass, body.center, body.inertia))
+            self._add("mass", (body, other), None, body.mass, other.mass, changes)
+        if body.mass and other.mass and not self.close.points(body.center, center):
+            changes = self._shown_by(c, new, (body.mass, center, body.inertia))
+            inside = body.pose.inverse()
+            here, there = moved(inside, body.center).tolist(), moved(inside, center).tolist()
+            self._add("center of mass", (body, other), None, here, there, changes)
+        if not self.close.inertias(body.inertia, turned, body.mass):
+            changes = self._shown_by(c, new, (body.mass, body.center, turned))
+            R, at = body.pose.R, np.triu_indices(3)
+            values = [dict(zip(_MOMENTS, (R.T @ I @ R)[at].tolist(), strict=True)) for I in (body.inertia, turned)]  # noqa: E741
+            size = self.close.tolerance * max(map(abs, values[0].values()))
+            differing = [name for name in _MOMENTS if abs(values[0][name] - values[1][name]) > size] or [*_MOMENTS]
+            here, there = ({name: value[name] for name in differing} for value in values)
+            self._add("inertia", (body, other), None, here, there, changes)
+
+    def _shown_by(self, c: int, old: tuple[float, Array, Array], new: tuple[float, Array, Array]) -> tuple[str, ...]:
+        """Which of M and g another inertia of a part changes: they are linear in it, so that no digits cancel."""
+        change = spatial_inertia(*new) - spatial_inertia(*old)
+        part = Moving(-1, np.zeros((6, 0)), change)
+        weights = [0.0, 0.0]
+        scale = self.close.size
+        units = np.diag([1 / scale] * 3 + [1.0] * 3)
+        largest = np.abs(units @ change @ units).max() * scale**2
+        for (_, placed), moving in zip(self._postures, self._jacobians, strict=True):
+            speeds, J = moving[c]
+            if not len(speeds):
+                continue
+            size = np.abs(np.linalg.inv(units) @ J).max() / scale or 1.0
+            weights[0] = max(weights[0], float(np.abs(J.T @ part.inertia @ J).max()) / size**2)
+            down = np.concatenate([np.zeros(3), placed[c].R.T @ self.a.gravity])
+            strong = float(np.abs(self.a.gravity).max()) or 1.0
+            weights[1] = max(weights[1], float(np.abs(J.T @ part.inertia @ down).max()) * scale / size / strong)
+        return tuple(name for name, weight in zip(("M", "g"), weights, strict=True) if weight > _ROUNDING * largest)
+
+    # Joints.
+
+    def _joint(self, x: int, y: int) -> Alignment:
+        """Differences of a joint; how what it carries lies."""
+        m, n = self.a.parts[x].move, self.b.parts[y].move
+        assert m is not None and n is not None
+        T, bodies = self._carrier(y), (_body(self.a, x), _body(self.b, y))
+        if m.kind != n.kind:
+            self.complete = False
+            self._add("joint kind", bodies, (m, n), m.stated, n.stated, ("kinematics", "M", "g"))
+            return Alignment(T)
+        way = self.aligned.of_joint(x, y, T)
+        if way.is_moved:
+            self._origin(*bodies, (m, n), m.frame, T @ n.frame)
+        elif not way.has_line:
+            axis = m.frame.R.T @ m.axis
+            turned = m.frame.R.T @ T.R @ n.axis * way.sign
+            if m.kind != "ball" and not self.close.directions(axis, turned):
+                self._add("axis", bodies, (m, n), axis.tolist(), turned.tolist(), ("kinematics",))
+            else:
+                self._origin(*bodies, (m, n), m.frame, Pose(moved(T, n.point), m.frame.R))
+        if not self.close.numbers(m.pitch, n.pitch):
+            self._add("pitch", bodies, (m, n), m.pitch, n.pitch, ("kinematics",))
+        self._entries(bodies, (m, n), way)
+        return way
+
+    def _entries(self, bodies: tuple[Body, Body], moves: tuple[Move, Move], way: Alignment) -> None:
+        """Zero of the coordinate, limits, what resists it."""
+        m, n = moves
+        if way.offset or way.sign < 0.0:
+            sign = "-" if way.sign < 0.0 else ""
+            offset = f" {way.offset:+.9g}" if way.offset else ""
+            what = "zero of the coordinate" if way.offset else "sign of the coordinate"
+            mapped = f"{sign}{n.name}{offset}"
+            self._add(what, bodies, moves, m.name, mapped, ("coordinates",))
+        for name, here, there, changes in entries_of_joint(m.entries, n.entries, way.sign, way.offset, self.close):
+            self._add(name, bodies, moves, here, there, changes)
+
+    def _origin(self, body: Body, other: Body, moves: tuple[Move, Move] | None, here: Pose, there: Pose) -> None:
+        """A joint that stands elsewhere: its frame in what carries it, or in the world where the files' frames differ."""
+        ours, theirs = (body.placed, other.placed) if moves is None else (moves[0].placed, moves[1].placed)
+        carrier = here @ ours.inverse()
+        seen = carrier.inverse() @ there
+        shown = [_shown(ours), _shown(seen if not self.close.poses(seen, theirs) else theirs)]
+        differing = [key for key in ("xyz", "rpy") if not np.allclose(shown[0][key], shown[1][key], 1e-9, 1e-12)]
+        values = [{key: value[key] for key in differing or value} for value in shown]
+        self._add("origin", (body, other), moves, *values, ("kinematics",))
+
+    # All at once.
+
+    def _add(
+        self,
+        entry: str,
+        bodies: tuple[Body, Body | None] | None,
+        moves: tuple[Move, Move] | None,
+        here: object,
+        there: object,
+        changes: tuple[str, ...],
+    ) -> None:
+        if len(self.differences) >= MOST_DIFFERENCES:
+            return
+        first, second = bodies or (None, None)
+        joint = moves[0].name if moves else first.joint if first is not None and entry == "origin" else ""
+        other = moves[1].name if moves else second.joint if second is not None and entry == "origin" else ""
+        kinds = ("joint", joint, other) if joint else ("body", first.name if first else "", second.name if second else "")
+        places = tuple(
+            m.system.origin.get((kinds[0], name), "") for m, name in zip((self.a, self.b), kinds[1:], strict=True)
+        )
+        link = first.name if first is not None else ""
+        found = Difference(entry, link, joint, here, there, changes, (second.name if second else "", other), places)  # type: ignore[arg-type]
+        if first is not None and second is not None and changes:
+            which, reason = likelier((self.a, self.b), (first, second), entry, self.close)
+            found = replace(found, likelier=which, reason=reason)
+        self.differences.append(found)
+
+    def _moved(self, mechanism: Mechanism, k: int) -> Moving:
+        move = mechanism.parts[k].move
+        inertia = spatial_inertia(*mechanism.total(k))
+        if move is None:
+            return Moving(-1, np.zeros((6, 0)), inertia)
+        return Moving(mechanism.parts[k].parent, move.screws, inertia, move.entries.get("armature", 0.0))
+
+    def _errors(self) -> dict[str, float]:
+        """Largest differences over random postures: of poses by the size, of M and g by their own diagonals."""
+        place = {x: k for k, x in enumerate(sorted(self.pairs))}
+        theirs = [self._counterpart(x, place) for x in sorted(self.pairs)]
+        errors = {"kinematics": 0.0, "M": 0.0, "g": 0.0}
+        for (q, placed), moving in zip(self._postures, self._jacobians, strict=True):
+            other = poses(theirs, q)
+            for x, k in place.items():
+                seen, there = placed[x] @ self.pairs[x][1].T, other[k]
+                at = [np.abs(seen.p - there.p).max() / self.close.size, np.abs(seen.R - there.R).max()]
+                errors["kinematics"] = max(errors["kinematics"], float(max(at)))
+            turning = jacobians(theirs, other)
+            M, M2 = mass_matrix(self._moving, moving), mass_matrix(theirs, turning)
+            scale = np.sqrt(np.abs(np.diag(M))) + 1e-150
+            errors["M"] = max(errors["M"], float(np.abs((M - M2) / np.outer(scale, scale)).max(initial=0.0)))
+            g = gravity_forces(self._moving, placed, moving, self.a.gravity)
+            g2 = gravity_forces(theirs, other, turning, self.b.gravity)
+            largest = float(np.abs(g).max(initial=0.0)) or 1.0
+            errors["g"] = max(errors["g"], float(np.abs(g - g2).max(initial=0.0)) / largest)
+        return errors
+
+    def _counterpart(self, x: int, place: dict[int, int]) -> Moving:
+        """A part of the second file that moves with the first's coordinates."""
+        y, way = self.pairs[x]
+        own = self._moved(self.b, y)
+        move = self.a.parts[x].move
+        if move is None:
+            return own
+        carrier = self.pairs[self.a.parts[x].parent][1].T if self.b.parts[y].move is None else self._carrier(y)
+        zero = IDENTITY_POSE if way.is_moved else carrier.inverse() @ way.T
+        screws = own.screws * way.sign
+        if move.kind == "ball":  # Along the first file's axes, about the second's own centre.
+            screws = own.screws @ carrier.R.T
+        elif move.kind == "free":
+            screws = adjoint(carrier.inverse()) @ move.screws
+        return replace(own, parent=place[self.a.parts[x].parent], screws=screws, zero=zero)
+
+
+def _body(mechanism: Mechanism, part: int) -> Body:
+    """The body that a part's joint, or a series of joints that begins with it, carries."""
+    while not mechanism.parts[part].bodies:
+        part = mechanism.parts[part].children[0]
+    return mechanism.bodies[mechanism.parts[part].bodies[0]]
+
+
+def _whole(mechanism: Mechanism, part: int) -> Body:
+    """The bodies of a part as one."""
+    bodies = mechanism.massive(part)
+    mass, center, inertia = mechanism.total(part)
+    first = bodies[0] if bodies else _body(mechanism, part)
+    name = "+".join(body.name for body in bodies) or first.name
+    return replace(first, name=name, mass=mass, center=center, inertia=inertia)
+
+
+def _carrier_name(mechanism: Mechanism, move: Move) -> str:
+    return mechanism.bodies[move.carrier].name if move.carrier >= 0 else "world"
+
+
+def _shown(pose: Pose) -> dict[str, list[float]]:
+    """A frame as files state it: position, and roll, pitch and yaw."""
+    R = pose.R
+    pitch = np.arctan2(-R[2, 0], np.hypot(R[0, 0], R[1, 0]))
+    roll, yaw = np.arctan2(R[2, 1], R[2, 2]), np.arctan2(R[1, 0], R[0, 0])
+    return {"xyz": pose.p.tolist(), "rpy": [float(roll), float(pitch), float(yaw)]}
