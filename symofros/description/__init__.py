@@ -15,6 +15,7 @@ from symofros.description.beams.shapes import Family as Family
 from symofros.description.beams.shapes import Samples as Samples
 from symofros.description.beams.shapes import UserShape as UserShape
 from symofros.description.constraints import Closure as Closure
+from symofros.description.constraints import Constraint as Constraint
 from symofros.description.constraints import Coupling as Coupling
 from symofros.description.constraints import KnifeEdge as KnifeEdge
 from symofros.description.constraints import Rod as Rod

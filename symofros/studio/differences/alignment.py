@@ -69,6 +69,7 @@ class Alignment(NamedTuple):
         offset: Coordinate in the first file where that in the second is zero [rad or m].
         is_moved: Whether the joint's frame is elsewhere, with all that it carries.
         has_line: Whether its axis, or centre, is the same before it is moved.
+        is_remapped: Whether coordinates of a ball or a free joint begin at another pose.
     """
 
     T: Pose
@@ -76,6 +77,7 @@ class Alignment(NamedTuple):
     offset: float = 0.0
     is_moved: bool = False
     has_line: bool = True
+    is_remapped: bool = False
 
 
 class Alignments:
@@ -90,6 +92,7 @@ class Alignments:
     def __init__(self, a: Mechanism, b: Mechanism, close: Close) -> None:
         self.a, self.b, self.close = a, b, close
         self._totals = [[m.total(k) for k in range(len(m.parts))] for m in (a, b)]
+        self._names = [{part.move.name for part in m.parts if part.move is not None} for m in (a, b)]
         self._below = [_below(m) for m in (a, b)]
         self._frames = [[_named_frames(m, k) for k in range(len(m.parts))] for m in (a, b)]
 
@@ -107,7 +110,10 @@ class Alignments:
             known = [(x, named.pop(self.a.parts[x].move.name, -1)) for x in ours]  # type: ignore[union-attr]
             return [pair for pair in known if pair[1] >= 0]
         costs = [
-            (self._cost(x, y, T(y)) + 1e-6 * abs(i - j), x, y) for i, x in enumerate(ours) for j, y in enumerate(theirs)
+            (self._cost(x, y, T(y)) + 1e-6 * abs(i - j), x, y)
+            for i, x in enumerate(ours)
+            for j, y in enumerate(theirs)
+            if not self._are_others(x, y, T(y))
         ]
         taken: list[tuple[int, int]] = []
         left, right = set(ours), set(theirs)
@@ -117,6 +123,14 @@ class Alignments:
                 left.remove(x)
                 right.remove(y)
         return sorted(taken)
+
+    def _are_others(self, x: int, y: int, T: Pose) -> bool:
+        """Whether two joints can't be counterparts: they carry other trees, and neither name nor axis is the same."""
+        m, n = self.a.parts[x].move, self.b.parts[y].move
+        assert m is not None and n is not None
+        if m.name == n.name or self._below[0][x][0] == self._below[1][y][0]:
+            return False
+        return m.name in self._names[1] or n.name in self._names[0] or not self.has_line(m, n, T)
 
     def _cost(self, x: int, y: int, T: Pose) -> float:
         m, n = self.a.parts[x].move, self.b.parts[y].move
@@ -167,7 +181,7 @@ class Alignments:
         if m.kind == "free" or (m.kind == "ball" and line):
             turns = [T, laid] if m.kind == "ball" else [laid, T]
             best = max(turns, key=lambda turn: sum(self.agreements(x, y, turn)))
-            return Alignment(best)
+            return Alignment(best, is_remapped=not self.close.poses(best, T))
         if line and all(stays):
             return Alignment(T, sign)
         if line:

@@ -8,8 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.description import Closure, Coupling, Rod
-from symofros.description.constraints import Constraint
+from symofros.description import Closure, Constraint, Coupling, Rod, symbols
 from symofros.mechanics.topology import coordinate_symbols
 from symofros.studio.differences.difference import Difference
 from symofros.studio.differences.findings import Findings
@@ -21,10 +20,14 @@ _POSTURES = 5
 def constraint_differences(found: Findings) -> Iterator[Difference]:
     """Constraints without an equal."""
     ours, theirs = list(found.a.system.constraints), list(found.b.system.constraints)
-    equal = _equality(found)
+    equal, as_named = _equality(found, is_mapped=True), _equality(found, is_mapped=False)
     for constraint in ours:
         other = next((item for item in theirs if equal(constraint, item)), None)
         if other is not None:
+            theirs.remove(other)
+            continue
+        other = next((item for item in theirs if as_named(constraint, item)), None)
+        if other is not None and _blame_coordinates(found, constraint):
             theirs.remove(other)
             continue
         named = next((item for item in theirs if type(item) is type(constraint) and item.name == constraint.name), None)
@@ -36,14 +39,25 @@ def constraint_differences(found: Findings) -> Iterator[Difference]:
         yield Difference(f"constraint '{item.name}'", "", "", "no such constraint", _stated(item), ("constraints",))
 
 
+def _blame_coordinates(found: Findings, constraint: Constraint) -> bool:
+    """Say of coordinates with another zero or sign that they change a coupling which doesn't follow them."""
+    bound = symbols(constraint.residual) if isinstance(constraint, Coupling) else frozenset[str]()
+    names = {name for name, symbol in _symbols(found.a).items() if symbol in bound}
+    blamed = [k for k, item in enumerate(found.differences) if item.joint in names and "coordinates" in item.changes]
+    for k in blamed:
+        item = found.differences[k]
+        found.differences[k] = replace(item, changes=tuple(dict.fromkeys((*item.changes, "constraints"))))
+    return bool(blamed)
+
+
 def _stated(constraint: Constraint) -> str:
     shown = (f"{item.name} {getattr(constraint, item.name)}" for item in fields(constraint) if item.name != "name")
     return f"{type(constraint).__name__.lower()}: {', '.join(shown)}"
 
 
-def _equality(found: Findings) -> Callable[[Constraint, Constraint], bool]:
-    """Whether two constraints say the same, in the coordinates and places of the first file."""
-    q, q2 = _coordinates(found)
+def _equality(found: Findings, is_mapped: bool) -> Callable[[Constraint, Constraint], bool]:
+    """Whether two constraints say the same, in places of the first file and in its coordinates, or in each one's own."""
+    q, q2 = _coordinates(found, is_mapped)
 
     def residuals(mechanism: Mechanism, constraint: Coupling, values: list[dict[str, float]]) -> Array:
         return np.array([mechanism.numbers.extended(at).value(constraint.residual) for at in values])
@@ -65,7 +79,7 @@ def _equality(found: Findings) -> Callable[[Constraint, Constraint], bool]:
     return equal
 
 
-def _coordinates(found: Findings) -> tuple[list[dict[str, float]], list[dict[str, float]]]:
+def _coordinates(found: Findings, is_mapped: bool) -> tuple[list[dict[str, float]], list[dict[str, float]]]:
     """Values of the joints' coordinates in both files, at random postures."""
     rng = np.random.default_rng(0)
     rows: tuple[list[dict[str, float]], list[dict[str, float]]] = ([], [])
@@ -77,7 +91,7 @@ def _coordinates(found: Findings) -> tuple[list[dict[str, float]], list[dict[str
             if m is not None and n is not None:
                 value = float(rng.uniform(-1.0, 1.0))
                 q[symbols[0].get(m.name, m.name)] = value
-                q2[symbols[1].get(n.name, n.name)] = way.sign * (value - way.offset)
+                q2[symbols[1].get(n.name, n.name)] = way.sign * (value - way.offset) if is_mapped else value
         rows[0].append(q)
         rows[1].append(q2)
     return rows

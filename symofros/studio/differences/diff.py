@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import os
 import textwrap
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.description import System
-from symofros.errors import ArgumentError, Problem
+from symofros.errors import ArgumentError, DescriptionError, Problem
 from symofros.loading import applicable, load
 from symofros.studio.differences.constraints import constraint_differences
 from symofros.studio.differences.difference import Difference
@@ -24,6 +24,9 @@ TOLERANCE = 1e-9
 _WIDTH, _LISTED = 80, 20
 # How files are read for a comparison, where their formats have a use for it: everything that they state.
 READ_FULLY: dict[str, Any] = {"dissipation": "all", "waive": ("massless_tip",), "mimic": True}
+UNREAD_MIMICRY = "joints that mimic others can't be read as such, and are compared as independent ones"
+# Of M and g of one mechanism that is computed in two ways.
+_EXACT = 1e-13
 # What a difference that no entry was found for is called.
 _UNKNOWN = "an entry that is not found"
 
@@ -35,7 +38,8 @@ class MechanismDiff:
     Attributes:
         first: Name of the first.
         second: Name of the second.
-        differences: What differs, parents first; those that change kinematics, M or g before the rest.
+        differences: What differs, parents first; those that change kinematics, M or g before the rest. Of several that
+            change kinematics, what they change of M and g is told of all together.
         errors: "kinematics", "M", "g" -> largest relative difference over random postures; empty where joints of one
             have no counterpart in the other.
         coordinates: Coordinates that differ: name in the first, name in the second, sign, offset; q = sign q' + offset.
@@ -83,23 +87,34 @@ class MechanismDiff:
     def __str__(self) -> str:
         """The same for people, at most 80 columns wide."""
         lines = [*_wrapped(f"{self.first} | {self.second}: {self._verdict()}")]
-        for k, item in enumerate(self.differences[:_LISTED]):
+        shown = [item for item in self.differences if item.is_mechanical or not item.changes]
+        for k, item in enumerate(shown[:_LISTED]):
             lines += [*_wrapped(f"{k + 1}. {item.subject}{self._renamed(item)}: {item.entry}", "  ")]
             for label, value, place in zip(("first", "second"), (item.here, item.there), item.places, strict=True):
-                lines += [*_wrapped(f"{label:9}{_text(value)}{f'  ({place})' if place else ''}", "     ")]
+                at = f"  ({Path(place).name})" if place else ""
+                lines += [*_wrapped(f"{label:9}{_text(value)}{at}", "     ")]
             lines += [*_wrapped(f"changes  {', '.join(item.changes) or 'nothing that can be observed'}", "     ")]
             if item.likelier is not None:
                 label = ("first", "second")[item.likelier]
                 lines += [*_wrapped(f"likelier right: the {label} file; {item.reason}", "     ")]
-        if len(self.differences) > _LISTED:
-            lines.append(f"  ... {len(self.differences) - _LISTED} more (--json lists them)")
+        if len(shown) > _LISTED:
+            lines.append(f"  ... {len(shown) - _LISTED} more (--json lists them)")
+        rest: dict[str, list[Difference]] = {}
+        for item in self.differences:
+            if item not in shown:
+                rest.setdefault(item.entry, []).append(item)
+        for entry, items in rest.items():
+            many = f" and {len(items) - 1} more" if len(items) > 1 else ""
+            here, there = (_text(value) for value in (items[0].here, items[0].there))
+            told = f"{entry} of {items[0].subject}{many}: {here} in the first, {there} in the second"
+            lines += [*_wrapped(f"- {told} (changes {', '.join(items[0].changes)})", "  ")]
         if self.errors:
             told = ", ".join(f"{name} {error:.1g}" for name, error in self.errors.items())
             lines += [*_wrapped(f"over {POSTURES} random postures they differ by: {told} (relative)", "  ")]
         if self.matched:
             pairs = ", ".join(f"{a} = {b}" for a, b in self.matched[:_LISTED])
-            rest = f", ... ({len(self.matched)} in all)" if len(self.matched) > _LISTED else ""
-            lines += [*_wrapped(f"joints matched by structure: {pairs}{rest}", "  ")]
+            more = f", ... ({len(self.matched)} in all)" if len(self.matched) > _LISTED else ""
+            lines += [*_wrapped(f"joints matched by structure: {pairs}{more}", "  ")]
         return "\n".join([*lines, *(line for note in self.notes for line in _wrapped(f"note: {note}", "  "))])
 
     def _verdict(self) -> str:
@@ -146,13 +161,25 @@ def diff(
     return compare(*systems, names=(names[0], names[1]), tolerance=tolerance)
 
 
-def read_fully(path: Path) -> System:
-    """Read a file with all that it states.
+def read_fully(path: Path, **stated: Any) -> System:
+    """Read a file with all that it states; joints that mimic in a way that can't be read are independent, with a note.
+
+    Args:
+        path: The file.
+        stated: Arguments of `load`; those that the file's format has no use for are left out.
 
     Raises:
         DescriptionError: As for `load`.
     """
-    return load(path, **applicable(path, READ_FULLY))
+    waive = {*READ_FULLY["waive"], *stated.get("waive", ())}
+    arguments = applicable(path, READ_FULLY | stated | {"waive": waive})
+    try:
+        return load(path, **arguments)
+    except DescriptionError:
+        if not arguments.get("mimic"):
+            raise
+        system = load(path, **arguments | {"mimic": False})
+        return replace(system, notes=(*system.notes, UNREAD_MIMICRY))
 
 
 def compare(
@@ -166,6 +193,10 @@ def compare(
         wrong = tuple(name for name, error in found.errors.items() if error > 1e3 * tolerance)
         if wrong:
             differences.append(Difference(_UNKNOWN, "", "", None, None, wrong))
+    shown = tuple(name for name in ("M", "g") if found.errors.get(name, 0.0) > 1e3 * _EXACT)
+    for k, item in enumerate(differences):
+        if item.changes == ("kinematics",) and not item.entry.startswith("frame"):
+            differences[k] = replace(item, changes=(*item.changes, *shown))
     differences.sort(key=lambda item: (not item.is_mechanical, not item.changes))
     moves = [(a.parts[x].move, b.parts[y].move, way) for x, (y, way) in found.pairs.items() if x]
     coordinates = [
@@ -178,7 +209,9 @@ def compare(
 
 
 def _notes(found: Findings) -> list[str]:
-    notes = [f"{m.label}: not compared: {note}" for m in (found.a, found.b) for note in m.lost]
+    mechanisms = (found.a, found.b)
+    notes = [f"{m.label}: not compared: {note}" for m in mechanisms for note in m.lost]
+    notes += [f"{m.label}: {UNREAD_MIMICRY}" for m in mechanisms if UNREAD_MIMICRY in m.system.notes]
     if found.reframed:
         listed = ", ".join(found.reframed[:5]) + (", ..." if len(found.reframed) > 5 else "")
         notes.append(f"frames of {len(found.reframed)} links are placed otherwise, which changes no motion: {listed}")

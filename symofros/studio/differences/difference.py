@@ -100,7 +100,7 @@ def _twin(mechanism: Mechanism, body: Body, what: str, close: Close) -> str:
     if not own.any():
         return ""
     slack = close.tolerance * np.abs(own).max()
-    others = (other for other in mechanism.bodies if other is not body)
+    others = (other for other in mechanism.bodies if other.name not in body.name.split("+"))
     return next((other.name for other in others if np.abs(_values(other, what) - own).max() <= slack), "")
 
 

@@ -109,7 +109,7 @@ class Findings:
         other = b.bodies[b.index[body.name]] if body.name in b.index else None
         entry, here, there = "joint", move.stated, "no such joint"
         if other is not None:
-            joint = b.parts[other.part].move if b.bodies[b.parts[other.part].bodies[0]] is other else None
+            joint = b.parts[other.part].move if _body(b, other.part) is other else None
             if joint is None:
                 entry, there = "joint kind", "fixed"
             else:
@@ -239,14 +239,33 @@ class Findings:
     def _entries(self, bodies: tuple[Body, Body], moves: tuple[Move, Move], way: Alignment) -> None:
         """Zero of the coordinate, limits, what resists it."""
         m, n = moves
-        if way.offset or way.sign < 0.0:
+        if way.is_remapped:
+            self._add("zero of the coordinates", bodies, moves, m.name, n.name, ("coordinates",))
+        if way.sign < 0.0:
+            self._add("sign of the coordinate", bodies, moves, m.name, f"-{n.name}", ("coordinates",))
+        if way.offset:
             sign = "-" if way.sign < 0.0 else ""
-            offset = f" {way.offset:+.9g}" if way.offset else ""
-            what = "zero of the coordinate" if way.offset else "sign of the coordinate"
-            mapped = f"{sign}{n.name}{offset}"
-            self._add(what, bodies, moves, m.name, mapped, ("coordinates",))
+            blamed, blamed_moves = self._turned_by(bodies, moves)
+            mapped = f"{sign}{n.name} {way.offset:+.9g}"
+            self._add("zero of the coordinate", blamed, blamed_moves, m.name, mapped, ("coordinates",))
         for name, here, there, changes in entries_of_joint(m.entries, n.entries, way.sign, way.offset, self.close):
             self._add(name, bodies, moves, here, there, changes)
+
+    def _turned_by(
+        self, bodies: tuple[Body, Body], moves: tuple[Move, Move]
+    ) -> tuple[tuple[Body, Body], tuple[Move, Move]]:
+        """What the file states otherwise where a coordinate's zero is elsewhere: the joint, or the only one beyond it."""
+        m, n = moves
+        if not self.close.poses(m.placed, n.placed):
+            return bodies, moves
+        after = [[x for x in mech.parts[b.part].children] for mech, b in zip((self.a, self.b), bodies, strict=True)]
+        if [len(row) for row in after] == [1, 1]:
+            x, y = after[0][0], after[1][0]
+            next_m, next_n = self.a.parts[x].move, self.b.parts[y].move
+            assert next_m is not None and next_n is not None
+            if not self.close.poses(next_m.placed, next_n.placed):
+                return (_body(self.a, x), _body(self.b, y)), (next_m, next_n)
+        return bodies, moves
 
     def _origin(self, body: Body, other: Body, moves: tuple[Move, Move] | None, here: Pose, there: Pose) -> None:
         """A joint that stands elsewhere: its frame in what carries it, or in the world where the files' frames differ."""
@@ -331,10 +350,18 @@ class Findings:
 
 
 def _body(mechanism: Mechanism, part: int) -> Body:
-    """The body that a part's joint, or a series of joints that begins with it, carries."""
-    while not mechanism.parts[part].bodies:
+    """The body that the file states on a part's joint; carriers that a reader puts between joints are none."""
+    origin, first = mechanism.system.origin, None
+    while True:
+        bodies = [mechanism.bodies[k] for k in mechanism.parts[part].bodies]
+        stated = [body for body in bodies if not origin or ("body", body.name) in origin or body.mass]
+        if stated:
+            return stated[0]
+        first = first or next(iter(bodies), None)
+        if not mechanism.parts[part].children:
+            assert first is not None  # A series of joints ends in a body.
+            return first
         part = mechanism.parts[part].children[0]
-    return mechanism.bodies[mechanism.parts[part].bodies[0]]
 
 
 def _whole(mechanism: Mechanism, part: int) -> Body:
