@@ -21,7 +21,9 @@ from symofros.studio.differences.mechanism import Body, Mechanism, Move, moved
 # Pairs of joints of one body that are weighed against each other; of more, names and order decide.
 _MOST_PAIRS = 10_000
 # What speaks against a pair of joints. A name weighs less than any fact: files name twins as they like.
-_KIND, _COUNT, _LINE, _MASS, _CENTER, _JOINT_NAME, _LINK_NAME = 4.0, 3.0, 2.0, 1.0, 1.0, 0.5, 0.25
+_KIND, _COUNT, _LINE, _MASS, _CENTER, _JOINT_NAME, _LINK_NAME, _ENTRIES = 4.0, 3.0, 2.0, 1.0, 1.0, 0.5, 0.25, 0.1
+# Joints beyond a part, by which ways are told apart that all agree at the part itself.
+_DEPTH = 4
 # Rounding of an inertia whose mass centre is moved, of its mass times the square of the mechanism's size.
 _STEINER = 1e-14
 
@@ -140,8 +142,20 @@ class Alignments:
         cost = _KIND * (m.kind != n.kind) + _COUNT * (count != count2) + _JOINT_NAME * (m.name != n.name)
         cost += _LINE * (not self.has_line(m, n, T)) + _MASS * (not self.close.numbers(mass, mass2))
         cost += _MASS * (not self.close.numbers(below, below2))
-        cost += _CENTER * (not self.close.points(center, moved(T, center2)))
+        cost += _CENTER * (not self._is_reached(m, center, moved(T, center2)))
+        # Equal twins that move to opposite sides.
+        cost += _ENTRIES * (not np.allclose(_ends(m, 1.0), _ends(n, _sign(m, T.R @ n.axis))))
         return cost + _LINK_NAME * (_first(self.a, x) != _first(self.b, y))
+
+    def _is_reached(self, m: Move, center: Array, other: Array) -> bool:
+        """Whether a joint takes one mass centre to another."""
+        along = np.array([m.axis @ center, m.axis @ other])
+        across = [p - m.point - m.axis * (m.axis @ (p - m.point)) for p in (center, other)]
+        if m.kind == "slide":
+            return self.close.points(*across)
+        if m.kind != "turn":
+            return self.close.points(center, other)
+        return self.close.points(along[:1], along[1:]) and self.close.points(*map(np.linalg.norm, across))  # type: ignore[arg-type]
 
     def has_line(self, m: Move, n: Move, T: Pose) -> bool:
         """Whether two joints have the same axis, or centre."""
@@ -171,8 +185,15 @@ class Alignments:
         theirs = self._frames[1][y]
         return seen + [self.close.poses(f, T @ theirs[name]) for name, f in self._frames[0][x].items() if name in theirs]
 
-    def of_joint(self, x: int, y: int, T: Pose) -> Alignment:
-        """How what a joint carries lies on its counterpart, where what it hangs on lies by T."""
+    def of_joint(self, x: int, y: int, T: Pose, depth: int = _DEPTH) -> Alignment:
+        """How what a joint carries lies on its counterpart, where what it hangs on lies by T.
+
+        Args:
+            x: Part of the first file that the joint carries.
+            y: Part of the second.
+            T: Displacement of what carries the joints.
+            depth: Number of joints beyond, by which ways are told apart that all agree so far.
+        """
         m, n = self.a.parts[x].move, self.b.parts[y].move
         assert m is not None and n is not None
         sign, line = _sign(m, T.R @ n.axis), self.has_line(m, n, T)
@@ -180,26 +201,65 @@ class Alignments:
         laid = m.frame @ n.frame.inverse()  # The joints' frames, one on the other.
         if m.kind == "free" or (m.kind == "ball" and line):
             turns = [T, laid] if m.kind == "ball" else [laid, T]
-            best = max(turns, key=lambda turn: sum(self.agreements(x, y, turn)))
-            return Alignment(best, is_remapped=not self.close.poses(best, T))
-        if line and all(stays):
-            return Alignment(T, sign)
-        if line:
-            for offset in self._offsets(m, n, x, y, T):
-                along = displacement(m, -offset) @ T
-                if all(self.agreements(x, y, along)):
-                    return Alignment(along, sign, offset)
-        if not self.close.poses(laid, T) and m.kind == n.kind:
-            goes = [self.has_line(m, n, laid), *self.agreements(x, y, laid)]
-            if all(goes) or sum(goes) > line + sum(stays):
-                return Alignment(laid, _sign(m, laid.R @ n.axis), is_moved=True, has_line=line)
+            if not all(self.agreements(x, y, turns[0])):
+                turns += [turn for turn in self._registrations(x, y) if self.has_line(m, n, turn)]
+            most = max(sum(self.agreements(x, y, turn)) for turn in turns)
+            ways = [
+                Alignment(turn, is_remapped=not self.close.poses(turn, T))
+                for turn in turns
+                if sum(self.agreements(x, y, turn)) == most
+            ]
+            return self._best(x, y, ways, depth)
+        ways = [Alignment(T, sign)] if line and all(stays) else []
+        if ways and self.close.poses(laid, T):
+            return ways[0]
+        for offset in self._offsets(m, n, x, y, T) if line else ():
+            along = displacement(m, -offset) @ T
+            if not any(self.close.poses(along, way.T) for way in ways) and all(self.agreements(x, y, along)):
+                ways.append(Alignment(along, sign, offset))
+        if ways:
+            return self._best(x, y, ways, depth)
+        if m.kind == n.kind and not self.close.poses(laid, T):
+            unlike = len(stays) + 1 - line - sum(stays)
+            for turn in [laid, *(self._registrations(x, y) if unlike > 1 else ())]:
+                goes = [self.has_line(m, n, turn), *self.agreements(x, y, turn)]
+                if all(goes) or (turn is laid and sum(goes) > line + sum(stays)):
+                    return Alignment(turn, _sign(m, turn.R @ n.axis), is_moved=True, has_line=line)
         return Alignment(T, sign, has_line=line)
 
+    def _best(self, x: int, y: int, ways: list[Alignment], depth: int) -> Alignment:
+        """The way by which most beyond a part agrees; the first of several."""
+        if len(ways) == 1 or depth == 0:
+            return ways[0]
+        return max(ways, key=lambda way: self._beyond(x, y, way.T, depth - 1))
+
+    def _beyond(self, x: int, y: int, T: Pose, depth: int) -> int:
+        """How many joints beyond a part agree with all that they carry."""
+        agree = 0
+        for i, j in self.pairs(x, y, lambda _: T):
+            way = self.of_joint(i, j, T, 0)
+            agree += not way.is_moved and way.has_line and all(self.agreements(i, j, way.T))
+            agree += self._beyond(i, j, way.T, depth - 1) if depth else 0
+        return agree
+
+    def _registrations(self, x: int, y: int) -> Iterator[Pose]:
+        """Displacements that lay a part on its counterpart, by frames of the same name and by principal axes."""
+        theirs = self._frames[1][y]
+        yield from (f @ theirs[name].inverse() for name, f in [*self._frames[0][x].items()][:4] if name in theirs)
+        (mass, center, inertia), (mass2, center2, inertia2) = self._totals[0][x], self._totals[1][y]
+        if mass and mass2:
+            axes, axes2 = (np.linalg.eigh(I)[1] for I in (inertia, inertia2))
+            for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
+                R = axes @ np.diag(signs) @ axes2.T
+                R = R if np.linalg.det(R) > 0.0 else axes @ np.diag(np.negative(signs)) @ axes2.T
+                yield Pose(center - R @ center2, R)
+
     def _offsets(self, m: Move, n: Move, x: int, y: int, T: Pose) -> Iterator[float]:
-        """Coordinates that may be the other file's zero: by frames, mass centres, the next joints."""
+        """Coordinates that may be the other file's zero: by frames, mass centres, principal axes, the next joints."""
         if m.kind not in ("turn", "slide"):
             return
-        points = [(m.frame.p, n.frame.p), (self._totals[0][x][1], self._totals[1][y][1])]
+        (mass, center, inertia), (mass2, center2, inertia2) = self._totals[0][x], self._totals[1][y]
+        points = [(m.frame.p, n.frame.p), (center, center2)]
         vectors = [(m.frame.R[:, k], n.frame.R[:, k]) for k in range(3)]
         for i, j in self.pairs(x, y, lambda _: T)[:8]:
             p, r = self.a.parts[i].move, self.b.parts[j].move
@@ -207,14 +267,23 @@ class Alignments:
             points.append((p.frame.p, r.frame.p))
             vectors += [(p.axis, r.axis), (p.axis, -r.axis)]
         theirs = self._frames[1][y]
-        points += [(f.p, theirs[name].p) for name, f in self._frames[0][x].items() if name in theirs][:8]
+        frames = [(f, theirs[name]) for name, f in self._frames[0][x].items() if name in theirs][:8]
+        points += [(f.p, g.p) for f, g in frames]
+        vectors += [(f.R[:, k], g.R[:, k]) for f, g in frames for k in range(3)]
         if m.kind == "slide":
             yield from (float(m.axis @ (moved(T, q) - p)) for p, q in points)
             return
-        turned = [(p - m.point, moved(T, q) - m.point) for p, q in points] + [(u, T.R @ v) for u, v in vectors]
-        for u, v in turned:
+        if mass and mass2:
+            pairs = zip(np.linalg.eigh(inertia)[1].T, np.linalg.eigh(inertia2)[1].T, strict=True)
+            vectors += [(u, sign * v) for u, v in pairs for sign in (1.0, -1.0)]
+        scale = self.close.size
+        turned = [((p - m.point) / scale, (moved(T, q) - m.point) / scale) for p, q in points]
+        across = []
+        for u, v in [*turned, *((u, T.R @ v) for u, v in vectors)]:
             u, v = (w - m.axis * (m.axis @ w) for w in (u, v))
-            if min(np.linalg.norm(u), np.linalg.norm(v)) > self.close.tolerance * self.close.size:
+            across.append((float(min(np.linalg.norm(u), np.linalg.norm(v))), u, v))
+        for length, u, v in sorted(across, key=lambda row: -row[0]):  # Long ones tell the angle best.
+            if length > self.close.tolerance:
                 yield math.atan2(float(m.axis @ np.cross(u, v)), float(u @ v))
 
     def of_body(self, body: Body, other: Body, T: Pose, part: tuple[int, int]) -> Alignment:
@@ -255,6 +324,11 @@ def displacement(move: Move, q: float) -> Pose:
 
 def _sign(m: Move, axis: Array) -> float:
     return -1.0 if m.axis @ axis < 0.0 else 1.0
+
+
+def _ends(m: Move, sign: float) -> list[float]:
+    """Limits of a coordinate, or of its negative."""
+    return sorted(sign * m.entries.get(name, end) for name, end in (("lower limit", -math.inf), ("upper limit", math.inf)))
 
 
 def _first(mechanism: Mechanism, part: int) -> str:

@@ -21,7 +21,7 @@ def described(text: str, robot: str, folder: Path) -> sf.System:
 
 def verdict(case: Planted, found: MechanismDiff) -> str:
     """What is wrong with the answer; "" if nothing."""
-    named = next((item for item in found.differences if case.subject in (item.joint, item.link)), None)
+    named = next((item for item in found.differences if case.subject in (item.joint, item.link, *item.names)), None)
     if case.kind in ("origin rpy", "origin xyz", "axis reversed", "body pos") and found.same and found.coordinates:
         return "" if named is not None and named.entry in case.entries else "the coordinate is not named"
     if not shows(case):
