@@ -202,7 +202,7 @@ class Alignments:
         if m.kind == "free" or (m.kind == "ball" and line):
             turns = [T, laid] if m.kind == "ball" else [laid, T]
             if not all(self.agreements(x, y, turns[0])):
-                turns += [turn for turn in self._registrations(x, y) if self.has_line(m, n, turn)]
+                turns += [turn for turn in self._registrations(x, y, T) if self.has_line(m, n, turn)]
             most = max(sum(self.agreements(x, y, turn)) for turn in turns)
             ways = [
                 Alignment(turn, is_remapped=not self.close.poses(turn, T))
@@ -220,11 +220,16 @@ class Alignments:
         if ways:
             return self._best(x, y, ways, depth)
         if m.kind == n.kind and not self.close.poses(laid, T):
-            unlike = len(stays) + 1 - line - sum(stays)
-            for turn in [laid, *(self._registrations(x, y) if unlike > 1 else ())]:
-                goes = [self.has_line(m, n, turn), *self.agreements(x, y, turn)]
-                if all(goes) or (turn is laid and sum(goes) > line + sum(stays)):
-                    return Alignment(turn, _sign(m, turn.R @ n.axis), is_moved=True, has_line=line)
+            goes = [self.has_line(m, n, laid), *self.agreements(x, y, laid)]
+            if all(goes) or sum(goes) > line + sum(stays):
+                return Alignment(laid, _sign(m, laid.R @ n.axis), is_moved=True, has_line=line)
+            # The files have other frames: only places tell whether a joint went elsewhere with all that it carries.
+            several = len(stays) + 1 - line - sum(stays) > 1
+            here = 0 if several or not depth else self._beyond(x, y, T, depth - 1)
+            for turn in self._registrations(x, y, T):
+                if self.has_line(m, n, turn) and all(self.agreements(x, y, turn)):
+                    if several or (depth and self._beyond(x, y, turn, depth - 1) > here):
+                        return Alignment(turn, _sign(m, turn.R @ n.axis), is_moved=True, has_line=line)
         return Alignment(T, sign, has_line=line)
 
     def _best(self, x: int, y: int, ways: list[Alignment], depth: int) -> Alignment:
@@ -242,12 +247,13 @@ class Alignments:
             agree += self._beyond(i, j, way.T, depth - 1) if depth else 0
         return agree
 
-    def _registrations(self, x: int, y: int) -> Iterator[Pose]:
+    def _registrations(self, x: int, y: int, T: Pose) -> Iterator[Pose]:
         """Displacements that lay a part on its counterpart, by frames of the same name and by principal axes."""
         theirs = self._frames[1][y]
         yield from (f @ theirs[name].inverse() for name, f in [*self._frames[0][x].items()][:4] if name in theirs)
         (mass, center, inertia), (mass2, center2, inertia2) = self._totals[0][x], self._totals[1][y]
         if mass and mass2:
+            yield Pose(center - T.R @ center2, T.R)
             axes, axes2 = (np.linalg.eigh(I)[1] for I in (inertia, inertia2))
             for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
                 R = axes @ np.diag(signs) @ axes2.T

@@ -27,6 +27,8 @@ from symofros.studio.differences.motion import (
 POSTURES, _ROUNDING = 4, 1e-11
 # Differences beyond which no more are looked for: who has as many compares two robots.
 MOST_DIFFERENCES = 200
+# Massive bodies of a part that are matched by what they weigh.
+_MOST_RENAMED = 60
 _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -122,20 +124,39 @@ class Findings:
 
     # Bodies.
 
+    def _counterparts(self, c: int, d: int, T: Pose) -> dict[int, int]:
+        """Bodies of a part -> their counterparts: by names, and massive ones that are left over by what they weigh."""
+        there = {self.b.bodies[k].name: k for k in self.b.parts[d].bodies}
+        pairs = {k: there.pop(self.a.bodies[k].name) for k in self.a.parts[c].bodies if self.a.bodies[k].name in there}
+        ours = [k for k in self.a.parts[c].bodies if k not in pairs and self.a.bodies[k].mass]
+        theirs = [k for k in there.values() if self.b.bodies[k].mass]
+        if len(ours) == len(theirs) <= _MOST_RENAMED:
+            unlike = sorted((self._unlike(x, y, T), x, y) for x in ours for y in theirs)
+            for _, x, y in unlike:
+                if x not in pairs and y not in pairs.values():
+                    pairs[x] = y
+        return pairs
+
+    def _unlike(self, x: int, y: int, T: Pose) -> int:
+        """How many numbers of two bodies differ."""
+        one, two, close = self.a.bodies[x], self.b.bodies[y], self.close
+        alike = close.numbers(one.mass, two.mass), close.points(one.center, moved(T, two.center))
+        return 3 - sum((*alike, close.inertias(one.inertia, T.R @ two.inertia @ T.R.T, one.mass)))
+
     def _place_bodies(self, c: int, d: int, T: Pose) -> list[tuple[Body, Body]]:
-        """Counterparts by name of a part's bodies; where each of the second file lies."""
+        """A part's bodies and their counterparts; where each of the second file lies."""
         for k in self.b.parts[d].bodies:
             self._laid[k] = T
-        there = {self.b.bodies[k].name: k for k in self.b.parts[d].bodies}
+        counterparts = self._counterparts(c, d, T)
         ours, pairs = self.a.parts[c].bodies, list[tuple[Body, Body]]()
         laid = dict.fromkeys(ours, T)
         for k in ours:
             body = self.a.bodies[k]
             if body.parent in laid:
                 laid[k] = laid[body.parent]
-            if body.name not in there:
+            if k not in counterparts:
                 continue
-            other = self.b.bodies[there[body.name]]
+            other = self.b.bodies[counterparts[k]]
             if (body.parent in laid or c == 0) and body.joint:
                 way = self.aligned.of_body(body, other, laid[k], (c, d))
                 if way.is_moved:
@@ -143,7 +164,7 @@ class Findings:
                 laid[k] = way.T
             if not self.close.poses(body.pose, laid[k] @ other.pose):
                 self.reframed.append(body.name)
-            self._laid[there[body.name]] = laid[k]
+            self._laid[counterparts[k]] = laid[k]
             self._frames(body, other, laid[k])
             pairs.append((body, other))
         return pairs
@@ -157,14 +178,12 @@ class Findings:
                 self._add(f"frame '{name}'", (body, other), None, here, there, ("kinematics",))
 
     def _inertias(self, c: int, d: int, named: list[tuple[Body, Body]], T: Pose) -> None:
-        """Inertias body by body, where both files have the same ones, or else those of the whole part."""
+        """Inertias body by body, where both files have as many, or else those of the whole part."""
         ours, theirs = self.a.massive(c), self.b.massive(d)
         pairs = [(x, y) for x, y in named if x in ours or y in theirs]
         lone = [x for x in ours if x not in [pair[0] for pair in pairs]]
         lone_there = [y for y in theirs if y not in [pair[1] for pair in pairs]]
-        if len(lone) == len(lone_there) == 1:  # Renamed.
-            pairs.append((lone[0], lone_there[0]))
-        elif lone or lone_there:
+        if lone or lone_there:
             pairs = [(_whole(self.a, c), _whole(self.b, d))]
         for body, other in pairs:
             index = self.b.index.get(other.name, -1)
