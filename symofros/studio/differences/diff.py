@@ -153,9 +153,6 @@ def diff(
         DescriptionError: A file can't be read, or is more than a tree of rigid bodies on joints of the library.
         ArgumentError: The tolerance is no small positive number.
     """
-    if not 0.0 < tolerance < 0.1:
-        rule, remedy = "0 < tolerance < 0.1, so that it absorbs rounding only", "for example tolerance=1e-6"
-        raise ArgumentError(Problem("diff: unusable tolerance", f"{tolerance:g}", rule, remedy))
     systems = [item if isinstance(item, System) else read_fully(Path(item)) for item in (first, second)]
     names = [item.name if isinstance(item, System) else os.fspath(item) for item in (first, second)]
     return compare(*systems, names=(names[0], names[1]), tolerance=tolerance)
@@ -185,7 +182,15 @@ def read_fully(path: Path, **stated: Any) -> System:
 def compare(
     first: System, second: System, *, names: tuple[str, str] = ("first", "second"), tolerance: float = TOLERANCE
 ) -> MechanismDiff:
-    """`diff` of systems, by the names that are to be shown."""
+    """`diff` of systems, by the names that are to be shown.
+
+    Raises:
+        DescriptionError: As for `diff`.
+        ArgumentError: As for `diff`.
+    """
+    if not 0.0 < tolerance < 0.1:
+        rule, remedy = "0 < tolerance < 0.1, so that it absorbs rounding only", "for example tolerance=1e-6"
+        raise ArgumentError(Problem("diff: unusable tolerance", f"{tolerance:g}", rule, remedy))
     a, b = (Mechanism(system, name) for system, name in zip((first, second), names, strict=True))
     found = Findings(a, b, tolerance, seed=0)
     differences = [*found.differences, *constraint_differences(found)]
