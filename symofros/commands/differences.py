@@ -57,4 +57,7 @@ def _compared(paths: list[Path], reading: ReadingOptions, tolerance: float) -> l
         with refusing_descriptions(path):
             systems.append(read_fully(path, **reading.fit_for(path).keywords))
     (first, *others), (label, *labels) = systems, map(str, paths)
-    return [compare(first, system, names=(label, name), tolerance=tolerance) for system, name in zip(others, labels, strict=True)]
+    return [
+        compare(first, system, names=(label, name), tolerance=tolerance)
+        for system, name in zip(others, labels, strict=True)
+    ]

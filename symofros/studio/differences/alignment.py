@@ -19,7 +19,7 @@ from symofros.description import Pose
 from symofros.studio.differences.mechanism import Body, Mechanism, Move, moved
 
 # Pairs of joints of one body that are weighed against each other; of more, names and order decide.
-_MOST_PAIRS = 10_000
+_MOST_PAIRS = 2500
 # What speaks against a pair of joints. A name weighs less than any fact: files name twins as they like.
 _KIND, _COUNT, _LINE, _MASS, _CENTER, _JOINT_NAME, _LINK_NAME, _ENTRIES = 4.0, 3.0, 2.0, 1.0, 1.0, 0.5, 0.25, 0.1
 # Joints beyond a part, by which ways are told apart that all agree at the part itself.
@@ -96,7 +96,7 @@ class Alignments:
         self._totals = [[m.total(k) for k in range(len(m.parts))] for m in (a, b)]
         self._names = [{part.move.name for part in m.parts if part.move is not None} for m in (a, b)]
         self._below = [_below(m) for m in (a, b)]
-        self._frames = [[_named_frames(m, k) for k in range(len(m.parts))] for m in (a, b)]
+        self._frames = [_named_frames(m) for m in (a, b)]
 
     def pairs(self, c: int, d: int, T: Callable[[int], Pose]) -> list[tuple[int, int]]:
         """The joints on two parts in pairs, the most alike first; those that are left over have none.
@@ -109,8 +109,9 @@ class Alignments:
         ours, theirs = self.a.parts[c].children, self.b.parts[d].children
         if len(ours) * len(theirs) > _MOST_PAIRS:
             named = {self.b.parts[y].move.name: y for y in theirs}  # type: ignore[union-attr]
-            known = [(x, named.pop(self.a.parts[x].move.name, -1)) for x in ours]  # type: ignore[union-attr]
-            return [pair for pair in known if pair[1] >= 0]
+            known = {x: named.pop(self.a.parts[x].move.name, -1) for x in ours}  # type: ignore[union-attr]
+            rest = zip([x for x, y in known.items() if y < 0], named.values(), strict=False)
+            return sorted(({x: y for x, y in known.items() if y >= 0} | dict(rest)).items())
         costs = [
             (self._cost(x, y, T(y)) + 1e-6 * abs(i - j), x, y)
             for i, x in enumerate(ours)
@@ -183,7 +184,9 @@ class Alignments:
             assert m is not None and n is not None
             seen.append(self.has_line(m, n, T))
         theirs = self._frames[1][y]
-        return seen + [self.close.poses(f, T @ theirs[name]) for name, f in self._frames[0][x].items() if name in theirs]
+        return seen + [
+            self.close.poses(f, T @ theirs[name]) for name, f in self._frames[0][x].items() if name in theirs
+        ]
 
     def of_joint(self, x: int, y: int, T: Pose, depth: int = _DEPTH) -> Alignment:
         """How what a joint carries lies on its counterpart, where what it hangs on lies by T.
@@ -334,7 +337,9 @@ def _sign(m: Move, axis: Array) -> float:
 
 def _ends(m: Move, sign: float) -> list[float]:
     """Limits of a coordinate, or of its negative."""
-    return sorted(sign * m.entries.get(name, end) for name, end in (("lower limit", -math.inf), ("upper limit", math.inf)))
+    return sorted(
+        sign * m.entries.get(name, end) for name, end in (("lower limit", -math.inf), ("upper limit", math.inf))
+    )
 
 
 def _first(mechanism: Mechanism, part: int) -> str:
@@ -353,13 +358,13 @@ def _below(mechanism: Mechanism) -> list[tuple[int, float]]:
     return list(zip(counts, masses, strict=True))
 
 
-def _named_frames(mechanism: Mechanism, part: int) -> dict[str, Pose]:
-    """Frames on a part that stand for themselves: extremity frames, and massless bodies that carry nothing."""
-    bodies = [mechanism.bodies[k] for k in mechanism.parts[part].bodies]
+def _named_frames(mechanism: Mechanism) -> list[dict[str, Pose]]:
+    """Frames on each part that stand for themselves: extremity frames, and massless bodies that carry nothing."""
     carriers = {body.parent for body in mechanism.bodies}
     carriers |= {child.move.carrier for child in mechanism.parts if child.move is not None}
-    frames = {name: frame for body in bodies for name, frame in body.frames.items()}
-    for k in mechanism.parts[part].bodies[1:]:
-        if k not in carriers and not mechanism.bodies[k].mass:
-            frames[mechanism.bodies[k].name] = mechanism.bodies[k].pose
-    return frames
+    parts = []
+    for part in mechanism.parts:
+        frames = {name: frame for k in part.bodies for name, frame in mechanism.bodies[k].frames.items()}
+        lone = [mechanism.bodies[k] for k in part.bodies[1:] if k not in carriers and not mechanism.bodies[k].mass]
+        parts.append(frames | {body.name: body.pose for body in lone})
+    return parts

@@ -105,11 +105,17 @@ def _symbols(mechanism: Mechanism) -> dict[str, str]:
 
 def _same_place(found: Findings, anchor: tuple[str, str | None], other: tuple[str, str | None]) -> bool:
     """Whether two anchors are the same point of counterparts."""
-    bodies = [m.bodies[m.index[name]] if name in m.index else None for m, (name, _) in zip((found.a, found.b), (anchor, other), strict=True)]
+    bodies = [
+        m.bodies[m.index[name]] if name in m.index else None
+        for m, (name, _) in zip((found.a, found.b), (anchor, other), strict=True)
+    ]
     one, two = bodies
     if one is None or two is None:
         return one is two
     if one.part not in found.pairs or found.pairs[one.part][0] != two.part:
         return False
-    poses = [body.pose if label is None else body.frames.get(label, body.pose) for body, (_, label) in ((one, anchor), (two, other))]
+    poses = [
+        body.pose if label is None else body.frames.get(label, body.pose)
+        for body, (_, label) in ((one, anchor), (two, other))
+    ]
     return found.close.points(poses[0].p, moved(found.pairs[one.part][1].T, poses[1].p))

@@ -79,7 +79,9 @@ class MechanismDiff:
             "identical": self.identical,
             "differences": [json.loads(json.dumps(asdict(item))) for item in self.differences],
             "errors": self.errors,
-            "coordinates": [dict(zip(("first", "second", "sign", "offset"), row, strict=True)) for row in self.coordinates],
+            "coordinates": [
+                dict(zip(("first", "second", "sign", "offset"), row, strict=True)) for row in self.coordinates
+            ],
             "matched": [list(pair) for pair in self.matched],
             "notes": list(self.notes),
         }

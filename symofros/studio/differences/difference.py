@@ -120,8 +120,13 @@ def entries_of_joint(
         mapped["rest of the spring"] = sign * mapped["rest of the spring"] + offset
     for name in sorted(here.keys() | mapped.keys()):
         a, b = here.get(name), mapped.get(name)
-        near = a is not None and b is not None and abs(a - b) <= close.tolerance * max(1.0 * bool(offset), abs(a), abs(b))
-        if not near:
+        near = (
+            a is not None
+            and b is not None
+            and abs(a - b) <= close.tolerance * max(float(offset != 0.0), abs(a), abs(b))
+        )
+        lacks_spring = name == "rest of the spring" and (a is None or b is None)  # Its stiffness says so.
+        if not near and not lacks_spring:
             yield name, a, b, (_changes(name),)
 
 

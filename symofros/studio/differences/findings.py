@@ -12,16 +12,7 @@ from symofros.description import IDENTITY_POSE, Pose
 from symofros.studio.differences.alignment import Alignment, Alignments, Close
 from symofros.studio.differences.difference import Difference, entries_of_joint, likelier
 from symofros.studio.differences.mechanism import Body, Mechanism, Move, moved
-from symofros.studio.differences.motion import (
-    Moving,
-    adjoint,
-    gravity_forces,
-    jacobians,
-    mass_matrix,
-    poses,
-    posture,
-    spatial_inertia,
-)
+from symofros.studio.differences.motion import Moving, Posture, adjoint, random_coordinates, spatial_inertia
 
 # Postures that an inertia is asked at, and what of its largest possible effect is rounding.
 POSTURES, _ROUNDING = 4, 1e-11
@@ -58,9 +49,9 @@ class Findings:
         self.reframed: list[str] = []
         self.complete = True
         self._moving = [self._moved(a, k) for k in range(len(a.parts))]
-        qs = [posture(self._moving, self.close.size, self.rng) for _ in range(POSTURES)]
-        self._postures = [(q, poses(self._moving, q)) for q in qs]
-        self._jacobians = [jacobians(self._moving, placed) for _, placed in self._postures]
+        qs = [random_coordinates(self._moving, self.close.size, self.rng) for _ in range(POSTURES)]
+        self._postures = [(q, Posture(self._moving, q)) for q in qs]
+        self._carriers = {0: IDENTITY_POSE}  # Part of b -> how it lies.
         self._laid: dict[int, Pose] = {}  # Of bodies of b.
         self._compare()
         self.errors = self._errors() if self.complete else {}
@@ -79,6 +70,7 @@ class Findings:
                 self._inertias(c, d, bodies, alignment.T)
             for x, y in pairs:
                 self.pairs[x] = (y, self._joint(x, y))
+                self._carriers[y] = self.pairs[x][1].T
                 queue.append(x)
         self.complete &= not queue
 
@@ -87,8 +79,7 @@ class Findings:
         move = self.b.parts[part].move
         if move is not None and move.carrier >= 0:
             return self._laid[move.carrier]
-        parents = {d: alignment.T for d, alignment in self.pairs.values()}
-        return parents[self.b.parts[part].parent]
+        return self._carriers[self.b.parts[part].parent]
 
     # What is there.
 
@@ -213,20 +204,19 @@ class Findings:
     def _shown_by(self, c: int, old: tuple[float, Array, Array], new: tuple[float, Array, Array]) -> tuple[str, ...]:
         """Which of M and g another inertia of a part changes: they are linear in it, so that no digits cancel."""
         change = spatial_inertia(*new) - spatial_inertia(*old)
-        part = Moving(-1, np.zeros((6, 0)), change)
         weights = [0.0, 0.0]
         scale = self.close.size
         units = np.diag([1 / scale] * 3 + [1.0] * 3)
         largest = np.abs(units @ change @ units).max() * scale**2
-        for (_, placed), moving in zip(self._postures, self._jacobians, strict=True):
-            speeds, J = moving[c]
-            if not len(speeds):
+        for _, posture in self._postures:
+            J = posture.jacobian(c)
+            if not J.size:
                 continue
             size = np.abs(np.linalg.inv(units) @ J).max() / scale or 1.0
-            weights[0] = max(weights[0], float(np.abs(J.T @ part.inertia @ J).max()) / size**2)
-            down = np.concatenate([np.zeros(3), placed[c].R.T @ self.a.gravity])
+            weights[0] = max(weights[0], float(np.abs(J.T @ change @ J).max()) / size**2)
+            down = np.concatenate([np.zeros(3), posture.placed[c].R.T @ self.a.gravity])
             strong = float(np.abs(self.a.gravity).max()) or 1.0
-            weights[1] = max(weights[1], float(np.abs(J.T @ part.inertia @ down).max()) * scale / size / strong)
+            weights[1] = max(weights[1], float(np.abs(J.T @ change @ down).max()) * scale / size / strong)
         return tuple(name for name, weight in zip(("M", "g"), weights, strict=True) if weight > _ROUNDING * largest)
 
     # Joints.
@@ -312,13 +302,15 @@ class Findings:
         first, second = bodies or (None, None)
         joint = moves[0].name if moves else first.joint if first is not None and entry == "origin" else ""
         other = moves[1].name if moves else second.joint if second is not None and entry == "origin" else ""
-        kinds = ("joint", joint, other) if joint else ("body", first.name if first else "", second.name if second else "")
+        kinds = (
+            ("joint", joint, other) if joint else ("body", first.name if first else "", second.name if second else "")
+        )
         places = tuple(
             m.system.origin.get((kinds[0], name), "") for m, name in zip((self.a, self.b), kinds[1:], strict=True)
         )
         link = first.name if first is not None else ""
         found = Difference(entry, link, joint, here, there, changes, (second.name if second else "", other), places)  # type: ignore[arg-type]
-        if first is not None and second is not None and changes:
+        if first is not None and second is not None:
             which, reason = likelier((self.a, self.b), (first, second), entry, self.close)
             found = replace(found, likelier=which, reason=reason)
         self.differences.append(found)
@@ -335,18 +327,16 @@ class Findings:
         place = {x: k for k, x in enumerate(sorted(self.pairs))}
         theirs = [self._counterpart(x, place) for x in sorted(self.pairs)]
         errors = {"kinematics": 0.0, "M": 0.0, "g": 0.0}
-        for (q, placed), moving in zip(self._postures, self._jacobians, strict=True):
-            other = poses(theirs, q)
+        for q, ours in self._postures:
+            other = Posture(theirs, q)
             for x, k in place.items():
-                seen, there = placed[x] @ self.pairs[x][1].T, other[k]
+                seen, there = ours.placed[x] @ self.pairs[x][1].T, other.placed[k]
                 at = [np.abs(seen.p - there.p).max() / self.close.size, np.abs(seen.R - there.R).max()]
                 errors["kinematics"] = max(errors["kinematics"], float(max(at)))
-            turning = jacobians(theirs, other)
-            M, M2 = mass_matrix(self._moving, moving), mass_matrix(theirs, turning)
+            M, M2 = ours.mass_matrix(), other.mass_matrix()
             scale = np.sqrt(np.abs(np.diag(M))) + 1e-150
             errors["M"] = max(errors["M"], float(np.abs((M - M2) / np.outer(scale, scale)).max(initial=0.0)))
-            g = gravity_forces(self._moving, placed, moving, self.a.gravity)
-            g2 = gravity_forces(theirs, other, turning, self.b.gravity)
+            g, g2 = ours.gravity_forces(self.a.gravity), other.gravity_forces(self.b.gravity)
             largest = float(np.abs(g).max(initial=0.0)) or 1.0
             errors["g"] = max(errors["g"], float(np.abs(g - g2).max(initial=0.0)) / largest)
         return errors
@@ -358,7 +348,7 @@ class Findings:
         move = self.a.parts[x].move
         if move is None:
             return own
-        carrier = self.pairs[self.a.parts[x].parent][1].T if self.b.parts[y].move is None else self._carrier(y)
+        carrier = self._carrier(y)
         zero = IDENTITY_POSE if way.is_moved else carrier.inverse() @ way.T
         screws = own.screws * way.sign
         if move.kind == "ball":  # Along the first file's axes, about the second's own centre.

@@ -19,7 +19,7 @@ from symofros.exports.interchange.rigid import RigidLink, rigid_links
 from symofros.mechanics.topology import Numbers, coordinate_names
 
 # Bodies beyond which files are refused, so that hostile ones take bounded time.
-MOST_BODIES = 3000
+MOST_BODIES = 1000
 
 
 def moved(T: Pose, point: Array) -> Array:

@@ -46,49 +46,64 @@ def spatial_inertia(mass: float, center: Array, inertia: Array) -> Array:
     return np.block([[inertia - mass * S @ S, mass * S], [-mass * S, mass * np.eye(3)]])
 
 
-def poses(parts: Sequence[Moving], q: Sequence[Array]) -> list[Pose]:
-    """Displacement of each part from zero coordinates."""
-    placed: list[Pose] = []
-    for part, values in zip(parts, q, strict=True):
-        carrier = placed[part.parent] if part.parent >= 0 else IDENTITY_POSE
-        w, v = np.split(part.screws @ values, 2)
-        turn = Pose(screw_displacement(w, v), quaternion_matrix(quaternion_exp(w)))
-        placed.append(carrier @ turn @ part.zero)
-    return placed
+class Posture:
+    """Parts at one posture.
+
+    Args:
+        parts: Parts, parents first.
+        q: Exponential coordinates of each.
+
+    Attributes:
+        placed: Displacement of each part from zero coordinates.
+        moves: Whether a speed moves a part (parts, n).
+    """
+
+    def __init__(self, parts: Sequence[Moving], q: Sequence[Array]) -> None:
+        self.parts, self.placed = parts, list[Pose]()
+        columns, self._owners = [np.zeros((6, 0))], list[int]()
+        self.moves = np.zeros((len(parts), sum(part.screws.shape[1] for part in parts)), dtype=bool)
+        for k, (part, values) in enumerate(zip(parts, q, strict=True)):
+            carrier = self.placed[part.parent] if part.parent >= 0 else IDENTITY_POSE
+            w, v = np.split(part.screws @ values, 2)
+            turned = carrier @ Pose(screw_displacement(w, v), quaternion_matrix(quaternion_exp(w)))
+            self.placed.append(turned @ part.zero)
+            columns.append(adjoint(turned) @ part.screws)
+            first = len(self._owners)
+            self._owners += [k] * part.screws.shape[1]
+            if part.parent >= 0:
+                self.moves[k] = self.moves[part.parent]
+            self.moves[k, first : len(self._owners)] = True
+        self._columns = np.hstack(columns)
+        self._composite = self._composite_inertias()
+
+    def _composite_inertias(self) -> Array:
+        """Spatial inertia of each part with all that it carries, about the origin, in the world's axes (parts, 6, 6)."""
+        inertias = np.zeros((len(self.parts), 6, 6))
+        for k in reversed(range(len(self.parts))):
+            back = adjoint(self.placed[k].inverse())
+            inertias[k] += back.T @ self.parts[k].inertia @ back
+            if self.parts[k].parent >= 0:
+                inertias[self.parts[k].parent] += inertias[k]
+        return inertias
+
+    def mass_matrix(self) -> Array:
+        """M (n, n)."""
+        momenta = np.einsum("nij,jn->in", self._composite[self._owners], self._columns)
+        full, above = self._columns.T @ momenta, self.moves[self._owners].T
+        M = np.where(above, full, np.where(above.T, full.T, 0.0))
+        return np.asarray(M + np.diag([self.parts[k].armature for k in self._owners]))
+
+    def gravity_forces(self, gravity: Array) -> Array:
+        """Gravity's part of h (n)."""
+        acceleration = np.concatenate([np.zeros(3), gravity])
+        return np.asarray(-np.einsum("in,nij,j->n", self._columns, self._composite[self._owners], acceleration))
+
+    def jacobian(self, part: int) -> Array:
+        """Twists of a part by the speeds that move it, in its own axes at zero coordinates (6, n of these)."""
+        return np.asarray(adjoint(self.placed[part].inverse()) @ self._columns[:, self.moves[part]])
 
 
-def jacobians(parts: Sequence[Moving], placed: Sequence[Pose]) -> list[tuple[Array, Array]]:
-    """Of each part the speeds that move it, and its twists by them (6, n) in its own axes at zero coordinates."""
-    starts = np.cumsum([0, *(part.screws.shape[1] for part in parts)])
-    world: list[tuple[Array, Array]] = []
-    for k, part in enumerate(parts):
-        own = adjoint(placed[k] @ part.zero.inverse()) @ part.screws
-        above, columns = world[part.parent] if part.parent >= 0 else (np.zeros(0, dtype=int), np.zeros((6, 0)))
-        world.append((np.r_[above, starts[k] : starts[k + 1]], np.hstack([columns, own])))
-    return [(speeds, adjoint(placed[k].inverse()) @ columns) for k, (speeds, columns) in enumerate(world)]
-
-
-def mass_matrix(parts: Sequence[Moving], moving: Sequence[tuple[Array, Array]]) -> Array:
-    """M (n, n)."""
-    armatures = [np.full(part.screws.shape[1], part.armature) for part in parts]
-    M = np.diag(np.concatenate([np.zeros(0), *armatures]))
-    for part, (speeds, J) in zip(parts, moving, strict=True):
-        M[np.ix_(speeds, speeds)] += J.T @ part.inertia @ J
-    return M
-
-
-def gravity_forces(
-    parts: Sequence[Moving], placed: Sequence[Pose], moving: Sequence[tuple[Array, Array]], gravity: Array
-) -> Array:
-    """Gravity's part of h (n)."""
-    g = np.zeros(sum(part.screws.shape[1] for part in parts))
-    for part, pose, (speeds, J) in zip(parts, placed, moving, strict=True):
-        acceleration = np.concatenate([np.zeros(3), pose.R.T @ gravity])
-        g[speeds] -= J.T @ (part.inertia @ acceleration)
-    return g
-
-
-def posture(parts: Sequence[Moving], size: float, rng: np.random.Generator) -> list[Array]:
+def random_coordinates(parts: Sequence[Moving], size: float, rng: np.random.Generator) -> list[Array]:
     """Random exponential coordinates: turns to both sides by up to two thirds of pi, slides by half the size."""
     scale = [np.where(np.linalg.norm(part.screws[:3], axis=0) > 0.5, 2.0, 0.5 * size) for part in parts]
     return [rng.uniform(-1.0, 1.0, len(most)) * most for most in scale]

@@ -264,13 +264,13 @@ MJCF_KINDS = {
     "inertial pos": (_mjcf("inertial", "pos", "", 0.02), ("center of mass",)),
     "fullinertia": (_mjcf("inertial", "fullinertia", "", 0.004), ("inertia",)),
     "geom mass": (_mjcf("geom", "mass", "", 0.0), ("mass",)),
-    "geom pos": (_mjcf("geom", "pos", "", 0.02), ("center of mass",)),
+    "geom pos": (_mjcf("geom", "pos", "", 0.02), ("center of mass", "zero of the coordinates")),
 }
 
 
 def shows(case: Planted) -> bool:
     """Whether an engine sees the change: in frames, M or gravity forces."""
-    values = (_in_mujoco if case.robot == "creature" else _in_pinocchio)
+    values = _in_mujoco if case.robot == "creature" else _in_pinocchio
     before, after = values(original(case.robot), case.robot), values(case.text, case.robot)
     if before.shape != after.shape:
         return True

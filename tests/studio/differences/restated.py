@@ -38,7 +38,9 @@ def restated(
         gauges[link.name] = _gauge(link, rng) if frames and not stands else IDENTITY_POSE
         body = _body(link, gauges, rng if zeros else None)
         if names and not stands:
-            body = replace(body, name=called[link.name], joint=body.joint and replace(body.joint, name=f"j_{called[link.name]}"))
+            body = replace(
+                body, name=called[link.name], joint=body.joint and replace(body.joint, name=f"j_{called[link.name]}")
+            )
         if names and body.joint is not None:
             carried = next(x for x in links if x.name == link.parent)
             parent = called[str(link.parent)] if carried.parent is not None else str(link.parent)
