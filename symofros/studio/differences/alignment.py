@@ -1,7 +1,7 @@
 """Which part of one file is which of the other, and by which displacement it lies on it.
 
-A displacement T turns places at zero coordinates of the second file into those of the first. Zero coordinates of a joint
-may be elsewhere in the two, and its axis may have the other sign: q = sign q' + offset.
+A displacement T turns places at zero coordinates of the second file into those of the first. The zero of a joint's
+coordinate may be elsewhere in the two, and its axis may have the other sign: q = sign q' + offset.
 """
 
 from __future__ import annotations
@@ -257,7 +257,7 @@ class Alignments:
         (mass, center, inertia), (mass2, center2, inertia2) = self._totals[0][x], self._totals[1][y]
         if mass and mass2:
             yield Pose(center - T.R @ center2, T.R)
-            axes, axes2 = (np.linalg.eigh(I)[1] for I in (inertia, inertia2))
+            axes, axes2 = (np.linalg.eigh(moments)[1] for moments in (inertia, inertia2))
             for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)):
                 R = axes @ np.diag(signs) @ axes2.T
                 R = R if np.linalg.det(R) > 0.0 else axes @ np.diag(np.negative(signs)) @ axes2.T

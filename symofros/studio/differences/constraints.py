@@ -56,7 +56,7 @@ def _stated(constraint: Constraint) -> str:
 
 
 def _equality(found: Findings, is_mapped: bool) -> Callable[[Constraint, Constraint], bool]:
-    """Whether two constraints say the same, in places of the first file and in its coordinates, or in each one's own."""
+    """Whether two constraints say the same, in the first file's places; in its coordinates, or in each file's own."""
     q, q2 = _coordinates(found, is_mapped)
 
     def residuals(mechanism: Mechanism, constraint: Coupling, values: list[dict[str, float]]) -> Array:

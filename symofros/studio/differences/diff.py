@@ -143,8 +143,8 @@ def diff(
     """Compare two descriptions as mechanisms.
 
     Links and joints are matched by structure where names differ. What only states the same mechanism otherwise is no
-    difference: other names, another order, frames of links placed otherwise, links fused or held by fixed joints; another
-    zero or sign of a coordinate is a difference of coordinates, and named as such.
+    difference: other names, another order, frames of links placed otherwise, links fused or held by fixed joints.
+    Another zero or sign of a coordinate is a difference of coordinates, and named as such.
 
     Args:
         first: Path of a file, which is read with all that it states (dry friction, mimicking joints), or a system.

@@ -109,7 +109,7 @@ def entries_of_joint(
 ) -> Iterator[tuple[str, float | None, float | None, tuple[str, ...]]]:
     """Numbers of a coordinate that differ, those of the second file in coordinates of the first, and what they change.
 
-    Limits of velocity and effort, and what resists, are even; limits of the coordinate and a spring's rest move with it.
+    Limits of velocity and effort, and what resists, are even; limits of the coordinate and a spring's rest follow it.
     """
     mapped = {name: value for name, value in there.items() if name not in ("lower limit", "upper limit")}
     ends = ("lower limit", "upper limit") if sign > 0.0 else ("upper limit", "lower limit")

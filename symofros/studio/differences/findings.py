@@ -263,7 +263,7 @@ class Findings:
     def _turned_by(
         self, bodies: tuple[Body, Body], moves: tuple[Move, Move]
     ) -> tuple[tuple[Body, Body], tuple[Move, Move]]:
-        """What the file states otherwise where a coordinate's zero is elsewhere: the joint, or the only one beyond it."""
+        """What the file states otherwise where a coordinate's zero is elsewhere: the joint, or the one beyond it."""
         m, n = moves
         if not self.close.poses(m.placed, n.placed):
             return bodies, moves
@@ -277,14 +277,14 @@ class Findings:
         return bodies, moves
 
     def _origin(self, body: Body, other: Body, moves: tuple[Move, Move] | None, here: Pose, there: Pose) -> None:
-        """A joint that stands elsewhere: its frame in what carries it, or in the world where the files' frames differ."""
+        """A joint that stands elsewhere: its frame in what carries it, where the files' frames are the same there."""
         ours, theirs = (body.placed, other.placed) if moves is None else (moves[0].placed, moves[1].placed)
         carrier = here @ ours.inverse()
         seen = carrier.inverse() @ there
         shown = [_shown(ours), _shown(seen if not self.close.poses(seen, theirs) else theirs)]
         differing = [key for key in ("xyz", "rpy") if not np.allclose(shown[0][key], shown[1][key], 1e-9, 1e-12)]
         values = [{key: value[key] for key in differing or value} for value in shown]
-        self._add("origin", (body, other), moves, *values, ("kinematics",))
+        self._add("origin", (body, other), moves, values[0], values[1], ("kinematics",))
 
     # All at once.
 

@@ -16,7 +16,7 @@ from symofros.base.rotations import skew
 from symofros.description import IDENTITY_POSE, Beam, Damper, Friction, Joint, Pose, Spring, System
 from symofros.errors import DescriptionError, Problem
 from symofros.exports.interchange.rigid import RigidLink, rigid_links
-from symofros.mechanics.topology import Numbers, coordinate_names
+from symofros.mechanics.topology import Numbers
 
 # Bodies beyond which files are refused, so that hostile ones take bounded time.
 MOST_BODIES = 1000
@@ -151,11 +151,10 @@ class Mechanism:
         placed = Pose(link.position, link.rotation)
         pose = (self.bodies[parent].pose if parent >= 0 else IDENTITY_POSE) @ placed
         part = self.bodies[parent].part if parent >= 0 else 0
-        carrier = parent
-        for move in () if link.joint is None else self._moves(link.joint, link, pose, placed):
-            self.parts.append(Part(part, Move(*move, carrier=carrier, entries=self._entries(link.joint, move[0]))))
+        for move in () if link.joint is None else self._moves(link.joint, link, pose, placed, parent):
+            self.parts.append(Part(part, move))
             self.parts[part].children.append(len(self.parts) - 1)
-            part, carrier = len(self.parts) - 1, -1
+            part = len(self.parts) - 1
         frames = {name: pose @ Pose(p, R) for name, p, R in link.frames}
         joint = "" if link.joint is None else link.joint.name
         center, inertia = moved(pose, link.center), pose.R @ link.inertia @ pose.R.T
@@ -163,25 +162,24 @@ class Mechanism:
         self.parts[part].bodies.append(len(self.bodies))
         self.bodies.append(Body(link.name, parent, part, joint, pose, placed, link.mass, center, inertia, frames))
 
-    def _moves(self, joint: Joint, link: RigidLink, pose: Pose, placed: Pose) -> Iterator[tuple[object, ...]]:
-        """The elementary joints of a joint, without carrier and entries."""
+    def _moves(self, joint: Joint, link: RigidLink, pose: Pose, placed: Pose, carrier: int) -> Iterator[Move]:
+        """The elementary joints of a joint."""
         if joint.kind == "fixed":
             return
         if not link.axes:
             direction = self.numbers.values(joint.axis)
-            direction = direction / (np.linalg.norm(direction) or 1.0)
-            pitch = self.numbers.value(joint.pitch) if joint.kind == "screw" else 0.0
-            yield joint.name, joint.kind, joint.kind, pose.R @ direction, pose.p, pitch, pose, placed
-        for axis in link.axes:
-            kind = "turn" if axis.turns else "slide"
-            yield axis.name, kind, joint.kind, pose.R @ np.array(axis.direction), pose.p, 0.0, pose, placed
+            axis = pose.R @ (direction / (np.linalg.norm(direction) or 1.0))
+            pitch, name = self.numbers.value(joint.pitch) if joint.kind == "screw" else 0.0, joint.name
+            entries = self._entries(joint, 0)
+            yield Move(name, joint.kind, joint.kind, axis, pose.p, pitch, pose, placed, carrier, entries)
+        for k, single in enumerate(link.axes):
+            kind, axis = "turn" if single.turns else "slide", pose.R @ np.array(single.direction)
+            entries = self._entries(joint, k)
+            yield Move(single.name, kind, joint.kind, axis, pose.p, 0.0, pose, placed, -1 if k else carrier, entries)
 
-    def _entries(self, joint: Joint | None, name: object) -> dict[str, float]:
-        """Numbers of one coordinate."""
-        assert joint is not None
-        value, k = self.numbers.value, 0
-        if joint.traits.series and joint.traits.nv > 1:
-            k = coordinate_names(joint).index(str(name))
+    def _entries(self, joint: Joint, k: int) -> dict[str, float]:
+        """Numbers of one coordinate of a joint."""
+        value = self.numbers.value
         found = {"armature": value(joint.armature)}
         if joint.limits is not None:
             limits = joint.limits

@@ -77,7 +77,7 @@ class Posture:
         self._composite = self._composite_inertias()
 
     def _composite_inertias(self) -> Array:
-        """Spatial inertia of each part with all that it carries, about the origin, in the world's axes (parts, 6, 6)."""
+        """Spatial inertias of parts with all that they carry, about the origin, in the world's axes (parts, 6, 6)."""
         inertias = np.zeros((len(self.parts), 6, 6))
         for k in reversed(range(len(self.parts))):
             back = adjoint(self.placed[k].inverse())

@@ -9,9 +9,9 @@ import numpy as np
 import symofros as sf
 from symofros.base.arrays import Array
 from symofros.description import IDENTITY_POSE, Pose
-from symofros.exports.interchange.rigid import RigidLink, rigid_links
+from symofros.exports.interchange.rigid import Axis, RigidLink, rigid_links
 from symofros.studio.differences.alignment import displacement
-from symofros.studio.differences.mechanism import Mechanism
+from symofros.studio.differences.mechanism import Move
 
 
 def restated(
@@ -35,7 +35,7 @@ def restated(
     bodies = []
     for link in links:
         stands = link.parent is None or (not link.mass and link.name not in carriers and link.joint.kind == "fixed")  # type: ignore[union-attr]
-        gauges[link.name] = _gauge(link, rng) if frames and not stands else IDENTITY_POSE
+        gauges[link.name] = _gauge(link.axes, rng) if frames and not stands else IDENTITY_POSE
         body = _body(link, gauges, rng if zeros else None)
         if names and not stands:
             body = replace(
@@ -44,7 +44,7 @@ def restated(
         if names and body.joint is not None:
             carried = next(x for x in links if x.name == link.parent)
             parent = called[str(link.parent)] if carried.parent is not None else str(link.parent)
-            body = replace(body, joint=replace(body.joint, parent=parent))  # type: ignore[type-var]
+            body = replace(body, joint=replace(body.joint, parent=parent))
         bodies.append(body)
     if fuse:
         bodies = [part for body in bodies for part in _split(body, rng)]
@@ -53,12 +53,12 @@ def restated(
     return sf.System(system.name, tuple(_shuffled(bodies, rng)), gravity=system.gravity)
 
 
-def _gauge(link: RigidLink, rng: np.random.Generator) -> Pose:
+def _gauge(axes: tuple[Axis, ...], rng: np.random.Generator) -> Pose:
     """A frame of a link in its own: anywhere, but on the axis of a turn."""
     R = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     R *= np.sign(np.linalg.det(R))
-    on_axis = link.axes and link.axes[0].turns
-    p = 0.1 * rng.normal() * np.array(link.axes[0].direction) if on_axis else 0.1 * rng.normal(size=3)
+    on_axis = axes and axes[0].turns
+    p = 0.1 * rng.normal() * np.array(axes[0].direction) if on_axis else 0.1 * rng.normal(size=3)
     return Pose(p, R)
 
 
@@ -90,9 +90,7 @@ def _body(link: RigidLink, gauges: dict[str, Pose], rng: np.random.Generator | N
     return sf.RigidBody(link.name, joint, inertia, tuple(frames), waive)
 
 
-def _move(kind: str, axis: Array):  # type: ignore[no-untyped-def]
-    from symofros.studio.differences.mechanism import Move
-
+def _move(kind: str, axis: Array) -> Move:
     return Move("", kind, kind, axis, np.zeros(3), 0.0, IDENTITY_POSE, IDENTITY_POSE, -1, {})
 
 
@@ -112,7 +110,7 @@ def _split(body: sf.RigidBody, rng: np.random.Generator) -> list[sf.RigidBody]:
     """Some of the massive bodies as a massless one with a welded one on it."""
     if body.joint is None or body.inertia is None or rng.random() < 0.7:
         return [body]
-    R = _gauge(RigidLink(*[None] * 3, (), *[None] * 6), rng)  # type: ignore[arg-type]
+    R = _gauge((), rng)
     I = np.array(body.inertia.moments, dtype=float)  # noqa: E741
     full = np.array([[I[0], I[3], I[4]], [I[3], I[1], I[5]], [I[4], I[5], I[2]]])
     full = R.R.T @ full @ R.R
