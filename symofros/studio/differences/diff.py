@@ -13,6 +13,7 @@ from symofros.base.arguments import checked
 from symofros.description import System
 from symofros.errors import ArgumentError, DescriptionError, Problem
 from symofros.loading import applicable, load
+from symofros.mechanics.topology import find_problems
 from symofros.studio.differences.constraints import constraint_differences
 from symofros.studio.differences.difference import Difference
 from symofros.studio.differences.findings import MOST_DIFFERENCES, POSTURES, Findings
@@ -155,9 +156,22 @@ def diff(
         DescriptionError: A file can't be read, or is more than a tree of rigid bodies on joints of the library.
         ArgumentError: The tolerance is no small positive number.
     """
-    systems = [item if isinstance(item, System) else read_fully(Path(item)) for item in (first, second)]
+    systems = [_sound(item) if isinstance(item, System) else read_fully(Path(item)) for item in (first, second)]
     names = [item.name if isinstance(item, System) else os.fspath(item) for item in (first, second)]
     return compare(*systems, names=(names[0], names[1]), tolerance=tolerance)
+
+
+def _sound(system: System) -> System:
+    """A system that was not read from a file, once it is checked like one.
+
+    Raises:
+        DescriptionError: With its problems.
+    """
+    waive = (*READ_FULLY["waive"], "nonphysical_inertia")
+    bodies = tuple(replace(body, waive=(*body.waive, *waive)) for body in system.bodies)
+    if problems := find_problems(replace(system, bodies=bodies)):
+        raise DescriptionError(problems)
+    return system
 
 
 def read_fully(path: Path, **stated: Any) -> System:
@@ -196,8 +210,9 @@ def compare(
     a, b = (Mechanism(system, name) for system, name in zip((first, second), names, strict=True))
     found = Findings(a, b, tolerance, seed=0)
     differences = [*found.differences, *constraint_differences(found)]
-    if found.errors and not any(item.is_mechanical for item in differences):
+    if not any(item.is_mechanical for item in differences):  # Silence would say that they are the same.
         wrong = tuple(name for name, error in found.errors.items() if error > 1e3 * tolerance)
+        wrong = wrong if found.complete else ("kinematics", "M", "g")
         if wrong:
             differences.append(Difference(_UNKNOWN, "", "", None, None, wrong))
     shown = tuple(name for name in ("M", "g") if found.errors.get(name, 0.0) > 1e3 * _EXACT)
@@ -222,7 +237,7 @@ def _notes(found: Findings) -> list[str]:
     if found.reframed:
         listed = ", ".join(found.reframed[:5]) + (", ..." if len(found.reframed) > 5 else "")
         notes.append(f"frames of {len(found.reframed)} links are placed otherwise, which changes no motion: {listed}")
-    if len(found.differences) >= MOST_DIFFERENCES:
+    if found.is_cut:
         notes.append(f"the comparison ended after {MOST_DIFFERENCES} differences")
     return notes
 

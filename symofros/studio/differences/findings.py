@@ -16,7 +16,7 @@ from symofros.studio.differences.motion import Moving, Posture, adjoint, random_
 
 # Postures that an inertia is asked at, and what of its largest possible effect is rounding.
 POSTURES, _ROUNDING = 4, 1e-11
-# Differences beyond which no more are looked for: who has as many compares two robots.
+# Differences of the mechanism beyond which no more are looked for: who has as many compares two robots.
 MOST_DIFFERENCES = 200
 # Massive bodies of a part that are matched by what they weigh.
 _MOST_RENAMED = 60
@@ -60,7 +60,7 @@ class Findings:
         if not self.close.points(self.a.gravity / 9.81, self.b.gravity / 9.81):
             self._add("gravity", None, None, self.a.gravity.tolist(), self.b.gravity.tolist(), ("g",))
         queue = deque([0])
-        while queue and len(self.differences) < MOST_DIFFERENCES:
+        while queue and not self.is_cut:
             c = queue.popleft()
             d, alignment = self.pairs[c]
             bodies = self._place_bodies(c, d, alignment.T)
@@ -73,6 +73,11 @@ class Findings:
                 self._carriers[y] = self.pairs[x][1].T
                 queue.append(x)
         self.complete &= not queue
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether so much differs that the rest is not looked at."""
+        return sum(item.is_mechanical for item in self.differences) >= MOST_DIFFERENCES
 
     def _carrier(self, part: int) -> Pose:
         """Displacement of what a joint of the second file hangs on."""
@@ -100,7 +105,7 @@ class Findings:
         assert move is not None
         body = _body(a, x)
         other = b.bodies[b.index[body.name]] if body.name in b.index else None
-        entry, here, there = "joint", move.stated, "no such joint"
+        entry, here, there = "presence", move.stated, "no such joint"
         if other is not None:
             joint = b.parts[other.part].move if _body(b, other.part) is other else None
             if joint is None:
@@ -109,7 +114,9 @@ class Findings:
                 entry, here, there = "parent", _carrier_name(a, move), _carrier_name(b, joint)
         values = (there, here) if flipped else (here, there)
         bodies = (other or body, body) if flipped else (body, other)
-        if entry == "parent" and flipped:  # Reported from the first file's side.
+        if entry == "parent" and (
+            flipped or here == there
+        ):  # Reported from the first file's side, or with the carrier.
             return
         self._add(entry, bodies, (move, move), *values, ("kinematics", "M", "g"))
 
@@ -171,14 +178,11 @@ class Findings:
     def _inertias(self, c: int, d: int, named: list[tuple[Body, Body]], T: Pose) -> None:
         """Inertias body by body, where both files have as many, or else those of the whole part."""
         ours, theirs = self.a.massive(c), self.b.massive(d)
-        pairs = [(x, y) for x, y in named if x in ours or y in theirs]
-        lone = [x for x in ours if x not in [pair[0] for pair in pairs]]
-        lone_there = [y for y in theirs if y not in [pair[1] for pair in pairs]]
-        if lone or lone_there:
-            pairs = [(_whole(self.a, c), _whole(self.b, d))]
-        for body, other in pairs:
-            index = self.b.index.get(other.name, -1)
-            self._inertia(c, body, other, T if len(pairs) == 1 else self._laid.get(index, T))
+        pairs = [(x, y, self._laid[self.b.index[y.name]]) for x, y in named if x in ours and y in theirs]
+        if not len(pairs) == len(ours) == len(theirs):  # Fused, or split.
+            pairs = [(_whole(self.a, c), _whole(self.b, d), T)]
+        for body, other, laid in pairs:
+            self._inertia(c, body, other, laid)
 
     def _inertia(self, c: int, body: Body, other: Body, T: Pose) -> None:
         """Entries of one body's inertia."""
@@ -297,8 +301,6 @@ class Findings:
         there: object,
         changes: tuple[str, ...],
     ) -> None:
-        if len(self.differences) >= MOST_DIFFERENCES:
-            return
         first, second = bodies or (None, None)
         joint = moves[0].name if moves else first.joint if first is not None and entry == "origin" else ""
         other = moves[1].name if moves else second.joint if second is not None and entry == "origin" else ""
@@ -377,7 +379,8 @@ def _whole(mechanism: Mechanism, part: int) -> Body:
     """The bodies of a part as one."""
     bodies = mechanism.massive(part)
     mass, center, inertia = mechanism.total(part)
-    first = bodies[0] if bodies else _body(mechanism, part)
+    there = mechanism.parts[part].bodies
+    first = bodies[0] if bodies else mechanism.bodies[there[0]] if there else _body(mechanism, part)
     name = "+".join(body.name for body in bodies) or first.name
     return replace(first, name=name, mass=mass, center=center, inertia=inertia)
 
