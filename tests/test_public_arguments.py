@@ -144,7 +144,7 @@ def test_numbers_of_every_kind_are_numbers(number: Any) -> None:
 def constructors() -> list[type]:
     """Public dataclasses that people make objects of; of the others, the library makes all."""
     made_here = {"Advice", "DiagramRun", "EvaluationContext", "Expression", "Outcome", "Problem", "ReadableEquations"}
-    made_here |= {"Rollout", "Trajectories", "Trajectory"}
+    made_here |= {"MechanismDiff", "Rollout", "Trajectories", "Trajectory"}
     classes = [getattr(module, name) for module in (sf, blocks) for name in dir(module) if name not in made_here]
     return [cls for cls in classes if isinstance(cls, type) and is_dataclass(cls)]
 

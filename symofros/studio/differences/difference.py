@@ -24,8 +24,8 @@ class Difference:
     """One entry that differs.
 
     Attributes:
-        entry: What differs: "mass", "center of mass", "inertia", "origin", "axis", "pitch", "joint kind", "parent", "presence",
-            "armature", "damping", "friction", "lower limit" and so on.
+        entry: What differs: "mass", "center of mass", "inertia", "origin", "axis", "pitch", "joint kind", "parent",
+            "presence", "armature", "damping", "friction", "lower limit" and so on.
         link: Name of the link in the first file.
         joint: Name of the joint in the first file that has the entry; "" where the link has it.
         here: Value in the first file.
