@@ -103,11 +103,11 @@ class Findings:
         """A joint without counterpart: fixed in the other file, on another parent, or not there."""
         move = a.parts[x].move
         assert move is not None
-        body = _body(a, x)
+        body = a.carried_by(x)
         other = b.bodies[b.index[body.name]] if body.name in b.index else None
         entry, here, there = "presence", move.stated, "no such joint"
         if other is not None:
-            joint = b.parts[other.part].move if _body(b, other.part) is other else None
+            joint = b.parts[other.part].move if b.carried_by(other.part) is other else None
             if joint is None:
                 entry, there = "joint kind", "fixed"
             else:
@@ -129,15 +129,15 @@ class Findings:
         ours = [k for k in self.a.parts[c].bodies if k not in pairs and self.a.bodies[k].mass]
         theirs = [k for k in there.values() if self.b.bodies[k].mass]
         if len(ours) == len(theirs) <= _MOST_RENAMED:
-            unlike = sorted((self._unlike(x, y, T), x, y) for x in ours for y in theirs)
+            unlike = sorted((self._unlike(self.a.bodies[x], self.b.bodies[y], T), x, y) for x in ours for y in theirs)
             for _, x, y in unlike:
                 if x not in pairs and y not in pairs.values():
                     pairs[x] = y
         return pairs
 
-    def _unlike(self, x: int, y: int, T: Pose) -> int:
-        """How many numbers of two bodies differ."""
-        one, two, close = self.a.bodies[x], self.b.bodies[y], self.close
+    def _unlike(self, one: Body, two: Body, T: Pose) -> int:
+        """How many of mass, mass centre and inertia of two bodies differ."""
+        close = self.close
         alike = close.numbers(one.mass, two.mass), close.points(one.center, moved(T, two.center))
         return 3 - sum((*alike, close.inertias(one.inertia, T.R @ two.inertia @ T.R.T, one.mass)))
 
@@ -178,9 +178,17 @@ class Findings:
     def _inertias(self, c: int, d: int, named: list[tuple[Body, Body]], T: Pose) -> None:
         """Inertias body by body, where both files have as many, or else those of the whole part."""
         ours, theirs = self.a.massive(c), self.b.massive(d)
-        pairs = [(x, y, self._laid[self.b.index[y.name]]) for x, y in named if x in ours and y in theirs]
-        if not len(pairs) == len(ours) == len(theirs):  # Fused, or split.
-            pairs = [(_whole(self.a, c), _whole(self.b, d), T)]
+        weighed = [(x, y) for x, y in named if x in ours or y in theirs]
+        both = [(x, y) for x, y in weighed if x in ours and y in theirs]
+        lone = len(weighed) - len(both)
+        names = [{body.name for body in ours}, {body.name for body in theirs}]
+        is_whole = any(names[k] - {pair[k].name for pair in weighed} for k in (0, 1))
+        # Mass that one link has in one file alone is that link's, unless others differ, too: then links are fused.
+        unlike = sum(bool(self._unlike(x, y, self._laid[self.b.index[y.name]])) for x, y in both) if lone else 0
+        if is_whole or lone + unlike > 1:
+            pairs = [(self.a.whole(c), self.b.whole(d), T)]
+        else:
+            pairs = [(x, y, self._laid[self.b.index[y.name]]) for x, y in weighed]
         for body, other, laid in pairs:
             self._inertia(c, body, other, laid)
 
@@ -229,7 +237,7 @@ class Findings:
         """Differences of a joint; how what it carries lies."""
         m, n = self.a.parts[x].move, self.b.parts[y].move
         assert m is not None and n is not None
-        T, bodies = self._carrier(y), (_body(self.a, x), _body(self.b, y))
+        T, bodies = self._carrier(y), (self.a.carried_by(x), self.b.carried_by(y))
         if m.kind != n.kind:
             self.complete = False
             self._add("joint kind", bodies, (m, n), m.stated, n.stated, ("kinematics", "M", "g"))
@@ -277,7 +285,7 @@ class Findings:
             next_m, next_n = self.a.parts[x].move, self.b.parts[y].move
             assert next_m is not None and next_n is not None
             if not self.close.poses(next_m.placed, next_n.placed):
-                return (_body(self.a, x), _body(self.b, y)), (next_m, next_n)
+                return (self.a.carried_by(x), self.b.carried_by(y)), (next_m, next_n)
         return bodies, moves
 
     def _origin(self, body: Body, other: Body, moves: tuple[Move, Move] | None, here: Pose, there: Pose) -> None:
@@ -358,31 +366,6 @@ class Findings:
         elif move.kind == "free":
             screws = adjoint(carrier.inverse()) @ move.screws
         return replace(own, parent=place[self.a.parts[x].parent], screws=screws, zero=zero)
-
-
-def _body(mechanism: Mechanism, part: int) -> Body:
-    """The body that the file states on a part's joint; carriers that a reader puts between joints are none."""
-    origin, first = mechanism.system.origin, None
-    while True:
-        bodies = [mechanism.bodies[k] for k in mechanism.parts[part].bodies]
-        stated = [body for body in bodies if not origin or ("body", body.name) in origin or body.mass]
-        if stated:
-            return stated[0]
-        first = first or next(iter(bodies), None)
-        if not mechanism.parts[part].children:
-            assert first is not None  # A series of joints ends in a body.
-            return first
-        part = mechanism.parts[part].children[0]
-
-
-def _whole(mechanism: Mechanism, part: int) -> Body:
-    """The bodies of a part as one."""
-    bodies = mechanism.massive(part)
-    mass, center, inertia = mechanism.total(part)
-    there = mechanism.parts[part].bodies
-    first = bodies[0] if bodies else mechanism.bodies[there[0]] if there else _body(mechanism, part)
-    name = "+".join(body.name for body in bodies) or first.name
-    return replace(first, name=name, mass=mass, center=center, inertia=inertia)
 
 
 def _carrier_name(mechanism: Mechanism, move: Move) -> str:

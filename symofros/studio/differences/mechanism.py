@@ -7,7 +7,7 @@ puts the frames of its links.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -215,6 +215,28 @@ class Mechanism:
             S = skew(body.center - center)
             inertia = inertia + body.inertia - body.mass * S @ S
         return mass, center, inertia
+
+    def carried_by(self, part: int) -> Body:
+        """The body that the file states on a part's joint; carriers that a reader puts between joints are none."""
+        origin, first = self.system.origin, None
+        while True:
+            bodies = [self.bodies[k] for k in self.parts[part].bodies]
+            stated = [body for body in bodies if not origin or ("body", body.name) in origin or body.mass]
+            if stated:
+                return stated[0]
+            first = first or next(iter(bodies), None)
+            if not self.parts[part].children:
+                assert first is not None  # A series of joints ends in a body.
+                return first
+            part = self.parts[part].children[0]
+
+    def whole(self, part: int) -> Body:
+        """The bodies of a part as one."""
+        bodies, there = self.massive(part), self.parts[part].bodies
+        mass, center, inertia = self.total(part)
+        first = bodies[0] if bodies else self.bodies[there[0]] if there else self.carried_by(part)
+        name = "+".join(body.name for body in bodies) or first.name
+        return replace(first, name=name, mass=mass, center=center, inertia=inertia)
 
 
 def _refuse(system: System, label: str) -> None:

@@ -25,7 +25,7 @@ def test_another_reading_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     stated = module.description
 
     def description(*given: Any) -> sf.System:
-        system = stated(*given)
+        system: sf.System = stated(*given)
         link = next(body for body in system.bodies if body.name == "forearm_link")
         return system.with_bodies(replace(link, inertia=replace(link.inertia, mass=1.0)))
 
