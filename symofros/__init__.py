@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from symofros.description.constraints import Nonholonomic as Nonholonomic
     from symofros.description.constraints import Rod as Rod
     from symofros.description.constraints import Rolling as Rolling
+    from symofros.description.contacts import Contact as Contact
     from symofros.description.forces import Connection as Connection
     from symofros.description.forces import Damper as Damper
     from symofros.description.forces import Friction as Friction

@@ -77,26 +77,15 @@ def harness_module(name: str) -> ModuleType:
     return import_module(f"{package_name()}.{name}")
 
 
-def worker_command(module: str, arguments: Sequence[str] = ()) -> list[str]:
-    """The command of a process of its own that runs a module of the harness, such as "timing.worker"."""
-    start = "from runpy import run_module; run_module('{harness}.{module}', run_name='__main__', alter_sys=True)"
-    return _python(start.replace("{module}", module), arguments)
-
-
 def command_line(arguments: Sequence[str]) -> list[str]:
-    """The command of a process of its own that runs the harness's command line."""
-    return _python("from {harness}.__main__ import app; app(prog_name='symofros validation')", arguments)
+    """The command of a process of its own that runs the harness's command line.
 
-
-def _python(statement: str, arguments: Sequence[str]) -> list[str]:
-    """A statement in an interpreter that finds this package and its harness first, wherever it is started.
-
-    The folder of the call is not searched for modules (-P).
+    Its interpreter finds this package and its harness first, wherever it is started: the folder of the call is not
+    searched for modules (-P).
     """
-    installed = folder_of(_HARNESS).parent == _PACKAGE
-    start = f"import sys; sys.path.insert(0, {str(_PACKAGE.parent)!r}); "
-    start += statement.replace("{harness}", f"symofros.{_HARNESS}" if installed else _HARNESS)
-    return [sys.executable, "-P", "-c", start, *arguments]
+    package = f"symofros.{_HARNESS}" if folder_of(_HARNESS).parent == _PACKAGE else _HARNESS
+    start = f"import sys; sys.path.insert(0, {str(_PACKAGE.parent)!r}); from {package}.__main__ import app; "
+    return [sys.executable, "-P", "-c", f"{start}app(prog_name='symofros validation')", *arguments]
 
 
 def _is_at(file: str | None, folder: Path) -> bool:

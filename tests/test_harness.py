@@ -12,6 +12,7 @@ import pytest
 
 from symofros import harness
 from tests.validation.subjects import URDF
+from validation.worker_process import WorkerProcess
 
 ROOT = Path(__file__).parents[1]
 ENTRY_POINTS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
@@ -190,9 +191,10 @@ def test_processes_of_the_harness_find_it_whatever_is_in_the_folder(
     for name in ("validation", "reference_models", "symofros", "json"):
         (tmp_path / f"{name}.py").write_text("raise SystemExit('taken from the folder')")
     monkeypatch.chdir(tmp_path)
-    for command in (harness.command_line(["--help"]), harness.worker_command("__main__", ["--help"])):
-        done = subprocess.run(command, capture_output=True, text=True)
-        assert done.returncode == 0 and "Cross-check the generated code" in done.stdout, done.stderr
+    done = subprocess.run(harness.command_line(["--help"]), capture_output=True, text=True)
+    assert done.returncode == 0 and "Cross-check the generated code" in done.stdout, done.stderr
+    with WorkerProcess() as worker:
+        assert list(worker.call(("validation.worker_process", "Path"))) == [Path()]
 
 
 def test_a_missing_harness_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

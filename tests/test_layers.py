@@ -105,13 +105,16 @@ HARNESS = table("""
     program:
     contract:    mechanics
     inputs:      references contract mechanics
+    # Processes that do jobs of any of them; the other side imports what a job names.
+    worker_loop:
+    worker_process: worker_loop
     # Engines in their own conventions, and the truth that they are held to: what a check asks them is turned into ours.
-    engines:     contract reporting
+    engines:     contract reporting worker_process
     adapters:    engines contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics
     checking:    references procedures comparison adapters inputs contract mechanics
-    worker_pool: checking adapters inputs
+    worker_pool: checking adapters inputs worker_process
     reporting:   program mechanics
 """)
 # ... and what builds on it: any of the above, and these others.

@@ -18,10 +18,18 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.simulation.results.notes import NOTES
 
 ROOT = Path(__file__).parents[1]
 # Names of what collects notes, and of functions that return them in words.
 COLLECTED, RETURNED = ("notes", "remarks"), re.compile(r"note|_lost$|_remark")
+# The same where names differ: a beam's bending, a run that ends otherwise, starts that change, blocks in Python.
+ELSEWHERE = {
+    "beams.py": re.compile(r"^__str__$"),
+    "finer_steps.py": re.compile(r"note|^_unlike$"),
+    "starts.py": re.compile(r"^changes$|^singular_start$"),
+    "python_blocks.py": re.compile(r"^fault$"),
+}
 # Letters in a row that tell one sentence from others.
 TELLING = 10
 # In place of what a sentence is about.
@@ -51,12 +59,31 @@ def collects(node: ast.AST) -> bool:
     return (getattr(holder, "attr", "") or getattr(holder, "id", "")) in COLLECTED
 
 
+def sentences(node: ast.expr) -> Iterator[str]:
+    """The literal text of a value, or those in a collection or a comprehension."""
+    inner = node.args[0] if isinstance(node, ast.Call) and node.args else node
+    values = [node, *getattr(inner, "elts", ())]
+    values += [inner.elt] if isinstance(inner, ast.GeneratorExp | ast.ListComp) else []
+    yield from (sentence(value) for value in values)
+
+
 def of_function(node: ast.FunctionDef) -> Iterator[str]:
     """What it returns in words."""
     for inner in ast.walk(node):
         if isinstance(inner, ast.Return) and inner.value is not None:
-            values = [inner.value, *getattr(inner.value, "elts", ())]
-            yield from (sentence(value) for value in values)
+            yield from sentences(inner.value)
+
+
+def said_by(node: ast.AST, functions: re.Pattern[str]) -> list[str]:
+    """The notes in words that a statement, a call or a function adds, passes on, or returns."""
+    if collects(node):
+        assert isinstance(node, ast.Call)
+        return [sentence(node.args[0])]
+    if isinstance(node, ast.FunctionDef) and functions.search(node.name):
+        return list(of_function(node))
+    if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") in ("note", "notes"):
+        return list(sentences(node.value))
+    return list(sentences(node.value)) if isinstance(node, ast.keyword) and node.arg == "notes" else []
 
 
 @cache
@@ -65,14 +92,8 @@ def register() -> dict[str, str]:
     found: dict[str, str] = {}
     for path in sorted((ROOT / "symofros").rglob("*.py")):
         text = path.read_text(encoding="utf-8")
-        for node in ast.walk(ast.parse(text)) if re.search("note|remark|_lost", text) else ():
-            said: list[str] = []
-            if collects(node):
-                assert isinstance(node, ast.Call)
-                said = [sentence(node.args[0])]
-            elif isinstance(node, ast.FunctionDef) and RETURNED.search(node.name):
-                said = list(of_function(node))
-            for one in said:
+        for node in ast.walk(ast.parse(text)) if re.search("[Nn]ote|remark|_lost|Message", text) else ():
+            for one in said_by(node, ELSEWHERE.get(path.name, RETURNED)):
                 if max(map(len, one.split(HOLE)), default=0) >= TELLING:
                     found.setdefault(one, path.relative_to(ROOT).as_posix())
     return found
@@ -100,6 +121,23 @@ def test_each_note_is_triggered_by_a_test() -> None:
     unheard = (note for note in register() if not any(tells(text, note) for text in expected()))
     missing = [f"{register()[note]}: {note}" for note in unheard]
     assert not missing, "notes without a test that quotes them:\n" + "\n".join(missing)
+
+
+def test_each_note_of_a_run_is_of_a_kind_and_each_kind_is_said() -> None:
+    """The table of kinds, which docs/howto/simulating.md shows, is that of what the sources say."""
+    patterns = {
+        name: re.compile(".*".join(re.escape(part.strip()) for part in kind.says.split("…")), re.DOTALL)
+        for name, kind in NOTES.items()
+    }
+    kinds = {
+        note: [name for name, pattern in patterns.items() if pattern.search(note)]
+        for note, file in register().items()
+        if file.startswith(("symofros/simulation/", "symofros/diagrams/", "symofros/runtime/"))
+    }
+    unlike = [f"{register()[note]}: {note}: {names or 'no kind'}" for note, names in kinds.items() if len(names) != 1]
+    assert not unlike, "notes of no kind, or of several:\n" + "\n".join(unlike)
+    telling = {name for name, kind in NOTES.items() if max(map(len, kind.says.split("…"))) >= TELLING}
+    assert {name for names in kinds.values() for name in names} == telling
 
 
 MOMENTS = " ".join(

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import gc
-import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Sequence
-from multiprocessing.connection import Connection, wait
-from multiprocessing.context import BaseContext
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
-from typing import Any
+from queue import SimpleQueue
 
 import symofros as sf
 
 from .adapters import ROUTES
 from .checking import ModelResult, Settings, absent, broken, check, failed
 from .inputs.cases import Case
+from .worker_process import WorkerError, WorkerProcess
 
 Report = Callable[[ModelResult], None]
 
@@ -62,64 +60,45 @@ def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -
         workers: How many processes; with one, or with one model, everything happens in this process.
         done: Gets each result as it comes; what it got before a KeyboardInterrupt stands.
     """
-    if min(workers, len(cases)) <= 1:
+    count = min(workers, len(cases))
+    if count <= 1:
         for case in cases:
             done(run_case(case, settings))
-    else:
-        _WorkerPool(settings, workers, done).run(sorted(cases, key=lambda case: -case.weight))
+        return
+    pool = [_worker(settings) for _ in range(count)]
+    free: SimpleQueue[WorkerProcess] = SimpleQueue()
+    for worker in pool:
+        free.put(worker)
 
-
-class _WorkerPool:
-    def __init__(self, settings: Settings, count: int, done: Report) -> None:
-        self.settings, self.count, self.done = settings, count, done
-        self.context = _context(settings)
-        self.active: dict[Any, tuple[Any, Case]] = {}
-
-    def run(self, cases: list[Case]) -> None:
-        waiting = cases[::-1]
+    def judged(case: Case) -> ModelResult:
+        worker = free.get()
         try:
-            while waiting or self.active:
-                while waiting and len(self.active) < self.count:
-                    self._start(waiting.pop())
-                for connection in wait(list(self.active)):
-                    self._finish(connection)
+            (result,) = worker.call(_judged, case, settings)
+        except WorkerError as error:
+            ended = f"ended with code {error.code}" if error.fate == "crashed" else f"failed: {error}"
+            return failed(case.label, "check", f"the process that checked it {ended}")
         finally:
-            for process, _ in self.active.values():
-                process.terminate()
+            free.put(worker)
+        return result  # type: ignore[no-any-return]
 
-    def _start(self, case: Case) -> None:
-        receiving, sending = self.context.Pipe(duplex=False)
-        # BaseContext has no Process in the type stubs; every real context does.
-        process = self.context.Process(target=_work, args=(sending, case, self.settings))  # type: ignore[attr-defined]
-        process.start()
-        sending.close()  # So that the end of the process is the end of the pipe.
-        self.active[receiving] = (process, case)
-
-    def _finish(self, connection: Any) -> None:
-        process, case = self.active.pop(connection)
+    with ThreadPoolExecutor(count) as threads:
+        results = [threads.submit(judged, case) for case in sorted(cases, key=lambda case: -case.weight)]
         try:
-            result: ModelResult = connection.recv()
-        except EOFError:
-            process.join()
-            result = failed(case.label, "check", f"the process that checked it ended with code {process.exitcode}")
-        connection.close()
-        process.join()
-        self.done(result)
+            for future in as_completed(results):
+                done(future.result())
+        finally:
+            threads.shutdown(wait=False, cancel_futures=True)
+            for worker in pool:
+                worker.close()
 
 
-def _context(settings: Settings) -> BaseContext:
-    for name, threads in ONE_THREAD.items():  # Before NumPy is loaded in the process that workers come from.
-        os.environ.setdefault(name, threads)
-    if "forkserver" not in multiprocessing.get_all_start_methods():
-        return multiprocessing.get_context("spawn")
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_preloaded(settings))
-    return context
+def _worker(settings: Settings) -> WorkerProcess:
+    threads = {name: os.environ.get(name, count) for name, count in ONE_THREAD.items()}
+    return WorkerProcess(environment=threads, preload=_preloaded(settings), fresh=True)
 
 
-def _work(connection: Connection, case: Case, settings: Settings) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # The parent handles Ctrl-C and ends its workers.
+def _judged(case: Case, settings: Settings) -> ModelResult:
+    """Check one model, in a process of its own."""
     gc.freeze()  # Modules stay.
     gc.set_threshold(COLLECTED_AT)
-    connection.send(run_case(case, settings))
-    connection.close()
+    return run_case(case, settings)

@@ -160,6 +160,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         "efforts of the drives of prescribed motions",
     ),
     _row(
+        "contact_forces",
+        "q v t",
+        "gap (nk) = contact_gaps; push (nk) = contact_pushes; force (nk, 3) = contact_forces; "
+        "point (nk, 3) = contact_points; share (nk) = contact_shares",
+        "dynamics",
+        "distances of balls from the surfaces that they may touch, forces on them and where these act",
+    ),
+    _row(
         "constraint_rate_derivative",
         "q v t",
         "by_q (nc, nv) = constraint_rate_by_q",

@@ -25,7 +25,7 @@ class OutputArray:
     source: str
 
     def sizes(self, known: Mapping[str, int]) -> tuple[int, ...]:
-        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, nf, ns, nb and npi."""
+        """Shape in numbers, from the sizes nq, nv, nu, nc, npar, nw, nj, nf, ns, nk, nb and npi."""
         return tuple(size_of(text, known) for text in self.shape)
 
 

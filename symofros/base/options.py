@@ -38,7 +38,7 @@ class Options(metaclass=CheckedCalls):
             that it can't serve are refused. Constraints, Hessians of forward dynamics and implicit steps need M
             itself: they are solved by factors, whatever is chosen here. `Model.routes` tells what was chosen and why.
         batch: How large batches are evaluated: "vector", several states at once, by code that is compiled for each
-            function when its first batch of 512 states or more arrives (docs/theory/code.md); or "loop", one by one.
+            function when its first batch of 256 states or more arrives (docs/theory/code.md); or "loop", one by one.
         packs: Whether values of one state formed by the same operations share vectors: entries of a row of M, say, or
             what is computed for each of several equal legs.
         tune: Without effect, which True is warned of: one build is made, which `compiler` and `flags` choose.

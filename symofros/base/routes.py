@@ -21,6 +21,10 @@ Figures = Mapping[str, float | Callable[[], float]]
 # Ratio of efforts up to which they don't tell which is the faster, from nineteen models (docs/theory/code.md,
 # section 2).
 TIE = 1.05
+# Speeds that those of a joint are coupled with on its way to the base, on average, from which on articulated bodies
+# take less: 0.8 of the effort of the factors or less in chains and flexible robots of 15 and more, and as much at 10
+# (code.md, section 2). Counting both would take most of the time in which the function is generated.
+COUPLED = 15
 # Entries of the factors of M times columns, up to which derivatives are solved for by generated code.
 MOST_STEPS = 96000
 # Products of full matrices that one by tables may take the time of, with margin for what is gained by neither.
@@ -130,13 +134,14 @@ _quantity(
     "acceleration of trees",
     Route(
         "articulated",
-        f"its effort is at most {TIE} of that of the factors",
+        f"speeds are coupled with {COUPLED} and more on average on their way to the base, or its effort is at most "
+        f"{TIE} of that of the factors",
         "loses hundreds of times fewer digits where light links carry heavy loads",
         "rigid.md, 7.2, (39)-(46)",
         "every rotor is borne by the parent of the joint that drives it, or by the base",
         _ARTICULATED,
         lambda f: f["distant_rotors"] == 0,
-        lambda f: f["articulated_effort"] <= TIE * f["factors_effort"],
+        lambda f: f["coupled_speeds"] >= COUPLED or f["articulated_effort"] <= TIE * f["factors_effort"],
     ),
     Route(
         "factors",

@@ -19,6 +19,7 @@ from symofros.commands.shared import (
     FilePath,
     Network,
     assignments,
+    entries_of,
     load,
     names_of,
     numbers,
@@ -57,7 +58,10 @@ def simulate(
             "BLOCK.FIELD=NUMBER or NUMBER,NUMBER: a run-time parameter.",
         ),
     ] = [],  # noqa: B006
-    inputs: Annotated[list[str], typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t.")] = [],  # noqa: B006
+    inputs: Annotated[
+        list[str],
+        typer.Option("--input", help="NAME=FORMULA of coordinates, speeds and t; of a diagram INLET=FORMULA,... of t."),
+    ] = [],  # noqa: B006
     every: Annotated[
         float | None, typer.Option("--record", "--every", help="Record at this interval [s]; each step by default.")
     ] = None,
@@ -100,19 +104,11 @@ def simulate(
     try:
         if is_diagram(model):
             reading.require_none(NOT_FOR_DIAGRAMS)
-            if inputs:
-                raise sf.SymofrosError(
-                    sf.Problem(
-                        "--input: the file is a diagram",
-                        inputs[0],
-                        "--input gives formulas to the inputs of a model; those of a diagram are blocks",
-                        "--set BLOCK.FIELD=NUMBER changes a block",
-                    )
-                )
             stated |= {"record": every} if every is not None else {}
             stated |= {"parameters": {name: numbers(name, text) for name, text in assignments(given, "--set").items()}}
             names = tuple(names_of(signals) or ())
-            request = diagrams.RunRequest(t_end, stated, pace, names, output, picture, jitter)
+            formulas = {name: entries_of(text) for name, text in assignments(inputs, "--input").items()}
+            request = diagrams.RunRequest(t_end, formulas, stated, pace, names, output, picture, jitter)
             diagram = sf.load_diagram(model, network=network)
             diagram, live = view_options.with_live_view(diagram, viewing, bool(pace or diagram.simulation.realtime))
             diagram_run = diagrams.run_diagram(diagram, request, wanted)

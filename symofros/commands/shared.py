@@ -5,6 +5,7 @@ A command that finds all it was asked for in the cache imports this: NumPy and R
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -81,6 +82,12 @@ def numbers(name: str, text: str) -> float | list[float]:
     """One number, or some between commas."""
     parts = text.strip("[]").split(",")
     return number(name, parts[0]) if len(parts) == 1 else [number(name, part) for part in parts]
+
+
+def entries_of(text: str) -> str | list[str]:
+    """One formula, or some between commas that no parentheses enclose."""
+    parts = re.split(r",(?![^(]*\))", text.strip("[]"))
+    return parts[0] if len(parts) == 1 else parts
 
 
 def shown(value: float) -> str:

@@ -36,6 +36,16 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "Rotor": {"inertia": ("kg m^2",)},
     "Load": {"force": ("N",), "torque": ("N m",)},
     "Connection": {"stiffness": ("N/m",), "length": ("m",), "damping": ("N s/m",)},
+    "Contact": {
+        "stiffness": ("N/m",),
+        "radius": ("m",),
+        "points": ("m",),
+        "surface_radius": ("m",),
+        "length": ("m",),
+        "size": ("m",),
+        "dissipation": ("s/m",),
+        "minimum_velocity": ("m/s",),
+    },
     "Rod": {"length": ("m",)},
     "Rolling": {"radius": ("m",), "height": ("m",)},
     "Beam": {

@@ -15,6 +15,7 @@ from symofros.base.arguments import entries_of, shown
 from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, section_order
+from symofros.description.contacts import Contact
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
@@ -181,7 +182,7 @@ class System:
         parameters: Run-time parameters and constants.
         inputs: Named inputs, in order; actuated joints add theirs after these.
         gravity: Acceleration of gravity in the world frame [m/s^2].
-        connections: Springs and dampers between frames.
+        connections: Springs and dampers between frames, and compliant contacts.
         virtual_power: Internal forces by their virtual power.
         potentials: Potential energies by formula.
         constraints: Closures of loops, rods and couplings; after them, conditions on speeds.
@@ -195,7 +196,7 @@ class System:
     parameters: tuple[Parameter, ...] = ()
     inputs: tuple[Input, ...] = ()
     gravity: Vector = (0.0, 0.0, -9.81)
-    connections: tuple[Connection, ...] = ()
+    connections: tuple[Connection | Contact, ...] = ()
     virtual_power: tuple[VirtualPower, ...] = ()
     potentials: tuple[Potential, ...] = ()
     constraints: tuple[Constraint, ...] = ()
@@ -218,7 +219,9 @@ class System:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if any(body.segments > 1 for body in self.beams):
             self._divide_beams()
-        # What binds coordinates comes first, as it does in files.
+        # What binds coordinates comes first, and contacts after connections, as they do in files.
+        springs_first = sorted(self.connections, key=lambda item: isinstance(item, Contact))
+        object.__setattr__(self, "connections", tuple(springs_first))
         ordered = sorted(self.constraints, key=section_order)
         object.__setattr__(self, "constraints", tuple(ordered))
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
@@ -229,6 +232,16 @@ class System:
     def beams(self) -> tuple[Beam, ...]:
         """The bodies that are beams, in their order."""
         return tuple(body for body in self.bodies if isinstance(body, Beam))
+
+    @property
+    def springs(self) -> tuple[Connection, ...]:
+        """The connections that are springs and dampers, in their order."""
+        return tuple(item for item in self.connections if isinstance(item, Connection))
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """The connections that are compliant contacts, in their order."""
+        return tuple(item for item in self.connections if isinstance(item, Contact))
 
     def _divide_beams(self) -> None:
         """Put the segments of beams in their places, and what is fixed to a beam's tip on the last of them."""

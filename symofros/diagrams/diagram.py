@@ -9,7 +9,7 @@ from typing import Any
 
 from symofros.base.arguments import CheckedCalls, checked
 from symofros.description import System
-from symofros.diagrams.block import Block, ModelFile, ModelSetup
+from symofros.diagrams.block import Block, ModelFile, ModelSetup, Port
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -42,12 +42,14 @@ class Diagram(metaclass=CheckedCalls):
         models: Name -> model, which blocks refer to; exchanging one exchanges it for all of them.
         blocks: Name -> block, in the order of addition.
         wires: (block, input port) -> source, as "block.port" or "block" where that has one output.
-        inlets: Inputs of a diagram that is part of another: name -> input ports "block.port" that it feeds.
-        outlets: Outputs of a diagram that is part of another: name -> "block.port" that it is read from.
+        inlets: Inputs from outside, where the diagram is part of another, is exported or is run with `inputs`: name ->
+            input ports "block.port" that it feeds.
+        outlets: Outputs to the outside: name -> "block.port" that it is read from.
+        inlet_ports: Inlet -> its shape, units and start (`default`), where the inputs that it feeds do not say them.
         simulation: Settings of a run, as its author stated them.
         parts: Name -> what was included, for those who write the diagram down again.
-        origin: ("block", name), ("input", block, port), ("model", name) or ("outlet", name) -> "file:line" of what
-            came from a file.
+        origin: ("block", name), ("input", block, port), ("model", name), ("inlet", name) or ("outlet", name) ->
+            "file:line" of what came from a file.
         file: File that it was read from; "" for none.
     """
 
@@ -57,6 +59,7 @@ class Diagram(metaclass=CheckedCalls):
     wires: dict[tuple[str, str], str] = field(default_factory=dict)
     inlets: dict[str, Sequence[str]] = field(default_factory=dict)
     outlets: dict[str, str] = field(default_factory=dict)
+    inlet_ports: dict[str, Port] = field(default_factory=dict)
     simulation: RunSettings = field(default_factory=RunSettings)
     parts: dict[str, Part] = field(default_factory=dict)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False)
@@ -130,6 +133,27 @@ class Diagram(metaclass=CheckedCalls):
                 )
             )
         self.wires[block, port] = source
+
+    @checked
+    def add_inlet(
+        self, name: str, *targets: str, shape: tuple[int, ...] | None = None, unit: str = "", start: Any = None
+    ) -> None:
+        """State an input from outside.
+
+        Args:
+            name: Name of the signal.
+            targets: Inputs "block.port" that it feeds.
+            shape: Its shape, () for one number; None: that of an input that it feeds.
+            unit: Its unit; "": that of an input that it feeds.
+            start: First values of exports; None: defaults of inputs that it feeds, or zero.
+
+        Raises:
+            DescriptionError: The name is taken or no name.
+        """
+        self._refuse_name("inlet", name, self.inlets)
+        self.inlets[name] = targets
+        if (shape, unit, start) != (None, "", None):
+            self.inlet_ports[name] = Port(name, shape, unit, start)
 
     @checked
     def include(self, name: str, part: Diagram, models: Mapping[str, str] | None = None, **inputs: str) -> None:

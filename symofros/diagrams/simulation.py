@@ -35,7 +35,7 @@ from symofros.simulation.stepping.methods import METHODS
 
 
 class Simulation:
-    """A diagram, checked at once, compiled when it is first run.
+    """A diagram, checked at once, or with what is given for its inlets; compiled when it is first run.
 
     Args:
         diagram: Diagram as its author stated it.
@@ -49,7 +49,13 @@ class Simulation:
     def __init__(self, diagram: Diagram, options: Options | None = None) -> None:
         self.diagram = diagram
         self.options = options or Options()
-        self.resolved: Resolved = resolve(diagram)
+        if not diagram.inlets:
+            self.resolved  # noqa: B018 - checks it
+
+    @cached_property
+    def resolved(self) -> Resolved:
+        """The diagram, checked; of one with inlets, with these open."""
+        return resolve(self.diagram)
 
     @cached_property
     def compiled(self) -> CompiledDiagram:
@@ -57,11 +63,14 @@ class Simulation:
         return compile_diagram(self.resolved, self.options)
 
     @checked
-    def run(self, t_end: float | None = None, **settings: Any) -> DiagramRun:
+    def run(
+        self, t_end: float | None = None, *, inputs: Mapping[str, Any] | None = None, **settings: Any
+    ) -> DiagramRun:
         """Run it in C.
 
         Args:
             t_end: End time [s]; the diagram's own where it states one.
+            inputs: Inlet -> numbers, which hold, a Signal, or formulas of t; all inlets of the diagram are given.
             settings: Fields of `SimulationOptions` in place of the diagram's own; `parameters`, `threads`, `progress`
                 and `observer` as of `run_compiled`.
 
@@ -69,13 +78,25 @@ class Simulation:
             SymofrosError: As `run_compiled`; or nobody says where to end.
         """
         stated = self.diagram.simulation
-        return run_compiled(self.compiled, _end(self.diagram, t_end), **{**stated.keywords(), **settings})
+        return run_compiled(self.compiled_with(inputs), _end(self.diagram, t_end), **{**stated.keywords(), **settings})
+
+    def compiled_with(self, inputs: Mapping[str, Any] | None) -> CompiledDiagram:
+        """The diagram as C functions, with what is given for its inlets, as of `run`."""
+        given = self._given(inputs)
+        return compile_diagram(given, self.options) if self.diagram.inlets else self.compiled
+
+    def _given(self, inputs: Mapping[str, Any] | None) -> Resolved:
+        """The diagram with what is given for its inlets."""
+        if not self.diagram.inlets and not inputs:
+            return self.resolved
+        return resolve(self.diagram, inputs or {})
 
     @checked
     def interpret(
         self,
         t_end: float,
         *,
+        inputs: Mapping[str, Any] | None = None,
         t0: float = 0.0,
         method: str = "rk4",
         dt: float = 1e-3,
@@ -91,6 +112,7 @@ class Simulation:
 
         Args:
             t_end: End time [s].
+            inputs: Inlet -> numbers, a Signal, or formulas of t, as of `run`.
             t0: Start time [s].
             method: rk4 or euler.
             dt: Step [s].
@@ -105,7 +127,7 @@ class Simulation:
         Raises:
             SymofrosError: The method is implicit or adaptive, or the diagram has crossings.
         """
-        resolved = self.resolved
+        resolved = self._given(inputs)
         if not (math.isfinite(dt) and dt > 0.0):
             what, rule = "diagram: the step is not positive", "dt > 0, and finite"
             raise SymofrosError(Problem(what, f"dt = {dt}", rule, "1e-3 s suits most arms"))

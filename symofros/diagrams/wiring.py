@@ -8,17 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from symofros.base.arrays import Array
-from symofros.description import System
 from symofros.diagrams.block import Block, Port, Ports, Shape
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fit import check_fit
+from symofros.diagrams.inlets import Inlet, fed_ports, settled
 from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import check_entry, split
+from symofros.diagrams.surroundings import Surroundings
 from symofros.errors import DescriptionError, Problem, did_you_mean
-from symofros.runtime.record import ModelRecord
-from symofros.simulation.analysis.state_space import StateSpace
 
 Source = tuple[str, str]
 
@@ -87,50 +85,11 @@ class Wired:
         return next(port.unit for port in self.ports[source[0]].outputs if port.name == source[1])
 
 
-class _Surroundings:
-    """Surroundings of a block while its ports are determined."""
-
-    def __init__(self, models: Models, inputs: Mapping[str, Shape], units: Mapping[str, tuple[str, ...]]) -> None:
-        self._models, self._inputs, self._units = models, inputs, units
-
-    @property
-    def inputs(self) -> Mapping[str, Shape]:
-        return self._inputs
-
-    @property
-    def units(self) -> Mapping[str, tuple[str, ...]]:
-        return self._units
-
-    def model(self, name: str) -> ModelRecord:
-        return self._models.record(name)
-
-    def start(self, name: str) -> tuple[Array, Array]:
-        return self._models.start(name)
-
-    def frame(self, model: str, frame: str) -> str:
-        return self._models.frame(model, frame)
-
-    def linear(self, name: str, u: Array) -> StateSpace:
-        return self._models.linear(name, u)
-
-    def system(self, name: str) -> System:
-        return self._models.system(name)
-
-    def parameters(self, name: str) -> Array:
-        return self._models.parameters(name)
-
-    def has_friction(self, model: str) -> list[bool]:
-        return self._models.has_friction(model)
-
-    def has_elastic_beams(self, model: str) -> bool:
-        return self._models.has_elastic_beams(model)
-
-
-def surroundings(wired: Wired, block: str) -> _Surroundings:
+def surroundings(wired: Wired, block: str) -> Surroundings:
     """Environment of a block in a wired diagram: models, shapes and units of its inputs."""
     shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
     units = {port.name: port.entry_units for port in wired.ports[block].inputs}
-    return _Surroundings(wired.models, shapes, units)
+    return Surroundings(wired.models, shapes, units)
 
 
 @dataclass(frozen=True)
@@ -178,6 +137,11 @@ def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
             outlets |= {name: source} if source else {}
     sources = _sources(diagram, ports, outlets, silent, problems)
     ports = _settle(diagram, models, ports, sources, problems)
+    if any(isinstance(block, Inlet) for block in diagram.blocks.values()):
+        ports = _settle(diagram, models, ports, sources, problems, last=True)
+        for name, known in ports.items():
+            block = settled(diagram.blocks[name], known)
+            problems += located(block.misfit(), diagram.where(name)) if isinstance(block, Inlet) else ()
     check_fit(diagram, ports, sources, problems)
     return Draft(models, ports, sources, outlets, problems)
 
@@ -200,7 +164,8 @@ def whole(diagram: Diagram, drafted: Draft) -> Wired:
     if drafted.problems:
         raise DescriptionError(list(drafted.problems))
     parts = (drafted.ports, drafted.sources, drafted.models, drafted.outlets)
-    wired = Wired(diagram.name, dict(diagram.blocks), *parts, diagram.origin, diagram.simulation.plots)
+    blocks = {name: settled(block, drafted.ports[name]) for name, block in diagram.blocks.items()}
+    wired = Wired(diagram.name, blocks, *parts, diagram.origin, diagram.simulation.plots)
     problems = _unseen(wired)
     if problems:
         raise DescriptionError(problems)
@@ -260,7 +225,7 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
     ports = {}
     for name, block in diagram.blocks.items():
         try:
-            ports[name] = block.ports(_Surroundings(models, {}, {}))
+            ports[name] = block.ports(Surroundings(models, {}, {}))
         except DescriptionError as error:
             problems += located(error.problems, diagram.where(name))
     return ports
@@ -375,8 +340,9 @@ def _settle(
     ports: dict[str, Ports],
     sources: Mapping[Source, Source],
     problems: list[Problem],
+    last: bool = False,
 ) -> dict[str, Ports]:
-    """Carry shapes along the wires until nothing changes."""
+    """Carry shapes along the wires until nothing changes; in the last round inlets take those of what is given."""
     for _ in range(len(ports) + 1):
         outputs = {(block, item.name): item for block, known in ports.items() for item in known.outputs}
         now = {}
@@ -390,8 +356,12 @@ def _settle(
                     inputs[item.name] = shape
                 if given is not None and any(given.entry_units):
                     units[item.name] = given.entry_units
+            block = diagram.blocks[name]
             try:
-                stated_ports = diagram.blocks[name].ports(_Surroundings(models, inputs, units))
+                if isinstance(block, Inlet):
+                    stated_ports = fed_ports(block, sources, ports, last)
+                else:
+                    stated_ports = block.ports(Surroundings(models, inputs, units))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
 from string import Template
 
@@ -13,6 +12,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.c_text import c_string, comment, doubles, integers, strings
 from symofros.base.names import identifier
+from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
     Resolved,
@@ -20,15 +20,16 @@ from symofros.diagrams.program.compiled import (
     part_beams,
     reads_accelerations,
     record_of,
+    resolve,
 )
 from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.lowered_block import watched
-from symofros.diagrams.wiring import Source
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
-from symofros.exports.diagram_start import first_motion
+from symofros.exports.diagram_interface import Interface, default_outputs, entry_names, entry_units, table
+from symofros.exports.diagram_start import FirstMotion, first_motion
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import cell, names_table
 from symofros.exports.material import Stepping
@@ -39,6 +40,7 @@ from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 
 _DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
+PROGRAM_HEADERS = (*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
 # Of the self-test, whose signals are those of the same run from Python.
 _TOLERANCE = "1e-9"
 
@@ -59,42 +61,33 @@ class PartMaterial:
 
 
 def write_diagram(
-    resolved: Resolved, folder: Path, outputs: Sequence[str], stepping: Stepping, generator: str
+    diagram: Diagram, folder: Path, outputs: Sequence[str] | None, stepping: Stepping, generator: str
 ) -> Exported:
     """Write the C package of a diagram.
 
     Args:
-        resolved: The diagram.
+        diagram: The diagram; its inlets are inputs.
         folder: Target folder: a new one, or one that an export wrote.
-        outputs: Signals that the program tells.
+        outputs: Signals that the program tells; by default its outlets, or else what moves.
         stepping: How the parts step: by an explicit method.
         generator: Name and version.
 
     Raises:
         ExportError: The diagram calls Python, or the folder is not ours.
     """
-    _refuse(resolved, stepping)
-    wired, layout = resolved.wired, resolved.layout
-    name = identifier(wired.name)
-    sources = [wired.output(text) for text in outputs]
-    write = fuser(resolved)
-    files: dict[str, str] = {f"{name}.h": _header(name, wired.name, generator)}
-    first = first_motion(resolved, outputs, stepping)
-    for i, (q, v) in enumerate(first.starts):
-        files |= _part_files(resolved, write, i, (q, v), stepping, generator)
-    instants = run_passes(write.samples(resolved.schedule.sets, sources))
-    files[f"{name}_instants.c"] = model_source(
-        instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
-    )
-    files[f"{name}_program.c"] = _program(resolved, name, sources, reads_accelerations(instants), generator)
+    program = diagram_program(diagram, outputs, stepping, generator)
+    name, files, first, shown = program.name, program.files, program.first, program.interface
     fields = {
         "name": name,
-        "heading": cell(wired.name),
-        "signals": ", ".join(f"`{entry}`" for entry in _entries(resolved, sources)) or "none",
-        "names": names_table(record_of(resolved, None)),
+        "heading": cell(diagram.name),
+        "inputs": table(shown.inputs),
+        "outputs": table(shown.outputs),
+        "parameters": table(shown.parameters),
+        "names": names_table(record_of(program.resolved, None)),
         "generator": generator,
         "version": generator.rpartition(" ")[2],
         "until": repr(first.until),
+        "given": doubles(first.given),
         "reference": doubles(first.signals),
         "tolerance": _TOLERANCE,
         "step": repr(stepping.dt),
@@ -103,10 +96,56 @@ def write_diagram(
     files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(fields)
     files["README.md"] = Template(native_text("exports/diagram_README.md.in")).substitute(fields)
     files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(fields)
-    files |= header_files(*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
+    files |= header_files(*PROGRAM_HEADERS)
     files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
-    closed_form = () if layout.condition_names else ("no constraints: accelerations are in closed form",)
-    return write_folder(folder, "c", name, files, generator, (*closed_form, *first.notes))
+    return write_folder(folder, "c", name, files, generator, program.notes)
+
+
+@dataclass(frozen=True)
+class DiagramProgram:
+    """A diagram as C text, ready to be wrapped.
+
+    Attributes:
+        name: Prefix of files and symbols.
+        resolved: The diagram, its inlets open.
+        interface: Inputs, outputs, parameters.
+        first: How it begins.
+        files: File name -> text, of what is generated.
+    """
+
+    name: str
+    resolved: Resolved
+    interface: Interface
+    first: FirstMotion
+    files: dict[str, str]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Remarks for the user."""
+        closed_form = "no constraints: accelerations are in closed form"
+        return (*(() if self.resolved.layout.condition_names else (closed_form,)), *self.first.notes)
+
+
+def diagram_program(
+    diagram: Diagram, outputs: Sequence[str] | None, stepping: Stepping, generator: str
+) -> DiagramProgram:
+    """The C text of a diagram; arguments and errors as of `write_diagram`."""
+    resolved = resolve(diagram)
+    _refuse(resolved, stepping)
+    told = outputs or default_outputs(diagram, resolved)
+    interface = Interface.of(resolved, told)
+    name, title = identifier(diagram.name), diagram.name
+    write = fuser(resolved)
+    files: dict[str, str] = {f"{name}.h": _header(name, title, interface, generator)}
+    first = first_motion(diagram, interface, told, stepping)
+    for i, (q, v) in enumerate(first.starts):
+        files |= _part_files(resolved, write, i, (q, v), stepping, generator)
+    instants = run_passes(write.samples(resolved.schedule.sets, interface.sources))
+    files[f"{name}_instants.c"] = model_source(
+        instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
+    )
+    files[f"{name}_program.c"] = _program(resolved, name, interface, reads_accelerations(instants), generator)
+    return DiagramProgram(name, resolved, interface, first, files)
 
 
 def _refuse(resolved: Resolved, stepping: Stepping) -> None:
@@ -121,9 +160,9 @@ def _refuse(resolved: Resolved, stepping: Stepping) -> None:
         raise ExportError(
             Problem(
                 f"diagram '{wired.name}': no C program",
-                f"block '{external[0]}' calls Python",
+                "; ".join(f"block '{name}' calls Python" for name in external),
                 "a program of its own has no Python in it",
-                "leave the block out",
+                "leave it out, or make what it takes an outlet and what it gives an inlet",
             )
         )
     if stepping.method.kind not in ("explicit", "semi_implicit"):
@@ -169,7 +208,7 @@ def _part_files(
     return {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
 
 
-def _header(name: str, title: str, generator: str) -> str:
+def _header(name: str, title: str, interface: Interface, generator: str) -> str:
     guard = f"SYMOFROS_PROGRAM_{name.upper()}_H"
     return "\n".join(
         [
@@ -178,6 +217,9 @@ def _header(name: str, title: str, generator: str) -> str:
             f"#define {guard}",
             "",
             '#include "symofros_program.h"',
+            "",
+            "/* Where inputs begin in `inputs`, outputs in `signals`, parameters in `par`, and how wide they are. */",
+            *interface.enumerations(name.upper()),
             "",
             "#ifdef __cplusplus",
             'extern "C" {',
@@ -207,7 +249,7 @@ def _part_header(c_name: str) -> str:
     )
 
 
-def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: bool, generator: str) -> str:
+def _program(resolved: Resolved, name: str, interface: Interface, back: bool, generator: str) -> str:
     """NAME_program.c: the constants of symofros_program.h."""
     wired, layout, plan = resolved.wired, resolved.layout, resolved.schedule
     parts = layout.parts
@@ -242,15 +284,24 @@ def _program(resolved: Resolved, name: str, sources: Sequence[Source], back: boo
         _array("const int64_t", "instant_tick", integers(k for k, _ in plan.instants)),
         _array("const int32_t", "instant_set", integers(which for _, which in plan.instants)),
         _array("const char *const", "set_functions", strings(f"due_{i}" for i in range(len(plan.sets)))),
-        _array("const char *const", "output_names", strings(_entries(resolved, sources))),
+        *(
+            _array("const char *const", key, strings(texts))
+            for key, texts in (
+                ("output_names", entry_names(interface.outputs)),
+                ("output_units", entry_units(interface.outputs)),
+                ("input_names", entry_names(interface.inputs)),
+                ("input_units", entry_units(interface.inputs)),
+            )
+        ),
         f"static const sym_program {name}_program_struct = {{",
         f"    {c_string(wired.name)}, {name}_instants_model,",
         f"    {len(parts)}, parts, q_offset, v_offset, c_offset, u_start,",
         f"    {len(layout.signals)}, {len(layout.lock_inputs)}, {len(directions)}, {int(back)},",
         "    signals, lock_inputs, directions, terminal,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
-        f"    instant_tick, instant_set, {len(plan.sets)}, {len(_entries(resolved, sources))},",
-        "    set_functions, output_names",
+        f"    instant_tick, instant_set, {len(plan.sets)}, {len(entry_names(interface.outputs))},",
+        f"    set_functions, output_names, output_units, {len(entry_names(interface.inputs))},",
+        "    input_names, input_units",
         "};",
         "",
         f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}",
@@ -271,12 +322,3 @@ def _signals(signals: Sequence[tuple[int, np.ndarray, np.ndarray, bool]]) -> lis
         lines.append(_array("const double", f"signal_y{i}", doubles(values.tolist())))
         rows.append(f"{{{at}, {int(linear)}, {len(t)}, signal_t{i}, signal_y{i}}}")
     return [*lines, _array("const sym_signal", "signals", ", ".join(rows) or "{0, 0, 0, NULL, NULL}")]
-
-
-def _entries(resolved: Resolved, sources: Sequence[Source]) -> list[str]:
-    """The name of each entry of the outputs."""
-    entries = []
-    for source in sources:
-        shape, label = resolved.wired.shape(source), ".".join(source)
-        entries += [label + "".join(f"[{i}]" for i in at) for at in product(*map(range, shape))]
-    return entries

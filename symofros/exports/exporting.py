@@ -18,7 +18,6 @@ from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description import System
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.program.compiled import resolve
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.mex import write_mex
@@ -26,7 +25,7 @@ from symofros.exports.c.reference import POINTS, checks
 from symofros.exports.c.sfunction import write_sfunction
 from symofros.exports.cuda.cuda_package import write_cuda_package
 from symofros.exports.diagram import write_diagram
-from symofros.exports.fmi.fmu import write_fmu2, write_fmu3
+from symofros.exports.fmi.fmu import write_diagram_fmu2, write_diagram_fmu3, write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
 from symofros.exports.interchange.mjcf import write_mjcf
@@ -55,6 +54,11 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
     "fmu2": write_fmu2,
     "fmu3": write_fmu3,
     "wasm": write_wasm,
+}
+_DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, str], Exported]] = {
+    "c": write_diagram,
+    "fmu2": write_diagram_fmu2,
+    "fmu3": write_diagram_fmu3,
 }
 # Functions of reactions, in packages of C alone.
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
@@ -92,7 +96,8 @@ def export(
     """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
 
     Args:
-        model: A system, or the path of its description; or a diagram, which becomes a program of its own ("c").
+        model: A system, or the path of its description; or a diagram, which becomes a program of its own
+            ("c", "fmu2", "fmu3"): its inlets are inputs, its outlets outputs.
         target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one
             thread a state), "mex" (Matlab, Octave), "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and
             Co-Simulation), "wasm" (WebAssembly with an ES module and a page that simulates), "urdf" or "mjcf" (what
@@ -105,7 +110,7 @@ def export(
             package has beside those that its stepping method calls, in place of all: a fraction of the text of a large
             robot. Efforts of actuators then need "dynamics", and of loops the functions of constraints.
         outputs: Of those frames, the ones whose positions are outputs of FMUs; the last one by default. Of a diagram,
-            the signals that its program tells; by default what moves.
+            the signals that its program tells; by default its outlets, or else what moves.
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
         method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS. Of a diagram, this and what
@@ -156,25 +161,18 @@ def export(
 def _export_diagram(
     diagram: Diagram, target: str, folder: Path, outputs: Sequence[str] | None, stepping: Stepping
 ) -> Exported:
-    """A diagram as a C program."""
-    if target != "c":
+    """A diagram as a program, its inlets inputs, its outlets outputs."""
+    if target not in _DIAGRAMS:
         raise ExportError(
             Problem(
                 f"diagram '{diagram.name}': no target '{target}'",
                 target,
-                "a diagram becomes a C program",
-                "use target 'c'",
+                f"a diagram becomes a C program or an FMU: {', '.join(_DIAGRAMS)}",
+                "use target 'c', or export its mechanisms alone",
             )
         )
     check_folder(folder)
-    resolved = resolve(diagram)
-    outputs_stated = outputs or [
-        f"{name}.{port.name}"
-        for name in resolved.wired.mechanisms()
-        for port in resolved.wired.ports[name].outputs
-        if port.name in ("q", "v")
-    ]
-    return write_diagram(resolved, folder, outputs_stated, stepping, GENERATOR)
+    return _DIAGRAMS[target](diagram, folder, outputs, stepping, GENERATOR)
 
 
 def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None) -> Stepping:

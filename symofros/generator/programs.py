@@ -19,7 +19,7 @@ from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
-from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.topology.tree import SpanningTree, coupled_speeds
 
 # What a C text or a library holds where the options name no functions.
 _DEFAULT = (Request("dynamics"),)
@@ -114,6 +114,7 @@ class ProgramBuilder:
             return effort(programs[method], programs[method].functions[0])
 
         figures = {f"{method}_effort": partial(spent, method) for method in ROUTES[_ACCELERATION]}
+        figures["coupled_speeds"] = partial(coupled_speeds, self.tree)
         asked = self._options.forward_dynamics.replace("auto", "")
         choice = choose(_ACCELERATION, self.equations().route_figures | figures, asked)
         program = programs.get(choice.method)

@@ -18,7 +18,14 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
-from symofros.mechanics.topology.tree import SpanningTree, frame_of, joint_names, prescribed_speeds, section_names
+from symofros.mechanics.topology.tree import (
+    SpanningTree,
+    ball_names,
+    frame_of,
+    joint_names,
+    prescribed_speeds,
+    section_names,
+)
 from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment
 
 GENERATOR = "symofros 0.1.0"
@@ -82,6 +89,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         timed=any(TIME in symbols(stated.value) for stated in stated_values(tree.system)),
         joint_limits=joint_limits(tree),
         friction_speeds=_friction_speeds(tree),
+        contact_names=ball_names(tree),
     )
 
 

@@ -22,7 +22,7 @@ from symofros.runtime.calls.extension import begin
 from symofros.runtime.calls.kernel import Array, BatchOptions, Kernel, Numbers, Precision, Unit
 from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
-from symofros.runtime.calls.single import SingleCall, SingleCalls, single_call
+from symofros.runtime.calls.plain import PlainCall, PlainCalls, plain_call
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
@@ -97,7 +97,7 @@ class Functions(Arguments):
         self._routes_of = routes
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
-        self._single_calls = SingleCalls()
+        self._plain_calls = PlainCalls()
 
     def __repr__(self) -> str:
         """Name and sizes."""
@@ -264,8 +264,8 @@ class Functions(Arguments):
 
     def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None) -> Numbers:
         if par is None:  # The shortest way: each call on it costs a twentieth of a small function's.
-            single = self._single_calls.prepared.get(name)
-            outputs = None if single is None else single(given)
+            plain = self._plain_calls.prepared.get(name)
+            outputs = None if plain is None else plain(given)
             if outputs is not None:
                 return outputs[0]
         return self._call(name, "", given, par)[0]
@@ -279,25 +279,25 @@ class Functions(Arguments):
         out: Mapping[str, Numbers] | None = None,
     ) -> list[Numbers]:
         if par is None and self._precision == "double":
-            outputs = self._single(name, frame)(given)
+            outputs = self._plain(name, frame)(given, out)
             if outputs is not None:
-                return outputs if out is None else into(out, self._kernels[name, frame].signature, outputs)
+                return outputs
         return self._call_batch(name, frame, given, par, out)
 
-    def _single(self, name: str, frame: str) -> SingleCall:
-        """The call of a function for one state, prepared at the first time."""
+    def _plain(self, name: str, frame: str) -> PlainCall:
+        """The plain call of a function, prepared at the first time."""
         key = (name, frame) if frame else name
-        calls = self._single_calls  # As they are before: a better call may be there before this one is made.
+        calls = self._plain_calls  # As they are before: a better call may be there before this one is made.
         if key not in calls.prepared:
             kernel = self._kernels.get((name, frame)) or self._make(name, frame, begin)
             default = np.array(self.record.u_default)
-            quaternions, better = self.record.quaternions, self._forget_single_calls
-            calls.prepared[key] = single_call(kernel, self._par, default, quaternions, better)
+            quaternions, better = self.record.quaternions, self._forget_plain_calls
+            calls.prepared[key] = plain_call(kernel, self._par, default, quaternions, better, self._threads)
         return calls.prepared[key]
 
-    def _forget_single_calls(self) -> None:
+    def _forget_plain_calls(self) -> None:
         """The next call of each function prepares it anew."""
-        self._single_calls = SingleCalls()
+        self._plain_calls = PlainCalls()
 
     def _call_batch(
         self,
@@ -327,8 +327,8 @@ class Functions(Arguments):
         if par is None and self._precision == "double" and all(array.ndim == 1 for array in arrays):
             # One state after all: as lists, by name, or of other numbers.
             named = {group: x for (group, _), x in zip(kernel.signature.inputs, arrays, strict=True)}
-            single = self._single(name, frame)
-            outputs = single(named | {"t": float(named["t"][0])} if "t" in named else named)
+            plain = self._plain(name, frame)
+            outputs = plain(named | {"t": float(named["t"][0])} if "t" in named else named)
             if outputs is not None:
                 return outputs if out is None else into(out, kernel.signature, outputs)
         n = prod(batch)

@@ -17,7 +17,7 @@ from symofros.runtime.record import ModelRecord
 
 @dataclass(frozen=True)
 class Names:
-    """Names of coordinates, speeds, inputs, parameters, frames, constraints, joints, sections, prescribed speeds."""
+    """Names of coordinates, speeds, inputs, parameters, frames, constraints, joints, sections, ..., and contacts."""
 
     q: tuple[str, ...]
     v: tuple[str, ...]
@@ -28,6 +28,7 @@ class Names:
     joints: tuple[str, ...]
     sections: tuple[tuple[str, float], ...]
     prescribed: tuple[str, ...]
+    contacts: tuple[str, ...]
 
     @classmethod
     def of(cls, record: ModelRecord) -> Names:
@@ -42,6 +43,7 @@ class Names:
             record.joint_names,
             record.section_names,
             record.prescribed_names,
+            record.contact_names,
         )
 
 

@@ -110,6 +110,7 @@ class ModelRecord:
         timed: Whether a formula depends on the time t.
         joint_limits: Limits of joints that state them: of coordinates, speeds and inputs.
         friction_speeds: Indices of the speeds that have friction.
+        contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
     """
 
     name: str
@@ -141,6 +142,7 @@ class ModelRecord:
     timed: bool = False
     joint_limits: tuple[JointLimit, ...] = ()
     friction_speeds: tuple[int, ...] = ()
+    contact_names: tuple[str, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:

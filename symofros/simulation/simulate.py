@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
-from symofros.runtime.calls import native_library
+from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
@@ -128,6 +128,9 @@ def prepare_run(model: Model, settings: Settings | None = None) -> None:
     names = ["forward_dynamics", *settings.method.family.functions, "kinetic_energy"]
     names += ["project", "constraint"] if model.nc else []
     names += ["dynamics"] if settings.judged else []
+    if native_library_is_loaded():  # A thread would take longer than a short run.
+        model.prepare(*names)
+        return
     with ThreadPoolExecutor(1) as pool:
         integrator = pool.submit(native_library)
         model.prepare(*names)

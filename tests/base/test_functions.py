@@ -46,6 +46,7 @@ def test_functions_have_the_inputs_and_shapes_of_the_table(name: str, function: 
         "ni": 0,  # Formulas of theirs have no instants: tests/expr/test_instants.py.
         "nj": len(m.names.joints),
         "nf": len(m.names.sections),
+        "nk": len(m.names.contacts),
         "ns": len(m.names.prescribed),
         "nb": len(m.beams()),
         "nz": len(m.mass_matrix_pattern()[0]),

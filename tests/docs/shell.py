@@ -32,7 +32,7 @@ LEFT = {
     "gcc": "tests/exports/c builds and runs exported packages",
     "ctest": "tests/exports/c builds and runs exported packages",
     "example": "tests/exports/c builds and runs exported packages",
-    "compensate": "tests/docs/test_pages.py builds and runs it",
+    **dict.fromkeys(("compensate", "controller", "plant", "whole"), "tests/docs/test_pages.py builds and runs it"),
     "node": "tests/exports/wasm runs exported modules",
     "chromium": "tests/exports/wasm opens exported pages",
     "nvcc": "tests/exports/cuda runs the example with kernels as C++",

@@ -6,6 +6,7 @@ import json
 import re
 import shlex
 import shutil
+import socket
 import subprocess
 import tomllib
 from importlib.util import find_spec
@@ -148,6 +149,35 @@ def test_the_guides_control_loop_holds_the_weight(page: str, folder: Path) -> No
     assert " ".join(printed) in lines[1] and f"# {' '.join(printed)} N m" in "".join(
         b.text for b in blocks(page, "python")
     )
+
+
+@pytest.mark.parametrize("page", ["docs/howto/controller_as_c.md"])
+def test_two_processes_in_lock_step_have_the_bits_of_one_program(page: str, folder: Path) -> None:
+    if shutil.which("gcc") is None or not hasattr(socket, "AF_UNIX"):
+        pytest.skip("needs gcc and the sockets of POSIX")
+    names: dict[str, Any] = {}
+    for block in blocks(page, "python"):
+        if not block.mark:
+            exec(compile(block.text, page, "exec"), names)
+    (program,) = (block for block in blocks(page, "c") if block.mark)
+    (folder / program.said("file: ")).write_text(program.text, encoding="utf-8")
+    build, lock_step, _ = blocks(page, "sh")
+    ports = [free_port(), free_port()]
+    text = f"{build.text}{lock_step.text}wait\n".replace("47000", ports[0]).replace("47001", ports[1])
+    subprocess.run(["sh", "-e"], input=text, text=True, check=True, timeout=120)
+    apart = np.array([[float(x) for x in line.strip(",").split(",")] for line in Path("apart.csv").read_text().split()])
+    together = np.loadtxt("together.csv", delimiter=",", skiprows=1)[:, 1:]
+    assert apart.shape == together.shape == (2001, 6)
+    assert (apart == together).all()
+    python = np.column_stack([names["run"][name] for name in ("plant.q", "plant.v", "controller.effort")])
+    np.testing.assert_allclose(apart, python, rtol=0.0, atol=1e-11)  # Fused products, of efforts of 50 N m/rad.
+
+
+def free_port() -> str:
+    """A port of UDP on this machine that nobody listens to."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        asked.bind(("127.0.0.1", 0))
+        return str(asked.getsockname()[1])
 
 
 @pytest.mark.parametrize("page", pages())

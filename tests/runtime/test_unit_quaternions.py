@@ -47,7 +47,7 @@ def m(request: pytest.FixtureRequest, name: str, monkeypatch: pytest.MonkeyPatch
     made = extension.load() if request.param == "extension" else None
     if request.param == "extension" and made is None:
         pytest.skip("needs the headers of Python")
-    monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: made)
+    monkeypatch.setattr("symofros.runtime.calls.plain.call_type", lambda _: made)
     monkeypatch.setattr("symofros.runtime.manifold.available_type", lambda: made)
     return model(name, "interpreter" if request.param == "interpreter" else "c").with_parameters()
 

@@ -8,7 +8,7 @@ from tests.validation.subjects import URDF
 from validation.checking import ModelResult, Settings
 from validation.contract.interface import Subject
 from validation.inputs.cases import Case
-from validation.worker_pool import ONE_THREAD, _context, run, run_case
+from validation.worker_pool import ONE_THREAD, run, run_case
 
 FEW = Settings(states=10, engines=("pinocchio",))
 
@@ -67,10 +67,18 @@ def test_an_interrupt_keeps_finished_results(tmp_path: Path) -> None:
     assert len(results) == 1
 
 
+@dataclass(frozen=True)
+class Telling(Case):
+    def load(self) -> Subject:
+        raise ZeroDivisionError(" ".join(os.environ[name] for name in ONE_THREAD))
+
+
 def test_workers_have_one_thread_of_linear_algebra_unless_more_are_stated(monkeypatch: pytest.MonkeyPatch) -> None:
     """Threads of several workers wait for each other at full load; the variables count where NumPy is loaded later."""
     for name in ONE_THREAD:
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("MKL_NUM_THREADS", "3")
-    _context(FEW)
-    assert [os.environ[name] for name in ONE_THREAD] == ["1", "1", "3"]
+    notes: list[str] = []
+    run([Telling("a"), Telling("b")], FEW, 2, lambda result: notes.append(result.comparisons[0].note))
+    assert all(note.startswith("ZeroDivisionError: 1 1 3 ") for note in notes) and len(notes) == 2
+    assert "OMP_NUM_THREADS" not in os.environ

@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from symofros.harness import worker_command
+from symofros.harness import command_line
 from symofros.tools import stored_json, write_atomically
 
 from ..program import PROGRAM
@@ -97,7 +97,7 @@ class Job:
 
     def command(self, topic: Topic) -> list[str]:
         """The process that makes a report."""
-        return worker_command("__main__", self.arguments(topic))
+        return command_line(self.arguments(topic))
 
     def arguments(self, topic: Topic) -> list[str]:
         """Arguments of the command that makes a report; campaign and mutants keep their work by digest of the code."""
@@ -270,7 +270,7 @@ def _detached(work: Path) -> None:
     log = work / "all.log"
     with log.open("ab") as said:
         process = subprocess.Popen(
-            worker_command("__main__", arguments),
+            command_line(arguments),
             stdout=said,
             stderr=subprocess.STDOUT,
             stdin=subprocess.DEVNULL,

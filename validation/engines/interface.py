@@ -61,11 +61,15 @@ class Steps(NamedTuple):
     truncation: float
 
 
-class Difference(NamedTuple):
-    """One convention of an engine that a reader must know."""
+class Convention(NamedTuple):
+    """One convention of an engine that a reader must know; where it differs from ours, `contract.conventions` says."""
 
     what: str
     convention: str
+
+
+# The name by which plug-ins know it that were written before `contract.conventions.Difference` was told apart from it.
+Difference = Convention
 
 
 @dataclass(frozen=True)
@@ -278,7 +282,7 @@ class EnginePlugin(Protocol):
     @property
     def extra(self) -> str: ...  # noqa: D102
     @property
-    def conventions(self) -> tuple[Difference, ...]: ...  # noqa: D102
+    def conventions(self) -> tuple[Convention, ...]: ...  # noqa: D102
     @property
     def kinds(self) -> Mapping[str, str]: ...  # noqa: D102
     @property

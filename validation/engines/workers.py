@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import contextlib
-import multiprocessing
-import signal
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
-from multiprocessing.connection import Connection
-from typing import Any
 
 import numpy as np
 
 from ..contract.raised import Raised, attempted
+from ..worker_process import WorkerError, WorkerProcess
 from .functions import FUNCTIONS
 from .interface import Array, EngineModel, Registry, Slot, State, Tree, Unsupported, installed
 from .plugins import OWN
@@ -156,19 +152,7 @@ def _called(model: EngineModel, function: str, state: State) -> Array | Unsuppor
     return value if isinstance(value, Unsupported) else np.array(value, dtype=float)
 
 
-def serve(pipe: Connection) -> None:
-    """Do jobs as they come."""
-    while True:
-        try:
-            job = pipe.recv()
-        except EOFError:
-            return
-        for answer in answered(job):
-            pipe.send(answer)
-        pipe.send(None)
-
-
-class Worker:
+class Worker(WorkerProcess):
     """A process that engines run in, started anew after a crash.
 
     Args:
@@ -176,73 +160,18 @@ class Worker:
     """
 
     def __init__(self, limit: float = LIMIT) -> None:
+        super().__init__()
         self._limit = limit
-        self._process: Any = None
-        self._pipe: Connection | None = None
-
-    def __enter__(self) -> Worker:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """End the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.join()
-        if self._pipe is not None:
-            self._pipe.close()
-        self._process = self._pipe = None
 
     def ask(self, job: Job) -> Iterator[Answer]:
-        """An answer for each function of a job, in order."""
-        remaining = list(job.functions)
+        """An answer for each function of a job, in order; what a crash left is asked of a new process."""
+        remaining = job.functions
         while remaining:
-            done = 0
-            for answer in self._once(replace(job, functions=tuple(remaining))):
-                yield answer
-                done += 1
-            remaining = remaining[done:]
-
-    def _once(self, job: Job) -> Iterator[Answer]:
-        pipe = self._started()
-        pipe.send(job)
-        for left, function in zip(range(len(job.functions) - 1, -1, -1), job.functions, strict=True):
-            message: Any = None
-            reason = f"no answer in {self._limit:g} s"
-            if pipe.poll(self._limit):
-                with contextlib.suppress(EOFError, ConnectionResetError):
-                    message = pipe.recv()
-            if message is None:
-                if not pipe.closed and self._process.is_alive():
-                    self._process.join(0.2)
-                code = self._process.exitcode
-                self.close()
-                yield Answer(function, Crashed(reason if code is None else _exit_reason(code)))
-                return
-            # The end of the job is read before its last answer is handed out: who takes that and no more leaves nothing
-            # in the pipe that the next job would take for its own.
-            if not left and pipe.poll(self._limit):
-                pipe.recv()
+            answers: list[Answer] = []
             try:
-                yield message
-            except GeneratorExit:
-                if left:
-                    self.close()
-                raise
-
-    def _started(self) -> Connection:
-        if self._process is not None and not self._process.is_alive():
-            self.close()
-        if self._pipe is None:
-            context = multiprocessing.get_context("spawn")
-            self._pipe, other = context.Pipe()
-            self._process = context.Process(target=serve, args=(other,), daemon=True)
-            self._process.start()
-            other.close()
-        return self._pipe
-
-
-def _exit_reason(code: int) -> str:
-    return f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
+                for answer in self.call(answered, replace(job, functions=remaining), limit=self._limit):
+                    answers.append(answer)
+            except WorkerError as error:
+                answers += [Answer(function, Crashed(str(error))) for function in remaining[len(answers) :][:1]]
+            yield from answers
+            remaining = remaining[len(answers) :]

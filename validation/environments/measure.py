@@ -1,27 +1,26 @@
 """The command: one process an environment, as what a framework reads at its start holds for all of a process."""
 
 # Annotations are values here: the options of a command name the environments.
-import json
-import os
 from collections.abc import Callable, Mapping
-from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Annotated, Any
 
 import typer
 
-from symofros.harness import worker_command
-
 from ..reporting.command import Quick, Run, known
-from ..reporting.plain import plain, restored
+from ..reporting.plain import plain
 from ..reporting.provenance import stamp
 from ..reporting.record import Data
-from ..timing.processes import WorkerError, follow, message
+from ..timing.worker import Message
+from ..worker_process import WorkerError, WorkerProcess
 from . import in_node
 from .in_casadi import CASADI
 from .in_jax import JAX
 from .in_torch import TORCH
 from .race import TURNS
-from .record import Absent, Record, Row
+from .record import Record
+from .worker import work
 
 SETTINGS: Mapping[str, Mapping[str, str]] = {
     in_node.NAME: {},
@@ -48,27 +47,27 @@ def run_environment(
     Raises:
         RuntimeError: The process ended before its time; with its last words.
     """
-    job = json.dumps({"environment": name, "models": models, "states": STATES, "turns": turns})
-    command = worker_command("environments.worker", [job])
     try:
-        follow(command, partial(take, record=record, doing=doing), {**os.environ, **SETTINGS[name]})
+        with (
+            TemporaryDirectory() as folder,
+            WorkerProcess(environment=SETTINGS[name], log=Path(folder) / "log") as worker,
+        ):
+            for message in worker.call(work, name, models, STATES, turns):
+                take(message, record, doing)
     except WorkerError as error:
-        raise RuntimeError(f"the process {error}") from None
+        raise RuntimeError(f"the process of {name}: {error}") from None
 
 
-def take(line: str, record: Record, doing: Callable[[str], object]) -> None:
-    """Add what a worker printed to a record; lines of other origin are the frameworks', and are left."""
-    kind, value = message(line)
+def take(message: Message, record: Record, doing: Callable[[str], object]) -> None:
+    """Add a worker's message to a record."""
+    kind, value = message
     if kind == "doing":
         doing(": ".join(value))
-    elif kind == "row":
-        record.rows.append(restored(Row, value))
-    elif kind == "absent":
-        record.absent.append(restored(Absent, value))
-    elif kind == "failed":
-        record.failed.append(tuple(value))
     elif kind == "version":
         record.packages[value[0]] = value[1]
+    else:
+        kept: dict[str, list[Any]] = {"row": record.rows, "absent": record.absent, "failed": record.failed}
+        kept[kind].append(value)
 
 
 def measure(

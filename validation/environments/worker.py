@@ -1,75 +1,77 @@
-"""Races in one environment, in a process of its own: `python -m validation.environments.worker`.
+"""Races in one environment, in a process of its own.
 
-Arguments: a job as JSON, {"environment", "models", "states", "turns"}. Prints a JSON object a line: {"row": ...},
-{"absent": ...}, {"failed": ...}, {"version": ...} of a package, {"doing": ...} of what comes next.
+The messages of `work` are a kind and a value: a "row", an "absent" side, what has "failed", a package's "version", and
+"doing" of what comes next.
 """
 
 from __future__ import annotations
 
-import json
-import sys
-from collections.abc import Iterator
-from dataclasses import asdict
+from collections.abc import Callable, Generator, Iterator, Sequence
 from functools import partial
 from importlib import import_module, metadata
 
 from ..reporting.numbers import counted
-from ..timing.processes import Say, say
-from . import in_node
+from ..timing.worker import Message
+from . import in_node, race
 from .in_casadi import CASADI
 from .in_jax import JAX
 from .in_torch import TORCH
-from .race import rows
-from .record import OURS, Absent
+from .record import OURS, Absent, Row
 from .sides import Environment, Offer, Peer, Subject
 
 ENVIRONMENTS = {one.name: one for one in (JAX, TORCH, CASADI)}
 
 
-def work(environment: Environment, models: list[str], states: list[int], turns: int, say: Say) -> None:
+def work(name: str, models: Sequence[str], states: Sequence[int], turns: int) -> Iterator[Message]:
     """Race all functions of an environment, on each model with each number of states in a call."""
+    return (_race_in_node if name == in_node.NAME else _race)(name, models, states, turns)
+
+
+def _race(name: str, models: Sequence[str], states: Sequence[int], turns: int) -> Iterator[Message]:
+    environment = ENVIRONMENTS[name]
     missing = _missing(environment.own)
     if missing:
-        say("absent", asdict(Absent(environment.name, OURS, missing, environment.own.install)))
+        yield "absent", Absent(name, OURS, missing, environment.own.install)
         return
-    say("version", _version(environment.own))
-    present = list(_present(environment, say))
+    yield "version", _version(environment.own)
+    present = yield from _present(environment)
     for label in models:
-        say("doing", [label, "compiling"])
+        yield "doing", (label, "compiling")
         subject = Subject.of(label, max(states))
-        offers = list(_offers(environment, subject, (environment.own, *present), say))
+        offers = yield from _offers(environment, subject, (environment.own, *present))
         for function in environment.functions:
             for count in states:
-                say("doing", [label, f"{function}, {counted(count, 'state')}"])
-                fail = partial(_fail, say, environment.name, function)
-                for row in rows(environment.name, subject, offers, function, count, turns, fail):
-                    say("row", asdict(row))
+                yield "doing", (label, f"{function}, {counted(count, 'state')}")
+                rows = partial(race.rows, name, subject, offers, function, count, turns)
+                yield from _told(name, function, rows)
 
 
-def run_node_worker(models: list[str], states: list[int], turns: int, say: Say) -> None:
-    """Race the functions of each model in WebAssembly, run by Node, as `work` does for other environments."""
+def _race_in_node(name: str, models: Sequence[str], states: Sequence[int], turns: int) -> Iterator[Message]:
+    """The functions of each model in WebAssembly, run by Node, as `_race` does for other environments."""
     missing = in_node.missing()
     if missing is not None:
-        say("absent", asdict(missing))
+        yield "absent", missing
         return
     for label in models:
-        say("doing", [label, "compiling and racing in Node"])
+        yield "doing", (label, "compiling and racing in Node")
         subject = Subject.of(label, max(states))
         ran = in_node.run(subject, states, turns)
-        say("version", ["node", ran["node"].removeprefix("v")])
+        yield "version", ("node", ran["node"].removeprefix("v"))
         if ran["mujoco"]:
-            say("version", [in_node.PEER, ran["mujoco"]])
-        for race in ran["races"]:
-            fail = partial(_fail, say, in_node.NAME, race["function"])
-            for row in in_node.rows(subject, race, turns, fail):
-                say("row", asdict(row))
+            yield "version", (in_node.PEER, ran["mujoco"])
+        for one in ran["races"]:
+            yield from _told(name, one["function"], partial(in_node.rows, subject, one, turns))
     if not ran["mujoco"]:
-        missing = Absent(in_node.NAME, in_node.PEER, "Node finds no such package", in_node.INSTALL_PEER)
-        say("absent", asdict(missing))
+        yield "absent", Absent(name, in_node.PEER, "Node finds no such package", in_node.INSTALL_PEER)
 
 
-def _fail(say: Say, environment: str, function: str, who: str, reason: str) -> None:
-    say("failed", [environment, function, who, reason])
+def _told(name: str, function: str, rows: Callable[[race.Fail], Iterator[Row]]) -> Iterator[Message]:
+    """The rows of one race, and the sides that it has left out, which are known at its end."""
+    failed: list[tuple[str, str, str, str]] = []
+    for row in rows(lambda who, reason: failed.append((name, function, who, reason))):
+        yield "row", row
+    for said in failed:
+        yield "failed", said
 
 
 def _missing(peer: Peer) -> str:
@@ -85,43 +87,29 @@ def _version(peer: Peer) -> tuple[str, str]:
     return peer.package, metadata.version(peer.package)
 
 
-def _present(environment: Environment, say: Say) -> Iterator[Peer]:
+def _present(environment: Environment) -> Generator[Message, None, list[Peer]]:
     """The peers that are installed; one that takes part in several ways is missed once."""
-    told = set()
+    told, present = set(), []
     for peer in environment.peers:
         missing = _missing(peer)
-        if missing:
-            if peer.module not in told:
-                told.add(peer.module)
-                say("absent", asdict(Absent(environment.name, peer.name.partition(",")[0], missing, peer.install)))
-        else:
-            say("version", _version(peer))
-            yield peer
+        if not missing:
+            yield "version", _version(peer)
+            present.append(peer)
+        elif peer.module not in told:
+            told.add(peer.module)
+            yield "absent", Absent(environment.name, peer.name.partition(",")[0], missing, peer.install)
+    return present
 
 
 def _offers(
-    environment: Environment, subject: Subject, sides: tuple[Peer, ...], say: Say
-) -> Iterator[tuple[str, Offer]]:
+    environment: Environment, subject: Subject, sides: tuple[Peer, ...]
+) -> Generator[Message, None, list[tuple[str, Offer]]]:
     """Each side that can read the model, with what makes its functions."""
+    offers = []
     for side in sides:
         try:
-            yield side.name, side.offer(subject)
+            offers.append((side.name, side.offer(subject)))
         except Exception as problem:  # Readers raise errors of every kind.
-            say(
-                "failed",
-                [
-                    environment.name,
-                    f"all functions of {subject.label}",
-                    side.name,
-                    f"{type(problem).__name__}: {problem}",
-                ],
-            )
-
-
-if __name__ == "__main__":
-    job = json.loads(sys.argv[1])
-    asked = job["models"], job["states"], job["turns"], say
-    if job["environment"] == in_node.NAME:
-        run_node_worker(*asked)
-    else:
-        work(ENVIRONMENTS[job["environment"]], *asked)
+            what = f"all functions of {subject.label}"
+            yield "failed", (environment.name, what, side.name, f"{type(problem).__name__}: {problem}")
+    return offers

@@ -5,25 +5,34 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
-import sys
+import signal
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ..reporting.evidence import digest, revision
+from ..worker_process import WorkerError, WorkerProcess
 from .fault import SourceFault
 
 # What tests read, beside the packages.
 COPIED = ("symofros", "validation", "reference_models", "tests", "docs", "reports", "README.md", "pyproject.toml")
 _COPIED_IF_PRESENT = ("CHANGELOG.md", "CONTRIBUTING.md", "LICENSE")
+# What judges need and what takes long to import; none of ours, which each judge imports anew, with the fault that is
+# planted at the time.
+PRELOADED = (
+    "numpy numpy.testing numpy.random mpmath scipy.optimize scipy.linalg scipy.sparse scipy.integrate scipy.spatial"
+    " pinocchio mujoco casadi exudyn yaml sksundae pytest hypothesis _pytest.assertion.rewrite typer rich.console"
+).split()
+_MEMORY = 12 << 30  # Bytes of address space: a fault may ask for all there is.
+_WAIT = 8  # Seconds that a judge is waited for, over those of processor time: other work delays it.
 # Models whose text a fault changes are compiled once and judged once: no optimisation pays.
 _COMPILER = '#!/bin/sh\nexec cc "$@" -O0\n'
 
 
 class Overlay:
-    """A folder with a copy of the tree, a compiler, a cache, and a server of tasks.
+    """A folder with a copy of the tree, a compiler, a cache, and a worker process that judges in it.
 
     Compiled models are found by their C text, so that those of the sound package serve every fault that leaves the text
     as it is, and none that changes it.
@@ -59,50 +68,44 @@ class Overlay:
             _link_cache(cache, self.cache)
         self._compiler.write_text(_COMPILER)
         self._compiler.chmod(0o755)
-        self._server = self._start()
+        self._worker = self._new_worker()
 
-    def _start(self) -> subprocess.Popen[str]:
+    def _new_worker(self) -> WorkerProcess:
         environment = {
-            **os.environ,
             "PYTHONPATH": str(self.tree),
             "SYMOFROS_CACHE": str(self.cache),
             "CC": str(self._compiler),
             "OMP_NUM_THREADS": "1",
             "PYTHONHASHSEED": "0",
         }
-        server = self.tree / "validation" / "mutation" / "server.py"
-        return subprocess.Popen(
-            [sys.executable, str(server)],
-            cwd=self.tree,
-            env=environment,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            start_new_session=True,  # Ctrl-C is this process's; it ends the server.
+        return WorkerProcess(
+            environment=environment, path=(), folder=self.tree, preload=PRELOADED, fresh=True, log=self.log
         )
 
     def ask(self, module: str, function: str, limit: float, /, **arguments: Any) -> dict[str, Any]:
-        """Call a function in a child of the server, with whatever fault is planted.
+        """Call a function in a process of its own, with whatever fault is planted.
 
         Args:
             module: Module of the function.
-            function: Name of the function; it returns JSON.
-            limit: Processor time after which the child is ended [s].
+            function: Name of the function; it returns what JSON holds.
+            limit: Processor time after which the process is ended [s].
             arguments: Arguments of the function.
 
         Returns:
             "fate": "answered", "crashed" or "timed out"; "answer", "code", "seconds".
         """
-        task = {"module": module, "function": function, "limit": limit, "log": str(self.log), "arguments": arguments}
-        assert self._server.stdin is not None and self._server.stdout is not None
-        self._server.stdin.write(json.dumps(task) + "\n")
-        self._server.stdin.flush()
-        line = self._server.stdout.readline()
-        if not line:
-            self._server = self._start()
-            return {"fate": "crashed", "code": None, "answer": None, "seconds": 0.0}
-        answer: dict[str, Any] = json.loads(line)
-        return answer
+        began = time.perf_counter()
+        answer, code, fate = None, 0, "answered"
+        bounds: Any = {"limit": _WAIT * limit, "seconds": limit, "memory": _MEMORY}
+        try:
+            (answer,) = self._worker.call((module, function), named=arguments, **bounds)
+        except WorkerError as error:
+            if error.fate == "raised":
+                answer = {"status": "raised", "reason": str(error)[:300]}
+            else:
+                code = -signal.SIGKILL if error.code is None else error.code
+                fate = "timed out" if code == -signal.SIGXCPU else error.fate
+        return {"fate": fate, "code": code, "answer": answer, "seconds": round(time.perf_counter() - began, 2)}
 
     @contextmanager
     def planted(self, fault: SourceFault) -> Iterator[None]:
@@ -133,11 +136,8 @@ class Overlay:
             bytecode.unlink()
 
     def close(self) -> None:
-        """End the server."""
-        if self._server.stdin is not None:
-            self._server.stdin.close()
-        self._server.terminate()
-        self._server.wait()
+        """End the worker process."""
+        self._worker.close()
 
 
 def _copy_tree(root: Path, tree: Path) -> None:

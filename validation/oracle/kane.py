@@ -252,7 +252,7 @@ class _Model:
     def pulls(self) -> list[tuple[Any, Any]]:
         """(point, force) of the connections."""
         forces = []
-        for connection in self.scope.system.connections:
+        for connection in self.scope.system.springs:
             one, two, d = self._ends(connection)
             k, c, rest = (self.scope.value(x) for x in (connection.stiffness, connection.damping, connection.length))
             v = two.vel(self.N) - one.vel(self.N)
@@ -266,7 +266,7 @@ class _Model:
     def pull_energy(self) -> Any:
         """Potential energy of the connections' springs."""
         total = sympy.Integer(0)
-        for connection in self.scope.system.connections:
+        for connection in self.scope.system.springs:
             d = self._ends(connection)[2]
             stretch = sympy.sqrt(d.dot(d)) - self.scope.value(connection.length)
             total += self.scope.value(connection.stiffness) * stretch**2 / 2

@@ -66,6 +66,8 @@ class Scope:
         self.system = system
         if system.constraints:
             raise NotDerivable(f"constraint '{system.constraints[0].name}': the oracle has no multipliers")
+        if system.contacts:
+            raise NotDerivable(f"contact '{system.contacts[0].name}': the oracle has no surfaces")
         self.bodies = list(self._carried_by(None))
         joints = [body.joint for body in self.bodies if body.joint is not None and body.joint.kind != "fixed"]
         self.joints = tuple(joints)

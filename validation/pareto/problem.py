@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 
 from ..reporting.plain import Number
 
@@ -42,6 +43,22 @@ class Contestant:
     method: str
     setting: str
     run: Callable[[], Measured]
+
+    @classmethod
+    def swept(
+        cls, series: tuple[str, str, str], run: Callable[[float], Measured], settings: Iterable[float], adapts: bool
+    ) -> list[Contestant]:
+        """One for each step [s], or for each relative tolerance of a method that adapts its steps.
+
+        Args:
+            series: Engine, model and method.
+            run: Step or tolerance -> one run.
+            settings: Steps or tolerances.
+            adapts: Which of them.
+        """
+        settings = tuple(settings)
+        shown = (f"rtol {x:.0e}".replace("e-0", "e-") if adapts else f"{1e3 * x:.3g} ms" for x in settings)
+        return [cls(*series, said, partial(run, x)) for said, x in zip(shown, settings, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,7 @@
-"""Plain calls from Python, timed in a process of their own: python -m validation.timing.calls FILE FLOATING."""
+"""Plain calls from Python, timed in the process of a worker."""
 
 from __future__ import annotations
 
-import json
-import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -20,12 +18,13 @@ REPEATS, CALLS = 24, 2000
 
 
 def times(path: str, floating: bool) -> dict[str, float]:
-    """Median seconds of each call, all in turns; of batches those of a state.
+    """Median seconds of each call on one processor, all in turns; of batches those of a state.
 
     Args:
         path: URDF file.
         floating: Whether nothing holds its root.
     """
+    pin_to_one_cpu()
     model = sf.compile(sf.load(path, floating_base=floating))
     rng = np.random.default_rng(0)
     q = model.neutral()
@@ -69,8 +68,3 @@ def _medians(calls: Mapping[str, tuple[Callable[[], object], int, int]]) -> dict
                 call()
             taken[name].append((time.perf_counter() - start) / (count * states))
     return {name: median(seconds) for name, seconds in taken.items()}
-
-
-if __name__ == "__main__":
-    pin_to_one_cpu()
-    print(json.dumps(times(sys.argv[1], sys.argv[2] == "1")))

@@ -1,32 +1,28 @@
-"""A whole run: one process a model, what it prints added to the record as it comes."""
+"""A whole run: one process a model, what it says added to the record as it comes."""
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
-import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from symofros.harness import worker_command
 from symofros.tools import find_toolchain
 
-from ..reporting.plain import restored
 from ..reporting.provenance import machine
+from ..worker_process import WorkerError, WorkerProcess
 from .contestants.arrays import first_compiler
 from .contestants.engines import CLOSED, PINOCCHIO_FLAGS, TREES, pinocchio_builds
 from .contestants.generated import BUILDS
 from .contestants.programs import BuildError, Say, Skipped, compilers, source
 from .models import TIMED_MODELS
-from .processes import WorkerError, follow, message
 from .race import pin_to_one_cpu
-from .record import Entry, Made, Record
-from .worker import Job
+from .record import Record
+from .worker import Job, Message, work
 
 Doing = Callable[[str, str, str], None]
 # What a worker that died had not done.
@@ -42,27 +38,25 @@ def run_job(job: Job, record: Record, doing: Doing = lambda model, function, par
         doing: Told the model, the function and the part of its race that is under way; "" where a function begins.
     """
     record.forget([job.model], [LEFT], [])
-    command = worker_command("timing.worker", [json.dumps(asdict(job))])
     try:
-        follow(command, partial(take, job=job, record=record, doing=doing))
+        with TemporaryDirectory() as folder, WorkerProcess(log=Path(folder) / "log") as worker:
+            for message in worker.call(work, job):
+                take(message, job, record, doing)
     except WorkerError as error:
-        record.failed.append((job.model, LEFT, "symofros", f"the worker {error}"))
+        record.failed.append((job.model, LEFT, "symofros", f"the worker: {error}"))
 
 
-def take(line: str, job: Job, record: Record, doing: Doing) -> None:
-    """Add what a worker printed to a record; lines of other origin are MuJoCo's or Pinocchio's, and are left."""
-    kind, value = message(line)
+def take(message: Message, job: Job, record: Record, doing: Doing) -> None:
+    """Add a worker's message to a record."""
+    kind, value = message
     if kind == "doing":
         record.forget([job.model], [value], job.peers)
         doing(job.model, value, "")
     elif kind == "part":
         doing(job.model, *value)
-    elif kind == "entry":
-        record.entries.append(restored(Entry, value))
-    elif kind == "cost":
-        record.costs.append(restored(Made, value))
-    elif kind in ("skipped", "failed"):
-        getattr(record, kind).append(tuple(value))
+    else:
+        lists: dict[str, list[Any]] = {"entry": record.entries, "cost": record.costs}
+        (lists[kind] if kind in lists else getattr(record, kind)).append(value)
 
 
 def jobs(
@@ -127,7 +121,7 @@ def facts() -> Mapping[str, Any]:
 def peaks() -> dict[str, float]:
     """Measured limits of one core: operations a second in fused multiply-adds (two each), bytes copied a second."""
     compiler = first_compiler()
-    with tempfile.TemporaryDirectory() as private:
+    with TemporaryDirectory() as private:
         text, program = Path(private) / "peak.c", Path(private) / "peak"
         text.write_text(source("peak.c"), encoding="utf-8")
         subprocess.run([compiler.path, "-O3", "-march=native", str(text), "-o", str(program)], check=True)

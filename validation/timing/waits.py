@@ -1,12 +1,11 @@
 """What a user waits for: the import, the first number, all functions compiled; with an empty cache and a full one.
 
-Each run is a new process, timed by the clock from its start to its end. Plain calls from Python are timed in a process
-of their own (calls.py).
+Each run is a new process, timed by the clock from its start to its end. Plain calls from Python are timed in a worker
+process (calls.py).
 """
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -17,9 +16,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
-from symofros.harness import worker_command
-
 from ..inputs.cases import robot_file
+from ..worker_process import WorkerProcess
+from . import calls
 from .record import Wait
 
 LABEL = "first_second"
@@ -113,8 +112,8 @@ def _robot_waits(robot: Robot, cache: Path, doing: Callable[[str], None]) -> Ite
         seconds = process_time(arguments, folder, RUNS_ANEW if folder is None else RUNS)
         yield Wait(what, robot.label, seconds, robot.asked.get(what))
     doing(f"{robot.label}: {CALL}")
-    arguments = tuple(worker_command("timing.calls", [path, str(int(robot.floating))])[1:])
-    times = json.loads(_process(arguments, cache)[1].splitlines()[-1])
+    with WorkerProcess(environment={"SYMOFROS_CACHE": str(cache)}) as worker:
+        (times,) = worker.call(calls.times, path, robot.floating)
     yield Wait(CALL, robot.label, times["call"], robot.asked.get(CALL))
     if "pinocchio" in times:
         yield Wait("pinocchio.crba(model, data, q)", robot.label, times["pinocchio"], None)
@@ -127,12 +126,12 @@ def process_time(arguments: Sequence[str], cache: Path | None, runs: int) -> flo
     seconds = []
     for _ in range(runs):
         with tempfile.TemporaryDirectory() as empty:
-            seconds.append(_process(arguments, cache or Path(empty))[0])
+            seconds.append(_process(arguments, cache or Path(empty)))
     return median(seconds)
 
 
-def _process(arguments: Sequence[str], cache: Path) -> tuple[float, str]:
-    """Wall time [s] and output of a Python process."""
+def _process(arguments: Sequence[str], cache: Path) -> float:
+    """Wall time of a Python process [s]."""
     environment = {**os.environ, "SYMOFROS_CACHE": str(cache)}
     # Whoever installs a package has its bytecode; without, each process would translate its text again.
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
@@ -141,4 +140,4 @@ def _process(arguments: Sequence[str], cache: Path) -> tuple[float, str]:
     seconds = time.perf_counter() - start
     if done.returncode != 0:
         raise RuntimeError(f"{' '.join(arguments)}: {(done.stderr.strip() or 'no word').splitlines()[-1]}")
-    return seconds, done.stdout
+    return seconds

@@ -1,34 +1,30 @@
-"""Times one model in a process of its own: `python -m validation.timing.worker`.
+"""Times one model in a process of its own.
 
-Arguments: a job as JSON: {"model", "peers", "functions", "repeats", "states"}. Prints a JSON object a line:
-{"entry": ...} of a pair of sides, {"cost": ...} of a generated function, {"skipped": ...} of a peer that has no side,
-{"failed": ...} of one that should have, {"doing": ...} of a function, {"part": ...} of what is done of it.
+The messages of `work` are a kind and a value: an "entry" for a pair of sides, the "cost" of a generated function; a
+note of what is "skipped", a peer that has no side, or has "failed", one that should have; "doing" with the name of a
+function, and "part", what is done of it.
 """
 
 from __future__ import annotations
 
-import json
-import os
-import sys
-import threading
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Generator, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 import symofros as sf
 
-from ..reporting.plain import restored
 from .contestants.arrays import first_compiler
 from .contestants.engines import mujoco_loops, pinocchio_loops
 from .contestants.generated import casadi_loops, sympy_loops
 from .contestants.programs import BuildError, Skipped
 from .contestants.symofros import BATCH, COLUMNS, NAME, SINGLE, our_loops
-from .processes import Say, say
-from .race import SINGLE_OVER_DOUBLE_ROUNDING, DisagreementError, checked, race
+from .race import SINGLE_OVER_DOUBLE_ROUNDING, DisagreementError, Times, checked, race
 from .record import Entry, Made
 from .task import Loop, Task, task
 
+Message = tuple[str, Any]
 PEERS = ("pinocchio", "mujoco", "casadi", "sympy")
 
 
@@ -51,23 +47,21 @@ class Job:
     states: int
 
 
-def work(job: Job, say: Say) -> None:
-    """Do a job; `say` gets each result as it is there."""
-    first_compiler()
-    given = task(job.model, job.states)
-    for function in job.functions:
-        say("doing", function)
-        try:
-            _function(given, job, function, say)
-        except (BuildError, DisagreementError, sf.SymofrosError) as error:
-            say("failed", [job.model, function, "symofros", str(error)])
+def work(job: Job) -> Iterator[Message]:
+    """Do a job: each result as soon as it is there."""
+    with np.errstate(all="ignore"):
+        first_compiler()
+        given = task(job.model, job.states)
+        for function in job.functions:
+            yield "doing", function
+            try:
+                yield from _function(given, job, function)
+            except (BuildError, DisagreementError, sf.SymofrosError) as error:
+                yield "failed", (job.model, function, "symofros", str(error))
 
 
-def _function(given: Task, job: Job, function: str, say: Say) -> None:
-    def part(text: str) -> None:
-        say("part", [function, text])
-
-    part("compiling ours")
+def _function(given: Task, job: Job, function: str) -> Iterator[Message]:
+    yield "part", (function, "compiling ours")
     generated = {loop.variant: loop for loop in our_loops(given, [function])}
     expected = generated[NAME].results()
     for name in generated.keys() - {NAME}:
@@ -78,19 +72,32 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
     errors: dict[str, float] = {}
     peers: dict[str, str] = {}
     for peer in job.peers:
-        part(f"building {peer}")
-        for loop in _offered(given, job, function, peer, say):
+        yield "part", (function, f"building {peer}")
+        for loop in (yield from _offered(given, job, function, peer)):
             name = f"{peer}: {loop.variant}"
             try:
                 errors[name] = checked(function, name, loop.results(), expected)
             except DisagreementError as error:
-                say("failed", [job.model, function, peer, str(error)])
+                yield "failed", (job.model, function, peer, str(error))
                 continue
             sides[name], peers[name] = loop, peer
-    part(f"racing {len(sides)} sides")
+    yield "part", (function, f"racing {len(sides)} sides")
     times = race(sides, job.states, job.repeats)
+    yield from _results(given, job, function, sides, peers, errors, times)
+
+
+def _results(
+    given: Task,
+    job: Job,
+    function: str,
+    sides: Mapping[str, Loop],
+    peers: Mapping[str, str],
+    errors: Mapping[str, float],
+    times: Mapping[str, Times],
+) -> Iterator[Message]:
+    """Entries and costs of a race whose sides are keyed by their names."""
     for name, peer in peers.items():
-        made = Entry(
+        entry = Entry(
             job.model,
             given.assembly.nv,
             function,
@@ -103,11 +110,11 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
             columns=times.get(COLUMNS),
             single=times.get(SINGLE),
         )
-        say("entry", asdict(made))
+        yield "entry", entry
     for name, loop in sides.items():
         if loop.cost is not None:
             by = peers.get(name, NAME)
-            made_by = Made(
+            made = Made(
                 **vars(loop.cost),
                 model=job.model,
                 nv=given.assembly.nv,
@@ -116,36 +123,25 @@ def _function(given: Task, job: Job, function: str, say: Say) -> None:
                 variant=loop.variant,
                 time=times[name].median,
             )
-            say("cost", asdict(made_by))
+            yield "cost", made
 
 
-def _offered(given: Task, job: Job, function: str, peer: str, say: Say) -> Iterable[Loop]:
-    def warn(text: str) -> None:
-        say("failed", [job.model, function, peer, text])
-
+def _offered(given: Task, job: Job, function: str, peer: str) -> Generator[Message, None, list[Loop]]:
+    """The sides of a peer; what it does not have, or could not build, is said."""
+    warnings: list[str] = []
     sources: dict[str, Callable[[], Iterator[Loop]]] = {
-        "pinocchio": lambda: pinocchio_loops(given, [function], warn),
+        "pinocchio": lambda: pinocchio_loops(given, [function], warnings.append),
         "mujoco": lambda: mujoco_loops(given, [function]),
         "casadi": lambda: casadi_loops(given, [function]),
         "sympy": lambda: sympy_loops(given, [function]),
     }
+    loops: list[Loop] = []
     try:
-        return list(sources[peer]())
+        loops = list(sources[peer]())
     except Skipped as error:
-        say("skipped", [job.model, function, peer, str(error)])
+        yield "skipped", (job.model, function, peer, str(error))
     except (BuildError, ImportError) as error:
-        warn(str(error))
-    return []
-
-
-def _end_with_parent() -> None:
-    """Whatever it computes, the process ends with the one that started it, which holds the other end of the pipe."""
-    while os.read(sys.stdin.fileno(), 1):  # Not by `sys.stdin`, the lock of which Python asks for at its own end.
-        pass
-    os._exit(1)
-
-
-if __name__ == "__main__":
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-    np.seterr(all="ignore")
-    work(restored(Job, json.loads(sys.argv[1])), say)
+        warnings.append(str(error))
+    for text in warnings:
+        yield "failed", (job.model, function, peer, text)
+    return loops

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from symofros.base.names import rate_symbol, symbol_of
 from symofros.base.sources import Source
 from symofros.description.constraints import Constraint, Coupling
+from symofros.description.contacts import Contact
 from symofros.description.forces import Connection, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
 from symofros.description.reading import Reading as Reading
@@ -35,6 +36,7 @@ _SECTIONS = {
     "inputs": "input",
     "bodies": "body",
     "connections": "connection",
+    "contacts": "connection",
     "virtual_power": "virtual_power",
     "potentials": "potential",
     "closures": "constraint",
@@ -76,7 +78,7 @@ class _Merger:
     parameters: list[Parameter] = field(default_factory=list)
     inputs: list[Input] = field(default_factory=list)
     bodies: list[Body] = field(default_factory=list)
-    connections: list[Connection] = field(default_factory=list)
+    connections: list[Connection | Contact] = field(default_factory=list)
     virtual_power: list[VirtualPower] = field(default_factory=list)
     potentials: list[Potential] = field(default_factory=list)
     constraints: list[Constraint] = field(default_factory=list)
@@ -245,7 +247,8 @@ class _Merger:
         for name, body in fresh("bodies"):
             self.bodies.append((body or BodyEntry()).build(name))
             self.origin |= dict(_body_origin(self.bodies[-1], root, shown))
-        self.connections += [connection.build(name=name) for name, connection in fresh("connections")]
+        for section in ("connections", "contacts"):
+            self.connections += [connection.build(name=name) for name, connection in fresh(section)]
         self.virtual_power += [VirtualPower(name, tuple(forces.items())) for name, forces in fresh("virtual_power")]
         self.potentials += [Potential(name, energy) for name, energy in fresh("potentials")]
         self.constraints += [closure.build(name) for name, closure in fresh("closures")]

@@ -39,7 +39,7 @@ from symofros.description.yaml.fields import (
 )
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry
-from symofros.description.yaml.schema_forces import ConnectionEntry, ElementEntry, LoadEntry, RotorEntry
+from symofros.description.yaml.schema_forces import ConnectionEntry, ContactEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.yaml.schema_solid import SolidEntry
 from symofros.errors import Problem
 
@@ -177,6 +177,8 @@ class NativeFile(Entry):
     """In order: coordinates are numbered depth first in this order."""
     connections: Annotated[dict[Name, ConnectionEntry], Field(max_length=10_000)] | None = None
     """Springs and dampers between frames."""
+    contacts: Annotated[dict[Name, ContactEntry], Field(max_length=10_000)] | None = None
+    """Balls on one frame that the surface of a solid on another pushes back."""
     virtual_power: Annotated[dict[Name, dict[Name, Formula]], Field(max_length=10_000)] | None = None
     """Internal forces: for each, speed (`dq1`) -> force by formula."""
     potentials: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Self
 
 from pydantic import ConfigDict, Field, model_validator
 
+from symofros.description.contacts import Contact
 from symofros.description.forces import Connection, Damper, Friction, JointElement, Load, Rotor, Spring, Stop
 from symofros.description.yaml.derived import NounEntry
-from symofros.description.yaml.fields import PartEntry, fault
-from symofros.errors import Problem
+from symofros.description.yaml.fields import PartEntry, Three, fault
+from symofros.errors import DescriptionError, Problem
 
 Coordinate = Annotated[int, Field(ge=0, le=5)]
 
@@ -78,3 +80,16 @@ class LoadEntry(NounEntry, noun=Load):
 
 class ConnectionEntry(NounEntry, noun=Connection, without=("name",)):
     pass
+
+
+class ContactEntry(NounEntry, noun=Contact, without=("name",)):
+    points: Annotated[list[Three], Field(max_length=1000)] = [[0.0, 0.0, 0.0]]
+
+    @model_validator(mode="after")
+    def _possible(self) -> Self:
+        try:
+            self.build(name="")
+        except DescriptionError as error:
+            problem = error.problem
+            raise fault(replace(problem, what=problem.what.removeprefix("contact '': "))) from None
+        return self

@@ -46,6 +46,7 @@ from symofros.description.yaml.schema_constraints import KnifeEdgeEntry, Rolling
 from symofros.description.yaml.schema_forces import (
     ELEMENTS,
     ConnectionEntry,
+    ContactEntry,
     LoadEntry,
     RotorEntry,
 )
@@ -132,7 +133,8 @@ def _document(system: System) -> Plain:
     document["parameters"] = {item.name: _entry(ParameterEntry, item) for item in system.parameters}
     document["inputs"] = {item.name: _entry(InputEntry, item) for item in system.inputs}
     document["bodies"] = {item.name: _body(item) for item in system.bodies}
-    document["connections"] = {item.name: _entry(ConnectionEntry, item) for item in system.connections}
+    document["connections"] = {item.name: _entry(ConnectionEntry, item) for item in system.springs}
+    document["contacts"] = {item.name: _entry(ContactEntry, item) for item in system.contacts}
     document["virtual_power"] = {
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
     }

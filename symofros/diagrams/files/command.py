@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,7 @@ class RunRequest:
 
     Attributes:
         t_end: End time [s].
+        inputs: Inlet -> what is given for it.
         settings: Settings of `run_compiled`.
         speed: Seconds of motion a second; 0: as fast as can be.
         signals: Outputs that are saved and plotted.
@@ -39,6 +41,7 @@ class RunRequest:
     """
 
     t_end: float | None
+    inputs: Mapping[str, Any]
     settings: dict[str, Any]
     speed: float
     signals: tuple[str, ...]
@@ -67,9 +70,10 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
                 "add --realtime",
             )
         )
+    compiled = simulation.compiled_with(request.inputs)
     for name in request.signals:
-        simulation.resolved.wired.check_signal(name)
-    return run_compiled(simulation.compiled, 1.0 if t_end is None else t_end, progress=progress, **stated)
+        compiled.resolved.wired.check_signal(name)
+    return run_compiled(compiled, 1.0 if t_end is None else t_end, progress=progress, **stated)
 
 
 def write_files(run: DiagramRun, request: RunRequest) -> list[str]:

@@ -16,6 +16,7 @@ from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.files.fields import Misfit, read, required, types_of
+from symofros.diagrams.files.inlets import read_inlets
 from symofros.diagrams.files.paths import DIAGRAMS, refused
 from symofros.diagrams.files.reading_options import READING, read_options
 from symofros.diagrams.files.registry import INPUTS, KIND, entry_of, kinds
@@ -141,9 +142,7 @@ class _Reader(Entries):
                 block, _, port = target.rpartition(".")
                 self.wire(diagram, block, port, node)
         if "inlets" in entries:
-            for one, node in self.mapping(entries["inlets"], "inlets").items():
-                items = [node] if isinstance(node.value, str) else self.listed(node, f"inlet '{one:.60}'")
-                diagram.inlets[one] = tuple(self.text(item, f"inlet '{one:.60}'") for item in items)
+            read_inlets(self, diagram, entries["inlets"])
         if "outlets" in entries:
             for one, node in self.mapping(entries["outlets"], "outlets").items():
                 diagram.outlets[one] = self.text(node, f"outlet '{one:.60}'")

@@ -14,6 +14,7 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from symofros.diagrams.block import Block
 from symofros.diagrams.files.fields import MISSING, required, types_of, words_for, write
+from symofros.diagrams.files.inlets import SCHEMA as INLET
 from symofros.diagrams.files.reader import HEAD, VERSION
 from symofros.diagrams.files.reading_options import READING
 from symofros.diagrams.files.registry import entry_of, kinds
@@ -74,7 +75,7 @@ def json_schema() -> Plain:
         "blocks": _named({"oneOf": [{"$ref": f"#/$defs/{kind}"} for kind in blocks]}),
         "parts": _named({"$ref": "#/$defs/part"}),
         "wires": _TEXTS,
-        "inlets": _named({"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}),
+        "inlets": _named(INLET),
         "outlets": _TEXTS,
     }
     part = {"file": {"type": "string"}, "diagram": _object(sections), "models": _TEXTS, "inputs": _TEXTS}

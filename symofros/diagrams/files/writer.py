@@ -17,6 +17,7 @@ from symofros.description.yaml import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.files.fields import MISSING, same, write
+from symofros.diagrams.files.inlets import written_inlets
 from symofros.diagrams.files.paths import DIAGRAMS
 from symofros.diagrams.files.reader import HEAD, VERSION, load_diagram
 from symofros.diagrams.files.reading_options import reading_entries
@@ -94,7 +95,7 @@ class _Writer:
             "blocks": {block.name: _block(diagram, block, self.folder) for block in own},
             "parts": parts,
             "wires": loose,
-            "inlets": {name: list(targets) for name, targets in diagram.inlets.items()},
+            "inlets": written_inlets(diagram),
             "outlets": {name: source for name, source in diagram.outlets.items() if name not in replayed.outlets},
         }
         return {key: value for key, value in sections.items() if value}
@@ -187,8 +188,7 @@ def _unchanged(diagram: Diagram, path: Path) -> bool:
         and all(_alike(block, diagram.blocks[name]) for name, block in stated.blocks.items())
         and (
             (stated.models, stated.wires, stated.outlets) == (diagram.models, diagram.wires, diagram.outlets)
-            and {name: tuple(targets) for name, targets in stated.inlets.items()}
-            == {name: tuple(targets) for name, targets in diagram.inlets.items()}
+            and written_inlets(stated) == written_inlets(diagram)
         )
     )
 

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from symofros.base.arrays import Array
 from symofros.base.names import identifier
 from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.inlets import with_inlets
 from symofros.diagrams.order import groups_in_motion, order_of
 from symofros.diagrams.program.fused_functions import Fuser, reads
 from symofros.diagrams.program.layout import Layout, Part, lay_out
@@ -60,13 +62,17 @@ def rates_of(pieces: Mapping[str, Piece]) -> list[tuple[str, float, float]]:
     ]
 
 
-def resolve(diagram: Diagram) -> Resolved:
+def resolve(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Resolved:
     """Check a diagram, write its blocks out, order them, and place their states.
+
+    Args:
+        diagram: Diagram as its author stated it.
+        inputs: Inlet -> numbers, a Signal, or formulas of t; None: inlets stay open, as an export has them.
 
     Raises:
         DescriptionError: With what is wrong: names, shapes, units, sample times, algebraic loops.
     """
-    wired = wire(diagram)
+    wired = wire(with_inlets(diagram, inputs))
     pieces: dict[str, Piece] = {}
     problems: list[Problem] = []
     for name in wired.blocks:

@@ -16,6 +16,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.measures import Measures
 from symofros.diagrams.block import Shape
+from symofros.diagrams.inlets import Inlet
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
@@ -217,9 +218,11 @@ def _inputs(layout: Layout, wired: Wired, name: str, piece: Piece) -> None:
     for port in wired.ports[name].outputs:
         shape, label = port.shape or (), f"{name}.{port.name}"
         if port.name in sampled:
-            place = _placed(layout.u0, layout.u_names, label, np.zeros(shape))
+            is_open = isinstance(piece.block, Inlet) and piece.block.is_open
+            start = piece.block.start().reshape(shape) if isinstance(piece.block, Inlet) else np.zeros(shape)
+            place = _placed(layout.u0, layout.u_names, label, start)
             layout.samples[name, port.name] = place
-            layout.signals += _columns(sampled[port.name], place)
+            layout.signals += [] if is_open else _columns(sampled[port.name], place)
         elif piece.is_discrete:
             layout.held[name, port.name] = _placed(layout.u0, layout.u_names, label, np.zeros(shape))
     for key, values in piece.memory.items():
@@ -228,6 +231,7 @@ def _inputs(layout: Layout, wired: Wired, name: str, piece: Piece) -> None:
 
 def _columns(signal: Signal, place: Place) -> list[tuple[int, Array, Array, bool]]:
     values = signal.values.reshape(len(signal.t), -1)
+    values = np.broadcast_to(values, (len(values), place.size))  # One number for all entries of an inlet.
     return [
         (place.start + i, signal.t, np.ascontiguousarray(values[:, i]), signal.kind == "linear")
         for i in range(place.size)

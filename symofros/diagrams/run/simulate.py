@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
+from symofros.diagrams.inlets import not_given, open_inlets
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
 from symofros.diagrams.program.layout import Place
@@ -29,7 +30,7 @@ from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCa
 from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, parameter_values, part_settings, record_interval
-from symofros.errors import SymofrosError
+from symofros.errors import DescriptionError, SymofrosError
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import CompiledKernel
 from symofros.runtime.model import Model
@@ -73,8 +74,11 @@ def run_compiled(
         SymofrosError: The options contradict each other, or name what the diagram lacks.
         UnknownNameError: A field is not one of SimulationOptions.
         AssemblyError: The first state does not meet the constraints.
+        DescriptionError: The diagram has inlets, and it was resolved without inputs.
     """
     resolved, name = compiled.resolved, compiled.resolved.wired.name
+    if still_open := open_inlets(resolved.wired.blocks):
+        raise DescriptionError([not_given(name, inlet.name) for inlet in still_open])
     options = diagram_options(options, changes)
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(options.output, options.t0, t_end, options.dt)

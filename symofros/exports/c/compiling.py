@@ -13,12 +13,14 @@ from symofros.runtime.build import NO_COMPILER, call_compiler, find_toolchain
 FLAGS = ("-O2", "-fno-math-errno", "-std=c99", "-fPIC", "-shared", "-fvisibility=hidden")
 
 
-def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path], flags: Sequence[str] = ()) -> bytes:
-    """The library of one C file that includes the others.
+def shared_library(
+    files: Mapping[str, str], main: Sequence[str], include: Sequence[Path], flags: Sequence[str] = ()
+) -> bytes:
+    """The library of C files, which may include the others.
 
     Args:
         files: File name -> text.
-        main: Name of the source file to compile.
+        main: Names of the source files to compile.
         include: Folders of further headers.
         flags: Further flags.
 
@@ -32,6 +34,6 @@ def shared_library(files: Mapping[str, str], main: str, include: Sequence[Path],
         for name, text in files.items():
             (Path(private) / name).write_text(text, encoding="utf-8")
         folders = [f"-I{folder}" for folder in include]
-        command = [*toolchain.command, *FLAGS, *flags, *folders, main, "-lm"]
+        command = [*toolchain.command, *FLAGS, *flags, *folders, *main, "-lm"]
         call_compiler(command, "library", Path(private), "check $CC and the compiler")
         return (Path(private) / "library").read_bytes()

@@ -10,7 +10,7 @@ from symofros.native import amalgamated
 _HEADERS = ("math.h", "stddef.h", "stdint.h", "stdio.h", "stdlib.h", "string.h")
 
 
-_LOOP = "stepping/symofros_stepper.c"
+MODEL_LOOP = "stepping/symofros_stepper.c"
 _VISIBLE = re.compile(r"^SYM_EXPORT [^=;{]*?\b(sym_\w+)\(", re.MULTILINE)
 
 
@@ -22,6 +22,8 @@ def unity(
     more_headers: Sequence[str] = (),
     *,
     linked: bool = False,
+    included: Sequence[str] = (),
+    loop: str = MODEL_LOOP,
 ) -> str:
     """The text of such a file.
 
@@ -33,8 +35,10 @@ def unity(
         more_headers: Headers of the environment, in the form `"mex.h"`.
         linked: Whether the source may be linked with such sources of other models: names of the loop then begin with
             that of the model.
+        included: Files that it includes; by default the model, its plant and the loop.
+        loop: The C text of the loop.
     """
-    own = sorted(set(_VISIBLE.findall(amalgamated(_LOOP)))) if linked else []
+    own = sorted(set(_VISIBLE.findall(amalgamated(loop)))) if linked else []
     lines = [
         f"/* {title} */",
         *(f"#define {function} {name}_{function}" for function in own),
@@ -55,9 +59,7 @@ def unity(
         "#if defined(__GNUC__) && !defined(_WIN32)",
         "#pragma GCC visibility push(hidden)",
         "#endif",
-        f'#include "{name}.c"',
-        f'#include "{name}_plant.c"',
-        '#include "symofros_stepper.c"',
+        *(f'#include "{file}"' for file in included or (f"{name}.c", f"{name}_plant.c", "symofros_stepper.c")),
         *before,
         "#if defined(__GNUC__) && !defined(_WIN32)",
         "#pragma GCC visibility pop",

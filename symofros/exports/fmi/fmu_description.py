@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from xml.etree import ElementTree as Tree
 
 from symofros.exports.fmi.fmu_variables import Variable
-from symofros.exports.material import Material
+from symofros.exports.material import Stepping
 
 _BASES: dict[str, dict[str, str]] = {
     "s": {"s": "1"},
@@ -23,36 +24,61 @@ _BASES: dict[str, dict[str, str]] = {
 }
 
 
-def description_xml(material: Material, variables: Sequence[Variable], version: int, token: str, created: str) -> str:
+@dataclass(frozen=True)
+class Unit:
+    """What a unit says of itself, whatever it holds.
+
+    Attributes:
+        name: Name for people.
+        c_name: Prefix of its functions.
+        about: Description for people.
+        generator: Name and version of the generator.
+        stepping: How it steps by itself.
+        interval: Communication step that it proposes [s].
+        sources: C files that are compiled, the one with the interface first.
+        exchanged: Whether Model Exchange is offered, with derivatives and serialised states.
+        judged: Whether steps of an importer's integrator are judged at their ends, as bending beams are.
+    """
+
+    name: str
+    c_name: str
+    about: str
+    generator: str
+    stepping: Stepping
+    interval: float
+    sources: tuple[str, ...]
+    exchanged: bool = True
+    judged: bool = False
+
+
+def description_xml(unit: Unit, variables: Sequence[Variable], version: int, token: str, created: str) -> str:
     """The text of modelDescription.xml.
 
     Args:
-        material: The model.
-        variables: Variables of the model.
+        unit: The unit.
+        variables: Its variables.
         version: 2 or 3.
         token: GUID, or instantiation token.
         created: Date and time, ISO.
     """
     head = {
         "fmiVersion": "2.0" if version == 2 else "3.0",
-        "modelName": material.record.name,
+        "modelName": unit.name,
         "guid" if version == 2 else "instantiationToken": token,
-        "description": f"{len(material.record.v_names)} speeds, {material.record.nc} constraints",
-        "generationTool": material.generator,
+        "description": unit.about,
+        "generationTool": unit.generator,
         "generationDateAndTime": created,
         "variableNamingConvention": "structured",
     }
     if version == 2:
         head["numberOfEventIndicators"] = "0"
     root = Tree.Element("fmiModelDescription", head)
-    _interfaces(root, material, version)
+    _interfaces(root, unit, version)
     _units(root, variables)
     categories = Tree.SubElement(root, "LogCategories")
     for name in ("logStatusWarning", "logStatusError", "logStatusDiscard"):
         Tree.SubElement(categories, "Category", {"name": name})
-    Tree.SubElement(
-        root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(_communication(material))}
-    )
+    Tree.SubElement(root, "DefaultExperiment", {"startTime": "0", "stopTime": "1", "stepSize": repr(unit.interval)})
     into = Tree.SubElement(root, "ModelVariables")
     for variable in variables:
         (_variable2 if version == 2 else _variable3)(into, variable)
@@ -61,29 +87,31 @@ def description_xml(material: Material, variables: Sequence[Variable], version: 
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Tree.tostring(root, encoding="unicode") + "\n"
 
 
-def _communication(material: Material) -> float:
-    return max(10 * material.stepping.dt, 1e-3)
-
-
-def _interfaces(root: Tree.Element, material: Material, version: int) -> None:
-    common = {"modelIdentifier": material.c_name}
+def _interfaces(root: Tree.Element, unit: Unit, version: int) -> None:
+    common, offered = {"modelIdentifier": unit.c_name}, str(unit.exchanged).lower()
     if version == 2:
-        both = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true"}
+        both = {
+            "canGetAndSetFMUstate": "true",
+            "canSerializeFMUstate": offered,
+            "providesDirectionalDerivative": offered,
+        }
     else:
         both = {
             "canGetAndSetFMUState": "true",
-            "canSerializeFMUState": "true",
-            "providesDirectionalDerivatives": "true",
+            "canSerializeFMUState": offered,
+            "providesDirectionalDerivatives": offered,
         }
     stepping = {"canHandleVariableCommunicationStepSize": "true"}
-    if version == 3 and not material.stepping.method.adaptive:
-        stepping["fixedInternalStepSize"] = repr(material.stepping.dt)
+    if version == 3 and not unit.stepping.method.adaptive:
+        stepping["fixedInternalStepSize"] = repr(unit.stepping.dt)
     # Ends of steps are where the bending of beams is judged.
-    exchange = {"needsCompletedIntegratorStep": "true"} if version == 3 and material.beams else {}
-    for kind, more in (("ModelExchange", exchange), ("CoSimulation", stepping)):
+    exchange = {"needsCompletedIntegratorStep": "true"} if version == 3 and unit.judged else {}
+    for kind, more in (("ModelExchange", exchange), ("CoSimulation", stepping))[0 if unit.exchanged else 1 :]:
         entry = Tree.SubElement(root, kind, common | both | more)
         if version == 2:
-            Tree.SubElement(Tree.SubElement(entry, "SourceFiles"), "File", {"name": f"{material.c_name}_fmi2.c"})
+            files = Tree.SubElement(entry, "SourceFiles")
+            for source in unit.sources:
+                Tree.SubElement(files, "File", {"name": source})
 
 
 def _units(root: Tree.Element, variables: Sequence[Variable]) -> None:
@@ -171,11 +199,12 @@ def _structure3(root: Tree.Element, variables: Sequence[Variable]) -> None:
             Tree.SubElement(structure, element, {"valueReference": str(variable.reference), **stated})
 
 
-def build_xml(c_name: str) -> str:
-    """buildDescription.xml of FMI 3: one file that includes the others."""
+def build_xml(unit: Unit) -> str:
+    """buildDescription.xml of FMI 3: the files to compile, which include the others."""
     root = Tree.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
-    entry = Tree.SubElement(root, "BuildConfiguration", {"modelIdentifier": c_name})
+    entry = Tree.SubElement(root, "BuildConfiguration", {"modelIdentifier": unit.c_name})
     files = Tree.SubElement(entry, "SourceFileSet", {"language": "C99"})
-    Tree.SubElement(files, "SourceFile", {"name": f"{c_name}_fmi3.c"})
+    for source in unit.sources:
+        Tree.SubElement(files, "SourceFile", {"name": source})
     Tree.indent(root)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + Tree.tostring(root, encoding="unicode") + "\n"

@@ -1,12 +1,16 @@
-"""The variables of an FMU, in the order of their value references: symofros_fmu.h counts the same way."""
+"""The variables of an FMU, in the order of their value references.
+
+symofros_fmu.h counts the same way, of diagrams symofros_fmu_program.h.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 
+from symofros.exports.diagram_interface import Interface, entry_names, entry_starts, entry_units
 from symofros.exports.material import Material
 from symofros.mechanics.topology import coordinate_names
 
@@ -47,6 +51,29 @@ def quoted(name: str) -> str:
     if _PLAIN.fullmatch(name):
         return name
     return "'" + _UNQUOTED.sub("_", name) + "'"
+
+
+def diagram_variables(shown: Interface) -> list[Variable]:
+    """All variables of an FMU of a diagram, in the order of their references."""
+    listed = [Variable(0, "time", "independent", "continuous", unit="s")]
+    kinds = (
+        ("input", "", shown.inputs),
+        ("output", "calculated", shown.outputs),
+        ("parameter", "exact", shown.parameters),
+    )
+    for causality, initial, quantities in kinds:
+        variability = "tunable" if causality == "parameter" else "continuous"
+        starts: Sequence[float | None] = entry_starts(quantities) or [None] * len(entry_names(quantities))
+        for name, unit, start in zip(entry_names(quantities), entry_units(quantities), starts, strict=True):
+            base, bracket, index = name.partition("[")
+            label = ".".join(map(quoted, base.split("."))) + bracket + index.replace("][", ",")
+            listed.append(Variable(len(listed), label, causality, variability, initial, start, _plain_unit(unit)))
+    return _distinct(listed)
+
+
+def _plain_unit(unit: str) -> str:
+    """A unit as FMI's examples write units: "N.m" of "N m", "rad/s2" of "rad/s^2"."""
+    return unit.replace(" ", ".").replace("^", "")
 
 
 @dataclass(frozen=True)

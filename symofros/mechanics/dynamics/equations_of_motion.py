@@ -16,6 +16,7 @@ from symofros.expr.graph import Graph
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import base_to_tip
+from symofros.mechanics.dynamics.applied.contacts import TouchingBall, touching_balls
 from symofros.mechanics.dynamics.applied.forces import applied_wrenches, generalized_forces
 from symofros.mechanics.dynamics.bodies.inertia import link_inertias
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor, rotors_of
@@ -285,6 +286,36 @@ class EquationsOfMotion:
     def prescribed_efforts(self) -> list[Edge]:
         """Effort of the drive of each prescribed speed (ns)."""
         return prescribed_efforts(self.kinematics, self.rotors, self._motions, self.v_rate, self._transmitted)
+
+    @cached_property
+    def _balls(self) -> list[TouchingBall]:
+        contacts = self.tree.system.contacts
+        return [ball for contact in contacts for ball in touching_balls(self.kinematics, self.frames, contact)]
+
+    @property
+    def contact_gaps(self) -> list[Edge]:
+        """Distance of each ball from the surface that it may touch (nk)."""
+        return [ball.gap for ball in self._balls]
+
+    @property
+    def contact_pushes(self) -> list[Edge]:
+        """Normal force on each ball (nk)."""
+        return [ball.push for ball in self._balls]
+
+    @property
+    def contact_forces(self) -> Matrix:
+        """Force on each ball, in world axes (nk x 3)."""
+        return [list(ball.force) for ball in self._balls]
+
+    @property
+    def contact_points(self) -> Matrix:
+        """Point where it acts, in the world (nk x 3)."""
+        return [list(ball.point) for ball in self._balls]
+
+    @property
+    def contact_shares(self) -> list[Edge]:
+        """Penetration over the radius of the ball, or of the surface (nk)."""
+        return [ball.share for ball in self._balls]
 
     def inertia_forces(self, a: Sequence[Edge]) -> list[Edge]:
         """Inertia forces and weight M a + h (nv)."""

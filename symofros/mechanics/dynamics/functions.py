@@ -25,7 +25,7 @@ from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.frame_equations import FrameEquations
 from symofros.mechanics.topology.formulas import timed_values
 from symofros.mechanics.topology.limbs import equal_limbs
-from symofros.mechanics.topology.tree import prescribed_speeds, section_names
+from symofros.mechanics.topology.tree import ball_names, prescribed_speeds, section_names
 
 
 class Request(NamedTuple):
@@ -91,6 +91,7 @@ def _sizes(e: Equations) -> dict[str, int]:
         "ns": len(prescribed_speeds(e.tree)),
         "nb": sum(link.tip_of is not None and link.tip_of.modes > 0 for link in e.tree.links),
         "nf": len(section_names(e.tree)),
+        "nk": len(ball_names(e.tree)),
         "npi": 10 * len(e.tree.links),
     }
 

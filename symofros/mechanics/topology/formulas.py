@@ -12,6 +12,7 @@ from symofros.description.beams.elastic import STRAINS
 from symofros.description.beams.shapes import Samples
 from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
+from symofros.description.contacts import Contact
 from symofros.description.entry_units import units_of
 from symofros.description.forces import Connection, Load, Rotor
 from symofros.description.frames import Frame
@@ -89,8 +90,14 @@ def stated_values(system: System) -> Iterator[Stated]:
             yield from _joint_values(body.joint)
         yield from _beam_values(body) if isinstance(body, Beam) else _body_values(body)
     for connection in system.connections:
+        key = ("connection", connection.name)
+        if isinstance(connection, Contact):
+            for label, value in connection.values():
+                # The unit of a stiffness depends on the exponent.
+                units = () if label == "stiffness" and connection.exponent != 1.0 else units_of(Contact, label)
+                yield Stated(f"contact '{connection.name}': {label}", value, key, units=units)
+            continue
         for label in ("stiffness", "length", "damping"):
-            key = ("connection", connection.name)
             units = units_of(Connection, label)
             what, value = f"connection '{connection.name}': {label}", getattr(connection, label)
             yield Stated(what, value, key, units=units, remedy=_LINE_BY_FORMULA)

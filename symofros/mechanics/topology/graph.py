@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.names import TIME, symbol_of
 from symofros.description.beams.beam import STATION, Beam, BeamLoad
-from symofros.description.forces import Load
+from symofros.description.forces import Connection, Load
 from symofros.description.joints.joint import WORLD, Joint
 from symofros.description.system import Body, RigidBody, System
 from symofros.errors import Argument, DescriptionError, Problem, did_you_mean, first_of
@@ -19,6 +19,7 @@ from symofros.expr.expression import CONSTANTS
 from symofros.mechanics.topology.beams import beam_conditions, beam_number_problems, beam_problems
 from symofros.mechanics.topology.conditions import violations
 from symofros.mechanics.topology.constraints import anchor_problems, constraint_conditions, constraint_problems
+from symofros.mechanics.topology.contacts import contact_conditions, contact_problems
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
@@ -308,9 +309,11 @@ class _Checker:
         ):
             yield from self._unique(kind, [item.name for item in named])
         for connection in self.system.connections:
-            where, what = self.where("connection", connection.name), f"connection '{connection.name}'"
+            kind = "connection" if isinstance(connection, Connection) else "contact"
+            where, what = self.where("connection", connection.name), f"{kind} '{connection.name}'"
             for anchor in (connection.first, connection.second):
                 yield from anchor_problems(what, anchor, self.bodies, self.base, self.broken, where)
+        yield from contact_problems(self.system)
         yield from self._unique("constraint", [item.name for item in self.system.constraints])
         yield from constraint_problems(self.system, self.bodies, self.base, self.broken)
         yield from power_problems(self.system, self.broken)
@@ -359,4 +362,7 @@ class _Checker:
             where = self.where("body", beam.name)
             sections = list(violations(beam_conditions(beam, where), numbers))
             yield from sections or beam_number_problems(beam, numbers, where)
-        yield from violations(chain(constraint_conditions(self.system), friction_conditions(self.system)), numbers)
+        conditions = chain(
+            *(of(self.system) for of in (constraint_conditions, friction_conditions, contact_conditions))
+        )
+        yield from violations(conditions, numbers)

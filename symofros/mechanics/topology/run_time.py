@@ -25,6 +25,7 @@ from symofros.mechanics.topology.beams import (
 )
 from symofros.mechanics.topology.conditions import Condition, Conditions
 from symofros.mechanics.topology.constraints import constraint_conditions
+from symofros.mechanics.topology.contacts import contact_conditions
 from symofros.mechanics.topology.formulas import Stated, stated_values
 from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems
@@ -79,6 +80,7 @@ class RunTimeCheck:
         """Conditions that depend on the parameters; they hold at the defaults."""
         system, names = self.system, frozenset(self.names)
         conditions = [*value_conditions(system), *constraint_conditions(system), *friction_conditions(system)]
+        conditions += contact_conditions(system)
         for beam in system.beams:
             conditions += beam_conditions(beam, system.origin.get(("body", beam.name), ""))
         conditions += [*inertia_conditions(system), *massless_tip_conditions(system), *moment_conditions(system)]

@@ -126,6 +126,17 @@ class SpanningTree:
         raise KeyError(name)
 
 
+def coupled_speeds(tree: SpanningTree) -> float:
+    """Mean number of other speeds between a speed and the base, those of its own joint counted half: 0 without any."""
+    before = {BASE: 0}  # Speeds up to a link, its own among them.
+    entries = 0.0
+    for index, link in enumerate(tree.links):
+        above, own = before[link.parent], link.v[1]
+        entries += own * (above + (own - 1) / 2)
+        before[index] = above + own
+    return entries / max(1, len(tree.coordinates.v))
+
+
 def joint_names(tree: SpanningTree) -> tuple[str, ...]:
     """Name of each link's joint; of what a beam carries, that of the section."""
     return tuple(link.name if link.is_section else link.joint.name for link in tree.links)
@@ -135,6 +146,11 @@ def section_names(tree: SpanningTree) -> tuple[tuple[str, float], ...]:
     """The sections whose forces are formed: name of the elastic beam, and station x/L."""
     beams = [link.tip_of for link in tree.links if link.tip_of is not None]
     return tuple((beam.name, xi) for beam in beams for xi in beam.stations)
+
+
+def ball_names(tree: SpanningTree) -> tuple[str, ...]:
+    """The balls of all contacts, in order."""
+    return tuple(name for contact in tree.system.contacts for name in contact.ball_names)
 
 
 def prescribed_speeds(tree: SpanningTree) -> tuple[str, ...]:

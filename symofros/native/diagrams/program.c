@@ -81,6 +81,7 @@ static void sym_program_allocate(sym_program_instance *instance, sym_arena *aren
     d->cycle_ticks = p->cycle_ticks, d->n_instants = p->n_instants;
     d->instant_tick = p->instant_tick, d->instant_set = p->instant_set, d->n_crossings = p->n_crossings;
     d->q = sym_allocate(arena, nq), d->v = sym_allocate(arena, nv), d->u = sym_allocate(arena, nu);
+    instance->inputs = d->u; /* inlets come first */
     d->t = sym_allocate(arena, 1), d->a = sym_allocate(arena, nv), d->lam = sym_allocate(arena, nc);
     instance->par = sym_allocate(arena, (size_t)m->npar), instance->pre = sym_allocate(arena, (size_t)m->npre);
     instance->work = sym_allocate(arena, sym_work(m));
@@ -123,9 +124,8 @@ SYM_EXPORT int32_t sym_program_prepare(sym_program_instance *instance) {
     return status;
 }
 
-/* signals <- outputs at the present time; accelerations and multipliers are those under the inputs held now. Returns 0 or
- * a status. */
-static int32_t sym_program_update_signals(sym_program_instance *instance) {
+/* Accelerations and multipliers are those under the inputs held now. */
+SYM_EXPORT int32_t sym_program_evaluate(sym_program_instance *instance) {
     const sym_function *f = instance->outputs.function;
     double *into = instance->signals;
     int32_t i, status;
@@ -139,6 +139,24 @@ static int32_t sym_program_update_signals(sym_program_instance *instance) {
         into += n;
     }
     return 0;
+}
+
+SYM_EXPORT int32_t sym_program_start(sym_program_instance *instance) {
+    int32_t i, status = sym_program_prepare(instance);
+    for (i = 0; i < instance->program->n_parts && status == 0; ++i) {
+        if (instance->parts[i]->project) status = sym_instance_project(instance->parts[i]);
+        if (status == 0) status = sym_run_start(&instance->parts[i]->run);
+        if (status > 0) status = 0; /* it runs */
+    }
+    return status == 0 ? sym_diagram_start(&instance->diagram) : status;
+}
+
+SYM_EXPORT int32_t sym_program_parameter(const sym_program *program, const char *name) {
+    const sym_model *m = program->instants();
+    int32_t i;
+    for (i = 0; i < m->npar; ++i)
+        if (strcmp(m->par_names[i], name) == 0) return i;
+    return -1;
 }
 
 SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program) {
@@ -156,13 +174,7 @@ SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, con
     memcpy(instance->par, program->instants()->par_default, (size_t)program->instants()->npar * sizeof(double));
     for (i = 0; i < program->n_parts; ++i)
         if (instance->parts[i] == NULL) return NULL;
-    if (sym_program_prepare(instance) != 0) return NULL;
-    for (i = 0; i < program->n_parts; ++i) {
-        if (instance->parts[i]->project && sym_instance_project(instance->parts[i]) != 0) return NULL;
-        if (sym_run_start(&instance->parts[i]->run) < 0) return NULL;
-    }
-    if (sym_diagram_start(&instance->diagram) != 0) return NULL;
-    return instance;
+    return sym_program_start(instance) == 0 ? instance : NULL;
 }
 
 /* Find the instants of formulas of time at which steps of the parts end. Returns up to when, at most t, they are
@@ -183,8 +195,10 @@ static double sym_program_find_stops(sym_program_instance *instance, double t) {
 SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
     sym_diagram *d = &instance->diagram;
     int32_t i, status = SYM_FINISHED;
-    for (i = 0; i < instance->program->n_parts; ++i)
+    for (i = 0; i < instance->program->n_parts; ++i) {
         if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
+        if (instance->program->n_inputs > 0) instance->parts[i]->run.slope_valid = 0; /* they may have changed */
+    }
     do {
         d->t_end = sym_program_find_stops(instance, t), d->finished = 0;
         do {
@@ -194,6 +208,6 @@ SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t)
         d->n_records = d->n_event_records = 0;
     } while (status == SYM_FINISHED && d->t_end < t);
     if (status != SYM_FINISHED) return status;
-    status = sym_program_update_signals(instance);
+    status = sym_program_evaluate(instance);
     return status == 0 ? SYM_FINISHED : status;
 }

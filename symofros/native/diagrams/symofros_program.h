@@ -3,9 +3,11 @@
  *
  *     void *memory = malloc(sym_program_size(square_program()));
  *     sym_program_instance *square = sym_program_init(memory, size, square_program());
+ *     square->inputs[SQUARE_IN_GOAL] = 1.0;          // what enters holds until it is set anew
  *     status = sym_program_advance(square, 0.001);   // square->signals are those of that time
  *
- * After sym_program_init nothing allocates. Set square->par and call sym_program_prepare to change parameters.
+ * After sym_program_init nothing allocates. Set square->par and call sym_program_prepare to change parameters. The header of
+ * a program names the entries of its arrays.
  */
 #ifndef SYMOFROS_PROGRAM_H
 #define SYMOFROS_PROGRAM_H
@@ -35,6 +37,9 @@ typedef struct sym_program {
     int32_t n_sets, n_outputs;
     const char *const *set_functions;             /* (n_sets) name of each set's function */
     const char *const *output_names;              /* (n_outputs) names of the entries of `signals` */
+    const char *const *output_units;              /* (n_outputs) "" for none */
+    int32_t n_inputs;
+    const char *const *input_names, *const *input_units; /* (n_inputs) of the entries of `inputs` */
 } sym_program;
 
 typedef struct sym_program_instance {
@@ -47,6 +52,7 @@ typedef struct sym_program_instance {
     sym_task *tasks, *crossing_tasks;
     sym_task_set *task_sets;
     sym_call outputs;
+    double *inputs;     /* (n_inputs) what enters; set them before sym_program_advance, which holds them */
 } sym_program_instance;
 
 /* Bytes that an instance needs, aligned as doubles and pointers are. */
@@ -57,9 +63,18 @@ sym_program_instance *sym_program_init(void *memory, size_t size, const sym_prog
 /* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
  * model's description: nothing moves then (a part's check_parameters = 0 takes them as they come). */
 int32_t sym_program_prepare(sym_program_instance *instance);
-/* Integrate to time t, executing instants on the way; steps end where formulas of time bend, jump or change fast.
- * Returns SYM_FINISHED or a status below zero. */
+/* Integrate to time t, executing instants on the way, that of t included: blocks sampled there read the inputs as they are
+ * now, and sym_program_advance(instance, 0.0) executes those of the start. Steps end where formulas of time bend, jump or
+ * change fast. Returns SYM_FINISHED or a status below zero. */
 int32_t sym_program_advance(sym_program_instance *instance, double t);
+/* signals <- outputs at the present time, of the inputs as they are now, while what is sampled holds. Returns 0 or a status
+ * below zero. */
+int32_t sym_program_evaluate(sym_program_instance *instance);
+/* Begin at t = 0 with the present parameters and inputs; sym_program_init did so with the first ones, and an instance begins
+ * once more before it has moved. Returns 0 or a status below zero. */
+int32_t sym_program_start(sym_program_instance *instance);
+/* Index of a run-time parameter in `par` by its name in the diagram, such as "pd.kp[0]"; -1 where there is none. */
+int32_t sym_program_parameter(const sym_program *program, const char *name);
 
 #ifdef __cplusplus
 }

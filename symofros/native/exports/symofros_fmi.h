@@ -1,10 +1,11 @@
-/* symofros_fmi.h - what FMI 2.0 and 3.0 have in common, over symofros_fmu.h. Written by hand.
+/* symofros_fmi.h - what FMI 2.0 and 3.0 have in common, over symofros_fmu.h or symofros_fmu_program.h. Written
+ * by hand.
  *
  * Each function checks whether the call is allowed in the present mode, and returns FMU_OK or the code of what is wrong.
  */
 
 static const char *fmi_message(int found) {
-    if (found >= FMU_PARAMETERS) return SYM_FMU_PLANT()->conditions[found - FMU_PARAMETERS];
+    if (found >= FMU_PARAMETERS) return fmu_condition(found - FMU_PARAMETERS);
     switch (found) {
     case FMU_UNKNOWN: return "no such variable, or not one for this call";
     case FMU_SINGULAR: return "no finite acceleration, or constraints that can't be met";
@@ -30,9 +31,8 @@ static int fmi_missing(const void *array, size_t n) { return n > 0 && array == N
 static int fmi_prepare(fmu *f, int has_tolerance, double tolerance, double start, int has_stop, double stop) {
     if (f->phase != FMU_INSTANTIATED) return FMU_WRONG_MODE;
     if (!(start - start == 0.0) || (has_stop && !(stop >= start))) return FMU_STOP_BEFORE_START;
-    if (has_tolerance && tolerance > 0.0 && tolerance < HUGE_VAL && f->instance->run.adaptive)
-        f->instance->run.rtol = tolerance;
-    f->instance->t = start, f->has_stop = has_stop && stop < HUGE_VAL, f->stop = stop;
+    if (has_tolerance && tolerance > 0.0 && tolerance < HUGE_VAL) fmu_set_tolerance(f, tolerance);
+    *fmu_time(f) = start, f->has_stop = has_stop && stop < HUGE_VAL, f->stop = stop;
     return FMU_OK;
 }
 
@@ -120,6 +120,24 @@ static int fmi_differentiate(fmu *f, const uint32_t *unknown, size_t n_unknown, 
     return fmu_differentiate(f, n_unknown, unknown, n_known, known, seed, found);
 }
 
+static int fmi_refuse_step(fmu *f, double t, double h, const char *rule, double limit) {
+    sprintf(f->message, "step of %.9g s from t = %.9g s refused: %.100s %.9g s", h, t, rule, limit);
+    return FMU_STEP_REFUSED;
+}
+
+/* One communication step. */
+static int fmi_step(fmu *f, double t, double h) {
+    const double slack = 1e-9 * (fabs(t) + h);
+    const int status = fmu_prepare(f);
+    if (status != FMU_OK) return status;
+    if (!(h > 0.0 && h < HUGE_VAL)) return fmi_refuse_step(f, t, h, "it has to be finite and longer than", 0.0);
+    if (!(fabs(t - *fmu_time(f)) <= slack))
+        return fmi_refuse_step(f, t, h, "it has to begin at the present time, t =", *fmu_time(f));
+    if (f->has_stop && t + h > f->stop + slack)
+        return fmi_refuse_step(f, t, h, "it leads beyond the stop time, t =", f->stop);
+    return fmu_step(f, t + h);
+}
+
 /* Model Exchange. */
 
 static int fmi_event_mode(fmu *f) {
@@ -137,33 +155,29 @@ static int fmi_continuous_mode(fmu *f) {
 static int fmi_set_time(fmu *f, double t) {
     if (f->cosim || (f->phase != FMU_CONTINUOUS && f->phase != FMU_EVENT)) return FMU_WRONG_MODE;
     if (!(t - t == 0.0)) return FMU_NOT_ALLOWED;
-    f->instance->t = t, f->rates_valid = 0;
+    *fmu_time(f) = t, f->rates_valid = 0;
     return FMU_OK;
 }
-
-static size_t fmi_states(const fmu *f) { return (size_t)f->instance->model->nq + (size_t)f->instance->model->nv; }
 
 /* Whether the call is allowed, and its array has a number for each state. */
 static int fmi_check_states(const fmu *f, int allowed, const double *array, size_t n) {
     if (f->cosim || !allowed) return FMU_WRONG_MODE;
-    if (n != fmi_states(f)) return FMU_WRONG_SIZE;
+    if (n != fmu_states(f)) return FMU_WRONG_SIZE;
     return fmi_missing(array, n) ? FMU_NULL : FMU_OK;
 }
 
 static int fmi_set_states(fmu *f, const double *x, size_t n) {
-    const size_t nq = (size_t)f->instance->model->nq;
     const int found = fmi_check_states(f, f->phase == FMU_CONTINUOUS, x, n);
     if (found != FMU_OK || n == 0) return found;
-    memcpy(f->instance->q, x, nq * sizeof *x), memcpy(f->instance->v, x + nq, (n - nq) * sizeof *x);
+    fmu_put_states(f, x);
     f->rates_valid = 0;
     return FMU_OK;
 }
 
 static int fmi_get_states(const fmu *f, double *x, size_t n) {
-    const size_t nq = (size_t)f->instance->model->nq;
     const int found = fmi_check_states(f, f->phase >= FMU_INITIALISING, x, n);
     if (found != FMU_OK || n == 0) return found;
-    memcpy(x, f->instance->q, nq * sizeof *x), memcpy(x + nq, f->instance->v, (n - nq) * sizeof *x);
+    fmu_take_states(f, x);
     return FMU_OK;
 }
 

@@ -45,7 +45,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (f == NULL) {
         if (functions->logger != NULL)
             functions->logger(functions->componentEnvironment, name, fmi2Error, "logStatusError", "%s",
-                              fmi_message(FMU_NO_MEMORY));
+                              fmi_message(fmu_absent(type == fmi2CoSimulation)));
         return NULL;
     }
     f->environment = functions->componentEnvironment;
@@ -135,7 +135,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean final
     int found;
     (void)final;
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
-    found = fmu_step(f, t, h);
+    found = fmi_step(f, t, h);
     if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi2Warning, f->message);
     return outcome(f, found);
 }
@@ -158,7 +158,7 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2LastSuccessfulTime);
     NEEDED(value);
-    *value = f->instance->t;
+    *value = *fmu_time(f);
     return fmi2OK;
 }
 

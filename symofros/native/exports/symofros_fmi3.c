@@ -36,7 +36,7 @@ static fmi3Instance instantiate(int cosim, fmi3String name, fmi3String token, fm
     }
     f = fmu_new(cosim, name, calloc, free);
     if (f == NULL) {
-        if (logger != NULL) logger(environment, fmi3Error, "logStatusError", fmi_message(FMU_NO_MEMORY));
+        if (logger != NULL) logger(environment, fmi3Error, "logStatusError", fmi_message(fmu_absent(cosim)));
         return NULL;
     }
     f->environment = environment;
@@ -148,7 +148,7 @@ fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t *n) {
     fmu *f = c;
     ALLOWED(!f->cosim);
     NEEDED(n);
-    *n = fmi_states(f);
+    *n = fmu_states(f);
     return fmi3OK;
 }
 
@@ -176,8 +176,8 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
     NEEDED(event && terminate && early && last);
     *event = *terminate = *early = fmi3False;
-    found = fmu_step(f, t, h);
-    *last = f->instance->t;
+    found = fmi_step(f, t, h);
+    *last = *fmu_time(f);
     if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi3Warning, f->message);
     return outcome(f, found);
 }

@@ -77,7 +77,7 @@ FMI(Status) FMI(CompletedIntegratorStep)(FMI_INSTANCE c, FMI(Boolean) final, FMI
     ALLOWED(!f->cosim && f->phase == FMU_CONTINUOUS);
     NEEDED(event && terminate);
     *event = *terminate = FMI(False);
-    if (sym_instance_judge_beams(f->instance) != 0) *terminate = FMI(True);
+    if (fmu_judge(f) != 0) *terminate = FMI(True);
     if (fmu_note_bending(f)) say(f, FMI(Warning), f->message);
     return FMI(OK);
 }

@@ -2,18 +2,9 @@
  *
  * Value references run through, in this order: time, q, v, rates of q, rates of v, u, par, lam, kinetic and potential
  * energy, then x, y, z of each output frame. Included by the file that names the model: it defines SYM_FMU_PLANT,
- * SYM_FMU_TOKEN, SYM_FMU_FRAMES and sym_fmu_frames[].
+ * SYM_FMU_TOKEN, SYM_FMU_FRAMES and sym_fmu_frames[]. What symofros_fmi.h calls is also in symofros_fmu_program.h.
  */
-
-typedef enum { FMU_INSTANTIATED, FMU_INITIALISING, FMU_EVENT, FMU_CONTINUOUS, FMU_STEPPING, FMU_TERMINATED } fmu_phase;
-
-enum {
-    FMU_OK, FMU_NOT_ALLOWED, FMU_UNKNOWN, FMU_SINGULAR, FMU_WRONG_MODE, FMU_START_NOT_CONSISTENT,
-    FMU_STOP_BEFORE_START, FMU_NO_MEMORY, FMU_OTHER_MODEL, FMU_BUFFER_TOO_SMALL,
-    FMU_BEYOND_THEORY, FMU_NO_ROTATION, FMU_INPUT_NO_ROTATION, FMU_NULL, FMU_WRONG_SIZE,
-    FMU_NOT_DIFFERENTIATED, FMU_STEP_REFUSED, /* said in f->message */
-    FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
-};
+#include "symofros_fmu_codes.h"
 
 typedef struct fmu_snapshot { /* followed by q, v, u, par */
     char hash[24];
@@ -121,6 +112,33 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     }
     return f;
 }
+
+/* Why there is no unit. */
+static int fmu_absent(int cosim) { return (void)cosim, FMU_NO_MEMORY; }
+
+static double *fmu_time(const fmu *f) { return &f->instance->t; }
+
+static void fmu_set_tolerance(fmu *f, double tolerance) {
+    if (f->instance->run.adaptive) f->instance->run.rtol = tolerance;
+}
+
+/* The condition that parameters do not meet. */
+static const char *fmu_condition(int which) { return SYM_FMU_PLANT()->conditions[which]; }
+
+static size_t fmu_states(const fmu *f) { return (size_t)f->instance->model->nq + (size_t)f->instance->model->nv; }
+
+static void fmu_put_states(fmu *f, const double *x) {
+    const size_t nq = (size_t)f->instance->model->nq;
+    memcpy(f->instance->q, x, nq * sizeof *x), memcpy(f->instance->v, x + nq, (fmu_states(f) - nq) * sizeof *x);
+}
+
+static void fmu_take_states(const fmu *f, double *x) {
+    const size_t nq = (size_t)f->instance->model->nq;
+    memcpy(x, f->instance->q, nq * sizeof *x), memcpy(x + nq, f->instance->v, (fmu_states(f) - nq) * sizeof *x);
+}
+
+/* Judge the bending of beams at the end of an importer's step. Returns 0, or a status beyond their theory. */
+static int fmu_judge(fmu *f) { return sym_instance_judge_beams(f->instance); }
 
 static void fmu_reset(fmu *f) {
     const int32_t nc = f->instance->model->nc;
@@ -243,23 +261,10 @@ static int fmu_note_bending(fmu *f) {
     return !f->bending_noted++;
 }
 
-static int fmu_refuse_step(fmu *f, double t, double h, const char *rule, double limit) {
-    sprintf(f->message, "step of %.9g s from t = %.9g s refused: %.100s %.9g s", h, t, rule, limit);
-    return FMU_STEP_REFUSED;
-}
-
-/* One communication step. */
-static int fmu_step(fmu *f, double t, double h) {
-    const double slack = 1e-9 * (fabs(t) + h);
-    const int status = fmu_prepare(f);
-    if (status != FMU_OK) return status;
-    if (!(h > 0.0 && h < HUGE_VAL)) return fmu_refuse_step(f, t, h, "it has to be finite and longer than", 0.0);
-    if (!(fabs(t - f->instance->t) <= slack))
-        return fmu_refuse_step(f, t, h, "it has to begin at the present time, t =", f->instance->t);
-    if (f->has_stop && t + h > f->stop + slack)
-        return fmu_refuse_step(f, t, h, "it leads beyond the stop time, t =", f->stop);
+/* One communication step, to time t. */
+static int fmu_step(fmu *f, double t) {
     f->rates_valid = 0;
-    switch (sym_instance_advance(f->instance, t + h, 0.0)) {
+    switch (sym_instance_advance(f->instance, t, 0.0)) {
     case SYM_FINISHED: return FMU_OK;
     case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
     case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;

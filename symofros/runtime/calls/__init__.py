@@ -5,6 +5,7 @@ from __future__ import annotations
 from symofros.runtime.calls.binding import NativeMemory as NativeMemory
 from symofros.runtime.calls.binding import constants as constants
 from symofros.runtime.calls.binding import native_library as native_library
+from symofros.runtime.calls.binding import native_library_is_loaded as native_library_is_loaded
 from symofros.runtime.calls.extension import step_type as step_type
 from symofros.runtime.calls.kernel import Kernel as Kernel
 from symofros.runtime.calls.kernel import LaneOptions as LaneOptions

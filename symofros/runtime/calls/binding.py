@@ -45,6 +45,11 @@ def native_library() -> Any:
     return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
 
 
+def native_library_is_loaded() -> bool:
+    """Whether `native_library` has nothing to wait for."""
+    return native_library.cache_info().currsize > 0
+
+
 @cache
 def constants() -> Mapping[str, int]:
     """Name, such as "SYM_FINISHED" -> value of the constants in the enumerations of symofros_stepper.h."""

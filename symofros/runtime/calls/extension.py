@@ -1,7 +1,7 @@
-"""Calls for one state by a C extension of Python, built once a machine behind the first call that wants it.
+"""Plain calls by a C extension of Python, built once a machine behind the first call that wants it.
 
-A call by it costs a third of one through NumPy's functions. It needs the headers of Python beside a C compiler; where
-there are none, calls go on as they are, with the same bits.
+A call of one state by it costs a third of one through NumPy's functions, one of a few states a twentieth. It needs the
+headers of Python beside a C compiler; where there are none, calls go on as they are, with the same bits.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from symofros.native import amalgamated, native_number
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.runtime.calls.declarations import interface
+from symofros.runtime.calls.library import MANY
 
 LOGGER = logging.getLogger("symofros")
 _NAME = "symofros_call"
@@ -104,7 +105,7 @@ def module() -> Any:
         return None
     # What the headers are is part of the text, which names the library in the cache folder.
     of = f"/* {sysconfig.get_config_var('SOABI')}, NumPy {np.__version__}, {sys.version!r} */\n"
-    of += f"#define SYM_UNIT_ROUNDING {UNIT_ROUNDING!r}\n"
+    of += f"#define SYM_UNIT_ROUNDING {UNIT_ROUNDING!r}\n#define SYM_MANY {MANY}\n"
     flags = (*DEFAULT_FLAGS, *(f"-I{folder}" for folder in headers))
     if sys.platform == "darwin":  # Symbols of Python are found as it is loaded.
         flags = (*flags, "-Wl,-undefined,dynamic_lookup")

@@ -30,8 +30,8 @@ from symofros.runtime.calls.layout import Strided
 from symofros.runtime.calls.sharing import parts, share, together
 
 # From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
-# below, a call from Python costs about as much as vectors would save.
-MANY = 512
+# below, what vectors would save in a thousand calls is not worth the compilation of their code.
+MANY = 256
 
 
 class CompiledUnit:
@@ -155,6 +155,17 @@ class CompiledKernel:
     def address(self) -> int:
         """Where its code for one state begins, for callers that keep this object."""
         return int(self._unit.ffi.cast("uintptr_t", self._function.eval))
+
+    @property
+    def batch_address(self) -> int:
+        """Where its code for rows of states begins."""
+        return int(self._unit.ffi.cast("uintptr_t", self._function.batch))
+
+    def for_many(self) -> tuple[int, int, CompiledKernel]:
+        """(address of the code for rows of `MANY` states and more, doubles of its scratch, what is to be kept)."""
+        lanes = self.in_lanes()
+        kernel = lanes if lanes.has(SHARED_PARAMETERS) else self
+        return kernel.batch_address, kernel.work, kernel
 
     @property
     def model(self) -> Any:

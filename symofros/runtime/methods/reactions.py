@@ -2,11 +2,31 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
+
+
+class ContactForces(NamedTuple):
+    """State of the balls of compliant contacts.
+
+    Attributes:
+        gap: Distance of each ball from the surface, negative where it penetrates it (..., nk) [m].
+        push: Normal force (..., nk) [N].
+        force: Force on the ball, in world axes (..., nk, 3) [N]; the surface's body gets the opposite.
+        point: Point in the world where it acts (..., nk, 3) [m].
+        share: Penetration over the radius of the ball, or of the surface; zero of points on planes (..., nk).
+    """
+
+    gap: Array
+    push: Array
+    force: Array
+    point: Array
+    share: Array
 
 
 class ReactionFunctions(Functions):
@@ -82,6 +102,26 @@ class ReactionFunctions(Functions):
         rotors and its armature take (docs/theory/rigid.md, (49)).
         """
         return self._reactions("prescribed_efforts", q, v, a, u, lam, par, t)
+
+    def contact_forces(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike | None = None,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+    ) -> ContactForces:
+        """Distances and forces of compliant contacts, in the order of `names.contacts`.
+
+        Args:
+            q: Configuration (..., nq).
+            v: Speeds (..., nv).
+            u: Inputs, for prescribed motions.
+            par: Run-time parameters.
+            t: Time.
+        """
+        return ContactForces(*self._call("contact_forces", "", {"q": q, "v": v, "u": u, "t": t}, par))
 
     def _reactions(
         self,

@@ -82,3 +82,19 @@ def test_info_lists_the_contents_of_a_diagram(tmp_path: Path) -> None:
     file.write_text(TEXT.replace("q: plant.q\n", "q: plant.z\n", 1))
     spoilt = run("info", file)
     assert spoilt.exit_code == 2 and "diagram.yaml:24" in spoilt.output
+
+
+def test_inlets_are_given_by_the_command_line(tmp_path: Path) -> None:
+    path = tmp_path / "part.yaml"
+    path.write_text(
+        "symofros_diagram: 1\nblocks:\n  pd: {kind: joint_pd, kp: 2, kd: 1, period: 0.01}\n"
+        "inlets: {q: {to: pd.q, shape: [2]}, v: [pd.v], goal: [pd.q_desired]}\n"
+    )
+    common = "simulate", path, "0.1", "-o", tmp_path / "run.npz"
+    given = "--input", "q=atan2(t,1),0.5", "--input", "v=0", "--input", "goal=1"
+    told = run(*common, *given)
+    assert told.exit_code == 0, told.output
+    with np.load(tmp_path / "run.npz") as arrays:
+        np.testing.assert_allclose(arrays["pd.effort"][-1], [2 * (1 - np.arctan(0.1)), 1.0], rtol=1e-12)
+    told = run(*common, *given[:4])
+    assert told.exit_code == 2 and "inlet 'goal' is not given" in " ".join(told.output.split())

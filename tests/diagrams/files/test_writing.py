@@ -53,6 +53,26 @@ def test_diagrams_built_in_python_survive_saving(tmp_path: Path) -> None:
     assert np.array_equal(runs[0]["left.effort"], runs[1]["left.effort"])
 
 
+def test_what_inlets_state_survives_saving(tmp_path: Path) -> None:
+    d = control()
+    d.add_inlet("offset", "pd.v_desired", shape=(2,), unit="rad/s", start=[0.5, 0.0])
+    sf.save_diagram(d, tmp_path / "d.yaml")
+    again = sf.load_diagram(tmp_path / "d.yaml")
+    assert again.inlet_ports == d.inlet_ports and again.inlets == {name: tuple(to) for name, to in d.inlets.items()}
+    told = sf.Simulation(again).run(0.01, inputs={"q": [0.1, 0.2], "v": 0.0, "desired": 0.0, "offset": "t"})
+    assert told.unit("offset") == "rad/s" and told["effort"].shape[1:] == (2,)
+
+
+@pytest.mark.parametrize(
+    ("stated", "words"),
+    [("{shape: [2]}", "'to' is missing"), ("{to: pd.q, shape: [0]}", "shape is none"), ("{to: pd.q, sise: 1}", "sise")],
+)
+def test_inlets_that_are_none_are_refused(stated: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "d.yaml").write_text(f"symofros_diagram: 1\nblocks: {{}}\ninlets:\n  q: {stated}\n")
+    with pytest.raises(sf.DescriptionError, match=f"d.yaml:4: inlet 'q'(?s:.)*{words}"):
+        sf.load_diagram(tmp_path / "d.yaml")
+
+
 def test_parts_of_files_stay_references(tmp_path: Path) -> None:
     sf.save_diagram(control(), tmp_path / "control.yaml")
     d = sf.Diagram("d")

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from symofros.base.routes import TIE, choose
+from reference_models.rigid.chain import chain
+from symofros.base.options import Options
+from symofros.base.routes import COUPLED, TIE, choose
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
@@ -13,6 +15,11 @@ from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen.effort import PACKED, effort, pack_figures
 from symofros.generator.codegen.packs import PackPlan, Store
+from symofros.generator.programs import ProgramBuilder
+from symofros.mechanics.topology.tree import build_tree, coupled_speeds
+
+# Efforts by which factors would be chosen.
+UNLIKE = {"articulated_effort": 2.0, "factors_effort": 1.0}
 
 
 def program(g: Graph, edges: list[Edge]) -> Program:
@@ -48,11 +55,23 @@ def test_the_cheapest_variant_wins_and_ties_keep_scalars(first: int, second: int
     assert 1.04 < TIE < 1.07
     figures = {
         "distant_rotors": 0,
+        "coupled_speeds": 0,
         "articulated_effort": spent(chained(first)),
         "factors_effort": spent(chained(second)),
     }
     assert choose("acceleration of trees", figures).method == name
     assert choose("acceleration of trees", {"distant_rotors": 1}).method == "factors"
+
+
+@pytest.mark.parametrize(("joints", "settled"), [(30, False), (31, True)])
+def test_long_chains_get_articulated_bodies_without_a_count(joints: int, settled: bool) -> None:
+    """The mean of 0, 1, ... joints - 1 speeds on the way to the base."""
+    tree = build_tree(chain(joints, symbolic=False))
+    assert coupled_speeds(tree) == (joints - 1) / 2 and (coupled_speeds(tree) >= COUPLED) == settled
+    choice = choose("acceleration of trees", {"distant_rotors": 0, "coupled_speeds": coupled_speeds(tree)} | UNLIKE)
+    assert choice.method == ("articulated" if settled else "factors")
+    if settled:
+        assert ProgramBuilder(tree, Options()).trees.figures.keys() == {"distant_rotors", "coupled_speeds"}
 
 
 def gain(g: Graph, edges: list[Edge]) -> str:

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import symofros as sf
-from symofros.mechanics.topology.tree import build_tree
+from symofros.mechanics.topology.tree import build_tree, coupled_speeds
 
 SOLID = sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))
 
@@ -25,3 +25,8 @@ def test_constants_are_not_parameters() -> None:
 def test_deep_chains_do_not_exhaust_the_stack() -> None:
     bodies = [body(f"b{i}", f"b{i - 1}" if i else "world") for i in range(3000)]
     assert len(build_tree(sf.System("deep", bodies)).links) == 3000
+
+
+def test_speeds_of_one_joint_are_coupled_with_each_other_and_those_of_branches_are_not() -> None:
+    legs = [body(f"leg{k}", "base") for k in range(4)]
+    assert coupled_speeds(build_tree(sf.System("s", [body("base", "world", "free"), *legs]))) == (15 + 4 * 6) / 10

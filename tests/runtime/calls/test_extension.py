@@ -19,7 +19,8 @@ from symofros.base.functions import FUNCTIONS
 from symofros.native import native_number
 from symofros.runtime.calls import extension
 from symofros.runtime.calls.binding import callable_from_c
-from symofros.runtime.calls.single import SingleCall, single_call
+from symofros.runtime.calls.library import MANY
+from symofros.runtime.calls.plain import PlainCall, plain_call
 from tests.models import model
 
 
@@ -37,11 +38,11 @@ def m() -> sf.Model:
 
 
 @pytest.fixture
-def forward(m: sf.Model, call_type: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[SingleCall]:
-    """M, h and Q of one state by the extension."""
-    monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: call_type)
-    call = single_call(
-        m.kernel("dynamics"), m.parameter_values, np.zeros(m.nu), m.record.quaternions, m._forget_single_calls
+def forward(m: sf.Model, call_type: Any, monkeypatch: pytest.MonkeyPatch) -> Iterator[PlainCall]:
+    """M, h and Q by the extension."""
+    monkeypatch.setattr("symofros.runtime.calls.plain.call_type", lambda _: call_type)
+    call = plain_call(
+        m.kernel("dynamics"), m.parameter_values, np.zeros(m.nu), m.record.quaternions, m._forget_plain_calls
     )
     assert type(call) is call_type
     return call
@@ -56,14 +57,14 @@ def test_plain_calls_use_the_extension_automatically(m: sf.Model, call_type: Any
     q = state(m)["q"]
     before = m.mass_matrix(q)
     end = time.monotonic() + 60.0
-    while type(m._single_calls.prepared.get("mass_matrix")) is not call_type:
+    while type(m._plain_calls.prepared.get("mass_matrix")) is not call_type:
         assert time.monotonic() < end
         time.sleep(0.01)
         m.mass_matrix(q)
     assert np.array_equal(before, m.mass_matrix(q))
 
 
-def test_inputs_and_dictionaries_are_released(forward: SingleCall, m: sf.Model) -> None:
+def test_inputs_and_dictionaries_are_released(forward: PlainCall, m: sf.Model) -> None:
     given = state(m)
     counted = (given["q"], given["v"], given)
     for inputs in (given, given | {"v": np.zeros(m.nv + 1)}, given | {"u": "no array"}):
@@ -78,16 +79,32 @@ def test_inputs_and_dictionaries_are_released(forward: SingleCall, m: sf.Model) 
     assert [sys.getrefcount(x) for x in counted] == before
 
 
-def test_calls_and_objects_leave_no_memory_behind(forward: SingleCall, m: sf.Model, call_type: Any) -> None:
-    given, kernel = state(m), callable_from_c(m.kernel("mass_matrix"))
-    pre = kernel.prepare(m.parameter_values[None])
+def arguments(m: sf.Model, **changed: Any) -> tuple[Any, ...]:
+    """What the type is called with to make the plain call of M."""
+    kernel = callable_from_c(m.kernel("mass_matrix"))
+    stated = {
+        "functions": (kernel.address, kernel.batch_address, kernel.work + 1, kernel.for_many, 1 << 40),
+        "inputs": (("q", m.nq, None, m.record.quaternions["q"]),),
+        "outputs": (("M", (m.nv, m.nv)),),
+        "pre": kernel.prepare(m.parameter_values[None]),
+        "kept": kernel,
+    }
+    return tuple((stated | changed).values())
+
+
+def test_calls_and_objects_leave_no_memory_behind(forward: PlainCall, m: sf.Model, call_type: Any) -> None:
+    given = state(m)
+    many = {group: x if group in ("u", "t") else np.tile(x, (MANY, 1)) for group, x in given.items()}
+    out = {"M": np.zeros((MANY, m.nv, m.nv))}
 
     def work() -> None:
         for _ in range(200):
             forward(given)
-            inputs = (("q", m.nq, None, m.record.quaternions["q"]),)
-            made = call_type(kernel.address, kernel.work + 1, inputs, ((m.nv, m.nv),), pre, kernel)
+            forward(many, out)
+            forward(many, {"M": given["q"]})
+            made = call_type(*arguments(m))
             made({"q": given["q"]})
+            made({"q": many["q"]}, out)
 
     work()
     tracemalloc.start()
@@ -109,20 +126,22 @@ def test_calls_and_objects_leave_no_memory_behind(forward: SingleCall, m: sf.Mod
         ("q", [0.0]),
         ("q", np.zeros(1)),
         ("q", np.zeros((1, 1))),
+        ("v", np.zeros((0, 99))),
         ("v", np.float64(1.0)),
         ("t", 0),
-        ("t", np.zeros(2)),
+        ("t", np.zeros(0)),
+        ("t", np.zeros((2, 1))),
         ("u", np.zeros(0, np.float32)),
         *(("q", kind) for kind in (">f8", np.float32, object, np.int64)),
     ],
 )
-def test_unusual_calls_fall_back_to_python(forward: SingleCall, m: sf.Model, group: str, value: Any) -> None:
+def test_unusual_calls_fall_back_to_python(forward: PlainCall, m: sf.Model, group: str, value: Any) -> None:
     given = state(m)
     is_kind = isinstance(value, str | type)  # The right numbers, of another kind.
     assert forward(given | {group: given[group].astype(value) if is_kind else value}) is None
 
 
-def test_inputs_may_have_any_strides(forward: SingleCall, m: sf.Model) -> None:
+def test_inputs_may_have_any_strides(forward: PlainCall, m: sf.Model) -> None:
     given = state(m)
     expected = forward(given)
     assert expected is not None
@@ -139,27 +158,88 @@ def test_inputs_may_have_any_strides(forward: SingleCall, m: sf.Model) -> None:
         assert all(np.array_equal(x, y) for x, y in zip(found, expected, strict=True))
 
 
+@pytest.mark.parametrize("n", [1, 2, MANY - 1, MANY, MANY + 3])
+def test_batches_have_the_bits_of_the_general_way(forward: PlainCall, m: sf.Model, n: int, rng: Any) -> None:
+    """Each input of one state, of a batch of one, or of n; results fresh, or where they are wanted."""
+    q, v = (np.array(x) for x in zip(*(m.random_state(rng) for _ in range(n)), strict=True))
+    u = rng.normal(size=(n, m.nu))
+    given = {"q": q, "v": v, "u": u, "t": rng.normal(size=n)}
+    for alike in range(16):
+        same = {group for k, group in enumerate(given) if alike >> k & 1}
+        inputs = {group: (x[0].item() if group == "t" else x[:1]) if group in same else x for group, x in given.items()}
+        expected = m._call_batch("dynamics", "", inputs, m.parameter_values)
+        found = forward(inputs)
+        assert found is not None
+        out = {"h": np.full(found[1].shape, np.nan)}
+        again = forward(inputs, out)
+        assert again is not None and again[1] is out["h"]
+        for x, y, z in zip(found, again, expected, strict=True):
+            assert x.shape == y.shape == z.shape and x.tobytes() == y.tobytes() == z.tobytes()
+
+
+def test_receivers_that_do_not_fit_or_overlap_fall_back_to_python(forward: PlainCall, m: sf.Model) -> None:
+    given = state(m) | {"u": np.zeros(m.nu)}
+    room = np.zeros(m.nv * (m.nv + 2))
+    fitting = room[: m.nv]
+    read_only = fitting.view()
+    read_only.flags.writeable = False
+    assert forward(given, {"h": fitting, "Q": room[m.nv : 2 * m.nv]}) is not None
+    for out in (
+        {"M": given["v"]},
+        {"h": given["v"]},
+        {"h": fitting, "Q": fitting},
+        {"h": fitting, "M": room[1 : 1 + m.nv**2].reshape(m.nv, m.nv)},
+        {"h": fitting, "acceleration": fitting},
+        {"h": read_only},
+        {"h": np.zeros((1, m.nv))},
+        {"h": np.zeros(m.nv, np.float32)},
+        {"h": np.zeros(2 * m.nv)[::2]},
+        {"h": [0.0] * m.nv},
+    ):
+        assert forward(given, out) is None, out
+    tall = np.zeros((3, m.nv))
+    batch = given | {"v": tall}
+    assert forward(batch, {"h": tall}) is None and forward(batch, {"h": np.zeros((3, m.nv))}) is not None
+
+
+def test_batches_that_threads_share_or_that_do_not_broadcast_fall_back_to_python(call_type: Any, m: sf.Model) -> None:
+    functions = (*arguments(m)[0][:4], 7)
+    call = call_type(*arguments(m, functions=functions))
+    q = np.tile(state(m)["q"], (8, 1))
+    assert call({"q": q}) is None and call({"q": q[:7]}) is not None
+    assert call({"q": np.asfortranarray(q[:7])}) is None and call({"q": q[None, :7]}) is None
+    forward = m._plain("dynamics", "")
+    assert forward({"q": q[:3], "v": np.zeros((2, m.nv)), "u": None, "t": 0.0}) is None
+
+
+def test_quaternions_of_batches_are_judged_in_each_state(forward: PlainCall, m: sf.Model) -> None:
+    (first,) = m.record.quaternions["q"][:1]
+    given = state(m) | {"q": np.tile(state(m)["q"], (5, 1))}
+    assert forward(given) is not None
+    for k in range(5):
+        turned = given["q"].copy()
+        turned[k, first] += 0.1
+        assert forward(given | {"q": turned}) is None
+
+
 def test_arguments_of_the_extension_are_checked(call_type: Any, m: sf.Model) -> None:
-    kernel = callable_from_c(m.kernel("mass_matrix"))
-    pre = kernel.prepare(m.parameter_values[None])
-    inputs = (("q", m.nq, None, m.record.quaternions["q"]),)
+    functions, inputs, outputs, *_ = arguments(m)
     for wrong in (
-        (kernel.address, 0, inputs, ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, inputs * 17, ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, inputs, ((1, 1, 1),), pre, kernel),
-        (kernel.address, 8, (("q", m.nq, None),), ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, (("q", m.nq, None, (m.nq - 3,)),), ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, (("q", m.nq, None, (-1,)),), ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, (("q", m.nq, None, ("first",)),), ((m.nv, m.nv),), pre, kernel),
-        (kernel.address, 8, inputs, (("one",),), pre, kernel),
-        ("address", 8, inputs, ((m.nv, m.nv),), pre, kernel),
+        {"functions": (*functions[:2], 0, *functions[3:])},
+        {"functions": ("address", *functions[1:])},
+        {"functions": functions[:4]},
+        {"inputs": inputs * 17},
+        {"inputs": (("q", m.nq, None),)},
+        *({"inputs": (("q", m.nq, None, (first,)),)} for first in (m.nq - 3, -1, "first")),
+        *({"outputs": (("M", shape),)} for shape in ((1, 1, 1), ("one",), 1)),
+        {"outputs": ((1, (1,)),)},
     ):
         with pytest.raises((TypeError, ValueError)):
-            call_type(*wrong)
-    call = call_type(kernel.address, kernel.work + 1, inputs, ((m.nv, m.nv),), pre, kernel)
-    for arguments in ((), ({}, {}), ([],)):
+            call_type(*arguments(m, **wrong))
+    call = call_type(*arguments(m))
+    for given in ((), ({}, []), ([],), ({}, {}, {})):
         with pytest.raises(TypeError, match="one dict of inputs"):
-            call(*arguments)
+            call(*given)
     with pytest.raises(TypeError, match="one dict of inputs"):
         call(q=np.zeros(m.nq))
 

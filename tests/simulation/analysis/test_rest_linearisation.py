@@ -51,7 +51,7 @@ def test_forces_and_damping_at_rest_match_the_equations(name: str, rng: np.rando
 
 
 def test_modes_at_rest_match_derivatives_in_motion() -> None:
-    m = sf.compile(chain(2, 1, sprung=True))
+    m = sf.compile(chain(3, 1, sprung=True))
     q = sf.equilibrium(m, {"q0": 1.5}).q
     found = sf.modes(m, q)
     assert not _made(m, "forward_dynamics_derivatives") and _made(m, "rest_damping")

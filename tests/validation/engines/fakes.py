@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import os
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -91,7 +94,13 @@ PLUGINS = {
         Plugin("uncharted", slots=((Slot("angel", (0,), (0,)),),) * 3),
         Plugin("beyond", slots=((Slot("angle", (3,), (0,)),),) * 3),
         Plugin("leaving", leaves),
+        Plugin("unnumbered", lambda value: value * math.nan),
     )
+}
+# What ends a process, or does not end.
+DEADLY = {
+    plugin.name: plugin
+    for plugin in (Plugin("dying", lambda value: os.abort()), Plugin("hanging", lambda value: time.sleep(60)))
 }
 # What is no plug-in, by the contract.
 REFUSED = {"empty": object(), "unknown": Plugin("unknown", functions=("mass_metrix",)), "other": Plugin("another")}
@@ -100,9 +109,10 @@ REFUSED = {"empty": object(), "unknown": Plugin("unknown", functions=("mass_metr
 def install(folder: Path) -> None:
     """A package in a folder whose entry points are all of these."""
     (folder / "fake_engines.py").write_text(
-        "from tests.validation.engines.fakes import PLUGINS, REFUSED\nglobals().update(PLUGINS | REFUSED)\n"
+        "from tests.validation.engines.fakes import DEADLY, PLUGINS, REFUSED\n"
+        "globals().update(PLUGINS | DEADLY | REFUSED)\n"
     )
-    points = "".join(f"{name} = fake_engines:{name}\n" for name in (*PLUGINS, *REFUSED, "absent"))
+    points = "".join(f"{name} = fake_engines:{name}\n" for name in (*PLUGINS, *DEADLY, *REFUSED, "absent"))
     info = folder / "fake_engines-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: fake-engines\nVersion: 1.0\n")

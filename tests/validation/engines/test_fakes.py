@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from tests.validation.engines.fakes import PLUGINS, REFUSED, install
-from validation.engines import parts
+from validation.engines import parts, workers
 from validation.engines.interface import installed
 from validation.engines.matrix import cells
 from validation.engines.models.kinds import tree_of
@@ -30,7 +30,7 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Report:
     folder = tmp_path_factory.mktemp("fakes")
     install(folder)
     paths = os.pathsep.join([str(folder), str(ROOT), os.environ.get("PYTHONPATH", "")])
-    engines = [word for name in ("pinocchio", *PLUGINS) for word in ("--engine", name)]
+    engines = [word for name in ("pinocchio", "dying", *PLUGINS) for word in ("--engine", name)]
     command = [sys.executable, "-m", "validation", "engines", *engines, "--kinds", "revolute x", "--tries", "3"]
     done = subprocess.run(
         [*command, "--output", str(folder / "out")],
@@ -83,9 +83,29 @@ def test_the_other_engines_go_on(stored: Report) -> None:
     assert len(verdicts(stored, "pinocchio")) > 20 and verdicts(stored, "pinocchio")["mass_matrix"] == "right"
 
 
+def test_an_engine_that_takes_its_process_with_it_crashes_in_its_cells(stored: Report) -> None:
+    assert verdicts(stored, "dying") == dict.fromkeys(("mass_matrix", "gravity"), "crashes")
+    assert set(said(stored, "dying").splitlines()) == {"killed by SIGABRT"} and set(proven(stored, "dying")) == {False}
+
+
+def test_an_engine_that_hangs_has_no_answers_and_the_next_one_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    tree = tree_of("revolute x")
+    with workers.Worker(limit=2.0) as worker:
+        answers = [answer.value for answer in worker.ask(workers.Job("hanging", tree, ("mass_matrix", "gravity")))]
+        assert answers == [workers.Crashed("no answer in 2 s")] * 2
+    with workers.Worker() as worker:
+        for engine in ("dying", "pinocchio"):
+            (answer,) = worker.ask(workers.Job(engine, tree, ("mass_matrix",)))
+            assert isinstance(answer.value, workers.Crashed) == (engine == "dying")
+
+
 @pytest.mark.parametrize(
     ("engine", "wanted"),
-    [("silent", False), ("starred", True), ("bare", True), ("unproven", False), ("torn", False)],
+    [("silent", False), ("starred", True), ("bare", True), ("unproven", False), ("torn", False), ("unnumbered", False)],
 )
 def test_a_red_cell_is_proven_by_a_script_that_fails_and_by_nothing_else(
     stored: Report, engine: str, wanted: bool
@@ -130,7 +150,6 @@ def test_invalid_plug_ins_are_refused(tmp_path: Path, monkeypatch: pytest.Monkey
 
 
 def test_cells_in_this_process_do_not_raise_either(monkeypatch: pytest.MonkeyPatch) -> None:
-    from validation.engines import workers
     from validation.engines.interface import Registry
 
     monkeypatch.setattr(workers, "registry", lambda: Registry({**OWN, **PLUGINS}))

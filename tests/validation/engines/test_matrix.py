@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 from dataclasses import replace
 from pathlib import Path
 
@@ -118,8 +116,9 @@ def test_a_dead_process_is_restarted() -> None:
     with Worker() as worker:
         job = Job("pinocchio", tree_of("revolute x"), ("mass_matrix", "bias"), SEED)
         assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
-        os.kill(worker._process.pid, signal.SIGKILL)
-        worker._process.join()
+        assert worker._process is not None
+        worker._process.kill()
+        worker._process.wait()
         assert all(isinstance(answer.value, np.ndarray) for answer in worker.ask(job))
 
 

@@ -1,9 +1,8 @@
-"""The report of recorded numbers, and what the command takes of a worker's words."""
+"""The report of recorded numbers, and what the command takes of a worker's messages."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -17,6 +16,7 @@ from validation.environments.report import TOPIC
 from validation.reporting.command import composed
 from validation.reporting.plain import plain
 from validation.reporting.record import Report
+from validation.timing.worker import Message
 
 
 def row(who: str, least: float, ratio: float = 1.0, states: int = 1024, **others: Any) -> Row:
@@ -45,21 +45,20 @@ def test_a_record_is_good_where_something_was_measured_and_nothing_differs() -> 
     assert not Record(rows=ROWS, failed=[("jax", "f", "frax", "differs")]).ok
 
 
-def test_words_of_a_worker_are_taken_and_others_left() -> None:
+def test_messages_of_a_worker_become_a_record() -> None:
     record, said = Record(), list[str]()
-    words = [
-        "Failed to import warp: No module named 'warp'",
-        "[1]",
-        json.dumps({"doing": ["panda", "compiling"]}),
-        json.dumps({"row": asdict(ROWS[0])}),
-        json.dumps({"absent": asdict(Absent("jax", "frax", "frax is not installed", "pip install frax"))}),
-        json.dumps({"failed": ["jax", "forward_dynamics", "MJX", "differs"]}),
-        json.dumps({"version": ["jax", "0.10"]}),
+    absent = Absent("jax", "frax", "frax is not installed", "pip install frax")
+    messages: list[Message] = [
+        ("doing", ("panda", "compiling")),
+        ("row", ROWS[0]),
+        ("absent", absent),
+        ("failed", ("jax", "forward_dynamics", "MJX", "differs")),
+        ("version", ("jax", "0.10")),
     ]
-    for word in words:
-        take(word, record, said.append)
+    for message in messages:
+        take(message, record, said.append)
     assert record.rows == ROWS[:1] and said == ["panda: compiling"] and record.packages == {"jax": "0.10"}
-    assert record.absent[0].who == "frax" and record.failed == [("jax", "forward_dynamics", "MJX", "differs")]
+    assert record.absent == [absent] and record.failed == [("jax", "forward_dynamics", "MJX", "differs")]
 
 
 @pytest.mark.parametrize("environment", [JAX, TORCH])
@@ -68,7 +67,5 @@ def test_a_missing_framework_is_reported_with_its_command(environment: Any, monk
         raise ModuleNotFoundError(name)
 
     monkeypatch.setattr(worker, "import_module", absent)
-    told: list[tuple[str, Any]] = []
-    worker.work(environment, ["planar2R"], [1], 1, lambda kind, value: told.append((kind, value)))
-    ((kind, value),) = told
-    assert kind == "absent" and value["who"] == OURS and value["remedy"].startswith("pip install")
+    ((kind, value),) = worker.work(environment.name, ["planar2R"], [1], 1)
+    assert kind == "absent" and value.who == OURS and value.remedy.startswith("pip install")

@@ -38,11 +38,8 @@ def overlay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     (root / "judge.py").write_text(JUDGE)
     (root / IDENTITY).parent.mkdir(parents=True)
     (root / IDENTITY).write_bytes((ROOT / IDENTITY).read_bytes())
-    server = root / "validation" / "mutation" / "server.py"
-    server.parent.mkdir(parents=True)
-    text = (ROOT / "validation" / "mutation" / "server.py").read_text()
-    server.write_text(text.replace(text[text.index("PRELOADED = (") : text.index("MEMORY")], "PRELOADED = ()\n"))
-    monkeypatch.setattr(overlays, "COPIED", ("symofros", "validation", "judge.py"))
+    monkeypatch.setattr(overlays, "PRELOADED", ())
+    monkeypatch.setattr(overlays, "COPIED", ("symofros", "judge.py"))
     made = Overlay(root, tmp_path / "work")
     yield made
     made.close()

@@ -226,7 +226,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
 
         for closure in closures:
             made.AddObject(items.RevoluteJoint2D(markerNumbers=[marker(closure.first), marker(closure.second)]))
-        for spring in system.connections:
+        for spring in system.springs:
             made.AddObject(
                 items.SpringDamper(
                     markerNumbers=[marker(spring.first), marker(spring.second)],

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...adapters.exudyn.steps import ADAPTIVE, Recorded, Solver, Timed
 from ..problem import Contestant, Measured
-from .symofros import milliseconds
 
 
 @dataclass(frozen=True)
@@ -34,17 +33,13 @@ class ExudynModel:
 
     def by(self, solver: Solver, steps: Sequence[float]) -> list[Contestant]:
         """A contestant for each step [s]; of solvers that choose their steps, for each tolerance."""
-        return [self._contestant(solver, step) for step in steps]
-
-    def _contestant(self, solver: Solver, step: float) -> Contestant:
         adapts = solver.kind in ADAPTIVE
-        chosen = Solver(solver.kind, relative=step) if adapts else solver
-        setting = f"rtol {step:.0e}".replace("e-0", "e-") if adapts else milliseconds(step)
 
-        def run() -> Measured:
+        def run(step: float) -> Measured:
+            chosen = Solver(solver.kind, relative=step) if adapts else solver
             return self.measured(self.system.run(chosen, self.output if adapts else step, self.end, self.output))
 
-        return Contestant("Exudyn", self.label, solver.name, setting, run)
+        return Contestant.swept(("Exudyn", self.label, solver.name), run, steps, adapts)
 
     def measured(self, recorded: Recorded) -> Measured:
         """A run that is judged; one that is cut short has no error."""

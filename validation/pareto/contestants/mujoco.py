@@ -12,7 +12,6 @@ import numpy as np
 from ...adapters.mujoco.steps import stepped
 from ...mechanics.geometry import Array
 from ..problem import Contestant, Measured
-from .symofros import milliseconds
 
 
 @dataclass(frozen=True)
@@ -39,15 +38,12 @@ class MujocoModel:
 
     def by(self, integrator: str, steps: Sequence[float]) -> list[Contestant]:
         """A contestant for each step [s]."""
-        return [self._contestant(integrator, h) for h in steps]
+        made = {h: self.model(h) for h in steps}
 
-    def _contestant(self, integrator: str, h: float) -> Contestant:
-        made = self.model(h)
-
-        def run() -> Measured:
-            q, seconds = stepped(made, integrator, h, self.q0, self.v0, self.times, round(self.output / h))
+        def run(h: float) -> Measured:
+            q, seconds = stepped(made[h], integrator, h, self.q0, self.v0, self.times, round(self.output / h))
             with np.errstate(over="ignore", invalid="ignore"):
                 error = self.judge(q)
             return Measured(error, seconds, "" if math.isfinite(error) else "diverged")
 
-        return Contestant("MuJoCo", self.label, integrator, milliseconds(h), run)
+        return Contestant.swept(("MuJoCo", self.label, integrator), run, steps, adapts=False)

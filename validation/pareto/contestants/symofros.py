@@ -15,8 +15,6 @@ from symofros.tools import METHODS
 from ..problem import OURS, Contestant, Measured
 
 Judge = Callable[[sf.Trajectory], float]
-# How many digits of a step or tolerance are written.
-_DIGITS = 3
 
 
 @dataclass(frozen=True)
@@ -39,17 +37,13 @@ class SymofrosModel:
 
     def by(self, method: str, steps: Sequence[float], **more: Any) -> list[Contestant]:
         """A contestant for each step of a method [s], or each relative tolerance of one that adapts its steps."""
-        return [self._contestant(method, step, more) for step in steps]
-
-    def _contestant(self, method: str, step: float, more: Mapping[str, Any]) -> Contestant:
         adapts = METHODS[method].adaptive
-        chosen = {"rtol": step, "atol": step * 1e-2} if adapts else {"dt": step}
-        setting = f"rtol {step:.0e}".replace("e-0", "e-") if adapts else milliseconds(step)
 
-        def run() -> Measured:
+        def run(step: float) -> Measured:
+            chosen = {"rtol": step, "atol": step * 1e-2} if adapts else {"dt": step}
             return self.measured(method=method, **chosen, **more)
 
-        return Contestant(OURS, self.label, method, setting, run)
+        return Contestant.swept((OURS, self.label, method), run, steps, adapts)
 
     def in_single_precision(self, method: str, steps: Sequence[float]) -> list[Contestant]:
         """The same with accelerations in floats, states in doubles, by one lane of the code of batches."""
@@ -75,8 +69,3 @@ class SymofrosModel:
             return run, run.statistics.worked
         runs = sf.simulate_batch(self.model, **self.arguments, **settings)
         return runs[()], runs.processor_seconds
-
-
-def milliseconds(step: float) -> str:
-    """A step for people."""
-    return f"{1e3 * step:.{_DIGITS}g} ms"

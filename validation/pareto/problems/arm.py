@@ -22,7 +22,7 @@ from ...mechanics.geometry import Array
 from ...timing.models import DAMPING, STIFFNESS, TARGET, panda7
 from ..contestants.exudyn import ExudynModel
 from ..contestants.mujoco import MujocoModel
-from ..contestants.symofros import SymofrosModel, milliseconds
+from ..contestants.symofros import SymofrosModel
 from ..problem import BenchmarkProblem, Contestant, Measured, Prepared, Target
 
 END, OUTPUT = 10.0, 0.1
@@ -141,24 +141,24 @@ def pinocchio_all(quick: bool) -> list[Contestant]:
     """The same Runge-Kutta methods around its articulated-body algorithm."""
     side = held()
 
-    def rk4(h: float) -> Contestant:
-        def run() -> Measured:
+    def rk4(*steps: float) -> list[Contestant]:
+        def run(h: float) -> Measured:
             q, seconds = side.rk4(h, start(), len(TIMES) - 1, round(OUTPUT / h))
             return Measured(far(q), seconds)
 
-        return Contestant("Pinocchio", MODEL, "RK4 in Python", milliseconds(h), run)
+        return Contestant.swept(("Pinocchio", MODEL, "RK4 in Python"), run, steps, adapts=False)
 
-    def scipy(method: str, rtol: float) -> Contestant:
-        def run() -> Measured:
+    def scipy(method: str, *rtols: float) -> list[Contestant]:
+        def run(rtol: float) -> Measured:
             q, seconds = side.solved(method, rtol, start(), TIMES)
             return Measured(far(q), seconds)
 
-        return Contestant("Pinocchio", MODEL, f"SciPy's {method}", f"rtol {rtol:.0e}".replace("e-0", "e-"), run)
+        return Contestant.swept(("Pinocchio", MODEL, f"SciPy's {method}"), run, rtols, adapts=True)
 
     if quick:
-        return [scipy("DOP853", 1e-6)]
+        return scipy("DOP853", 1e-6)
     rtols = (1e-4, 1e-6, 1e-8, 1e-10)
-    return [*(rk4(h) for h in (5e-3, 2e-3)), *(scipy(m, r) for m in ("RK45", "DOP853", "LSODA") for r in rtols)]
+    return [*rk4(5e-3, 2e-3), *(one for method in ("RK45", "DOP853", "LSODA") for one in scipy(method, *rtols))]
 
 
 def exudyn_all(quick: bool) -> list[Contestant]:

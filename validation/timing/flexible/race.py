@@ -6,21 +6,19 @@ chosen before anything else imports Exudyn.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from symofros.harness import worker_command
-
-from ...reporting.plain import restored
+from ...worker_process import WorkerError, WorkerProcess
 from ..contestants.programs import BuildError
-from ..processes import WorkerError, follow, message
 
 LABEL = "planar_robot"
 # Shape functions a strip: as the model states it, and finer.
 COUNTS = (3, 4, 6)
 CALLS = 1000
-_WORKER = "timing.flexible.worker"
+_MEASURE = f"{__package__}.worker", "measure"  # By its name: it imports Exudyn.
 
 
 @dataclass(frozen=True)
@@ -63,17 +61,11 @@ def run_flexible(repeats: int, counts: Sequence[int] = COUNTS, calls: int = CALL
     Raises:
         BuildError: It failed; with its last words.
     """
-    command = worker_command(_WORKER, [str(repeats), str(calls), *map(str, counts)])
-    environment = {**os.environ, "EXUDYN_MODULE": "fast"}
-    rows: list[FlexibleTiming] = []
-
-    def take(line: str) -> None:
-        kind, value = message(line)  # Exudyn announces its fast module, too.
-        if kind == "row":
-            rows.append(restored(FlexibleTiming, value))
-
     try:
-        follow(command, take, environment)
+        with (
+            TemporaryDirectory() as folder,
+            WorkerProcess(environment={"EXUDYN_MODULE": "fast"}, log=Path(folder) / "log") as worker,
+        ):
+            return list(worker.call(_MEASURE, repeats, tuple(counts), calls))
     except WorkerError as error:
-        raise BuildError(f"{LABEL} against Exudyn: the worker {error}") from None
-    return rows
+        raise BuildError(f"{LABEL} against Exudyn: the worker: {error}") from None

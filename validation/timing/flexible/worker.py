@@ -1,15 +1,8 @@
-"""Times the planar flexible robot, ours and Exudyn's in turn: `python -m validation.timing.flexible.worker`.
-
-Arguments: repeats, evaluations a repeat, shape functions a strip (one or more). Prints {"row": ...} of each
-`FlexibleTiming`.
-"""
+"""Times the planar flexible robot, ours and Exudyn's in turn, in the process of a worker."""
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Callable, Iterable
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from statistics import median
 from time import thread_time_ns
@@ -19,8 +12,8 @@ import numpy as np
 from ...adapters.exudyn.planar import smallest
 from ...adapters.exudyn.system import Part
 from ...mechanics.assembly import assemble
-from ..processes import say
-from .equal_accuracy import NotTheSameError, Pair, pairs, robot
+from ..race import pin_to_one_cpu, summary
+from .equal_accuracy import Pair, pairs, robot
 from .loop import GeneratedLoop
 from .race import FlexibleTiming
 
@@ -37,13 +30,15 @@ JOBS: dict[str, tuple[tuple[str, ...], tuple[Part, ...]]] = {
 Times = list[float]
 
 
-def measure(repeats: int, counts: Iterable[int], calls: int) -> list[FlexibleTiming]:
-    """Time in this process; arguments as for `run_flexible`.
+def measure(repeats: int, counts: Iterable[int], calls: int) -> Iterator[FlexibleTiming]:
+    """Time in this process, which is pinned to one processor; arguments as for `run_flexible`.
 
     Raises:
         NotTheSameError: The two sides are not models of one robot.
     """
-    return [row for pair in pairs(counts) for row in _timed(pair, repeats, calls)]
+    pin_to_one_cpu()
+    for pair in pairs(counts):
+        yield from _timed(pair, repeats, calls)
 
 
 def _timed(pair: Pair, repeats: int, calls: int) -> list[FlexibleTiming]:
@@ -75,30 +70,15 @@ def _row(quantity: str, pair: Pair, nv: int, generated_time: Times, engine_time:
         pair.elements,
         sizes,
         pair.error,
-        _summary(generated_time),
-        _summary(engine_time),
-        _summary(calls),
+        summary(generated_time),
+        summary(engine_time),
+        summary(calls),
         median(b / a for a, b, _ in triples),
         median((b - c) / a for a, b, c in triples),
     )
-
-
-def _summary(times: Times) -> tuple[float, float]:
-    return min(times), median(times)
 
 
 def _nanoseconds(run: Callable[[], None]) -> int:
     start = thread_time_ns()
     run()
     return thread_time_ns() - start
-
-
-if __name__ == "__main__":
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
-    repeats, calls, *counts = map(int, sys.argv[1:])
-    try:
-        for row in measure(repeats, counts, calls):
-            say("row", asdict(row))
-    except NotTheSameError as error:
-        sys.exit(str(error))

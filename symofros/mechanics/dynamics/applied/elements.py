@@ -83,7 +83,7 @@ def _friction(lowering: Lowering, friction: Friction, v: Edge) -> Edge:
     speed = g.call("abs", v)
     xi = g.div(v, g.call("max", speed, peak))
     square = g.mul(xi, xi)
-    rise = _polynomial(g, square)
+    rise = smoothed_sign(g, square)
     level = g.mul(dynamic, rise)
     if static is not None:
         y, width = g.div(g.call("max", g.sub(speed, peak), ZERO), fall_range), g.div(peak, fall_range)
@@ -103,7 +103,7 @@ def _peak_and_fall(lowering: Lowering, friction: Friction, slow: Edge) -> tuple[
     return g.call("min", peak, g.mul(g.constant(_LONGEST_RISE), fall_range)), fall_range
 
 
-def _polynomial(g: Graph, square: Edge) -> Edge:
+def smoothed_sign(g: Graph, square: Edge) -> Edge:
     """The smoothed sign over xi, of xi^2: (56)."""
     inner = g.add(g.constant(TERMS[1]), g.mul(g.constant(TERMS[2]), square))
     return g.add(g.constant(TERMS[0]), g.mul(inner, square))

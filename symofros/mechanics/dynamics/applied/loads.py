@@ -1,12 +1,14 @@
-"""Loads on bodies and connections between frames, as wrenches on links (docs/theory/rigid.md, section 10)."""
+"""Loads on bodies, connections and contacts between frames, as wrenches on links (docs/theory/rigid.md, section 10)."""
 
 from __future__ import annotations
 
 from symofros.description.beams.beam import Beam
+from symofros.description.contacts import Contact
 from symofros.description.forces import Connection, Load
 from symofros.description.system import RigidBody
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Mat3, Vec3
+from symofros.mechanics.dynamics.applied.contacts import touching_balls
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.spatial.wrench import Wrench, no_wrench
@@ -14,7 +16,7 @@ from symofros.mechanics.topology.tree import BASE, NamedFrame, Step, frame_of
 
 
 def wrenches(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Wrench] | None:
-    """Wrench of loads and connections on each link; None if nothing acts."""
+    """Wrench of loads, connections and contacts on each link; None if nothing acts."""
     total = [no_wrench(kinematics.g) for _ in kinematics.links]
     acting = False
     for body in kinematics.tree.system.bodies:
@@ -27,12 +29,25 @@ def wrenches(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Wrench
                 acting = True
     for connection in kinematics.tree.system.connections:
         acting = True
-        force = _Line(kinematics, frames, connection).force()
-        for anchor, pull in ((connection.first, force), (connection.second, -force)):
-            frame = frame_of(kinematics.tree, *anchor)
+        ends = [frame_of(kinematics.tree, *anchor) for anchor in (connection.first, connection.second)]
+        for frame, wrenches_on in zip(ends, _between(kinematics, frames, connection, ends), strict=True):
             if frame.link != BASE:
-                total[frame.link] = total[frame.link] + at_frame(kinematics, frames, frame, pull, Vec3(kinematics.g))
+                for force, torque in wrenches_on:
+                    total[frame.link] = total[frame.link] + at_frame(kinematics, frames, frame, force, torque)
     return total if acting else None
+
+
+def _between(
+    kinematics: TreeKinematics, frames: FrameKinematics, connection: Connection | Contact, ends: list[NamedFrame]
+) -> tuple[list[tuple[Vec3, Vec3]], list[tuple[Vec3, Vec3]]]:
+    """Forces and torques at the origins of the two frames, in world axes."""
+    if isinstance(connection, Connection):
+        force, none = _Line(kinematics, frames, connection).force(), Vec3(kinematics.g)
+        return [(force, none)], [(-force, none)]
+    balls = touching_balls(kinematics, frames, connection)
+    first, second = (frames.pose(end).p_WF for end in ends)
+    on_first = [(ball.force, (ball.point - first).cross(ball.force)) for ball in balls]
+    return on_first, [(-ball.force, (ball.point - second).cross(-ball.force)) for ball in balls]
 
 
 def _load(
@@ -111,6 +126,8 @@ class _Line:
 
 
 def connection_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
-    """The energy that connections store."""
-    connections = kinematics.tree.system.connections
-    return kinematics.g.sum(_Line(kinematics, frames, connection).energy() for connection in connections)
+    """The energy that connections and contacts store."""
+    system = kinematics.tree.system
+    parts = [_Line(kinematics, frames, spring).energy() for spring in system.springs]
+    parts += [ball.energy for contact in system.contacts for ball in touching_balls(kinematics, frames, contact)]
+    return kinematics.g.sum(parts)

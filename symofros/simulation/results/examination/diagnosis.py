@@ -15,6 +15,7 @@ from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.examination.constraint_faults import constraint_notes, jump, lost_energy, violation
+from symofros.simulation.results.examination.deep_contacts import deep_contact_notes
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
 from symofros.simulation.results.examination.run import ExaminedRun
@@ -49,7 +50,7 @@ def diagnose(
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
     told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = (*constraint_notes(run), *_limit_notes(run), *bending_notes(told), *_pace_notes(run))
+    notes = (*constraint_notes(run), *_state_notes(run), *bending_notes(told), *_pace_notes(run))
     fault = input_fault(stepper) if status < 0 else ""
     return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
@@ -67,7 +68,7 @@ def diagnose_one(
         interrupted: Whether Ctrl-C ended it.
     """
     told = () if status == Status.BEYOND_THEORY else bendings
-    return outcome_of(run, status, bendings, (*_limit_notes(run), *bending_notes(told)), fault, interrupted=interrupted)
+    return outcome_of(run, status, bendings, (*_state_notes(run), *bending_notes(told)), fault, interrupted=interrupted)
 
 
 @dataclass(frozen=True)
@@ -261,10 +262,11 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
     return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
 
 
-def _limit_notes(run: ExaminedRun) -> tuple[str, ...]:
-    """Notes on joint limits that the run exceeded."""
+def _state_notes(run: ExaminedRun) -> tuple[str, ...]:
+    """Notes on joint limits that the run exceeded, and on contacts beyond their geometry."""
     record, states = run.model.record, run.states
-    return limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
+    limits = limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
+    return (*limits, *deep_contact_notes(run))
 
 
 def _pace_notes(examined: ExaminedRun) -> list[str]:

@@ -263,10 +263,16 @@ class ExaminedRun(HeldRun):
 
 
 def norms_in(metric: Array, v: Array) -> Array:
-    """The root of v^T M v for each row of speeds (n, nv) in metrics M (n, nv, nv), without overflow."""
-    sizes = np.abs(v).max(axis=1, initial=0.0)
-    unit = v / np.where(sizes > 0.0, sizes, 1.0)[:, np.newaxis]
-    squares = np.einsum("ni,nij,nj->n", unit, metric, unit)
+    """The root of v^T M v without overflow, (n) or (n, m).
+
+    Args:
+        metric: Metrics M (n, nv, nv).
+        v: Speeds for each of them (n, nv), or several (n, m, nv).
+    """
+    sizes = np.abs(v).max(axis=-1, initial=0.0)
+    unit = v / np.where(sizes > 0.0, sizes, 1.0)[..., np.newaxis]
+    # Products of matrices pay where a metric serves several.
+    squares = np.einsum("ni,nij,nj->n", unit, metric, unit) if v.ndim == 2 else (unit @ metric * unit).sum(axis=-1)
     norms: Array = sizes * np.sqrt(np.maximum(squares, 0.0))
     return norms
 

@@ -10,8 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.simulation.results.examination.finer_steps import States, percent
-from symofros.simulation.results.examination.paths import path_within
+from symofros.simulation.results.examination.paths import Numbers, path_within
 from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.status import Status
@@ -101,12 +102,28 @@ def _doubted(run: ExaminedRun, ends: States, number: int, least: float) -> list[
         return []
     chosen = np.flatnonzero(counts)
     metric = run.metrics(ends[1][chosen], ends[3][chosen])
-    left_out = []
     with np.errstate(all="ignore"):  # What has exploded overflows.
         missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval, np.newaxis]
-        for M, i in zip(metric, chosen, strict=True):
-            changes = np.nan_to_num(np.cumsum(missed[path.interval == i], axis=0))
-            left_out.append(float(norms_in(np.broadcast_to(M, (len(changes), *M.shape)), changes).max()))
-    shares = np.array(left_out) / max(run.fastest, max(left_out), 1e-300)
+        left_out = _largest_sums(missed, counts[chosen], metric)
+    shares = left_out / max(run.fastest, left_out.max(), 1e-300)
     worst = np.argsort(-shares, kind="stable")[:_PROVED]
     return [(int(chosen[k]), float(spans[chosen[k]] / counts[chosen[k]])) for k in worst if shares[k] > least]
+
+
+def _largest_sums(changes: Array, counts: Numbers, metric: Array) -> Array:
+    """The largest norm of the sums from the first change of an interval to each (k), in the interval's metric.
+
+    Args:
+        changes: Changes of speed, interval by interval (sum of counts, nv).
+        counts: Number of changes in each interval (k), at least 1.
+        metric: Metric of each interval (k, nv, nv).
+    """
+    largest, begins = np.zeros(len(counts)), np.cumsum(counts) - counts
+    sizes = np.frexp(counts)[1]
+    for size in np.unique(sizes):  # Together what is filled up with zeros to less than twice its length.
+        some = np.flatnonzero(sizes == size)
+        within = np.arange(counts[some].max()) < counts[some, np.newaxis]
+        sums = np.zeros((*within.shape, changes.shape[1]))
+        sums[within] = changes[(begins[some, np.newaxis] + np.arange(within.shape[1]))[within]]
+        largest[some] = norms_in(metric[some], np.nan_to_num(np.cumsum(sums, axis=1))).max(axis=1)
+    return largest

@@ -11,6 +11,7 @@ from symofros.description import System, in_order
 from symofros.diagrams.block import Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram
+from symofros.diagrams.inlets import with_inlets
 from symofros.diagrams.order import AlgebraicLoopError, order_of
 from symofros.diagrams.program.compiled import lowered
 from symofros.diagrams.rates import schedule
@@ -42,6 +43,10 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
     loops: list[AlgebraicLoopError] = []
     if read is not None:
         unread = {*_names(plain, "blocks"), *_names(plain, "parts")} - read.blocks.keys() - read.parts.keys()
+        try:
+            read = with_inlets(read)
+        except DescriptionError as error:
+            problems = [*problems, *error.problems]
         drafted = draft(read, unread)
         problems = [*problems, *drafted.problems]
         more, loops = _whole_diagram_problems(read, drafted) if not problems else ([], _loops_of_a_part(read, drafted))

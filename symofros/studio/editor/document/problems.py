@@ -18,11 +18,12 @@ from symofros.studio.editor.editing.yaml_spans import YamlText
 ShownProblem = dict[str, Any]
 
 _NAMED = re.compile(
-    r"(joint|body|beam|constraint|connection|virtual power|virtual_power|potential|parameter|input) '([^']*)'"
+    r"(joint|body|beam|constraint|connection|contact|virtual power|virtual_power|potential|parameter|input) '([^']*)'"
 )
 _FRAME = re.compile(r"frame '([^']*)' of body '([^']*)'")
 _SECTION_OF = {
     "connection": ("connections",),
+    "contact": ("contacts",),
     "constraint": ("closures", "couplings", "nonholonomic"),
     "virtual power": ("virtual_power",),
     "virtual_power": ("virtual_power",),

@@ -20,6 +20,7 @@ SECTIONS = (
     "inputs",
     "bodies",
     "connections",
+    "contacts",
     "virtual_power",
     "potentials",
     "closures",

@@ -68,7 +68,8 @@ def _signals(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
 
 
 def _texts(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
-    if isinstance(value, str) and path[-1] != "title":
+    words = path[-1] == "title" or (path[0] == "inlets" and path[2:] == ("unit",))
+    if isinstance(value, str) and not words:
         yield path, value
     pairs = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, item in pairs:

@@ -85,6 +85,7 @@ def anchors(data: Any) -> Iterator[tuple[Path, dict[str, Any]]]:
     """Every place that names a body with a frame of it."""
     for section, sides in (
         ("connections", ("first", "second")),
+        ("contacts", ("first", "second")),
         ("closures", ("first", "second")),
         ("nonholonomic", ("knife_edge", "rolling")),
     ):

@@ -292,7 +292,7 @@ class _DrawingBuilder:
                 yield self._connector("closures", item, radius / 2, _CLOSURE)
             elif isinstance(item, Rod):
                 yield self._connector("closures", item, radius, _ROD)
-        for spring in system.connections:
+        for spring in system.springs:
             yield self._connector("connections", spring, radius / 2, _SPRING)
 
     def _connector(self, section: str, item: Closure | Rod | Connection, radius: float, color: Color) -> DrawnConnector:

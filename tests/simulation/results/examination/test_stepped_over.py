@@ -11,6 +11,7 @@ import symofros as sf
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination.paths import path_within
+from symofros.simulation.results.examination.stepped_over import _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.stepper import Stepper
@@ -96,3 +97,13 @@ def test_a_path_between_records_is_the_motion(name: str) -> None:
         a = model.forward_dynamics(fine.q[rows], fine.v[rows], fine.u[rows], t=fine.t[rows])
         errors.append([np.abs(model.difference(fine.q[rows], path.states[1])).max(), np.abs(path.a - a).max()])
     assert np.all(np.array(errors[1]) < 0.1 * np.array(errors[0]) + 1e-10), errors
+
+
+def test_largest_sums_are_those_of_each_interval_in_its_own_metric(rng: np.random.Generator) -> None:
+    for counts in (np.array([4]), np.array([4, 7, 8, 5, 9, 33, 4])):
+        roots = rng.normal(size=(len(counts), 3, 3))
+        metric, changes = roots @ roots.transpose(0, 2, 1), rng.normal(size=(counts.sum(), 3))
+        found = _largest_sums(changes, counts, metric)
+        for k, own in enumerate(np.split(changes, np.cumsum(counts)[:-1])):
+            sums = np.cumsum(own, axis=0)
+            assert found[k] == pytest.approx(np.sqrt((sums @ metric[k] * sums).sum(axis=1)).max(), rel=1e-12)

@@ -47,6 +47,15 @@ def test_the_papers_square_is_drawn_whole() -> None:
     assert found.diagram["models"]["control"]["q"] == ["q1", "e1", "q2", "q3"]
 
 
+def test_open_inlets_are_no_faults_where_their_shapes_are_known() -> None:
+    text = CHAIN.replace(", inputs: {u: a}", "") + "inlets:\n  far: {to: b.u, shape: [2]}\n"
+    assert drawn(text).problems == []
+    (unknown,) = drawn(text.replace(", shape: [2]", "")).problems
+    assert (unknown["line"], unknown["found"]) == (7, "its shape is unknown")
+    (twice,) = drawn(text.replace("b.u", "c.u1")).problems[:1]
+    assert "'c.u1' is fed twice" in twice["object"]
+
+
 def test_a_wire_leaves_the_port_that_its_source_means() -> None:
     found = drawn(CHAIN)
     assert found.problems == [] and found.diagram is not None

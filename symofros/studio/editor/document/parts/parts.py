@@ -13,7 +13,7 @@ from symofros.studio.editor.editing.renaming import anchors, renaming, speeds_as
 Json = dict[str, Any]
 
 # Sections that hold what acts between bodies, and the symbols of bodies.
-_BETWEEN = ("connections", "closures", "couplings", "nonholonomic", "virtual_power", "potentials")
+_BETWEEN = ("connections", "contacts", "closures", "couplings", "nonholonomic", "virtual_power", "potentials")
 
 
 def extracted(data: Any, bodies: list[str]) -> Json:

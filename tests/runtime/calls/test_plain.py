@@ -31,7 +31,7 @@ def m(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> sf.Mod
     if request.param == "extension" and extension.load() is None:
         pytest.skip("needs the headers of Python")
     call_type = extension.load() if request.param == "extension" else None
-    monkeypatch.setattr("symofros.runtime.calls.single.call_type", lambda _: call_type)
+    monkeypatch.setattr("symofros.runtime.calls.plain.call_type", lambda _: call_type)
     # One that has prepared no call yet, and shares the compiled functions.
     return model("parametrised0", "interpreter" if request.param == "interpreter" else "c").with_parameters()
 
@@ -46,7 +46,7 @@ def outputs(results: Any) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_single_calls_equal_batch_bits(m: sf.Model, name: str, rng: np.random.Generator) -> None:
+def test_plain_calls_equal_batch_bits(m: sf.Model, name: str, rng: np.random.Generator) -> None:
     for _ in range(3):
         given = state(m, rng)
         single = outputs(getattr(m, name)(*(given[group] for group in FUNCTIONS[name])))

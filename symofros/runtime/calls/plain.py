@@ -1,30 +1,45 @@
-"""Plain calls for one state: arrays of the expected kind go straight to the function, without a look at batches."""
+"""Plain calls: arrays of the expected kind go straight to the function, by C where the extension is there."""
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
 from symofros.runtime.calls.extension import UNIT_ROUNDING, call_type
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel
+from symofros.runtime.calls.sharing import LEAST
 
 # Looked up once: each look-up costs a fiftieth of a call.
 _ARRAY, _DOUBLE = np.ndarray, np.dtype(np.float64)
 
 
-# The outputs as new arrays; None unless all inputs are float64 arrays of one state, the time a float, and
-# quaternions of unit length. The argument has the inputs by name; None for the default inputs.
-SingleCall = Callable[[Mapping[str, Any]], list[Array] | None]
+class PlainCall(Protocol):
+    """A function from inputs by name, to which None stands for the default inputs, to outputs.
+
+    The outputs are new arrays, or those of `out` by name. There are none, but None, unless all inputs are float64
+    arrays of one state, or of batches of one length where the extension makes the call, the time a float, quaternions
+    of unit length, and arrays of `out` fit and do not overlap.
+    """
+
+    def __call__(self, given: Mapping[str, Any], out: Mapping[str, Any] | None = None, /) -> list[Array] | None:
+        """The outputs."""
+        ...
 
 
-def single_call(
-    kernel: Kernel, par: Array, u: Array, quaternions: Mapping[str, tuple[int, ...]], better: Callable[[], None]
-) -> SingleCall:
-    """A function for one state, in memory of its own: for one thread.
+def plain_call(
+    kernel: Kernel,
+    par: Array,
+    u: Array,
+    quaternions: Mapping[str, tuple[int, ...]],
+    better: Callable[[], None],
+    threads: int = 1,
+) -> PlainCall:
+    """A plain call, in memory of its own: for one thread.
 
     Args:
         kernel: The function.
@@ -32,6 +47,7 @@ def single_call(
         u: Default inputs (nu).
         quaternions: First index of each quaternion, by the input that holds it.
         better: A method that is called, by any thread, when another call of this function would be a faster one.
+        threads: Number of threads that share a large batch; a batch that they share is not evaluated here.
     """
     by_extension = call_type(better) if isinstance(kernel, CompiledKernel) else None
     if by_extension is None or not isinstance(kernel, CompiledKernel):
@@ -40,14 +56,14 @@ def single_call(
         (group, -1 if group == "t" else size, u if group == "u" else None, quaternions.get(group, ()))
         for group, size in kernel.signature.inputs
     )
-    outputs = tuple(shape for _, shape in kernel.signature.outputs)
-    call: SingleCall = by_extension(
-        kernel.address, max(1, kernel.work), inputs, outputs, np.ascontiguousarray(kernel.prepare(par[None])), kernel
-    )
+    most = sys.maxsize if threads == 1 else 2 * LEAST - 1
+    functions = (kernel.address, kernel.batch_address, max(1, kernel.work), kernel.for_many, most)
+    pre = np.ascontiguousarray(kernel.prepare(par[None]))
+    call: PlainCall = by_extension(functions, inputs, kernel.signature.outputs, pre, kernel)
     return call
 
 
-def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[str, tuple[int, ...]]) -> SingleCall:
+def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[str, tuple[int, ...]]) -> PlainCall:
     """A closure: its variables are reached, and itself is called, in half the time of an object's."""
     signature = kernel.signature
     pre = kernel.prepare(par[None])
@@ -66,8 +82,12 @@ def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[st
         for at in quaternions.get(group, ())
     ]
 
-    def call(given: Mapping[str, Any], _kept: object = (kernel, pre)) -> list[Array] | None:
-        """As SingleCall says; C has the addresses of what is kept, and of all arrays."""
+    def call(
+        given: Mapping[str, Any], out: Mapping[str, Any] | None = None, /, _kept: object = (kernel, pre)
+    ) -> list[Array] | None:
+        """As PlainCall says; C has the addresses of what is kept, and of all arrays."""
+        if out is not None:
+            return None
         for group, memory, shape, default in inputs:
             value = given[group]
             if value is None:
@@ -91,8 +111,8 @@ def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[st
     return call
 
 
-class SingleCalls(threading.local):
+class PlainCalls(threading.local):
     """The calls that a thread has prepared, by function, or by (function, frame)."""
 
     def __init__(self) -> None:
-        self.prepared: dict[str | tuple[str, str], SingleCall] = {}
+        self.prepared: dict[str | tuple[str, str], PlainCall] = {}

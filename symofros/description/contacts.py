@@ -1,0 +1,125 @@
+"""Compliant contact: balls on one frame, which the surface of a solid on another frame pushes back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+from symofros.description.entries import refuses_unknown_entries
+from symofros.description.forces import Anchor
+from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
+from symofros.errors import DescriptionError, Problem
+
+Surface = Literal["plane", "sphere", "cylinder", "capsule", "box"]
+# The measures that each surface has, and those of them that may enclose the balls.
+MEASURES: dict[Surface, tuple[str, ...]] = {
+    "plane": (),
+    "sphere": ("surface_radius",),
+    "cylinder": ("surface_radius",),
+    "capsule": ("surface_radius", "length"),
+    "box": ("size",),
+}
+HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
+EXPONENTS = (1.0, 1.5, 2.0)
+# Balls of a contact.
+_MOST = 1000
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Contact:
+    """Balls that a surface pushes back where they penetrate it: one-sided, dissipative, with friction.
+
+    At a penetration d > 0 the surface pushes by N = stiffness d^exponent max(0, 1 + dissipation d'), and friction drags
+    by up to `friction` N against the slip (docs/theory/rigid.md, section 10.1). It never pulls, and what it stores,
+    stiffness d^(exponent + 1)/(exponent + 1), is potential energy. Friction is smooth through zero slip: it holds
+    nothing at rest, and a body on an incline creeps, as a joint with `Friction` does.
+
+    Attributes:
+        name: Unique name, among connections too.
+        first: Frame that the balls are fixed to: (body, frame), frame None for the body frame; "world" for the ground.
+        second: Frame of the surface: (body, frame).
+        stiffness: Stiffness [N/m^exponent].
+        surface: Solid on the second frame, about its origin: "plane", all below its x-y plane; "sphere"; "cylinder",
+            along its z axis without end; "capsule", along its z axis; "box", along its axes.
+        radius: Radius of the balls; 0 of points [m].
+        points: Centres of the balls in the first frame, one at its origin if not given: a box on a plane touches by
+            its eight corners, a capsule by its two ends [m].
+        surface_radius: Radius of a sphere, cylinder or capsule [m].
+        length: Distance of the centres of a capsule's ends [m].
+        size: Edges of a box [m].
+        inside: Whether balls move within a sphere or cylinder, as pegs in a hole do.
+        exponent: Power of the penetration: 1, 1.5 (Hertz's, of balls) or 2.
+        dissipation: Share of the force that a speed of approach adds [s/m]: with it the coefficient of restitution of
+            slow impacts is 1 - 2/3 dissipation times the speed.
+        friction: Coefficient of Coulomb's friction.
+        minimum_velocity: Speed of slip that smooths friction, which has its maximum from 15/8 of it on [m/s].
+    """
+
+    name: str
+    first: Anchor
+    second: Anchor
+    stiffness: Value
+    surface: Surface = "plane"
+    radius: Value = 0.0
+    points: tuple[Vector, ...] = (ORIGIN,)
+    surface_radius: Value | None = None
+    length: Value | None = None
+    size: Vector | None = None
+    inside: bool = False
+    exponent: float = 1.5
+    dissipation: Value = 0.0
+    friction: Value = 0.0
+    minimum_velocity: Value = 1e-3
+
+    def __post_init__(self) -> None:
+        """Convert the numbers, and refuse measures that the surface lacks or does not have."""
+        what = f"contact '{self.name}'"
+        for label in ("stiffness", "radius", "surface_radius", "length", "dissipation", "friction", "minimum_velocity"):
+            if getattr(self, label) is not None:
+                object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
+        if self.size is not None:
+            object.__setattr__(self, "size", as_vector(self.size, f"{what}: size"))
+        object.__setattr__(self, "points", tuple(as_vector(point, f"{what}: points") for point in self.points))
+        problem = self._problem(what)
+        if problem is not None:
+            raise DescriptionError(problem)
+
+    def _problem(self, what: str) -> Problem | None:
+        """What is wrong about the choices of this contact."""
+        if self.surface not in MEASURES:
+            return Problem(f"{what}: surface", repr(self.surface)[:80], f"one of {', '.join(MEASURES)}", "choose one")
+        needed = MEASURES[self.surface]
+        for label in ("surface_radius", "length", "size"):
+            stated = getattr(self, label)
+            if (stated is not None) != (label in needed):
+                found = "not given" if stated is None else f"{stated}"[:80]
+                rule = f"a {self.surface} has {' and '.join(needed) or 'no measures'}"
+                return Problem(f"{what}: {label}", found, rule, "state it" if stated is None else "leave it out")
+        if self.inside and self.surface not in HOLLOW:
+            remedy = "leave inside out, or state a contact for each wall"
+            return Problem(f"{what}: inside a {self.surface}", "inside", "balls move within spheres, cylinders", remedy)
+        if self.exponent not in EXPONENTS:
+            rule = f"one of {', '.join(f'{x:g}' for x in EXPONENTS)}"
+            return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")
+        if not 1 <= len(self.points) <= _MOST:
+            return Problem(f"{what}: points", f"{len(self.points)}", f"from 1 to {_MOST} balls", "state their centres")
+        return None
+
+    @property
+    def ball_names(self) -> tuple[str, ...]:
+        """One a ball: the contact's name, of several with their number from 0 on."""
+        return (self.name,) if len(self.points) == 1 else tuple(f"{self.name}.{k}" for k in range(len(self.points)))
+
+    def values(self) -> list[tuple[str, Any]]:
+        """Label and value of each number."""
+        stated: list[tuple[str, Any]] = []
+        for item in fields(self):
+            value = getattr(self, item.name)
+            if item.name == "points":
+                stated += [(item.name, x) for point in value for x in point]
+            elif item.name == "size" and value is not None:
+                stated += [(item.name, x) for x in value]
+            elif item.name not in ("name", "first", "second", "surface", "inside", "exponent") and value is not None:
+                stated.append((item.name, value))
+        return stated

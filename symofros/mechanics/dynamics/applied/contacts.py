@@ -1,0 +1,150 @@
+"""Compliant contacts: distances of surfaces, and the forces of penetrations (docs/theory/rigid.md, section 10.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from symofros.base.smoothed_sign import PEAK
+from symofros.description.contacts import Contact
+from symofros.expr.edges import ONE, ZERO, Edge
+from symofros.expr.graph import Graph
+from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.applied.elements import smoothed_sign
+from symofros.mechanics.kinematics.frames import FrameKinematics
+from symofros.mechanics.kinematics.links import TreeKinematics
+from symofros.mechanics.kinematics.lowering import Lowering
+from symofros.mechanics.topology.tree import frame_of
+
+# What roots are taken of is at least this: derivatives of a root of zero do not exist, and these are zero there.
+_TINY = 1e-300
+
+
+@dataclass(frozen=True)
+class TouchingBall:
+    """A ball and the surface that it may touch, in world axes.
+
+    Attributes:
+        gap: Distance of ball and surface; negative where the ball penetrates it [m].
+        depth: Penetration, zero without contact [m].
+        push: Normal force [N].
+        force: Force on the ball: normal force and friction [N].
+        point: Point of the surface next to the ball's centre, where the force acts [m].
+        energy: Energy that the penetration stores [J].
+        share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
+    """
+
+    gap: Edge
+    depth: Edge
+    push: Edge
+    force: Vec3
+    point: Vec3
+    energy: Edge
+    share: Edge
+
+
+def touching_balls(kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact) -> list[TouchingBall]:
+    """The balls of a contact, in order."""
+    lowering = kinematics.lowering
+    return [_touching(kinematics, frames, contact, lowering.vector(point)) for point in contact.points]
+
+
+def _touching(kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact, point: Vec3) -> TouchingBall:
+    g, lowering = kinematics.g, kinematics.lowering
+    ends = [frame_of(kinematics.tree, *anchor) for anchor in (contact.first, contact.second)]
+    first, second = (frames.pose(end) for end in ends)
+    radius = lowering.value(contact.radius)
+    p_WC = first.p_WF + first.R_WF.times(point)
+    distance, normal = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
+    n_W = second.R_WF.times(normal)
+    p_WP = p_WC - n_W.scaled(distance)
+    gap = g.sub(distance, radius)
+    depth = g.call("max", -gap, ZERO)
+    # Of points fixed to the two bodies at the point of contact.
+    at_first, at_second = (_velocity_at(g, frames.velocity(end), p_WP - frames.pose(end).p_WF) for end in ends)
+    slip = at_first - at_second
+    approach = -slip.dot(n_W)
+    elastic = g.mul(lowering.value(contact.stiffness), _power(g, depth, contact.exponent))
+    damping = g.call("max", g.add(ONE, g.mul(lowering.value(contact.dissipation), approach)), ZERO)
+    push = g.mul(elastic, damping)
+    drag = _friction(lowering, contact, push, slip + n_W.scaled(approach))
+    energy = g.div(g.mul(elastic, depth), g.constant(contact.exponent + 1.0))
+    size = _size(lowering, contact)
+    share = ZERO if size is None else g.div(depth, size)
+    return TouchingBall(gap, depth, push, n_W.scaled(push) - drag, p_WP, energy, share)
+
+
+def _velocity_at(g: Graph, velocity: list[Edge], offset: Vec3) -> Vec3:
+    """Velocity of a point of a body, from that of a frame (linear; angular) and the point's place from its origin."""
+    return Vec3(g, *velocity[:3]) + Vec3(g, *velocity[3:]).cross(offset)
+
+
+def _friction(lowering: Lowering, contact: Contact, push: Edge, slip: Vec3) -> Vec3:
+    """Friction against the slip, smooth through zero: (63)."""
+    g = lowering.g
+    coefficient = lowering.value(contact.friction)
+    if coefficient == ZERO:
+        return Vec3(g)
+    peak = g.mul(g.constant(PEAK), lowering.value(contact.minimum_velocity))
+    # Beyond the peak xi is a unit vector, before it the share of the peak.
+    xi = slip.scaled(g.div(ONE, g.sqrt(g.call("max", slip.dot(slip), g.mul(peak, peak)))))
+    return xi.scaled(g.mul(g.mul(coefficient, push), smoothed_sign(g, xi.dot(xi))))
+
+
+def _power(g: Graph, depth: Edge, exponent: float) -> Edge:
+    """A power of the penetration whose derivatives exist at zero."""
+    if exponent == 1.0:
+        return depth
+    return g.mul(depth, depth if exponent == 2.0 else g.sqrt(g.call("max", depth, g.constant(_TINY))))
+
+
+def _norm(g: Graph, x: Vec3) -> Edge:
+    return g.sqrt(g.call("max", x.dot(x), g.constant(_TINY)))
+
+
+def _surface(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]:
+    """Signed distance of a point from the surface, positive outside of the solid, and its gradient: (60)."""
+    g = lowering.g
+    if contact.surface == "plane":
+        return x.z, Vec3.unit(g, 2)
+    if contact.surface == "box":
+        return _box(lowering, contact, x)
+    away = x
+    if contact.surface == "cylinder":
+        away = Vec3(g, x.x, x.y, ZERO)
+    elif contact.surface == "capsule":
+        half = g.mul(g.constant(0.5), lowering.value(contact.length or 0.0))
+        away = Vec3(g, x.x, x.y, g.sub(x.z, g.call("min", g.call("max", x.z, -half), half)))
+    length = _norm(g, away)
+    normal = away.scaled(g.div(ONE, length))
+    distance = g.sub(length, lowering.value(contact.surface_radius or 0.0))
+    return (-distance, -normal) if contact.inside else (distance, normal)
+
+
+def _box(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]:
+    """The same of a box: outside by the nearest point of it, inside by the nearest of its faces: (61)."""
+    g = lowering.g
+    assert contact.size is not None
+    half = [g.mul(g.constant(0.5), lowering.value(size)) for size in contact.size]
+    beyond = [g.sub(g.call("abs", edge), h) for edge, h in zip(x, half, strict=True)]
+    most = g.call("max", g.call("max", beyond[0], beyond[1]), beyond[2])
+    outside = Vec3(g, *(g.call("max", d, ZERO) for d in beyond))
+    distance = g.add(_norm(g, outside), g.call("min", most, ZERO))
+    within = g.call("step", -most)
+    along = [g.add(out, g.mul(within, g.call("step", g.sub(d, most)))) for out, d in zip(outside, beyond, strict=True)]
+    # The sign of a coordinate, 1 of zero.
+    signs = [g.sub(g.mul(g.constant(2.0), g.call("step", edge)), ONE) for edge in x]
+    normal = Vec3(g, *(g.mul(sign, edge) for sign, edge in zip(signs, along, strict=True)))
+    return distance, normal.scaled(g.div(ONE, _norm(g, normal)))
+
+
+def _size(lowering: Lowering, contact: Contact) -> Edge | None:
+    """Radius of the balls, or else half the least measure of the surface; None where there is none."""
+    g = lowering.g
+    if lowering.value(contact.radius) != ZERO:
+        return lowering.value(contact.radius)
+    if contact.surface_radius is not None:
+        return lowering.value(contact.surface_radius)
+    if contact.size is None:
+        return None
+    x, y, z = (lowering.value(size) for size in contact.size)
+    return g.mul(g.constant(0.5), g.call("min", g.call("min", x, y), z))

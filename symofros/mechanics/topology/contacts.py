@@ -1,0 +1,57 @@
+"""Checks of compliant contacts: two bodies, and numbers that a ball and a surface can have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from symofros.description.system import System
+from symofros.description.values import Term, Value
+from symofros.errors import Problem
+from symofros.mechanics.topology.conditions import Condition, Sign
+from symofros.mechanics.topology.numbers import Numbers
+
+_SIGNS: dict[str, tuple[Sign, str, str]] = {
+    "stiffness": ("positive", "a surface pushes back", "give a stiffness above zero"),
+    "radius": ("not negative", "a ball has a radius, or is a point", "give its radius, or zero"),
+    "surface_radius": ("positive", "a curved surface has a radius", "give a radius above zero"),
+    "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
+    "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),
+    "friction": ("not negative", "friction is against the slip", "give zero or more"),
+    "minimum_velocity": ("positive", "friction is smoothed over a speed above zero", "give a small one, such as 0.001"),
+}
+
+
+def contact_problems(system: System) -> Iterator[Problem]:
+    """Contacts of a body with itself."""
+    for contact in system.contacts:
+        if contact.first[0] == contact.second[0]:
+            yield Problem(
+                f"contact '{contact.name}': balls and surface are on one body",
+                f"'{contact.first[0]}'",
+                "a contact is between two bodies that move against each other",
+                "choose a frame of another body, or 'world'",
+                system.origin.get(("connection", contact.name), ""),
+            )
+
+
+def contact_conditions(system: System) -> Iterator[Condition]:
+    """Measures, stiffness and coefficients have their signs, and a ball fits into what encloses it."""
+    for contact in system.contacts:
+        where = system.origin.get(("connection", contact.name), "")
+        for label, (sign, rule, remedy) in _SIGNS.items():
+            value = getattr(contact, label)
+            if value is not None:
+                yield Condition((value,), sign, partial(_wrong, contact.name, label, value, rule, remedy, where))
+        for value in contact.size or ():
+            rule, remedy = "edges of a box are above zero", "give its three edges"
+            yield Condition((value,), "positive", partial(_wrong, contact.name, "size", value, rule, remedy, where))
+        if contact.inside:
+            room = (Term(contact.surface_radius or 0.0) - Term(contact.radius)).value
+            rule, remedy = "a ball fits into what encloses it", "give a smaller ball, or a wider surface"
+            wrong = partial(_wrong, contact.name, "room around the ball", room, rule, remedy, where)
+            yield Condition((room,), "positive", wrong)
+
+
+def _wrong(name: str, label: str, value: Value, rule: str, remedy: str, where: str, numbers: Numbers) -> Problem:
+    return Problem(f"contact '{name}': {label} {numbers.value(value):g}", f"'{value}'", rule, remedy, where)

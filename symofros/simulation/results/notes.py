@@ -1,0 +1,200 @@
+"""Kinds of notes: what a run, a rest or a posture may say of itself; docs/howto/simulating.md shows the table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class NoteKind(NamedTuple):
+    """One kind of note.
+
+    Attributes:
+        says: Constant parts of the note's text, with "…" for what it is about.
+        when: When it is said.
+        remedy: What to try; several notes state it with numbers.
+    """
+
+    says: str
+    when: str
+    remedy: str
+
+
+_SMALLER = "a smaller dt or an adaptive method"
+NOTES: Mapping[str, NoteKind] = {
+    "step past stability": NoteKind(
+        "the step of … s is past the limit of stability: '…' is … for the mode that …",
+        "the method multiplies a mode of the motion, or the way back to the constraints by gains, at each step",
+        "dt below the limit, an implicit method, or smaller gains",
+    ),
+    "mode not resolved": NoteKind(
+        "steps of … s follow a mode of the motion to … only: … with … of the speed",
+        "fixed steps err by more than a few per cent of a mode that the motion has",
+        _SMALLER,
+    ),
+    "steps decide": NoteKind(
+        "… do not determine the motion…: … changes it by …",
+        "half the step, or tighter tolerances, give another motion",
+        "a smaller dt, or tighter tolerances",
+    ),
+    "other end": NoteKind(
+        "… do not show the motion: …; …",
+        "the run ends otherwise with half the step, or tighter tolerances",
+        "a smaller dt, or tighter tolerances",
+    ),
+    "partly compared": NoteKind(
+        "… are not held against … over all of the run, as '…' is not called again",
+        "windows of a diagram with an external block change by finer steps, which adds up; the whole can't be repeated",
+        "compare with a smaller dt, or tighter tolerances",
+    ),
+    "not compared": NoteKind(
+        "steps of … s were not held against half of that",
+        "an input function gives other inputs when it is asked again about a state",
+        "compare with a smaller dt",
+    ),
+    "loose atol": NoteKind(
+        "atol = … bounds no error of speeds that reach … only",
+        "the absolute tolerance is above the speeds, and a tighter one leads elsewhere",
+        "a smaller atol",
+    ),
+    "input between steps": NoteKind(
+        "steps of … s misjudge the input '…', which changes within them",
+        "the impulse of an input of time is off by more than a few per cent of its range",
+        _SMALLER,
+    ),
+    "formula between steps": NoteKind(
+        "steps of … s misjudge forces by formulas of time, which change within them",
+        "a force by the model's own formula of t gives other speeds in shorter steps",
+        _SMALLER,
+    ),
+    "passed over": NoteKind(
+        "the step from t = … s to … s passes over what acts within it",
+        "shorter steps change the motion within one step: a short contact, a force that comes and goes",
+        "a smaller dt, or max_step",
+    ),
+    "energy without work": NoteKind(
+        "energy changes by … J although no force does work",
+        "the energy of a motion changes by more than the work that is seen",
+        "a smaller dt, tighter tolerances, or another method",
+    ),
+    "growth without input": NoteKind(
+        "speeds grow …-fold and energy by … J although no input acts",
+        "a motion that nothing drives explodes",
+        "a smaller dt, tighter tolerances, or another method",
+    ),
+    "energy overflows": NoteKind(
+        "energy overflows, although the states do not, and is not judged",
+        "masses or speeds are beyond what numbers hold",
+        "units in which it is smaller",
+    ),
+    "energy of a mechanism": NoteKind(
+        "the energy of '…' changes by … J beside the work done on it",
+        "a mechanism of a diagram gains or loses energy, which finer steps change",
+        "a smaller dt, or tighter tolerances",
+    ),
+    "creep": NoteKind(
+        "it is smooth and holds nothing at rest, so that the joint creeps",
+        "a joint with friction moves on slowly under its load at the end",
+        "a smaller minimum_velocity",
+    ),
+    "singular posture passed": NoteKind(
+        "a singular posture was passed at t = … s",
+        "the constraints lose rank on the way: which branch follows is left to rounding",
+        "another path, or compare with another step",
+    ),
+    "singular posture near": NoteKind(
+        "the constraints came close to a singular posture at t = … s",
+        "the weakest constraint keeps a small share of its strength",
+        "compare with another step",
+    ),
+    "singular start": NoteKind(
+        "the start is a singular posture: the constraints' rank is … there and … beside it",
+        "an exported program begins where the constraints have less rank than beside it",
+        "start beside it",
+    ),
+    "start moved": NoteKind(
+        "start: … = … was taken as …, which meets the constraints",
+        "a stated start violated the constraints in its last digits",
+        "state more digits, or none",
+    ),
+    "gap closed": NoteKind(
+        "engaging at t = … s closed a gap of |phi| = … by moving bodies, which no force does",
+        "constraints engage while they are violated by a little",
+        "engage where the frames meet",
+    ),
+    "limits left": NoteKind(
+        "…, … to …, at t = … s, by up to …",
+        "a coordinate, a speed or an effort leaves the limits of its joint, which are data and stop nothing",
+        "stops as forces, bounded inputs, or another motion",
+    ),
+    "contact too deep": NoteKind(
+        "contact '…' is … times its radius deep at t = … s: …",
+        "the centre of a ball came to lie within the solid that should push it back",
+        "a larger stiffness, or a smaller dt",
+    ),
+    "motions contradict": NoteKind(
+        "inputs '…' and '…' prescribe no one motion",
+        "a recorded input for a rate is not the rate of the coordinate that is prescribed beside it",
+        "the coordinate as a formula of t alone, or the rates that belong to it",
+    ),
+    "beam bends": NoteKind(
+        "bends by …: second-order theory errs by about … % of the deflection",
+        "a beam bends so far that its theory errs by more than a per cent",
+        "more beams joined end to end, or theory: strain",
+    ),
+    "rod bends": NoteKind(
+        "rod '…' bends by …: its … sections place it to about … % of its length",
+        "a rod bends so far between its sections that its place is off by more than a per cent",
+        "more sections",
+    ),
+    "critical load": NoteKind(
+        "beam '…' is loaded past its critical load",
+        "axial loads leave a beam no stiffness, so that a rest is unstable or a run has no bent rest",
+        "less load, or theory: strain",
+    ),
+    "loops not closed": NoteKind(
+        "no start closes the loops: constraints are missed by …",
+        "inverse kinematics finds no posture on the constraints",
+        "another start, or targets that the loops allow",
+    ),
+    "closed the wrong way": NoteKind(
+        "a closure is closed the wrong way round: axes that are to be parallel point apart",
+        "inverse kinematics finds a posture of another assembly",
+        "a start near the assembly that is meant",
+    ),
+    "event undecided": NoteKind(
+        "event '…' turns at t = … s so near to zero that the steps cannot tell whether it gets there",
+        "an event's formula touches zero within the accuracy of the steps",
+        "tighter steps, or a formula that crosses",
+    ),
+    "events missed": NoteKind(
+        "event '…' changes too often in the step from t = … s on to be followed",
+        "an event's formula oscillates many times within a step",
+        "a smaller dt, or max_step",
+    ),
+    "late steps": NoteKind(
+        "… of … steps began late, by … ms at most",
+        "steps of a run in real time take longer than they last",
+        "a larger dt, or a faster function of inputs",
+    ),
+    "signal not finite": NoteKind(
+        "block '…': output '…' is … at t = … s, by …",
+        "a block in Python of a diagram gave a number that is not finite, and the run went on",
+        "mend the block",
+    ),
+    "controller": NoteKind(
+        "seen as: …",
+        "a diagram's run diverged by a sampled block, which is named; this is how it showed",
+        "lower the gains of the block, or sample it more often",
+    ),
+    "inputs forgotten": NoteKind(
+        "what was before t = … s was not looked at: inputs are kept of … changes",
+        "a stepper has had more changes of inputs than it keeps",
+        "reset, or save, in between",
+    ),
+    "steps together": NoteKind(
+        "the steps of motions that are stepped together are not examined",
+        "an outcome of sf.Steppers is asked for",
+        "an sf.Stepper with the same inputs",
+    ),
+}

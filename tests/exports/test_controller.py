@@ -1,0 +1,186 @@
+"""Diagrams with inlets as programs: inputs in, outputs out, with the bits of the same blocks in one diagram."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+from tests.diagrams.parts import Counter, Spoken
+from tests.exports.cases import build, run
+
+MODELS = Path(__file__).parents[2] / "reference_models"
+STEPS = 40
+RUN = np.arange(STEPS) / 1000.0
+
+
+def rates() -> sf.Diagram:
+    """Nothing but samples, at three rates."""
+    diagram = sf.Diagram("rates")
+    diagram.add(blocks.Hold(name="slow", period=5e-3))
+    diagram.add(blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=1e-3), q_desired="slow")
+    diagram.add(Counter(name="ticks", period=2e-3))
+    diagram.add_inlet("goal", "slow.u", shape=(2,), unit="rad")
+    diagram.add_inlet("q", "pd.q", shape=(2,))
+    diagram.add_inlet("v", "pd.v", shape=(2,), start=[0.5, -0.5])
+    diagram.outlets = {"effort": "pd.effort", "slow": "slow", "ticks": "ticks"}
+    return diagram
+
+
+def inside() -> sf.Diagram:
+    """A controller that moves a mechanism of its own between samples."""
+    diagram = sf.Diagram("inside")
+    diagram.add_model("arm", sf.load(MODELS / "rigid" / "double_pendulum.yaml"), start={"q1": 0.3})
+    diagram.add(blocks.Hold(name="felt", period=2e-3))
+    diagram.add(blocks.ForwardDynamics(name="model", model="arm"), u="felt")
+    diagram.add(blocks.JointPD(name="pd", kp=20.0, kd=2.0, period=1e-3), q="model.q", v="model.v")
+    diagram.add_inlet("goal", "pd.q_desired")
+    diagram.add_inlet("load", "felt.u", shape=(2,))
+    diagram.outlets = {"effort": "pd.effort", "guess": "model.q"}
+    return diagram
+
+
+def plant() -> sf.Diagram:
+    """A mechanism with efforts that hold over each step."""
+    diagram = sf.Diagram("plant")
+    diagram.add_model("arm", sf.load(MODELS / "rigid" / "double_pendulum.yaml"), start={"q1": 0.3})
+    diagram.add(blocks.ForwardDynamics(name="arm", model="arm"))
+    diagram.add_inlet("effort", "arm.u")
+    diagram.outlets = {"q": "arm.q", "v": "arm.v"}
+    return diagram
+
+
+CASES: dict[str, Callable[[], sf.Diagram]] = {"rates": rates, "inside": inside, "plant": plant}
+
+
+def given(diagram: sf.Diagram) -> dict[str, np.ndarray]:
+    """Values of each inlet at each instant: those of the inputs of its program."""
+    rng = np.random.default_rng(7)
+    return {name: rng.uniform(-1.0, 1.0, (STEPS, 2)) for name in diagram.inlets}
+
+
+def closed(diagram: sf.Diagram, values: Mapping[str, np.ndarray]) -> sf.Diagram:
+    """The same blocks as one diagram, which gives them those values."""
+    whole = sf.Diagram("whole")
+    for name, rows in values.items():
+        whole.add(blocks.Sequence(name=name, t=RUN, values=rows, kind="hold"))
+    fed: dict[str, Any] = {name: name for name in values}
+    whole.include("part", diagram, **fed)
+    return whole
+
+
+def driven(
+    diagram: sf.Diagram, folder: Path, values: Mapping[str, np.ndarray], *words: str, outputs: Any = None
+) -> np.ndarray:
+    """What the program of a diagram gives, line by line."""
+    name = sf.export(diagram, "c", folder, outputs=outputs).name
+    rows = np.column_stack([RUN, *values.values()])
+    shutil.copy(Path(__file__).with_name("drive.c"), folder / "main.c")
+    text = (folder / "main.c").read_text().replace("PROGRAM(", f"{name}_program(")
+    (folder / "main.c").write_text(text)
+    text = "\n".join(" ".join(map(float.hex, row)) for row in rows.tolist())
+    done = subprocess.run([build(folder, "driven"), *words], input=text, capture_output=True, text=True)
+    assert done.returncode == 0, done.returncode
+    return np.array([[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()])
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_program_driven_by_steps_has_the_bits_of_one_diagram(case: str, tmp_path: Path) -> None:
+    diagram = CASES[case]()
+    values = given(diagram)
+    # What a mechanism feels over a step is set before it: the first row is set twice.
+    late = {name: rows[np.maximum(np.arange(STEPS) - 1, 0)] for name, rows in values.items()}
+    found = driven(diagram, tmp_path / "driven", late if case == "plant" else values)
+    whole = closed(diagram, values)
+    outputs = [f"part.{name}" for name in diagram.outlets]
+    assert (found == driven(whole, tmp_path / "whole", {}, outputs=outputs)).all()
+    signals: dict[str, Any] = {name: sf.Signal(RUN, rows, "hold") for name, rows in values.items()}
+    moved = sf.Simulation(diagram).run(RUN[-1], dt=1e-3, record=1e-3, inputs=signals)
+    ours = np.concatenate([moved[name].reshape(STEPS, -1) for name in diagram.outlets], axis=1)
+    np.testing.assert_allclose(found, ours, rtol=1e-11, atol=1e-11)
+
+
+def test_parameters_by_name_change_what_a_program_gives(tmp_path: Path) -> None:
+    values = given(rates())
+    found = driven(rates(), tmp_path / "c", values, "pd.kp[0]", "10", "pd.kd[1]", "0")
+    moved = sf.Simulation(rates()).run(
+        RUN[-1],
+        record=1e-3,
+        inputs={name: sf.Signal(RUN, rows, "hold") for name, rows in values.items()},
+        parameters={"pd.kp": [10.0, 30.0], "pd.kd": [5.0, 0.0]},
+    )
+    np.testing.assert_allclose(found[:, :2], moved["effort"], rtol=1e-14)
+    wrong = subprocess.run([tmp_path / "c" / "driven", "pd.kq", "1"], capture_output=True)
+    assert wrong.returncode == 3
+
+
+@pytest.mark.parametrize("compiler", [("gcc", "-std=c99"), ("g++", "-x", "c++")])
+def test_the_header_names_inputs_outputs_and_parameters(compiler: tuple[str, ...], tmp_path: Path) -> None:
+    folder = sf.export(rates(), "c", tmp_path / "c").folder
+    (folder / "sizes.c").write_text(
+        '#include "rates.h"\n'
+        "int sizes[(RATES_IN_GOAL == 0 && RATES_IN_Q_WIDTH == 2 && RATES_IN_V == 4 && RATES_INPUTS == 6 &&\n"
+        "           RATES_OUT_SLOW == 2 && RATES_OUT_TICKS_WIDTH == 1 && RATES_OUTPUTS == 5 &&\n"
+        "           RATES_PAR_PD_KD == 2 && RATES_PARAMETERS == 4) ? 1 : -1];\n"
+    )
+    run(*compiler, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "sizes.c", cwd=folder)
+    check = subprocess.run([build(folder, "program"), "--check"], capture_output=True, text=True)
+    assert check.returncode == 0, check.stdout
+    readme = (folder / "README.md").read_text()
+    assert "| `v` | 4 | 2 | rad/s | 0.5, -0.5 |" in readme
+    assert "| `effort` | 0 | 2 | N m |  |" in readme
+
+
+@pytest.mark.parametrize(
+    ("inputs", "words"),
+    [
+        (None, "inlet 'q' is not given"),
+        ({"goal": 0.0, "q": [0.0, 0.0]}, "inlet 'v' is not given"),
+        ({"goal": 0.0, "q": 0.0, "v": 0.0, "w": 1.0}, "no inlet 'w'"),
+        ({"goal": 0.0, "q": [0.0, 0.0, 0.0], "v": 0.0}, "inlet 'q': does not fit"),
+        ({"goal": "sin(q)", "q": 0.0, "v": 0.0}, "formulas of inlets are of the time t"),
+        ({"goal": "sin(", "q": 0.0, "v": 0.0}, "inlet 'goal'"),
+        ({"goal": float("nan"), "q": 0.0, "v": 0.0}, "not samples over time"),
+    ],
+)
+def test_inputs_that_do_not_fit_are_refused(inputs: Any, words: str) -> None:
+    with pytest.raises(sf.SymofrosError, match=words):
+        sf.Simulation(rates()).run(0.01, inputs=inputs)
+
+
+def test_numbers_signals_and_formulas_of_inlets_run_both_ways() -> None:
+    inputs: dict[str, Any] = {"goal": ["sin(t)", 0.25], "q": 0.5, "v": sf.Signal([0.0, 0.01], [[0, 0], [1, 2]])}
+    moved = sf.Simulation(rates()).run(0.01, record=1e-3, inputs=inputs)
+    stepped = sf.Simulation(rates()).interpret(0.01, record=1e-3, inputs=inputs, compiled=False)
+    np.testing.assert_allclose(moved["effort"], stepped["effort"], rtol=1e-13)
+    np.testing.assert_allclose(moved["goal"], np.column_stack([np.sin(moved.t), np.full(11, 0.25)]), atol=1e-15)
+    np.testing.assert_allclose(moved["v"][-1], [1.0, 2.0])
+    assert (moved["q"] == 0.5).all()
+
+
+def test_open_diagrams_that_cannot_leave_are_refused(tmp_path: Path) -> None:
+    diagram = rates()
+    diagram.add(Spoken(name="spoken", period=0.01, heard=[]), x="pd.effort")
+    diagram.add(Spoken(name="told", period=0.01, heard=[]), x="pd.effort")
+    with pytest.raises(sf.ExportError, match="block 'spoken' calls Python; block 'told' calls Python"):
+        sf.export(diagram, "c", tmp_path / "c")
+    unknown, twice, same = rates(), rates(), rates()
+    unknown.inlet_ports.clear()
+    with pytest.raises(sf.DescriptionError, match=r"its shape is unknown(?s:.)*shape=\(n,\)"):
+        sf.export(unknown, "c", tmp_path / "c")
+    twice.add_inlet("more", "pd.q")
+    with pytest.raises(sf.DescriptionError, match="'pd.q' is fed twice"):
+        sf.export(twice, "c", tmp_path / "c")
+    same.add_inlet("ticks", "pd.v_desired")
+    with pytest.raises(sf.DescriptionError, match="an inlet and a block are named 'ticks'"):
+        sf.export(same, "c", tmp_path / "c")
+    for target in ("mex", "sfunction", "wasm"):
+        with pytest.raises(sf.ExportError, match="becomes a C program or an FMU"):
+            sf.export(rates(), target, tmp_path / "c")
