@@ -27,6 +27,7 @@ def test_another_reading_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     def description(*given: Any) -> sf.System:
         system: sf.System = stated(*given)
         link = next(body for body in system.bodies if body.name == "forearm_link")
+        assert isinstance(link, sf.RigidBody) and link.inertia is not None
         return system.with_bodies(replace(link, inertia=replace(link.inertia, mass=1.0)))
 
     monkeypatch.setattr(module, "description", description)
