@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from symofros.diagrams.files.writer import save_diagram as save_diagram
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
+    from symofros.diagrams.stepper import DiagramStepper as DiagramStepper
     from symofros.errors import ActuationError as ActuationError
     from symofros.errors import ArgumentError as ArgumentError
     from symofros.errors import AssemblyError as AssemblyError

@@ -56,6 +56,8 @@ CALLS: dict[str, Callable[[], tuple[Callable[..., Any], dict[str, Any]]]] = {
     "Stepper.step": lambda: (stepped_once, {"u": U}),
     "Stepper.restore": lambda: (sf.Stepper(model()).restore, {"state": None}),
     "Simulation.run": lambda: (sf.Simulation(diagram()).run, {"t_end": 0.01}),
+    "DiagramStepper.reset": lambda: (sf.Simulation(diagram()).stepper().reset, {}),
+    "DiagramStepper.step": lambda: (sf.Simulation(diagram()).stepper().step, {"steps": 2}),
     "Simulation.interpret": lambda: (sf.Simulation(diagram()).interpret, {"t_end": 1.0, "dt": 0.5, "compiled": False}),
     "Diagram.add_model": lambda: (diagram().add_model, {"name": "m", "system": system()}),
     "Diagram.add": lambda: (diagram().add, {"block": blocks.Constant(name="two", value=2.0)}),
@@ -143,7 +145,16 @@ def test_numbers_of_every_kind_are_numbers(number: Any) -> None:
 
 def constructors() -> list[type]:
     """Public dataclasses that people make objects of; of the others, the library makes all."""
-    made_here = {"Advice", "DiagramRun", "EvaluationContext", "Expression", "Outcome", "Problem", "ReadableEquations"}
+    made_here = {
+        "Advice",
+        "DiagramRun",
+        "DiagramStepper",
+        "EvaluationContext",
+        "Expression",
+        "Outcome",
+        "Problem",
+        "ReadableEquations",
+    }
     made_here |= {"MechanismDiff", "Rollout", "Trajectories", "Trajectory"}
     classes = [getattr(module, name) for module in (sf, blocks) for name in dir(module) if name not in made_here]
     return [cls for cls in classes if isinstance(cls, type) and is_dataclass(cls)]

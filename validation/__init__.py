@@ -35,7 +35,7 @@ def check(
             of the standard set.
         states: Number of random states.
         seed: Seed of the states.
-        engines: Names of the engines to compare with; None: all.
+        engines: Names of the engines to compare with, of plug-ins too; None: all that take part unasked.
         floating_base: Whether what stands on the ground goes onto a free joint; not of native files.
 
     Returns:

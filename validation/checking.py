@@ -12,7 +12,7 @@ from importlib import import_module
 import symofros as sf
 
 from . import references
-from .adapters import ROUTES, compiled, has_beams
+from .adapters import ROUTES, compiled, has_beams, in_order, route_of
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
 from .comparison.loops import with_unique_multipliers
@@ -34,7 +34,7 @@ from .comparison.regular import (
 )
 from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
-from .contract.interface import States, Subject
+from .contract.interface import NotOffered, States, Subject
 from .contract.quantities import CONSTRAINED, FRAME_QUANTITIES, LOOPS, MOTION_ENERGY, QUANTITIES, Quantity
 from .contract.raised import Raised, attempted, not_installed, words
 from .inputs.frames import chosen_frames
@@ -67,7 +67,7 @@ class Settings:
 
     def routes(self) -> list[str]:
         """The engines asked for, in the order of reports."""
-        return [name for name in ROUTES if self.engines is None or name in self.engines]
+        return in_order(ROUTES if self.engines is None else self.engines)
 
 
 @dataclass(frozen=True)
@@ -282,7 +282,10 @@ def _compared(bench: _Bench, quantity: Quantity) -> Iterator[Comparison]:
 
 def _compared_with(bench: _Bench, one: Participant, quantity: Quantity, ours: Array, states: States) -> Comparison:
     """One quantity by one engine."""
-    row = _judged(bench, one, quantity, ours, states, bench.scales)
+    try:
+        row = _judged(bench, one, quantity, ours, states, bench.scales)
+    except NotOffered as refusal:
+        return Comparison(bench.label, one.name, quantity.name, "unsupported", note=str(refusal))
     if len(states) < len(bench.variants.states) and not row.note and not one.route.loops:
         asked = len(bench.variants.states)
         row = replace(row, note=f"the first {len(states)} of {asked} states: each takes long")
@@ -344,7 +347,7 @@ def _drift(bench: _Bench, motion: FreeMotion) -> Comparison:
 
 def _unconfirmed(bench: _Bench, rows: list[Comparison]) -> Iterator[Comparison]:
     """A failure if no independent engine was compared: agreement with nobody confirms nothing."""
-    independent = {name for name in bench.settings.routes() if ROUTES[name].independent}
+    independent = {name for name in bench.settings.routes() if route_of(name).independent}
     compared = {row.engine for row in rows if row.status in ("agree", "disagree")}
     if independent and not independent & compared:
         reason = f"none of {', '.join(sorted(independent))} could be asked"

@@ -11,7 +11,7 @@ from queue import SimpleQueue
 
 import symofros as sf
 
-from .adapters import ROUTES
+from .adapters import route_of
 from .checking import ModelResult, Settings, absent, broken, check, failed
 from .inputs.cases import Case
 from .worker_process import WorkerError, WorkerProcess
@@ -27,7 +27,7 @@ COLLECTED_AT = 50_000
 
 def _preloaded(settings: Settings) -> list[str]:
     """Modules loaded once into the process that the workers are forked from: no engine that is not asked for."""
-    return [__name__, f"{__package__}.inputs.readers", *(ROUTES[name].module for name in settings.routes())]
+    return [__name__, f"{__package__}.inputs.readers", *(route_of(name).module for name in settings.routes())]
 
 
 def run_case(case: Case, settings: Settings) -> ModelResult:

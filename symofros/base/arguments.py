@@ -38,7 +38,7 @@ _MAKERS = {
     "Generator": "numpy.random.default_rng(seed) makes one",
 }
 # Names of the class that is wanted and of that which is given -> what does for the latter what was asked.
-_INSTEAD = {("Model", "Diagram"): "sf.Simulation(diagram).run(t_end=...) runs a diagram, its models with it"}
+_INSTEAD = {("Model", "Diagram"): "sf.Simulation(diagram).run(t_end=...) runs a diagram, .stepper() steps it by hand"}
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ class Contact:
         name: Unique name, among connections too.
         first: Frame that the balls are fixed to: (body, frame), frame None for the body frame; "world" for the ground.
         second: Frame of the surface: (body, frame).
-        stiffness: Stiffness [N/m^exponent].
+        stiffness: Stiffness, in N/m^exponent.
         surface: Solid on the second frame, about its origin: "plane", all below its x-y plane; "sphere"; "cylinder",
             along its z axis without end; "capsule", along its z axis; "box", along its axes.
         radius: Radius of the balls; 0 of points [m].

@@ -37,7 +37,6 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "Load": {"force": ("N",), "torque": ("N m",)},
     "Connection": {"stiffness": ("N/m",), "length": ("m",), "damping": ("N s/m",)},
     "Contact": {
-        "stiffness": ("N/m",),
         "radius": ("m",),
         "points": ("m",),
         "surface_radius": ("m",),

@@ -14,7 +14,6 @@ from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.saving import columns, spread
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
-from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw, show_windows, window_figure
@@ -58,12 +57,8 @@ class DiagramRun(Records, Mapping[str, Array]):
 
     def motion(self, block: str) -> tuple[Array, Array]:
         """Configurations (n, nq) and speeds (n, nv) of the mechanism that a block moves."""
-        layout = self.compiled.resolved.layout
-        if block not in layout.q:
-            known = ", ".join(layout.q) or "none"
-            what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, layout.q) or "name a plant's"
-            raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
-        return self.q[:, layout.q[block].slice], self.v[:, layout.v[block].slice]
+        q, v = self.compiled.resolved.layout.moved(block)
+        return self.q[:, q.slice], self.v[:, v.slice]
 
     @checked
     def save(self, path: str | Path, *signals: str) -> list[Path]:

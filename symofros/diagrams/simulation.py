@@ -26,6 +26,7 @@ from symofros.diagrams.run.loop import RECORD
 from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
+from symofros.diagrams.stepper import DiagramStepper
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build import find_toolchain
@@ -90,6 +91,23 @@ class Simulation:
         if not self.diagram.inlets and not inputs:
             return self.resolved
         return resolve(self.diagram, inputs or {})
+
+    @checked
+    def stepper(self, *, inputs: Mapping[str, Any] | None = None, **settings: Any) -> DiagramStepper:
+        """The diagram, stepped by hand from its first state.
+
+        Args:
+            inputs: What is given for inlets, as of `run`.
+            settings: Fields of `SimulationOptions` in place of the diagram's own. `output` is the time of one step, by
+                default the longest of which all sample times of the diagram are multiples; without samples `dt`.
+
+        Raises:
+            SymofrosError: The options contradict each other or have no meaning here, or the method is implicit.
+            AssemblyError: The first state does not meet the constraints.
+        """
+        stated = self.diagram.simulation.keywords()
+        of_steps = {name: value for name, value in stated.items() if name not in ("record", "realtime", "threads")}
+        return DiagramStepper(self.compiled_with(inputs), **{**of_steps, **settings})
 
     @checked
     def interpret(

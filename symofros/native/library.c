@@ -3,6 +3,7 @@
 #include "stepping/integrator.c"
 #include "stepping/spectrum.c"
 #include "symofros_batch.h"
+#include "stepping/batch_columns.c"
 #include "stepping/batch_stepper.c"
 #include "symofros_hand.h"
 #include "stepping/by_hand.c"

@@ -11,6 +11,8 @@ from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.options import SimulationOptions
 
+# Times of steps are known to the step up to here.
+MOST_STEPS = 1 << 53
 # Attributes and what changes them.
 _STATE, _MADE = (
     "reset(q, v, t) begins a motion at another state",
@@ -31,20 +33,6 @@ class Stepped:
     """Refuses what would silently do nothing, or share the memory that C steps in."""
 
     _stepping: Lock
-
-    @property
-    def a(self) -> Array:
-        """Accelerations v' (nv), of many (n, nv), at the present states and inputs, without stabilising terms."""
-        return self._dynamics()[0]
-
-    @property
-    def lam(self) -> Array:
-        """Multipliers (nc), of many (n, nc), as the accelerations."""
-        return self._dynamics()[1]
-
-    def _dynamics(self: Any) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
-        return a, lam
 
     def __setattr__(self, name: str, value: object) -> None:
         """Refuse to replace what only looks like the state or the settings."""
@@ -73,15 +61,32 @@ class Stepped:
         return self.copy()
 
     def copy(self) -> Any:
-        """Refused, where a class has none."""
-        rule = "motions that are stepped together are not copied"
-        raise refusal(f"{type(self).__name__}: no copy", repr(self), rule, "make others, and reset them at its t, q, v")
+        """Another one in the same state."""
+        raise NotImplementedError
 
     def __reduce_ex__(self, protocol: object) -> NoReturn:
         """Refuse to pickle memory of C."""
         rule = "a stepper is compiled code and memory of one process"
         remedy = "send t, q, v and par as arrays; there sf.compile, make one and reset it at them"
         raise refusal(f"{type(self).__name__}: not pickled", repr(self), rule, remedy)
+
+
+class SteppedModel(Stepped):
+    """One model that is stepped, or motions of one."""
+
+    @property
+    def a(self) -> Array:
+        """Accelerations v' (nv), of many (n, nv), at the present states and inputs, without stabilising terms."""
+        return self._dynamics()[0]
+
+    @property
+    def lam(self) -> Array:
+        """Multipliers (nc), of many (n, nc), as the accelerations."""
+        return self._dynamics()[1]
+
+    def _dynamics(self: Any) -> tuple[Array, Array]:
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        return a, lam
 
 
 def owner_of(what: str, name: str) -> str:

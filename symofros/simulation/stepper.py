@@ -24,16 +24,21 @@ from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.simulate import prepare_run, run_to_its_end
-from symofros.simulation.stepped import Stepped, check_owner, no_steps, options_by_hand, owner_of, refusal
+from symofros.simulation.stepped import (
+    MOST_STEPS,
+    SteppedModel,
+    check_owner,
+    no_steps,
+    options_by_hand,
+    owner_of,
+    refusal,
+)
 from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
 from symofros.simulation.stepping.fast_step import fast_step
 from symofros.simulation.stepping.status import Status
 
-# Times of steps are known to the step up to here.
-MOST_STEPS = 1 << 53
 
-
-class Stepper(Stepped):
+class Stepper(SteppedModel):
     """A model that is stepped by hand: for controllers, learning, sampling, hardware in the loop.
 
     Steps are those of `simulate`, by the same C: with the same inputs held over the same fixed steps, q and v are the

@@ -22,14 +22,22 @@ from symofros.simulation.results.trajectories import Trajectories
 from symofros.simulation.settings import check_fit
 from symofros.simulation.simulate import prepare_run
 from symofros.simulation.simulate_batch import starts_off
-from symofros.simulation.stepped import Stepped, check_owner, no_steps, options_by_hand, owner_of, refusal
-from symofros.simulation.stepper import MOST_STEPS, checked_inputs, fixed_inputs, read_only, settings_by_hand
+from symofros.simulation.stepped import (
+    MOST_STEPS,
+    SteppedModel,
+    check_owner,
+    no_steps,
+    options_by_hand,
+    owner_of,
+    refusal,
+)
+from symofros.simulation.stepper import checked_inputs, fixed_inputs, read_only, settings_by_hand
 from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
 
 
-class Steppers(Stepped):
+class Steppers(SteppedModel):
     """Motions of one model that are stepped by hand together, several in the lanes of a vector, shared by threads.
 
     Each takes the steps that `simulate_batch` would take, and does not depend on the others. One that ends stays at its
@@ -86,6 +94,7 @@ class Steppers(Stepped):
             what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
             raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
         n, threads = int(n), int(model.threads if threads is None else threads)
+        self._given: dict[str, Any] = {"u": u, "threads": threads, "options": chosen}
         for name, number in (("n", n), ("threads", threads)):
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
@@ -237,17 +246,25 @@ class Steppers(Stepped):
         """The present states, with all that later steps depend on."""
         return self._hand.save(self._kind, self._par)
 
+    def copy(self) -> Steppers:
+        """Others in the same states, which share nothing that steps change."""
+        others = Steppers(self.model, self.n, par=self._par, **self._given)
+        others._kind = self._kind
+        others.restore(self.save())
+        return others
+
     def restore(self, state: BatchState) -> None:
         """Go on from saved states, bit by bit as from there.
 
         Args:
-            state: What `save` gave, of these steppers.
+            state: What `save` gave, of these steppers or of a copy.
 
         Raises:
             SymofrosError: It is none, or of others.
         """
-        rule = "a state goes back to the steppers that it was saved of, in the same process"
-        refused = ("restore: no state of these steppers", rule, "reset others at its t, q, v")
+        rule = "a state goes back to the steppers that it was saved of, or to a copy, in the same process"
+        remedy = "make others by copy(); elsewhere reset some at the state's t, q, v"
+        refused = ("restore: no state of these steppers", rule, remedy)
         check_owner(state, BatchState, self._kind, refused)
         self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
         self._par[...] = state.par

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -30,6 +31,8 @@ def pushes(model: sf.Model, steps: int, n: int = N) -> np.ndarray:
     ("name", "method"),
     [
         ("cart_pole", "rk4"),
+        ("cart_pole", "euler"),
+        ("cart_pole", "semi_implicit_euler"),
         ("random_tree1", "dopri5"),
         ("random_tree1", "semi_implicit_euler"),
         ("slider_crank", "rk4"),
@@ -54,25 +57,57 @@ def test_each_step_has_the_bits_of_simulate_batch(name: str, method: str, thread
         np.testing.assert_array_equal(steppers.t, runs.t_last)
 
 
-def test_saved_states_go_on_to_the_same_bits() -> None:
-    model, (q, v) = compiled("random_tree1"), starts("random_tree1")
-    u = pushes(model, 6)
-    steppers = sf.Steppers(model, N, method="dopri5", adaptive=False, dt=DT)
+@pytest.mark.parametrize(
+    ("name", "method"), [("random_tree1", "dopri5"), ("cart_pole", "rk4"), ("slider_crank", "rk4")]
+)
+def test_saved_states_and_copies_go_on_to_the_same_bits(name: str, method: str) -> None:
+    model, (q, v) = compiled(name), starts(name)
+    u, options = pushes(model, 6), {"method": method, "adaptive": False if method == "dopri5" else None, "dt": DT}
+    steppers = sf.Steppers(model, N, threads=2, **options)
     steppers.reset(q, v)
     for k in range(3):
         steppers.step(u[:, k])
-    saved, ends = steppers.save(), []
-    for _ in range(2):
+    again = np.arange(N) % 7 == 0
+    steppers.reset(q, v, which=again)  # Slots and motions have another order from here on.
+    steppers.step(u[:, 2])
+    saved, copied, ends = steppers.save(), steppers.copy(), []
+    for steps_of in (steppers, copied, steppers, copied):
         for k in range(3, 6):
-            steppers.step(u[:, k])
-        ends.append((steppers.q.tobytes(), steppers.v.tobytes(), steppers.t.tobytes()))
-        steppers.reset()
-        steppers.step()
-        steppers.restore(saved)
-        np.testing.assert_array_equal(steppers.q, saved.q)
-    assert ends[0] == ends[1]
+            steps_of.step(u[:, k])
+        ends.append((steps_of.q.tobytes(), steps_of.v.tobytes(), steps_of.t.tobytes()))
+        steps_of.reset()
+        steps_of.step()
+        steps_of.restore(saved)
+        np.testing.assert_array_equal(steps_of.q, saved.q)
+    assert len(set(ends)) == 1
     with pytest.raises(sf.SymofrosError, match=r"no state of these steppers[\s\S]*remedy:"):
-        sf.Steppers(model, N, dt=DT).restore(saved)
+        sf.Steppers(model, N, **options).restore(saved)
+
+
+INPUTS: dict[str, Callable[[np.ndarray], Any]] = {
+    "constant": lambda u: u[:, 0],
+    "held": lambda u: sf.Signal(0.7 * DT * np.arange(u.shape[1]), u, "hold"),
+    "linear": lambda u: sf.Signal(0.7 * DT * np.arange(u.shape[1]), u, "linear"),
+    "law": lambda _: {"F": "-3*q + 0.1*dx + sin(t)"},
+}
+
+
+@pytest.mark.parametrize("method", ["rk4", "euler", "semi_implicit_euler"])
+@pytest.mark.parametrize("inputs", INPUTS)
+@pytest.mark.parametrize("n", [1, 3, 70])
+def test_steps_by_columns_have_the_bits_of_steps_by_rows(method: str, inputs: str, n: int) -> None:
+    model, (q, v) = compiled("cart_pole"), starts("cart_pole", n)
+    u = np.random.default_rng(n).standard_normal((n, 20, 1))
+    u[n // 2] *= 1e120 if n > 1 else 1.0  # One is not finite within its first steps.
+    ends = [
+        sf.simulate_batch(model, q, v, 20 * DT, u=INPUTS[inputs](u), output=times, method=method, dt=DT)
+        for times in (None, DT * np.arange(21), DT * (np.arange(20) + 0.5))  # Records within a step take it by rows.
+    ]
+    for run in ends[1:]:
+        for name in ("t_last", "q_last", "v_last", "status", "steps"):
+            np.testing.assert_array_equal(getattr(run, name), getattr(ends[0], name))
+    ok = ends[1].ok
+    np.testing.assert_array_equal(ends[1].q[ok, -1], ends[0].q_last[ok])
 
 
 def test_a_partial_reset_with_parameters_leaves_the_others_running() -> None:

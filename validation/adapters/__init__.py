@@ -1,15 +1,17 @@
 """Adapters of engines: one folder each, which alone imports the engine's package; this module needs none.
 
-Rigid trees and loops are stated to the engine's plug-in of the matrix (`charted`, `validation/engines`). A new engine
-is a plug-in, one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package, and
+Rigid trees and loops are stated to the engine's plug-in of the matrix (`charted`, `validation/engines`). Every plug-in
+can be asked for by its name (`plugged`); an engine that takes part in every check, or that does more than plug-ins
+state, has one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package, and
 its DIFFERENCES state where conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
 with methods named as the quantities it offers (`contract/quantities.py`). The steps: docs/architecture.md, "To add".
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from typing import Literal
 
@@ -46,6 +48,7 @@ class Route:
         rotary: Whether the sections of its beams have the rotary inertia of our theory; else it is compared without.
         loops: Whether it closes loops by itself; it is asked for systems with constraints only, at states that satisfy
             them.
+        plugin: Name of the plug-in of the matrix that `build` is given first; "" for an adapter of its own.
     """
 
     module: str
@@ -55,6 +58,7 @@ class Route:
     beams: bool = False
     rotary: bool = True
     loops: bool = False
+    plugin: str = ""
 
     @property
     def variant(self) -> Variant:
@@ -75,9 +79,10 @@ class Route:
     def load(self) -> EngineFactory | Missing:
         """The engine's factory; this imports its package and no other engine's."""
         try:
-            factory: EngineFactory = import_module(self.module).build
+            build = import_module(self.module).build
         except ImportError as error:
             return Missing(f"{error}; pip install 'symofros[validation]'")
+        factory: EngineFactory = partial(build, self.plugin) if self.plugin else build
         return factory
 
 
@@ -100,15 +105,40 @@ ROUTES: dict[str, Route] = {
 }
 
 
+def route_of(name: str) -> Route:
+    """The way to an engine: one of ROUTES, or any other plug-in of the matrix."""
+    return ROUTES[name] if name in ROUTES else Route(f"{__name__}.plugged", plugin=name)
+
+
+def in_order(names: Iterable[str]) -> list[str]:
+    """Names of engines, each once, in the order of reports: of ROUTES, then as they come."""
+    known = list(ROUTES)
+    return sorted(dict.fromkeys(names), key=lambda name: known.index(name) if name in ROUTES else len(known))
+
+
+def require_engines(names: Iterable[str]) -> None:
+    """Refuse names of no engine; plug-ins are looked up only where there are names beyond ROUTES.
+
+    Raises:
+        LookupError: There is no such engine; the message names those that there are.
+    """
+    for name in set(names) - ROUTES.keys():
+        others, failures = import_module(f"{__name__}.plugged").found()
+        if name not in others:
+            known = ", ".join(in_order([*ROUTES, *others]))
+            why = "".join(f"; the plug-in '{other}' does not load: {reason}" for other, reason in failures.items())
+            raise LookupError(f"no engine '{name}'; there are {known}{why}")
+
+
 def factory_of(name: str, overrides: Mapping[str, EngineFactory | Missing] | None = None) -> EngineFactory | Missing:
     """How an engine's models are built, or why the engine does not import here.
 
     Args:
-        name: Key of ROUTES.
+        name: Name of an engine.
         overrides: Factories that take the place of the adapters' own, by engine.
     """
     override = (overrides or {}).get(name)
-    return ROUTES[name].load() if override is None else override
+    return route_of(name).load() if override is None else override
 
 
 def differences() -> tuple[Difference, ...]:

@@ -6,19 +6,30 @@ which charts it keeps the joints. Here a description becomes such a tree, and wh
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ..contract.conventions import IN_PARENT, IN_WORLD, Chart, Slot
-from ..contract.interface import States, Subject, Unsupported
-from ..contract.quantities import QUANTITIES
-from ..engines.interface import ORIGIN, Joint, Link, State, Tree, rows, vector
+from ..contract.conventions import Chart, Slot
+from ..contract.interface import NotOffered, SolvedEngine, States, Subject, Unsupported
+from ..engines.interface import (
+    ORIGIN,
+    EngineModel,
+    EnginePlugin,
+    HasLayout,
+    Joint,
+    Link,
+    State,
+    Tree,
+    rows,
+    vector,
+)
 from ..engines.plugins import OWN
 from ..engines.plugins.writing.source import SourceModel
+from ..engines.workers import layout_of
 from ..mechanics.assembly import BASE, Assembly, Mover
 from ..mechanics.geometry import Array
 from ..mechanics.joint_kinds import PartKind
@@ -48,6 +59,14 @@ FUNCTIONS = {
     "frame_jacobian": "link_jacobians",
     "frame_jacobian_rate": "link_jacobian_rates",
 }
+# Quantities that follow from others where an engine does not give them -> functions that they follow from.
+FOLLOWING = {
+    "bias": {"gravity"},  # At rest.
+    "kinetic_energy": {"mass_matrix"},
+    "potential_energy": {"link_poses"},
+    "inverse_dynamics": {"mass_matrix", "bias"},
+    "forward_dynamics": {"mass_matrix", "bias"},
+}
 
 
 @dataclass(frozen=True)
@@ -64,14 +83,21 @@ class Stated:
     movers: tuple[tuple[Mover, ...], ...]
     frames: tuple[int, ...]
 
+    @property
+    def joints(self) -> list[int]:
+        """For each joint of the description, the link after its last part."""
+        first = [group[0] for group in self.movers]
+        return [k for k in range(len(first)) if k + 1 == len(first) or not first[k + 1].continues]
 
-def stated(subject: Subject, whole: bool, merged: bool) -> Stated:
+
+def stated(subject: Subject, whole: bool, merged: bool, splits_free: bool = True) -> Stated:
     """State a rigid description.
 
     Args:
         subject: The subject, all of whose joints are of KINDS.
-        whole: Whether a link hangs on all parts of its joint, and a free joint of the base stands in the world, a later
-            one being slides and a ball; else each part has a link of its own.
+        whole: Whether a link hangs on all parts of its joint, and a free joint of the base stands in the world; else
+            each part has a link of its own.
+        splits_free: Whether, in a whole joint, a free joint that is not of the base is stated as slides and a ball.
         merged: Whether all that is fixed to a link is one mass with it, by the harness's parallel axes; else each mass
             is a link that is fixed to it.
     """
@@ -84,7 +110,7 @@ def stated(subject: Subject, whole: bool, merged: bool) -> Stated:
         groups.append((*groups.pop(), mover) if whole and mover.continues else (mover,))
         carriers.append(len(links))
         if ends or not whole:
-            joints = tuple(joint for one in groups[-1] for joint in _joints(subject, one, whole))
+            joints = tuple(joint for one in groups[-1] for joint in _joints(subject, one, whole, splits_free))
             links.append(_massless(mover.body if ends else mover.name, carriers[groups[-1][0].parent - BASE], joints))
     links += _masses(assembly, links, carriers, merged)
     first = len(links)
@@ -115,13 +141,15 @@ def _masses(assembly: Assembly, links: list[Link], carriers: Sequence[int], merg
     return fixed
 
 
-def _joints(subject: Subject, mover: Mover, whole: bool) -> tuple[Joint, ...]:
+def _joints(subject: Subject, mover: Mover, whole: bool, splits_free: bool) -> tuple[Joint, ...]:
     """A simple joint in the vocabulary of the matrix."""
     inertia, speeds = armature(subject.system, mover), mover.part.speeds
     placed: dict[str, Any] = {"R": rows(mover.X_AP.R), "p": vector(mover.X_AP.p)}
     more: dict[str, Any] = {"armature": (inertia,) * speeds} if inertia else {}
-    if mover.kind == "free" and whole:
-        return (Joint("free"),) if mover.parent == BASE else (Joint("translation", **placed), Joint("ball"))
+    if mover.kind == "free" and whole and mover.parent == BASE:
+        return (Joint("free", **more),)
+    if mover.kind == "free" and whole and splits_free:
+        return Joint("translation", **placed), Joint("ball")
     if speeds == 1:
         more["axis"] = vector(mover.axis)
     if mover.kind == "screw":
@@ -129,8 +157,12 @@ def _joints(subject: Subject, mover: Mover, whole: bool) -> tuple[Joint, ...]:
     return (Joint(KINDS[mover.kind], **placed, **more),)
 
 
-def chart_of(model: SourceModel, described: Stated) -> Chart:
-    """Where, and in which charts, an engine keeps our joints."""
+def chart_of(model: HasLayout, described: Stated) -> Chart:
+    """Where, and in which charts, an engine keeps our joints.
+
+    Raises:
+        ValueError: There is no conversion of a chart.
+    """
     slots = []
     for movers, link, statement in zip(described.movers, model.slots, described.tree.links, strict=False):
         own, first = list(link), statement.joints[0]
@@ -138,14 +170,14 @@ def chart_of(model: SourceModel, described: Stated) -> Chart:
             several = len(own) - len(movers) + 1 if mover.kind == "free" else 1
             parts, own = own[:several], own[several:]
             chart = " + ".join(part.chart for part in parts)
-            if chart == IN_WORLD and (first.R, first.p) == (rows(mover.X_AP.R), vector(mover.X_AP.p)):
-                chart = IN_PARENT  # It stands where ours does.
-            slots.append(Slot(mover, parts[0].q[0], parts[0].v[0], chart))
+            # It stands where ours does, or in the world.
+            grounded = first.kind == "free" and (first.R, first.p) != (rows(mover.X_AP.R), vector(mover.X_AP.p))
+            slots.append(Slot(mover, parts[0].q[0], parts[0].v[0], chart, grounded))
     return Chart(tuple(slots), model.nq, model.nv)
 
 
 @dataclass(frozen=True)
-class ChartedEngine:
+class ChartedEngine(SolvedEngine):
     """A model of a plug-in behind the check's `Engine` protocol.
 
     Attributes:
@@ -157,35 +189,52 @@ class ChartedEngine:
         capabilities: Quantities that it offers on this route.
         most_states: Largest number of states in one call.
         without_frames: Makes the same model without links for frames: that of joint wrenches.
+        joints: Links whose joint wrenches are the description's joints'.
+        following: Quantities among the capabilities that the engine does not give: they follow from others.
+        weights: Masses of its links, and times their mass centres (L, 4).
+        gravity: Acceleration of gravity (3) [m/s^2].
+        accuracy: Tolerances, relative to the largest entry, of quantities that the engine documents as approximate.
     """
 
     name: str
     version: str
-    answers: SourceModel
+    answers: EngineModel
     chart: Chart
     frames: tuple[int, ...] = ()
     capabilities: frozenset[str] = frozenset(FUNCTIONS)
     most_states: int = 10**9
-    without_frames: Callable[[], SourceModel] | None = None
+    without_frames: Callable[[], EngineModel] | None = None
+    joints: Sequence[int] = ()
+    following: frozenset[str] = frozenset()
+    weights: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    gravity: Array = field(default_factory=lambda: np.zeros(3))
+    accuracy: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def names(self) -> dict[str, Any]:
+        """What the text of one of our plug-ins defines."""
+        assert isinstance(self.answers, SourceModel)
+        return self.answers.names
 
     @property
     def model(self) -> Any:
         """The engine's own object, for those who step or time it."""
-        return self.answers.names["m"]
+        return self.names["m"]
 
-    def asked(self, function: str, states: States, model: SourceModel | None = None) -> Array:
+    def asked(self, function: str, states: States, model: EngineModel | None = None) -> Array:
         """A function of the matrix at N states, in the engine's own coordinates and speeds (N, ...).
 
         Raises:
+            NotOffered: The engine does not have it for this tree.
             ValueError: The engine refuses.
         """
         chart, none = self.chart, np.zeros(self.chart.nv)
         q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
         a, tau = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
         asked = [State(*row, none, row[0]) for row in zip(q, v, a, tau, strict=True)]
-        values = (model or self.answers).each(function, asked)
+        values = _each(model or self.answers, function, asked)
         if isinstance(values, Unsupported):
-            raise ValueError(values.reason)
+            raise (ValueError if values.offered else NotOffered)(values.reason)
         return values
 
     def _of_frames(self, function: str, states: States) -> Array:
@@ -201,35 +250,43 @@ class ChartedEngine:
 
     def bias(self, states: States) -> Array:
         """Coriolis, centrifugal and gravity forces h (N, nv)."""
-        h = self.asked("bias", states)
+        h = self.asked("gravity" if "bias" in self.following else "bias", states)
         if not self.chart.turns:
             return self.chart.our_forces(states.q, h)
         return self.chart.bias(states.q, states.v, h, self.asked("mass_matrix", states))
 
     def kinetic_energy(self, states: States) -> Array:
         """Kinetic energy (N,) [J]."""
-        return self.asked("kinetic_energy", states)
+        follows = "kinetic_energy" in self.following
+        return super().kinetic_energy(states) if follows else self.asked("kinetic_energy", states)
 
     def potential_energy(self, states: States) -> Array:
-        """Gravitational potential energy (N,) [J]."""
-        return self.asked("potential_energy", states)
+        """Gravitational potential energy (N,) [J], from the places of mass centres where the engine gives none."""
+        if "potential_energy" not in self.following:
+            return self.asked("potential_energy", states)
+        poses = self.asked("link_poses", states)[:, : len(self.weights)]
+        R = poses[..., 3:].reshape(*poses.shape[:2], 3, 3)
+        moments = self.weights[:, :1] * poses[..., :3] + (R @ self.weights[:, 1:, None])[..., 0]
+        return np.asarray(-moments.sum(axis=1) @ self.gravity)
 
     def inverse_dynamics(self, states: States) -> Array:
         """M a + h - passive (N, nv)."""
+        if "inverse_dynamics" in self.following:
+            return super().inverse_dynamics(states)
         return self.chart.our_forces(states.q, self.asked("inverse_dynamics", states)) - states.passive
 
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (applied - h) (N, nv)."""
+        if "forward_dynamics" in self.following:
+            return super().forward_dynamics(states)
         return self.chart.our_accelerations(states.q, states.v, self.asked("forward_dynamics", states))
 
     def joint_wrenches(self, states: States) -> Array:
         """Wrenches of the joints (N, joints, 6); of one that is a series of simple ones, that of the last."""
-        movers = [slot.mover for slot in self.chart.slots]
-        last = [k for k in range(len(movers)) if k + 1 == len(movers) or not movers[k + 1].continues]
-        return self.asked("joint_wrenches", states, self._bare)[:, last]
+        return self.asked("joint_wrenches", states, self._bare)[:, list(self.joints)]
 
     @cached_property
-    def _bare(self) -> SourceModel | None:
+    def _bare(self) -> EngineModel | None:
         return None if self.without_frames is None else self.without_frames()
 
     def frame_pose(self, states: States) -> Array:
@@ -256,44 +313,74 @@ class ChartedEngine:
         return self.chart.jacobian_rate(states.q, states.v, self._jacobians("link_jacobians", states), J_rate)
 
 
+def _each(model: EngineModel, function: str, states: Iterable[State]) -> Array | Unsupported:
+    """Values of a function at N states (N, ...), one state after the other."""
+    if isinstance(model, SourceModel):
+        return model.each(function, states)
+    values = []
+    for state in states:
+        value = model.call(function, State(*(part.copy() for part in vars(state).values())))
+        if isinstance(value, Unsupported):
+            return value
+        values.append(np.array(value, dtype=float))
+    return np.array(values)
+
+
 def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:
     """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs."""
-    names = frozenset(name for name, function in FUNCTIONS.items() if function in functions) & QUANTITIES.keys()
+    names = frozenset(name for name, function in FUNCTIONS.items() if {name, function} & {*functions})
     return names - ({"potential_energy"} if stores_energy(subject.system) else set())
 
 
 def build(
-    engine: str, subject: Subject, joints: Collection[PartKind], whole: bool, merged: bool
+    engine: str | EnginePlugin,
+    subject: Subject,
+    joints: Collection[PartKind],
+    whole: bool,
+    merged: bool,
+    splits_free: bool = True,
 ) -> ChartedEngine | Unsupported:
     """An engine's model of a rigid description, by its plug-in.
 
     Args:
-        engine: Name of the plug-in.
+        engine: The plug-in, or the name of one of ours.
         subject: The subject.
         joints: Kinds of simple joints that the engine has.
         whole: See `stated`.
         merged: See `stated`.
+        splits_free: See `stated`.
     """
     obstacle = unrepresented(subject.system, subject.assembly, joints)
     if obstacle is not None:
         return obstacle
-    plugin, described = OWN[engine], stated(subject, whole, merged)
+    plugin = OWN[engine] if isinstance(engine, str) else engine
+    described = stated(subject, whole, merged, splits_free)
     model = plugin.build(described.tree)
     if isinstance(model, Unsupported):
         return model
-    assert isinstance(model, SourceModel)
 
-    def without_frames() -> SourceModel:
-        bare = plugin.build(stated(replace(subject, frames=()), whole, merged=True).tree)
-        assert isinstance(bare, SourceModel)  # As the whole is.
+    def without_frames() -> EngineModel:
+        bare = plugin.build(stated(replace(subject, frames=()), whole, True, splits_free).tree)
+        assert not isinstance(bare, Unsupported)  # As the whole is not.
         return bare
 
+    given = plugin.functions.keys()
+    following = frozenset(name for name, needs in FOLLOWING.items() if name not in given and needs <= given)
+    chart = chart_of(layout_of(described.tree, model), described)
+    for slot in chart.slots:
+        if slot.turns and armature(subject.system, slot.mover):
+            # The rate of components along other axes is another acceleration than the rate of body components.
+            return Unsupported(f"joint '{slot.mover.joint.name}': an armature along body axes")
     return ChartedEngine(
-        engine,
+        plugin.name,
         plugin.version(),
         model,
-        chart_of(model, described),
+        chart,
         described.frames,
-        offered(plugin.functions, subject),
+        offered(given | (following - {"bias"}), subject),
         without_frames=without_frames,
+        joints=described.joints,
+        following=following,
+        weights=np.array([[link.mass, *(link.mass * np.array(link.com))] for link in described.tree.links]),
+        gravity=np.array(described.tree.gravity),
     )

@@ -17,7 +17,7 @@ from ..contract.interface import States, Subject, TreeEngine
 from ..contract.memory import LatestResults
 from ..contract.quantities import CONSTRAINED
 from ..mechanics.assembly import Assembly, anchor_name
-from ..mechanics.geometry import Array
+from ..mechanics.geometry import Array, skew
 from . import by_formula
 
 AXES = "xyz"
@@ -171,20 +171,13 @@ def _dot(a: Array, b: Array) -> Array:
     return product
 
 
-def _skew(w: Array) -> Array:
-    zero = np.zeros(len(w))
-    rows = [[zero, -w[:, 2], w[:, 1]], [w[:, 2], zero, -w[:, 0]], [-w[:, 1], w[:, 0], zero]]
-    matrix: Array = np.array(rows).transpose(2, 0, 1)
-    return matrix
-
-
 def _closure(item: sf.Closure, A: _Kinematics, B: _Kinematics) -> tuple[Array, Array, Array]:
     RT = A.R.transpose(0, 2, 1)
     d, v, a = B.p - A.p, B.v - A.v, B.a - A.a
-    W, W2 = _skew(A.w), _skew(A.alpha) + _skew(A.w) @ _skew(A.w)
+    W, W2 = skew(A.w), skew(A.alpha) + skew(A.w) @ skew(A.w)
     # Everything as A sees it: position, and what its derivatives are with the turning of A taken out.
     seen = np.einsum("nij,nj->ni", RT, d)
-    J = RT @ (B.Jv - A.Jv + _skew(d) @ A.Jw)
+    J = RT @ (B.Jv - A.Jv + skew(d) @ A.Jw)
     drift = np.einsum(
         "nij,nj->ni",
         RT,
@@ -196,7 +189,7 @@ def _closure(item: sf.Closure, A: _Kinematics, B: _Kinematics) -> tuple[Array, A
     w = np.einsum("nij,nj->ni", RT, B.w - A.w)
     alpha = np.einsum("nij,nj->ni", RT, B.alpha - A.alpha - np.einsum("nij,nj->ni", W, B.w - A.w))
     Jw = RT @ (B.Jw - A.Jw)
-    R2 = (_skew(alpha) + _skew(w) @ _skew(w)) @ R
+    R2 = (skew(alpha) + skew(w) @ skew(w)) @ R
     for weights in _rotation_weights(item.rotations):
         phi = np.einsum("ij,nij->n", weights, R)
         # d/dt of weights : R is w . vee, with the components of the spin that turns R.
@@ -206,7 +199,7 @@ def _closure(item: sf.Closure, A: _Kinematics, B: _Kinematics) -> tuple[Array, A
 
 
 # [e_k] for each axis k: row i, column l.
-_EPSILON = _skew(np.eye(3))
+_EPSILON = skew(np.eye(3))
 
 
 def _rotation_weights(blocked: tuple[str, ...]) -> list[Array]:
@@ -253,7 +246,7 @@ def _rolling(radius: float, height: float, shape: str, B: _Kinematics) -> tuple[
         size = np.linalg.norm(s, axis=1, keepdims=True)
         r = -radius * s / size
         r_rate = -radius * (s_rate / size - s * _dot(s, s_rate)[:, None] / size**3)
-    J = B.Jv - _skew(r) @ B.Jw
+    J = B.Jv - skew(r) @ B.Jw
     drift = B.a + np.cross(B.alpha, r) + np.cross(B.w, r_rate)
     level = B.p[:, 2] - height + r[:, 2]
     return _stacked([(level if k == 2 else 0.0 * level, J[:, k], drift[:, k]) for k in range(3)])

@@ -18,7 +18,7 @@ import numpy as np
 
 import symofros as sf
 
-from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
+from ..contract.interface import Engine, EngineFactory, SolvedEngine, States, Subject, TreeEngine, Unsupported
 from ..contract.quantities import FORCES_STATED, TREE_QUANTITIES
 from ..mechanics.assembly import assemble
 from ..mechanics.geometry import Array
@@ -99,7 +99,7 @@ def _speed_maps(plain: sf.System, explicit: sf.System, spins: list[_Spin]) -> tu
     return coupled, locked, at
 
 
-class RotorEngine:
+class RotorEngine(SolvedEngine):
     """A tree engine with the rotors of a description.
 
     Args:
@@ -145,13 +145,3 @@ class RotorEngine:
             self._explicit.kinetic_energy(self._moving(states, G)) for G in (self._coupled, self._locked)
         )
         return self._plain.kinetic_energy(states) + coupled - locked
-
-    def inverse_dynamics(self, states: States) -> Array:
-        """M a + h - passive (N, nv)."""
-        inertial: Array = (self.mass_matrix(states) @ states.a[:, :, None])[:, :, 0]
-        return inertial + self.bias(states) - states.passive
-
-    def forward_dynamics(self, states: States) -> Array:
-        """M^-1 (applied - h) (N, nv)."""
-        force = states.applied - self.bias(states)
-        return np.asarray(np.linalg.solve(self.mass_matrix(states), force[:, :, None])[:, :, 0], dtype=float)

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError,
 from symofros.commands.reading import ReadingOptions
 
 from .. import references
-from ..adapters import ROUTES
+from ..adapters import require_engines
 from ..checking import description_hash
 from ..inputs.cases import Case, named
 from .design import Design, Range, points_of
@@ -83,9 +83,10 @@ class CheckPlan(_OfFiles):
 
     @model_validator(mode="after")
     def _sound(self) -> CheckPlan:
-        for name in self.engines or ():
-            if name not in ROUTES:
-                raise ValueError(f"no engine '{name}'; there are {', '.join(ROUTES)}")
+        try:
+            require_engines(self.engines or ())
+        except LookupError as error:
+            raise ValueError(error.args[0]) from None
         if self.states < len(self.models):
             raise ValueError(f"{self.states} states for {len(self.models)} models; each needs one")
         return self

@@ -13,11 +13,11 @@ import pytest
 import symofros as sf
 from symofros.commands.reading import OPTIONS, ReadingOptions, reading_of
 
-from ..adapters import ROUTES
+from ..adapters import ROUTES, require_engines
 from ..checking import ModelResult, Settings
 from ..comparison.errors import Comparison
 from ..cross_check.baseline import Baseline, BaselineError, Regression, machine_of
-from ..cross_check.record import Record, as_data
+from ..cross_check.record import Record, as_data, is_independent
 from ..cross_check.speed import Speed, measure
 from ..cross_check.tables import failure
 from ..engines.workers import registry
@@ -114,11 +114,11 @@ class Confirmation(CrossCheck):
 
     def runtest(self) -> None:
         """Fail where no independent engine had anything to compare."""
-        asked = [name for name in self.settings.engines or () if ROUTES[name].independent]
+        asked = [name for name in self.settings.engines or () if is_independent(name)]
         rows = [
             row for name in asked for row in _result(self.case, replace(self.settings, engines=(name,))).comparisons
         ]
-        if not any(ROUTES[row.engine].independent for row in rows if row.engine in ROUTES and row.status == "agree"):
+        if not any(is_independent(row.engine) for row in rows if row.status == "agree"):
             reasons = dict.fromkeys(f"{row.engine}: {row.note}" for row in rows if row.note and not row.unconfirmed)
             raise CellFailure("\n".join(["no independent engine confirms this model", *reasons]))
 
@@ -132,19 +132,18 @@ class CrossChecks(pytest.Collector):
 
 
 def _require(engine: str, of_models: bool) -> None:
-    """Refuse an engine that there is not, or that checks no models where models are named.
+    """Refuse an engine that there is not, or where models are named the one that they are checked against.
 
     Raises:
         UsageError: It is of no use; the message says why.
     """
     if engine in ROUTES:
         return
-    if of_models:
-        raise pytest.UsageError(f"--symofros-engine {engine}: models are checked by {', '.join(ROUTES)}")
-    if engine not in registry().plugins:
-        known = ", ".join(dict.fromkeys([*ROUTES, *registry().plugins]))
-        why = "".join(f"; {name}: {reason}" for name, reason in registry().failures.items())
-        raise pytest.UsageError(f"--symofros-engine {engine}: no such engine; there are {known}{why}")
+    if of_models or engine not in registry().plugins:
+        try:
+            require_engines([engine])
+        except LookupError as error:
+            raise pytest.UsageError(f"--symofros-engine {engine}: {error.args[0]}") from None
 
 
 def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
@@ -156,7 +155,7 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
     tier = config.getoption("--symofros-tier")
     named_models = config.getoption("--symofros-model")
     asked = config.getoption("--symofros-engine") or list(ROUTES)
-    engines = [name for name in asked if name in ROUTES]
+    engines = [name for name in asked if named_models or name in ROUTES]
     parent = CrossChecks.from_parent(session, name="symofros", nodeid="symofros")
     for engine in asked:
         _require(engine, bool(named_models))
@@ -179,7 +178,7 @@ def cross_checks(session: Any, config: Any) -> Iterator[pytest.Item]:
         if named_models or not config.getoption("--symofros-engine"):
             yield test(Confirmation, case, "confirmed", Settings(states, 0, tuple(engines)))
         if stored is not None:
-            settings = Settings(stored.record.states, stored.record.seed, tuple(_engines(stored)))
+            settings = Settings(stored.record.states, stored.record.seed, tuple(stored.record.engines))
             yield test(BaselineCheck, case, "baseline", settings, stored=stored)
 
 
@@ -213,12 +212,6 @@ def _stored(path: str | None) -> Baseline | None:
         return Baseline.read(Path(path))
     except BaselineError as error:
         raise pytest.UsageError(f"--symofros-baseline: {error}") from None
-
-
-def _engines(stored: Baseline) -> list[str]:
-    """The engines that the stored run compared with."""
-    compared = {row.engine for row in stored.record.compared}
-    return [name for name in ROUTES if name in compared]
 
 
 def _stated(row: Comparison) -> str:

@@ -10,7 +10,7 @@ from typing import cast
 
 import numpy as np
 
-from ..adapters import ROUTES, Missing, Route, factory_of, rotors
+from ..adapters import Missing, Route, factory_of, rotors, route_of
 from ..adapters.closed import ConstrainedEngine, condition, joined_frames
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
@@ -84,7 +84,7 @@ def participants(
     """
     subject = variants.subject
     for name in names:
-        route = ROUTES[name]
+        route = route_of(name)
         if not route.applies_to(subject):
             continue
         engine = attempted(_built, route, factory_of(name, factories), subject, assembly)

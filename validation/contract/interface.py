@@ -10,10 +10,13 @@ from functools import cached_property
 from pathlib import Path
 from typing import Literal, Protocol
 
+import numpy as np
+
 import symofros as sf
 
 from ..mechanics.assembly import Assembly, assemble
 from ..mechanics.geometry import Array
+from .conventions import times
 
 # Of files that engines read themselves; "" for none.
 Format = Literal["", "urdf", "mjcf"]
@@ -121,6 +124,35 @@ class TreeEngine(Engine, Protocol):
 
     def frame_jacobian_rate(self, states: States) -> Array:
         """dJ/dt (N, F, 6, nv)."""
+
+
+class NotOffered(ValueError):
+    """An engine does not have a function for the system at hand; the message says why."""
+
+
+class SolvedEngine:
+    """An engine that answers M and h alone: energy and dynamics follow from them by NumPy."""
+
+    def mass_matrix(self, states: States) -> Array:
+        """M (N, nv, nv)."""
+        raise NotImplementedError
+
+    def bias(self, states: States) -> Array:
+        """Coriolis, centrifugal and gravity forces h (N, nv)."""
+        raise NotImplementedError
+
+    def kinetic_energy(self, states: States) -> Array:
+        """v^T M v / 2."""
+        return np.asarray(np.einsum("ni,nij,nj->n", states.v, self.mass_matrix(states), states.v) / 2.0)
+
+    def inverse_dynamics(self, states: States) -> Array:
+        """M a + h - passive."""
+        return times(self.mass_matrix(states), states.a) + self.bias(states) - states.passive
+
+    def forward_dynamics(self, states: States) -> Array:
+        """M^-1 (applied - h)."""
+        net = states.applied - self.bias(states)
+        return np.asarray(np.linalg.solve(self.mass_matrix(states), net[:, :, None])[:, :, 0])
 
 
 @dataclass(frozen=True)

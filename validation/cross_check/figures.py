@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ..adapters import ROUTES
+from ..adapters import ROUTES, in_order
 from ..comparison.errors import BIN_EDGES, HIGHEST_DECADE, LOWEST_DECADE
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES, SOLVE
 from ..reporting.charts import BAD, SERIES, power
 from ..reporting.figures import Chart, Curve, Drawing, Mark
-from .record import Distributions, Record
+from .record import NO_ENGINE, Distributions, Record, is_independent
 
 TITLE = "Distribution of relative errors for each quantity and engine"
 EPS = 2.0**-52
@@ -21,7 +21,12 @@ EPS = 2.0**-52
 
 def engine_label(engine: str) -> str:
     """Name in legends: which opinions are our own is said."""
-    return engine if ROUTES[engine].independent else f"{engine} (our own)"
+    return engine if is_independent(engine) else f"{engine} (our own)"
+
+
+def _color(engine: str) -> str:
+    """That of its place among the engines; of others than those of ROUTES, of one more."""
+    return SERIES[(list(ROUTES).index(engine) if engine in ROUTES else len(ROUTES)) % len(SERIES)]
 
 
 def error_distributions(distributions: Distributions) -> tuple[Drawing, ...]:
@@ -30,7 +35,7 @@ def error_distributions(distributions: Distributions) -> tuple[Drawing, ...]:
     All models together. Exact agreement has a place of its own left of the axis.
     """
     rows = {q: distributions[q.name] for q in (*QUANTITIES.values(), MOTION_ENERGY) if distributions.get(q.name)}
-    engines = [name for name in ROUTES if any(name in group for group in rows.values())]
+    engines = in_order(name for group in rows.values() for name in group if name not in NO_ENGINE)
     if not rows:
         return ()
 
@@ -39,11 +44,11 @@ def error_distributions(distributions: Distributions) -> tuple[Drawing, ...]:
             for n, engine in enumerate(engines):
                 if sum(group.get(engine, ())):
                     share = 2.0 * n / len(engines) + LOWEST_DECADE - 2.5
-                    _outline(axes, group[engine], share, 1.8 / len(engines), -k, SERIES[list(ROUTES).index(engine)])
+                    _outline(axes, group[engine], share, 1.8 / len(engines), -k, _color(engine))
             at = math.log10(quantity.tolerance)
             axes.plot([at, at], [-k, 0.85 - k], color=BAD, linewidth=2.2, label="" if k else "tolerance")
         for engine in engines:
-            axes.plot([], [], "s", color=SERIES[list(ROUTES).index(engine)], markersize=8, label=engine_label(engine))
+            axes.plot([], [], "s", color=_color(engine), markersize=8, label=engine_label(engine))
         axes.set_yticks([-k for k in range(len(rows))], [quantity.name.replace("_", " ") for quantity in rows])
         ticks = range(LOWEST_DECADE + 2, HIGHEST_DECADE, 2)
         axes.set_xticks([LOWEST_DECADE - 1.5, *ticks], ["exact", *(power(10.0**decade) for decade in ticks)])
@@ -75,7 +80,7 @@ def error_against_condition(record: Record) -> tuple[Chart, ...]:
     if not rows:
         return ()
     curves = []
-    for k, engine in enumerate(ROUTES):
+    for k, engine in enumerate(in_order([*ROUTES, *record.engines])):
         own = [row for row in rows if row.engine == engine]
         x, y = [row.extra["condition"] for row in own], [row.error or 0.0 for row in own]
         curves += [Curve(engine_label(engine), x, y, k, "points")] if own else []

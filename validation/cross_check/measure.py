@@ -15,11 +15,11 @@ import symofros as sf
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.tools import write_atomically
 
-from ..adapters import ROUTES
+from ..adapters import ROUTES, require_engines
 from ..checking import ModelResult, Settings
 from ..inputs.cases import Case, named
 from ..inputs.sampling import DEFAULT_STATES
-from ..reporting.command import Exit, Run, known
+from ..reporting.command import Exit, Run
 from ..reporting.record import (
     Data,
 )
@@ -48,7 +48,8 @@ def measure(
     states: Annotated[int, typer.Option(min=1, help="Random states a model.")] = DEFAULT_STATES,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random states.")] = 0,
     engine: Annotated[
-        list[str] | None, typer.Option("--engine", help=f"Only this engine; repeatable. {', '.join(ROUTES)}.")
+        list[str] | None,
+        typer.Option("--engine", help=f"Only this engine; repeatable. {', '.join(ROUTES)}, or a plug-in of `engines`."),
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
@@ -58,7 +59,10 @@ def measure(
     ] = None,
 ) -> Data:
     """Compare our C of each MODEL with every engine that can represent it."""
-    known(engine, ROUTES, "--engine", "engine")
+    try:
+        require_engines(engine or ())
+    except LookupError as error:
+        raise typer.BadParameter(str(error), param_hint="--engine") from None
     settings = Settings(states, seed, tuple(engine) if engine else None)
     stored = _baseline(baseline, settings)
     cases = _cases(models or [], reading)

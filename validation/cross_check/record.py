@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ..adapters import ROUTES
+from ..adapters import ROUTES, in_order
 from ..checking import ModelResult, Settings
-from ..comparison.errors import Comparison, Status
+from ..comparison.errors import NOBODY, Comparison, Status
+from ..procedures import ENGINE as FORMULAS
 from ..reporting.numbers import finite
 from ..reporting.provenance import stamp
 from ..reporting.record import Data
@@ -20,13 +21,15 @@ SCHEMA = 1
 _BEFORE = ("load", "compile")
 # What a comparison states besides its further figures.
 _STATED = tuple("model engine quantity states error tolerance ok median worst_state note".split())
-# Adapters that are our own code and have no version of their own.
-_OURS = frozenset(name for name, route in ROUTES.items() if not route.independent)
+# Names in the place of an engine that no engine is behind: our own drift, and what was asked of any of them.
+NO_ENGINE = ("symofros", NOBODY, FORMULAS)
+# These, and adapters that are our own code and have no version of their own.
+_OURS = frozenset({*NO_ENGINE, *(name for name, route in ROUTES.items() if not route.independent)})
 
 
-def is_independent(row: Comparison) -> bool:
-    """Whether a row is of an engine that shares no equations with us: not our own C, formulas or readers."""
-    return row.engine in ROUTES and ROUTES[row.engine].independent
+def is_independent(engine: str) -> bool:
+    """Whether a name is of an engine that shares no equations with us: not our own C, formulas or readers."""
+    return engine not in _OURS
 
 
 # Quantity -> engine -> states in each bin of BIN_EDGES, all models together.
@@ -60,7 +63,7 @@ class Record:
     @property
     def judged(self) -> bool:
         """Whether an engine that shares no equations with us was compared with."""
-        return any(row.engine in ROUTES and ROUTES[row.engine].independent for row in self.compared)
+        return any(is_independent(row.engine) for row in self.compared)
 
     @property
     def comparisons(self) -> list[Comparison]:
@@ -75,7 +78,12 @@ class Record:
     @property
     def independent(self) -> int:
         """Number of comparisons with engines that share no equations with ours."""
-        return sum(is_independent(row) for row in self.compared)
+        return sum(is_independent(row.engine) for row in self.compared)
+
+    @property
+    def engines(self) -> list[str]:
+        """Engines of the comparisons with a verdict on numbers, in the order of reports."""
+        return in_order(row.engine for row in self.compared if row.engine not in NO_ENGINE)
 
     def rows(self, *status: str) -> list[Comparison]:
         """The rows of these statuses."""
@@ -129,7 +137,7 @@ def as_data(
         "schema": SCHEMA,
         "ok": compared and all(model.ok for model in models) and not unfinished,
         # Of the comparisons with a verdict on numbers.
-        "independent": sum(is_independent(row) for row in rows if row.status in ("agree", "disagree")),
+        "independent": sum(is_independent(row.engine) for row in rows if row.status in ("agree", "disagree")),
         "comparisons": [_entry(row) for row in rows if row.status != "unsupported"],
         "unsupported": [
             {"model": row.model, "engine": row.engine, "quantity": row.quantity, "reason": row.note}

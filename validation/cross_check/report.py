@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ..adapters import ROUTES, differences
+from ..adapters import differences
 from ..checking import ModelResult
 from ..comparison.elements import ROWS as ELEMENT_ROWS
 from ..comparison.errors import NOBODY
@@ -16,7 +16,7 @@ from ..reporting.record import MISSED, Block, Bullets, Data, Fact, Report, Secti
 from . import tables
 from .figures import error_against_condition, error_distributions
 from .measure import measure
-from .record import Record
+from .record import Record, is_independent
 
 # Beginnings of the parts of a problem, which is written on one line.
 _PARTS = re.compile("; (?=found: |rule: |remedy: )")
@@ -64,7 +64,7 @@ _USUAL = "rounding of sums of some hundred products, and a margin"
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     record = Record.of(data)
-    engines = [name for name in ROUTES if any(row.engine == name for row in record.compared)]
+    engines = record.engines
     baseline, worse = _against_baseline(data), len(data.get("baseline", {}).get("regressions", ()))
     failed, opinions = tables.failures(record), [tables.opinion(record, name) for name in engines]
     wrong = ", ".join(f"{name} ({said.removeprefix(MISSED)})" for name, *_, said in opinions if said != "agrees")
@@ -121,7 +121,7 @@ def _against_baseline(data: Data) -> tuple[Block, ...]:
 
 
 def _facts(record: Record, engines: list[str]) -> list[Fact]:
-    independent = sum(ROUTES[name].independent for name in engines)
+    independent = sum(map(is_independent, engines))
     speeds = [model.sizes["nv"] for model in record.models if "nv" in model.sizes]
     span = f", {min(speeds)} to {max(speeds)} speeds" if speeds else ""
     own = len(record.compared) - record.independent

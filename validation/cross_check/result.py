@@ -9,7 +9,7 @@ from pathlib import Path
 import symofros as sf
 from symofros.commands.reading import ReadingOptions
 
-from ..adapters import ROUTES
+from ..adapters import require_engines
 from ..checking import ModelResult, Settings, check
 from ..comparison.errors import Comparison
 from ..contract.interface import Subject
@@ -62,10 +62,11 @@ def check_model(
         raise sf.ArgumentError(
             sf.Problem("check: states", str(states), "at least one state is compared", "states=1 or more")
         )
-    for name in engines or ():
-        if name not in ROUTES:
-            known = ", ".join(ROUTES)
-            raise sf.UnknownNameError(sf.Problem(f"check: no engine '{name}'", name, known, "name one of these"))
+    try:
+        require_engines(engines or ())
+    except LookupError as error:
+        said, _, known = str(error.args[0]).partition("; there are ")
+        raise sf.UnknownNameError(sf.Problem(f"check: {said}", said, known, "name one of these")) from None
     settings = Settings(states, seed, None if engines is None else tuple(engines))
     return CheckResult(settings, check(_subject(model, floating_base), settings))
 

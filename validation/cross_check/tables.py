@@ -6,14 +6,13 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 
-from ..adapters import ROUTES
+from ..adapters import in_order
 from ..checking import ModelResult
 from ..comparison.errors import NOBODY, Comparison
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES
-from ..procedures import ENGINE as FORMULAS
 from ..reporting.numbers import counted, digits
 from ..reporting.record import Cell, Table, verdict
-from .record import Record
+from .record import NO_ENGINE, Record, is_independent
 
 COMPARED = (*QUANTITIES.values(), MOTION_ENERGY)
 # Titles of columns -> quantities that share one, in their order, and the drift of our own free motion.
@@ -22,8 +21,6 @@ COLUMNS = {
     for title in dict.fromkeys(q.column or q.symbol for q in COMPARED)
 } | {"drift": ("energy_drift",)}
 OPINION = "engine | opinion | models | comparisons | disagree | alone | largest error / tolerance | of | verdict"
-# Engines of rows that no other engine is behind: our own drift, and what was asked of any of them.
-_OURS = ("symofros", NOBODY, FORMULAS)
 # Statuses with a verdict on numbers.
 _JUDGED = ("agree", "disagree")
 # Of a model that only we had an opinion of.
@@ -53,7 +50,8 @@ def nearest(record: Record, each: bool) -> Table:
     """
     lines: list[tuple[str, ...]] = []
     for model in record.models:
-        engines = [(name, _of(model, name)) for name in (*ROUTES, *_OURS)]
+        named = in_order(row.engine for row in model.comparisons if row.engine not in NO_ENGINE)
+        engines = [(name, _of(model, name)) for name in (*named, *NO_ENGINE)]
         for name, rows in engines if each else [(_engines(model), list(model.comparisons))]:
             error: tuple[str, ...] = ("", "", "")
             if (row := worst(rows)) is not None:
@@ -73,7 +71,7 @@ def nearest(record: Record, each: bool) -> Table:
 
 def _engines(model: ModelResult) -> str:
     """Number of engines that a model is compared with, as text."""
-    return str(len({row.engine for row in model.comparisons if row.status in _JUDGED} - {*_OURS}))
+    return str(len({row.engine for row in model.comparisons if row.status in _JUDGED} - {*NO_ENGINE}))
 
 
 def _of(model: ModelResult, engine: str) -> list[Comparison]:
@@ -87,7 +85,7 @@ def opinion(record: Record, engine: str) -> tuple[str, ...]:
     """
     others: dict[tuple[str, str], set[str]] = {}
     for row in record.compared:
-        if row.engine != engine and row.engine in ROUTES and ROUTES[row.engine].independent:
+        if row.engine != engine and is_independent(row.engine):
             others.setdefault((row.model, row.quantity), set()).add(row.status)
     rows = [row for row in record.compared if row.engine == engine]
     wrong = [row for row in rows if row.status == "disagree"]
@@ -95,7 +93,7 @@ def opinion(record: Record, engine: str) -> tuple[str, ...]:
     used = "NaN" if near is None or near.error is None else f"{near.error / near.tolerance:.2g}"
     place = f"{near.title} of {near.model}" if near else ""
     said = "agrees" if not wrong else "suspect" if 2 * alone > len(wrong) else "against our C"
-    kind, models = "independent" if ROUTES[engine].independent else "our own", len({row.model for row in rows})
+    kind, models = "independent" if is_independent(engine) else "our own", len({row.model for row in rows})
     counts = map(str, (models, len(rows), len(wrong), alone))
     return engine, kind, *counts, used, place, verdict(said, not wrong)
 

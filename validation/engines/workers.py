@@ -111,13 +111,23 @@ def _prepared(job: Job) -> tuple[EngineModel, Layout, State] | Unsupported:
     model = made(job)
     if isinstance(model, Unsupported):
         return model
-    slots = tuple(tuple(Slot(one.chart, tuple(one.q), tuple(one.v)) for one in link) for link in model.slots)
-    layout = Layout(int(model.nq), int(model.nv), slots)
-    _require(job.tree, layout)
+    layout = layout_of(job.tree, model)
     state = assembled(layout, job.pieces) if job.pieces else random_state(job.tree, layout, job.seed)
     if job.tree.constraints and not isinstance(state, Unsupported):
         state = closed(job.tree, layout, state, restarts=0 if job.pieces else 20)
     return state if isinstance(state, Unsupported) else (model, layout, state)
+
+
+def layout_of(tree: Tree, model: EngineModel) -> Layout:
+    """How a model keeps the joints of a tree.
+
+    Raises:
+        ValueError: It is a layout of no such tree; the message says where.
+    """
+    slots = tuple(tuple(Slot(one.chart, tuple(one.q), tuple(one.v)) for one in link) for link in model.slots)
+    layout = Layout(int(model.nq), int(model.nv), slots)
+    _require(tree, layout)
+    return layout
 
 
 def _require(tree: Tree, layout: Layout) -> None:

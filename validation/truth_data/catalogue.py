@@ -6,19 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..engines.interface import Joint, Link, Slot, Tree, Vector, rows
+from ..engines.interface import Joint, Link, Tree, Vector, rows
 from ..engines.models.kinds import link, placed
-from ..engines.proving.pieces import Layout
-
-# Kind of joint -> the chart that says what its coordinates and speeds are (`validation.engines.truth.charts`).
-CHARTS = {
-    "revolute": "angle",
-    "prismatic": "length",
-    "helical": "screw angle",
-    "ball": "quaternion xyzw, body speeds",
-    "free": "free xyzw, body speeds",
-}
-_SIZES = {"revolute": (1, 1), "prismatic": (1, 1), "helical": (1, 1), "ball": (4, 3), "free": (7, 6)}
 
 # Functions of `validation.engines.functions.FUNCTIONS` that have their values in the data.
 FUNCTIONS = (
@@ -67,21 +56,6 @@ _OBLIQUE: Vector = (2 / 3, -1 / 3, 2 / 3)
 _X: Vector = (1.0, 0.0, 0.0)
 _Y: Vector = (0.0, 1.0, 0.0)
 _Z: Vector = (0.0, 0.0, 1.0)
-
-
-def layout(tree: Tree) -> Layout:
-    """Joints one after the other in the order of the links, in the charts of CHARTS."""
-    slots: list[tuple[Slot, ...]] = []
-    nq = nv = 0
-    for item in tree.links:
-        kept = []
-        for joint in item.joints:
-            if joint.kind != "fixed":
-                q, v = _SIZES[joint.kind]
-                kept.append(Slot(CHARTS[joint.kind], tuple(range(nq, nq + q)), tuple(range(nv, nv + v))))
-                nq, nv = nq + q, nv + v
-        slots.append(tuple(kept))
-    return Layout(nq, nv, tuple(slots))
 
 
 def _tree(name: str, seed: int, *joints: tuple[int, Joint], sizes: tuple[float, ...] = ()) -> Tree:

@@ -22,10 +22,11 @@ import symofros as sf
 from symofros.tools import write_atomically
 
 from ..engines.functions import FUNCTIONS as ALL
+from ..engines.proving.pieces import OURS, Layout
 from ..engines.truth.arithmetic import many_digits
-from ..engines.truth.charts import CHARTS as ALL_CHARTS
+from ..engines.truth.charts import CHARTS
 from ..engines.truth.dynamics import Point, Truth, random_state
-from .catalogue import CHARTS, FUNCTIONS, Model, layout
+from .catalogue import FUNCTIONS, Model
 from .descriptions import files, numbers
 from .schema import SCHEMA
 
@@ -49,7 +50,7 @@ CONVENTIONS = (
 
 def values_of(model: Model, count: int = STATES) -> dict[str, Any]:
     """States of a model and the values there, as values/NAME.json holds them."""
-    made = layout(model.tree)
+    made = Layout.ours(model.tree)
     states = []
     with many_digits():
         truth = Truth(model.tree, made)
@@ -112,7 +113,7 @@ def _manifest(models: Sequence[Model], digests: dict[str, Any]) -> dict[str, Any
         "method": "Newton's and Euler's equations of each link projected by its Jacobian, in 130 decimal digits; "
         "derivatives by central differences of step 1e-18 (validation/engines/truth/dynamics.py)",
         "conventions": list(CONVENTIONS),
-        "charts": {name: ALL_CHARTS[name].text for name in sorted(set(CHARTS.values()))},
+        "charts": {name: CHARTS[name].text for name in sorted(set(OURS.values()))},
         "functions": {name: ALL[name].text for name in FUNCTIONS},
         "models": {model.name: model.why for model in models},
         "files": digests,

@@ -10,7 +10,7 @@ import symofros as sf
 
 from ..engines.interface import Joint, Link, Tree, Unsupported
 from ..engines.plugins.writing.urdf import describe
-from .catalogue import CHARTS, layout
+from ..engines.proving.pieces import OURS, Layout
 
 # Constructors turn numbers into values; their types say what they keep.
 _s: Any = sf
@@ -60,7 +60,7 @@ def files(tree: Tree) -> dict[str, str]:
 
 def numbers(tree: Tree) -> dict[str, Any]:
     """The tree as plain data with every digit: the mechanism that the tabulated values belong to."""
-    made = layout(tree)
+    made = Layout.ours(tree)
     return {
         "name": tree.name,
         "gravity": list(tree.gravity),
@@ -81,7 +81,7 @@ def _link(item: Link, slots: Any) -> dict[str, Any]:
         "joint": _joint(joint),
     }
     if slots:
-        stated["joint"] |= {"chart": CHARTS[joint.kind], "q": list(slots[0].q), "v": list(slots[0].v)}
+        stated["joint"] |= {"chart": OURS[joint.kind], "q": list(slots[0].q), "v": list(slots[0].v)}
     return stated
 
 

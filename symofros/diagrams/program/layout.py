@@ -19,7 +19,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.inlets import Inlet
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.record import Segment
 from symofros.simulation.inputs import Signal
 
@@ -146,6 +146,18 @@ class Layout:
         blocks = tuple(name for part in self.parts for name in part.blocks)
         sizes = (len(self.q0), len(self.v0), len(self.condition_names))
         return Part(blocks, *(slice(0, size) for size in sizes))
+
+    def moved(self, block: str) -> tuple[Place, Place]:
+        """Places of configuration and speeds of the mechanism that a block moves.
+
+        Raises:
+            UnknownNameError: It moves none.
+        """
+        if block in self.q:
+            return self.q[block], self.v[block]
+        known = ", ".join(self.q) or "none"
+        what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, self.q) or "name a plant's"
+        raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
 
 
 def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence[str]]) -> Layout:

@@ -202,8 +202,17 @@ class Loop:
         ticks = [int(d.instant_tick[i]) for i in range(d.n_instants)]
         cycles, rest = divmod(math.ceil((t - float(d.t0)) / base - 1e-9), int(d.cycle_ticks))
         before = cycles * len(ticks) + bisect_left(ticks, rest)
-        done = int(d.cycle) * len(ticks) + int(d.next_instant)
-        return max(1, before + 1 - done)
+        return max(1, before + 1 - self.instants_done)
+
+    @property
+    def instants_done(self) -> int:
+        """Number of instants that were executed."""
+        d = self.diagram
+        return int(d.cycle) * int(d.n_instants) + int(d.next_instant)
+
+    def view(self, pointer: Any, size: int) -> Array:
+        """The doubles behind a pointer of the diagram (size), not copied."""
+        return self._memory.view(pointer, size)
 
     @property
     def held(self) -> Array:

@@ -25,7 +25,7 @@ from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
-from symofros.diagrams.run.parts import place_parts, start_parts
+from symofros.diagrams.run.parts import Placed, place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.starts import Start
@@ -83,26 +83,39 @@ def run_compiled(
     par = parameter_values(resolved, parameters or {})
     interval = record_interval(options.output, options.t0, t_end, options.dt)
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
-    task = _Run(compiled, plan, options, t_end, par, threads)
+    task = PlannedRun(compiled, plan, options, t_end, par, threads)
     with begun(resolved.wired) as called:
-        ended = _drive(task, Start.of(resolved, options.t0), called, progress, observer)
+        ended = run_from(task, Start.of(resolved, options.t0), called, progress, observer)
         kept = called.kept()
+    return examined_run(task, ended, called.given, kept)
+
+
+def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str, Mapping[str, Array]]) -> DiagramRun:
+    """A run from the first state that has ended, its outcome examined.
+
+    Args:
+        task: What was run.
+        ended: The run.
+        given: What external blocks gave.
+        kept: What blocks stored.
+    """
+    resolved, options, par = task.compiled.resolved, task.options, task.par
     bendings = ended.bendings
-    again = _rerun(task, ended.states, called.given)
+    again = _rerun(task, ended.states, given)
     outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if outcome.kind == "finished" and not options.realtime:
-        notes = remarks(_examined(task, ended, called.given), modes)
+        notes = remarks(_examined(task, ended, given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
     outcome = blamed(outcome, resolved, again)
     t, q, v, u = ended.states
-    records = Records(compiled, t, q, v, u, par)
+    records = Records(task.compiled, t, q, v, u, par)
     outcome = judge_prescribed(outcome, resolved, records.t, lambda source: records[".".join(source)])
     return _recorded(task, ended, outcome, bendings, kept)
 
 
 @dataclass(frozen=True)
-class _Run:
+class PlannedRun:
     """What is run.
 
     Attributes:
@@ -128,7 +141,7 @@ class _Run:
         return part_settings(self.options, model, self.t_end)
 
 
-def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
+def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     """A run as its steps are judged."""
     layout, parts, par, states = ended.layout, task.compiled.parts, task.par, ended.states
     settings = ended.settings[0] if ended.settings else None
@@ -154,7 +167,7 @@ def _examined(task: _Run, ended: Ended, given: Given) -> Examined:
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
 
 
-def _rerun(task: _Run, states: Sequence[Array], given: Given) -> Rerun:
+def _rerun(task: PlannedRun, states: Sequence[Array], given: Given) -> Rerun:
     """Function that repeats a span of a run with other records and steps; it returns None where it can't."""
     wired = task.compiled.resolved.wired
 
@@ -174,7 +187,7 @@ def _rerun(task: _Run, states: Sequence[Array], given: Given) -> Rerun:
     return again
 
 
-def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Sequence[Array] | None:
+def _resumed(task: PlannedRun, states: Sequence[Array], given: Given, i: int) -> Sequence[Array] | None:
     """The records of a run that goes on from a record; None where it does not come to its end.
 
     Raises:
@@ -189,11 +202,13 @@ def _resumed(task: _Run, states: Sequence[Array], given: Given, i: int) -> Seque
     return joined if ended.recorded.status == Status.FINISHED else None
 
 
-def _continued_run(task: _Run, states: Sequence[Array], given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
+def _continued_run(
+    task: PlannedRun, states: Sequence[Array], given: Given, i: int
+) -> tuple[Ended, Sequence[Array]] | None:
     """A run continued from record i, and its states from there on; None if it fails."""
     begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
     try:
-        ended = _drive(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
+        ended = run_from(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
     except SymofrosError:
         return None
     return ended, [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
@@ -234,8 +249,32 @@ def _tasks(compiled: CompiledDiagram, plan: Schedule, external: ExternalCalls) -
     return tasks
 
 
-def _drive(
-    task: _Run,
+def placed_loop(task: PlannedRun, begin: Start, called: Called) -> tuple[Loop, list[Placed]]:
+    """The loop of a run, and its parts, placed at a state.
+
+    Raises:
+        SymofrosError: The method is implicit.
+        AssemblyError: The state closes no loop.
+    """
+    compiled, resolved = task.compiled, task.compiled.resolved
+    parts = place_parts(compiled, task.settings, task.par, begin)
+    external = ExternalCalls(resolved, called)
+    loop = Loop(
+        resolved.layout,
+        [part.stepper for part in parts],
+        task.plan,
+        _tasks(compiled, task.plan, external),
+        [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+        task.par,
+        begin.u,
+        external,
+        compiled.reads_accelerations,
+    )
+    return loop, parts
+
+
+def run_from(
+    task: PlannedRun,
     begin: Start,
     called: Called,
     progress: bool | Callable[[float], None] = False,
@@ -246,19 +285,7 @@ def _drive(
     """Run from a state; from one that is recorded, with the instants after it."""
     compiled, plan, options, t_end, par = task.compiled, task.plan, task.options, task.t_end, task.par
     resolved, watcher = compiled.resolved, observer or NoObserver()
-    parts = place_parts(compiled, task.settings, par, begin)
-    external = ExternalCalls(resolved, called)
-    loop = Loop(
-        resolved.layout,
-        [part.stepper for part in parts],
-        plan,
-        _tasks(compiled, plan, external),
-        [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
-        par,
-        begin.u,
-        external,
-        compiled.reads_accelerations,
-    )
+    loop, parts = placed_loop(task, begin, called)
     t0, realtime = options.t0, float(options.realtime)
     instants = int((t_end - t0) / (float(plan.base) * plan.cycle) + 2) * len(plan.instants)
 
@@ -285,7 +312,7 @@ def _drive(
 
 
 def _recorded(
-    task: _Run,
+    task: PlannedRun,
     ended: Ended,
     outcome: Outcome,
     bendings: tuple[BeamBending, ...],

@@ -93,9 +93,7 @@ def stated_values(system: System) -> Iterator[Stated]:
         key = ("connection", connection.name)
         if isinstance(connection, Contact):
             for label, value in connection.values():
-                # The unit of a stiffness depends on the exponent.
-                units = () if label == "stiffness" and connection.exponent != 1.0 else units_of(Contact, label)
-                yield Stated(f"contact '{connection.name}': {label}", value, key, units=units)
+                yield Stated(f"contact '{connection.name}': {label}", value, key, units=units_of(Contact, label))
             continue
         for label in ("stiffness", "length", "damping"):
             units = units_of(Connection, label)

@@ -222,11 +222,11 @@ static PyObject *call(PyObject *callable, PyObject *const *args, size_t nargsf, 
     Py_ssize_t i, n_held = 0;
     int as_expected = 1, batched = 0;
     if (n_args == 2 && args[1] != Py_None) out = args[1];
-    if (n_args < 1 || n_args > 2 || (kwnames && PyTuple_GET_SIZE(kwnames)) || !PyDict_CheckExact(args[0]) ||
-        (out && !PyDict_CheckExact(out))) {
+    if (n_args < 1 || n_args > 2 || (kwnames && PyTuple_GET_SIZE(kwnames)) || !PyDict_CheckExact(args[0])) {
         PyErr_SetString(PyExc_TypeError, "a call takes one dict of inputs, and one of arrays that receive outputs");
         return NULL;
     }
+    if (out && !PyDict_CheckExact(out)) Py_RETURN_NONE;
     for (i = 0; as_expected && i < self->n_in; ++i) {
         const input *of = &self->in[i];
         PyObject *value = PyDict_GetItemWithError(args[0], of->name);

@@ -33,19 +33,23 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *share
     const size_t slopes = b->prototype->tableau.dense_stages > 1 ? (size_t)b->prototype->tableau.dense_stages : 1;
     b->systems = sym_allocate_bytes(scratch, slots * sizeof *b->systems);
     b->runs = sym_allocate_bytes(own, slots * sizeof *b->runs);
-    b->signals = sym_allocate_bytes(scratch, slots * (size_t)s->n_signals * sizeof *b->signals);
     b->trajectory_of_slot = sym_allocate_bytes(own, slots * sizeof *b->trajectory_of_slot);
     b->status = sym_allocate_bytes(scratch, slots * sizeof *b->status);
     b->h = sym_allocate(scratch, slots), b->t1 = sym_allocate(scratch, slots);
     b->q = sym_allocate(scratch, slots * nq), b->v = sym_allocate(scratch, slots * nv);
-    b->u = sym_allocate(scratch, slots * (size_t)s->nu), b->t = sym_allocate(scratch, slots);
+    b->t = sym_allocate(scratch, slots);
     b->states = sym_allocate(own, slots * (nq + nv));
     b->y1 = sym_allocate(scratch, slots * m), b->stage = sym_allocate(scratch, slots * m);
     b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
     b->k = sym_allocate(scratch, slopes * slots * m);
+    b->y0 = sym_allocate(scratch, slots * m), b->length = sym_allocate(scratch, slots * m);
+    if (!sym_batch_has_columns(b)) b->forward_dynamics.lanes = NULL;
+    else sym_columns_allocate(b, own, scratch);
+    /* Where there are slots enough, all above begins at lines of cache. */
+    b->u = sym_allocate(scratch, slots * (size_t)s->nu);
+    b->signals = sym_allocate_bytes(scratch, slots * (size_t)s->n_signals * sizeof *b->signals);
     b->end_state = sym_allocate(scratch, nq + nv), b->unseen = sym_allocate(scratch, 3 * nv);
     b->defects = sym_allocate_defects(s, scratch).impulse; /* the first of them */
-    b->y0 = sym_allocate(scratch, slots * m), b->length = sym_allocate(scratch, slots * m);
     return sym_batch_bind(b, own, scratch, &b->forward_dynamics) && sym_batch_bind(b, own, scratch, &b->law);
 }
 
@@ -81,7 +85,8 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         r->system = s;
         r->q = b->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
     }
-    b->n_active = 0;
+    b->n_active = b->in_columns = b->n_begun = 0;
+    if (b->forward_dynamics.lanes != NULL) sym_columns_bind(b, &b->forward_dynamics), sym_columns_bind(b, &b->law);
     return 1;
 }
 
@@ -112,13 +117,28 @@ static void sym_batch_set_parameters(sym_batch_function *f, sym_call *call, int3
         memcpy(f->pre_active + slot * f->pre.stride, call->pre, (size_t)f->pre.stride * sizeof(double));
 }
 
-/* A slot takes the inputs and parameters of a trajectory. */
+/* A run takes the memory of a trajectory in which it records, and in which its beams are judged. */
+static void sym_batch_place(const sym_batch *b, sym_run *r, int64_t trajectory) {
+    const sym_system *s = r->system;
+    const int64_t n = s->n_beams, coordinates = b->n_beam_coordinates;
+    r->record_q = b->record_q + trajectory * r->capacity * s->nq;
+    r->record_v = b->record_v + trajectory * r->capacity * s->nv;
+    r->record_u = b->record_u + trajectory * r->capacity * s->nu;
+    r->beam_scale = b->beam_scale.at + trajectory * b->beam_scale.stride;
+    r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
+    r->beam_error = b->beam_error + trajectory * n, r->beam_t = b->beam_t + trajectory * n;
+    r->beam_q = b->beam_q + trajectory * coordinates, r->beam_reference = b->beam_reference + 2 * trajectory * coordinates;
+    r->beam_guard = b->beam_guard + trajectory * n, r->beam_weight = b->beam_weight + trajectory * s->nv;
+}
+
+/* A slot takes the inputs, parameters and memory of a trajectory. */
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     const sym_system *prototype = b->prototype->system;
     sym_system *s = b->systems + slot;
     sym_signal *signals = b->signals + (size_t)slot * (size_t)prototype->n_signals;
     int32_t k;
     b->trajectory_of_slot[slot] = trajectory;
+    sym_batch_place(b, b->runs + slot, trajectory);
     s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
     for (k = 0; k < prototype->n_signals; ++k)
         signals[k].value = prototype->signals[k].value + trajectory * b->signal_stride[k];
@@ -168,13 +188,9 @@ static void sym_batch_retire(sym_batch *b, int32_t slot, int32_t status) {
     --b->n_active;
 }
 
-/* A run takes the memory of a trajectory in which its beams are judged; nothing is known of them yet. */
-static void sym_batch_forget_beams(const sym_batch *b, sym_run *r, int64_t trajectory) {
+/* Nothing is known of the beams of a run yet. */
+static void sym_batch_forget_beams(const sym_batch *b, sym_run *r) {
     const size_t n = (size_t)r->system->n_beams, coordinates = (size_t)b->n_beam_coordinates, nv = (size_t)r->system->nv;
-    const size_t k = (size_t)trajectory;
-    r->beam_error = b->beam_error + k * n, r->beam_t = b->beam_t + k * n, r->beam_q = b->beam_q + k * coordinates;
-    r->beam_reference = b->beam_reference + 2 * k * coordinates;
-    r->beam_guard = b->beam_guard + k * n, r->beam_weight = b->beam_weight + k * nv;
     memset(r->beam_error, 0, n * sizeof *r->beam_error), memset(r->beam_t, 0, n * sizeof *r->beam_t);
     memset(r->beam_q, 0, coordinates * sizeof *r->beam_q);
     memset(r->beam_reference, 0, 2 * coordinates * sizeof *r->beam_reference);
@@ -194,12 +210,7 @@ static void sym_batch_activate_next(sym_batch *b) {
     memcpy(r->v, b->v0.at + trajectory * b->v0.stride, (size_t)s->nv * sizeof *r->v);
     r->t = r->t0 = b->t0 != NULL ? b->t0[trajectory] : b->prototype->t0;
     r->steps = r->rejected = 0;
-    r->record_q = b->record_q + trajectory * r->capacity * s->nq;
-    r->record_v = b->record_v + trajectory * r->capacity * s->nv;
-    r->record_u = b->record_u + trajectory * r->capacity * s->nu;
-    r->beam_scale = b->beam_scale.at + trajectory * b->beam_scale.stride;
-    r->beam_reach = b->beam_reach.at + trajectory * b->beam_reach.stride;
-    sym_batch_forget_beams(b, r, trajectory);
+    sym_batch_forget_beams(b, r);
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_run_start(r);
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
@@ -263,10 +274,10 @@ static void sym_batch_begin_step(sym_batch *b) {
 
 /* y = (0, v) + h times the weighted sum of slopes, of all active trajectories: sym_combine_slopes. */
 static void sym_batch_combine_slopes(const sym_batch *b, int32_t stages, const double *weights, double *restrict y) {
-    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * (size_t)m;
+    const size_t m = 2 * (size_t)b->prototype->system->nv, size = (size_t)b->n_active * m;
     const double *restrict y0 = b->y0, *restrict length = b->length;
     size_t l;
-    sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * (size_t)m, y);
+    sym_weighted_sum(size, stages, weights, b->k, (size_t)b->slots * m, y);
     for (l = 0; l < size; ++l) y[l] = length[l] * y[l] + y0[l];
 }
 
@@ -321,14 +332,21 @@ static void sym_batch_step(sym_batch *b) {
 SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
     int64_t done;
     for (done = 0; done < max_steps; ++done) {
+        if (b->n_active < b->slots && b->next < b->n) sym_columns_leave(b);
         while (b->n_active < b->slots && b->next < b->n) sym_batch_activate_next(b);
         if (b->n_active == 0) return 0;
+        if (b->forward_dynamics.lanes != NULL) {
+            if (!b->in_columns) sym_columns_enter(b);
+            if (sym_columns_step(b)) continue;
+            sym_columns_leave(b);
+        }
         sym_batch_step(b);
     }
     return b->n_active > 0 || b->next < b->n;
 }
 
 SYM_EXPORT void sym_batch_stop(sym_batch *b) {
+    sym_columns_leave(b);
     while (b->n_active > 0) sym_batch_retire(b, b->n_active - 1, SYM_RUNNING);
     for (; b->next < b->n; b->next += b->stride) {
         const double *q = b->q0.at + b->next * b->q0.stride, *v = b->v0.at + b->next * b->v0.stride;

@@ -69,6 +69,19 @@ static void sym_hand_batch_hold(const sym_hand_batch *hand, sym_batch *b, const 
     }
 }
 
+/* The same where states are in columns. */
+static void sym_hand_columns_hold(const sym_hand_batch *hand, sym_batch *b, const double *u) {
+    const int32_t nu = b->prototype->system->nu, n = hand->n_held;
+    int32_t i, l;
+    for (i = 0; u != NULL && i < b->n_active; ++i) {
+        const int64_t k = b->trajectory_of_slot[i];
+        for (l = 0; l < n; ++l) {
+            const double value = u[k * n + l];
+            hand->u[k * nu + hand->held[l]] = b->column_u[SYM_INDEX(hand->held[l], b->slots, i)] = value;
+        }
+    }
+}
+
 /* A trajectory begins, or begins anew; one whose status says that it can't keeps that. */
 static void sym_hand_batch_begin(const sym_hand_batch *hand, sym_batch *b, int64_t k, const double *u) {
     double *constant = hand->u + k * b->prototype->system->nu;
@@ -80,23 +93,39 @@ static void sym_hand_batch_begin(const sym_hand_batch *hand, sym_batch *b, int64
     sym_batch_activate_next(b);
 }
 
+/* Times, states and numbers of steps of the active trajectories go where the caller reads them. */
+static void sym_hand_batch_store(sym_batch *b) {
+    const int32_t nv = b->prototype->system->nv;
+    int32_t i;
+    for (i = 0; i < b->n_active; ++i) {
+        const int64_t k = b->trajectory_of_slot[i];
+        const sym_run *r = b->runs + i;
+        if (b->in_columns) {
+            b->final_t[k] = b->column_t[i], b->steps[k] = (int64_t)b->column_steps[i];
+            sym_column_state(b, i, b->final_q + k * nv, b->final_v + k * nv);
+        } else {
+            sym_batch_store_result(b, k, SYM_RUNNING, r->t, r->q, r->v);
+            b->steps[k] = r->steps;
+        }
+    }
+}
+
 SYM_EXPORT void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
-    int64_t k = hand->first;
-    int32_t g, i;
+    int64_t first = hand->first, k;
+    int32_t g, begins;
     for (g = 0; g < hand->n_groups; ++g) {
         sym_batch *b = hand->groups + g;
-        sym_hand_batch_hold(hand, b, u);
-        for (; k < b->n; ++k) {
+        for (begins = 0, k = first; k < b->n; ++k) begins |= hand->begins[k];
+        if (begins) sym_columns_leave(b);
+        if (b->in_columns) sym_hand_columns_hold(hand, b, u);
+        else sym_hand_batch_hold(hand, b, u);
+        for (k = first; begins && k < b->n; ++k) {
             if (!hand->begins[k]) continue;
             hand->begins[k] = 0;
             sym_hand_batch_begin(hand, b, k, u);
         }
-        b->next = b->n;
+        first = b->next = b->n;
         sym_batch_advance(b, steps);
-        for (i = 0; i < b->n_active; ++i) {
-            const sym_run *r = b->runs + i;
-            sym_batch_store_result(b, b->trajectory_of_slot[i], SYM_RUNNING, r->t, r->q, r->v);
-            b->steps[b->trajectory_of_slot[i]] = r->steps;
-        }
+        sym_hand_batch_store(b);
     }
 }

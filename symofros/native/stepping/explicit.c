@@ -3,14 +3,18 @@
 /* sum = weights[0] k_0 + ... + weights[stages - 1] k_(stages - 1), of n entries each. */
 static void sym_weighted_sum(size_t n, int32_t stages, const double *weights, const double *k, size_t stride,
                              double *restrict sum) {
-    int32_t j;
+    int32_t j, empty = 1;
     size_t l;
-    memset(sum, 0, n * sizeof *sum);
     for (j = 0; j < stages; ++j) {
         const double weight = weights[j], *restrict kj = k + (size_t)j * (size_t)stride;
-        if (weight != 0.0)
+        if (weight == 0.0) continue;
+        if (empty)
+            for (l = 0; l < n; ++l) sum[l] = 0.0 + weight * kj[l];
+        else
             for (l = 0; l < n; ++l) sum[l] += weight * kj[l];
+        empty = 0;
     }
+    if (empty) memset(sum, 0, n * sizeof *sum);
 }
 
 /* y = (0, v) + h times the weighted sum of slopes. */

@@ -2,7 +2,8 @@
  *
  * Active trajectories step together, each by its own step size; the accelerations at one stage of all of them are one
  * call of the model's batch function, by vectors. A trajectory that ends frees its slot for the next. Apart from that call
- * everything is the code of a single run (run.c), so that no trajectory depends on the others.
+ * everything is the code of a single run (run.c), so that no trajectory depends on the others; where steps are simple, all of
+ * a step is done by vectors, with the same numbers (batch_columns.c).
  */
 #ifndef SYMOFROS_BATCH_H
 #define SYMOFROS_BATCH_H
@@ -17,6 +18,7 @@ typedef struct sym_batch_rows { /* one row per trajectory */
 
 typedef struct sym_batch_function { /* a model function that is evaluated for all active trajectories at once */
     const sym_function *function; /* NULL: absent, or evaluated one by one */
+    const sym_lanes *lanes;       /* the same by vectors of doubles, for steps by columns; NULL: steps by rows alone */
     sym_batch_rows pre;           /* the parameters' part, of all trajectories */
     /* By sym_batch_start: memory, and where the inputs of all slots lie. */
     double *pre_active; /* (slots, npre) where trajectories have parameters of their own */
@@ -24,6 +26,9 @@ typedef struct sym_batch_function { /* a model function that is evaluated for al
     const double *in[SYM_MAX_INPUTS];
     size_t in_stride[SYM_MAX_INPUTS];
     double *out[SYM_MAX_OUTPUTS]; /* (slots, ...) each */
+    sym_strided column_in[SYM_MAX_INPUTS], column_out[SYM_MAX_OUTPUTS]; /* the same by columns, (..., slots) each */
+    int32_t column_v;             /* number of the input v; -1: none */
+    double *column_work;
 } sym_batch_function;
 
 typedef struct sym_batch {
@@ -60,6 +65,11 @@ typedef struct sym_batch {
     double *y1, *stage, *magnitude, *end_slope, *k, *y0, *length;
     double *end_state, *unseen; /* (nq + nv), (3 nv) while one slot accepts its step */
     double *defects;   /* of the inputs while one slot proposes its step: input_moments.c */
+    /* Steps by columns: number k of slot i is entry (k, i) of (size, slots). */
+    int32_t in_columns; /* whether `states` is (nq + nv, slots), and times and numbers of steps are not in the runs but here: */
+    int32_t n_begun;    /* number of slots whose first slope is known */
+    double *column_t, *column_t0, *column_steps, *column_record, *column_u; /* (slots) each, time of the next record; (nu, slots) */
+    double *column_slope, *lost; /* (nv, slots) first accelerations that are known; (slots) not zero: a number is none */
 } sym_batch;
 
 /* Doubles of memory that the slots take; *shared: those of them that hold nothing between two calls, so that batches of one

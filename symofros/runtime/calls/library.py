@@ -147,6 +147,11 @@ class CompiledKernel:
         return self._unit.ffi.addressof(self._function)
 
     @property
+    def vectors(self) -> Any:
+        """Pointer to the sym_lanes, for calls from C; NULL where there is no code by vectors."""
+        return self._unit.ffi.NULL if self._by_vectors is None else self._unit.ffi.addressof(self._by_vectors)
+
+    @property
     def library(self) -> Path:
         """The shared library that it lies in."""
         return self._unit.path

@@ -16,9 +16,10 @@ from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates
-from symofros.simulation.stepping.by_hand import held_by_hand
+from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates, lines
+from symofros.simulation.stepping.by_hand import Numbers, held_by_hand
 from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
 
 
 @dataclass(frozen=True)
@@ -26,20 +27,56 @@ class BatchState:
     """All that the following steps of many motions depend on.
 
     Attributes:
-        owner: What it is a state of: that takes it alone.
-        t: Times (n) [s].
-        q: Configurations (n, nq).
-        v: Speeds (n, nv).
+        owner: What it is a state of: that takes it, and its copies.
         par: Run-time parameters (npar), or (n, npar).
-        arrays: The arrays that C writes.
+        arrays: The arrays that C writes, first times, configurations and speeds.
+        groups: What C keeps of each group of slots: numbers of it and of its runs, and its memory.
     """
 
     owner: object
-    t: Array
-    q: Array
-    v: Array
     par: Array = field(repr=False)
     arrays: tuple[npt.NDArray[Any], ...] = field(repr=False)
+    groups: tuple[tuple[npt.NDArray[Any], ...], ...] = field(repr=False)
+
+    @property
+    def t(self) -> Array:
+        """Times (n) [s]."""
+        return self.arrays[0]
+
+    @property
+    def q(self) -> Array:
+        """Configurations (n, nq)."""
+        return self.arrays[1]
+
+    @property
+    def v(self) -> Array:
+        """Speeds (n, nv)."""
+        return self.arrays[2]
+
+
+class _Group:
+    """What C keeps of a group of slots between two calls, read and written without the pointers in it."""
+
+    def __init__(self, single: Stepper, group: Any, memory: Array) -> None:
+        self._memory = memory
+        self._runs = Numbers(single, "sym_run", group.runs, group.slots)
+        self._group = Numbers(single, "sym_batch", single.ffi.addressof(group))
+        raw = single.memory.raw
+        self._pointing = [raw(group.runs, "sym_run", group.slots)]
+        if single.run.tableau.fsal_stage:  # The memory has all of the slots; their numbers are set at each call.
+            self._pointing.append(raw(group.systems, "sym_system", group.slots))
+            self._pointing.append(raw(group.signals, "sym_signal", group.slots * single.system.n_signals))
+
+    def read(self) -> tuple[npt.NDArray[Any], ...]:
+        return self._group.read(), self._runs.read(), self._memory.copy()
+
+    def write(self, group: npt.NDArray[Any], runs: npt.NDArray[Any], memory: npt.NDArray[Any]) -> None:
+        own = [structs.copy() for structs in self._pointing]
+        self._memory[...] = memory
+        for structs, kept in zip(self._pointing, own, strict=True):
+            structs[...] = kept
+        self._runs.write(runs)
+        self._group.write(group)
 
 
 class _Part(BatchStepper):
@@ -56,7 +93,7 @@ class _Part(BatchStepper):
         bounds = [*range(self._first, self._end, SLOTS), self._end]
         batch.t0, batch.max_steps = self._memory.shared(all_parts.t0), 0
         self.groups = groups = ffi.new("sym_batch[]", len(bounds) - 1)
-        self.memory: list[npt.NDArray[Any]] = [self._memory.raw(groups, "sym_batch", len(groups))]
+        self.kept: list[_Group] = []
         # As many in each: they lie alike in the memory that groups share.
         slots, shared = max(2, min(SLOTS, self._end - self._first)), None
         for i, end in enumerate(bounds[1:]):
@@ -64,9 +101,10 @@ class _Part(BatchStepper):
             group = groups[i]
             group.next, group.stride, group.n, group.slots = end, 1, end, slots
             own, size = self._sizes(ffi.addressof(group))
-            shared = self._memory.zeros(size) if shared is None else shared
-            self.memory.append(np.zeros(own))
-            self._start(ffi.addressof(group), self.memory[-1], shared)
+            shared = lines(size) if shared is None else shared
+            memory = lines(own)
+            self._start(ffi.addressof(group), memory, shared)
+            self.kept.append(_Group(self.single, group, memory))
         self.hand = hand = ffi.new("sym_hand_batch *")
         hand.groups, hand.n_groups = groups, len(groups)
         hand.n_held, hand.held = len(all_parts.held), self._memory.own("int32_t[]", list(all_parts.held))
@@ -112,9 +150,10 @@ class HandBatch:
         count = max(1, min(threads, groups))
         bounds = [min(n, SLOTS * (groups * i // count)) for i in range(count)] + [n]
         self._parts = [_Part(self, model, settings, initial, *of) for of in zip(bounds, bounds[1:], strict=False)]
-        self._written = [getattr(self.results, field.name) for field in fields(self.results)]
+        arrays = {field.name: getattr(self.results, field.name) for field in fields(self.results)}
+        self._written = [arrays.pop(name) for name in ("t_last", "q_last", "v_last")] + [*arrays.values()]
         self._written += [self.constant, self.t0, self.q0, self.v0, self.begins]
-        self._written += [array for part in self._parts for array in part.memory]
+        self._groups = [group for part in self._parts for group in part.kept]
 
     def reset(self, chosen: npt.NDArray[np.intp], t: Array, q: Array, v: Array, par: Array | None) -> None:
         """Motions of these numbers begin anew at the next step, their inputs those of the description."""
@@ -148,11 +187,8 @@ class HandBatch:
 
     def save(self, owner: object, par: Array) -> BatchState:
         """All that C has written, and the parameters."""
-        results = self.results
-        arrays = tuple(array.copy() for array in self._written)
-        return BatchState(
-            owner, results.t_last.copy(), results.q_last.copy(), results.v_last.copy(), par.copy(), arrays
-        )
+        arrays, groups = (array.copy() for array in self._written), (group.read() for group in self._groups)
+        return BatchState(owner, par.copy(), tuple(arrays), tuple(groups))
 
     def restore(self, state: BatchState, par: Array | None) -> None:
         """Go on from a state that `save` gave, bit by bit as from there.
@@ -166,3 +202,5 @@ class HandBatch:
                 part.set_parameters(np.arange(len(par)), par)
         for to, array in zip(self._written, state.arrays, strict=True):
             to[...] = array
+        for group, kept in zip(self._groups, state.groups, strict=True):
+            group.write(*kept)

@@ -21,6 +21,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Trajectories that are active at once: eight vectors of eight lanes; few enough for the first two levels of cache.
 SLOTS = 64
+# Doubles of a line of cache.
+_LINE = 8
 # Steps of each trajectory in one call of C, between looks at Ctrl-C.
 _STEPS_PER_CALL = 64
 
@@ -131,15 +133,15 @@ class BatchStepper:
     def _lay_out(self) -> None:
         """Allocate the memory of the slots, and start them."""
         own, shared = self._sizes(self._batch)
-        self._start(self._batch, np.zeros(own), self._memory.zeros(shared))
+        self._start(self._batch, lines(own), lines(shared))
 
     def _sizes(self, batch: Any) -> tuple[int, int]:
         """Numbers of doubles of a batch's own memory, and of the memory that it may share."""
         shared = self.single.ffi.new("size_t *")
         return int(self._native.sym_batch_size(batch, shared)), int(shared[0])
 
-    def _start(self, batch: Any, own: Array, shared: Any) -> None:
-        if not self._native.sym_batch_start(batch, self._memory.shared(own), shared):
+    def _start(self, batch: Any, own: Array, shared: Array) -> None:
+        if not self._native.sym_batch_start(batch, self._memory.shared(own), self._memory.shared(shared)):
             raise CompileError("the integrator does not know every input of a batch function")
 
     def _fill_prototype(self) -> None:
@@ -165,6 +167,8 @@ class BatchStepper:
             precision = self.single.model.precision if name == "forward_dynamics" else "double"
             by_vectors = kernel.in_lanes(LaneOptions(function.pre.stride != 0, precision))
             function.function = by_vectors.function
+            if precision == "double":
+                function.lanes = by_vectors.vectors
             self._memory.keep(by_vectors)
 
     def _fill_shared_rows(self, rows: Any, values: Array) -> None:
@@ -227,6 +231,12 @@ class BatchStepper:
                     break
         finally:  # Ctrl-C in the main thread comes between two calls: active trajectories end where they are.
             self._native.sym_batch_stop(self._batch)
+
+
+def lines(count: int) -> Array:
+    """Zeros (count) from the beginning of a line of cache on: whole vectors that lie across two lines cost more."""
+    memory = np.zeros(count + _LINE)
+    return memory[-(memory.ctypes.data // 8) % _LINE :][:count]
 
 
 def run_batch_steppers(steppers: Sequence[BatchStepper]) -> None:

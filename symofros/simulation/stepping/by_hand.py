@@ -134,8 +134,8 @@ class HandRun:
         hand.capacity = _NOTED
         self._table = memory.table(hand, "noted_", _NOTED, t=1, u=model.nu)
         self._constant = inputs.constant.copy()
-        self._numbers = [_Numbers(run, "sym_run", run.run), _Numbers(run, "sym_system", run.system)]
-        self._numbers.append(_Numbers(run, "sym_hand", hand))
+        self._numbers = [Numbers(run, "sym_run", run.run), Numbers(run, "sym_system", run.system)]
+        self._numbers.append(Numbers(run, "sym_hand", hand))
         self._arrays = list(self._written())
         self.q, self.v = (memory.view(*of) for of in ((run.run.q, model.nq), (run.run.v, model.nv)))
         self.q.flags.writeable = self.v.flags.writeable = False
@@ -334,12 +334,12 @@ def held_by_hand(model: Model, plan: InputPlan, fixed: Container[str]) -> tuple[
     return tuple(i for i in range(model.nu) if i not in given and model.names.u[i] not in fixed)
 
 
-class _Numbers:
-    """The numbers among the fields of a struct of C: all but pointers and what is a struct itself."""
+class Numbers:
+    """The numbers among the fields of structs of C: all but pointers and what is a struct itself."""
 
-    def __init__(self, run: Stepper, kind: str, struct: Any) -> None:
+    def __init__(self, run: Stepper, kind: str, structs: Any, count: int = 1) -> None:
         ffi = run.ffi
-        self._bytes = run.memory.raw(struct, kind, 1)
+        self._bytes = run.memory.raw(structs, kind, count).reshape(count, -1)
         places = [
             np.arange(field.offset, field.offset + ffi.sizeof(field.type))
             for _, field in ffi.typeof(kind).fields
@@ -348,7 +348,9 @@ class _Numbers:
         self._places = np.concatenate(places)
 
     def read(self) -> npt.NDArray[np.uint8]:
-        return np.asarray(self._bytes[self._places])
+        """A copy of them."""
+        return np.asarray(self._bytes[:, self._places])
 
     def write(self, numbers: npt.NDArray[np.uint8]) -> None:
-        self._bytes[self._places] = numbers
+        """Replace them by what was read; of structs of another object, too."""
+        self._bytes[:, self._places] = numbers

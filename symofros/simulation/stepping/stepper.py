@@ -1,218 +1,27 @@
-"""One run of one model by the integrator of native/: its memory, the model's functions bound to it, its records."""
+"""One run of one model by the integrator of native/: its steps, its records, what is evaluated at its states."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import CompileError
 from symofros.runtime.beams import BeamBending, worst_bendings
-from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
-from symofros.runtime.model import Model
-from symofros.simulation.events import Event
-from symofros.simulation.inputs import InputPlan
-from symofros.simulation.stepping.methods import Method
+from symofros.runtime.calls import constants
+from symofros.simulation.stepping.bound_run import BoundRun
 from symofros.simulation.stepping.status import Status
-from symofros.simulation.stepping.tableaus import fill_tableau
-from symofros.simulation.user_functions import named_function
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
-_INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
 
 
-class InputValueError(ValueError):
-    """A function of inputs returned what is no input."""
-
-
-class Stepper:
-    """One run of one model.
-
-    Args:
-        model: Compiled to C.
-        method: The stepping method.
-        inputs: The inputs by how they are evaluated.
-        events: Zero crossings to locate.
-        par: Run-time parameters (npar).
-
-    Attributes:
-        memory: Arrays that C points to.
-        system: The sym_system: the model's functions and the evaluation point.
-        run: The sym_run: settings, present state, counters.
-        inputs: Inputs by how they are evaluated.
-        same_inputs_again: Whether an input function gives the run's inputs once more; None: not asked yet.
-        kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
-        beams: Elastic beams at the parameters.
-        beam_record: Largest error of each beam, when that was, and the elastic coordinates of all, each then.
-        failure: Exception that an input function raised; it ended the run.
-
-    Raises:
-        SymofrosError: The model is interpreted.
-    """
-
-    def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
-        self.native, self.memory = native_library(), NativeMemory()
-        self.ffi = self.memory.ffi
-        self.model, self.method, self.events, self.par = model, method, events, par
-        self.inputs = inputs
-        self.same_inputs_again: bool | None = None
-        self.failure: BaseException | None = None
-        self.beams = model.beams(par)
-        self.kernels: dict[str, CompiledKernel] = {}
-        self.system = self.ffi.new("sym_system *")
-        self.run = self.ffi.new("sym_run *")
-        self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
-        self._fill_system()
-        self._fill_beams()
-        self._fill_inputs(inputs)
-        self._fill_events()
-        self._bind_functions()
-        self._fill_method()
-        self.run.system = self.system
-
-    def _fill_system(self) -> None:
-        """Sizes, segments, and the evaluation point."""
-        model, system, memory = self.model, self.system, self.memory
-        system.nq, system.nv, system.nu, system.nc = model.nq, model.nv, model.nu, model.nc
-        kinds = constants()
-        segments = [(kinds[s.constant], s.q, s.v, s.size) for s in model.record.segments]
-        system.n_segments, system.segments = len(segments), memory.own("sym_segment[]", segments)
-        on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
-        system.on_speeds = memory.own("int32_t[]", on_speeds)
-        system.group = memory.own("int32_t[]", list(model.record.measures.group))
-        quaternions = model.record.quaternion_inputs
-        system.n_quaternion_inputs, system.quaternion_inputs = len(quaternions), memory.own("int32_t[]", quaternions)
-        sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
-        for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
-            setattr(system, name, memory.zeros(size))
-
-    def _fill_beams(self) -> None:
-        """What judges the bending of the beams, and memory for the largest of each."""
-        system, run, memory = self.system, self.run, self.memory
-        firsts = np.cumsum([0, *(beam.size for beam in self.beams)])
-        system.n_beams = len(self.beams)
-        system.beams = memory.own(
-            "sym_beam[]",
-            [
-                (
-                    beam.q,
-                    beam.v,
-                    first,
-                    beam.size,
-                    *beam.counts,
-                    len(blocks),
-                    memory.doubles(blocks),
-                    beam.EI_z,
-                    beam.EI_y,
-                    beam.NEGLIGIBLE,
-                    beam.contrast,
-                )
-                for beam, first in zip(self.beams, firsts.tolist(), strict=False)
-                for blocks in (beam.angle_blocks,)
-            ],
-        )
-        run.beam_limit = math.inf
-        run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
-        run.beam_reference = memory.zeros(2 * int(firsts[-1]))
-        run.beam_guard = memory.own("sym_beam_guard[]", len(self.beams))
-        run.beam_weight = memory.zeros(self.model.nv)
-        run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
-        self.beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
-        run.beam_error, run.beam_t, run.beam_q = (
-            memory.shared(array if array.size else np.zeros(1)) for array in self.beam_record
-        )
-
-    @property
-    def bendings(self) -> tuple[BeamBending, ...]:
-        """Bending of each beam at the accepted step where its theory errs most, axial loads apart."""
-        return self.amplified_bendings(())
-
-    def amplified_bendings(self, amplifications: Sequence[float]) -> tuple[BeamBending, ...]:
-        """Bending of each beam at that step, its error amplified by axial loads."""
-        self.native.sym_run_settle_beams(self.run)
-        _, t, q = self.beam_record
-        return worst_bendings(self.beams, t, q, amplifications)
-
-    def judge_beams(self) -> int:
-        """Judge the present state's beams, for integrators of others; returns a Status."""
-        return int(self.native.sym_run_judge_beams(self.run))
-
-    def _fill_inputs(self, inputs: InputPlan) -> None:
-        system, memory = self.system, self.memory
-        system.u_constant = memory.doubles(inputs.constant)
-        signals = [
-            (index, int(linear), len(t), memory.shared(t), memory.shared(values))
-            for index, t, values, linear in inputs.signals
-        ]
-        system.n_signals, system.signals = len(signals), memory.own("sym_signal[]", signals)
-        indices = sorted(inputs.formulas)
-        system.n_law, system.law_inputs = len(indices), memory.own("int32_t[]", indices)
-        if indices:
-            derivatives = self.method.family.implicit
-            self._bind("law", self.model.formulas([inputs.formulas[i] for i in indices], derivatives))
-        if inputs.callback is not None:
-            system.callback = memory.callback(_INPUT_CALLBACK, self._input_callback(inputs.callback))
-
-    def _fill_events(self) -> None:
-        system, memory, events = self.system, self.memory, self.events
-        system.n_events = len(events)
-        system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
-        system.event_terminal = memory.own("int32_t[]", [int(event.terminal) for event in events])
-        if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
-            written, names = " ".join(str(event.formula) for event in events), self.model.names
-            system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))
-        if events:
-            self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
-
-    def _bind_functions(self) -> None:
-        """The model's functions, each in the slot of its name."""
-        system = self.system
-        outputs = {"a": system.a, "lam": system.lam, "rank": system.rank}
-        self._bind("forward_dynamics", self.model.kernel("forward_dynamics"), outputs)
-        for name in self.method.family.functions:
-            self._bind(name, self.model.kernel(name))
-        if self.model.nc:
-            self._bind("project", self.model.kernel("project"))
-
-    def _bind(self, slot: str, kernel: Kernel, outputs: dict[str, Any] | None = None) -> None:
-        self.kernels[slot] = self.memory.bind(getattr(self.system, slot), kernel, self.par, outputs)
-        if not self.native.sym_system_bind(self.system, self.ffi.addressof(self.system, slot)):
-            raise CompileError(f"the integrator does not know every input of '{kernel.signature.name}'")
-
-    def _input_callback(self, function: Callable[[float, Array, Array], Any]) -> Callable[..., int]:
-        """A Python function as the inputs; what it raises is kept and ends the run."""
-        nq, nv, nu, view = self.model.nq, self.model.nv, self.model.nu, self.memory.view
-        names = self.model.names.u
-
-        def call(_data: Any, t: float, q: Any, v: Any, u: Any) -> int:
-            try:
-                values = np.asarray(function(t, view(q, nq).copy(), view(v, nv).copy()), dtype=np.float64)
-                if values.shape != (nu,):
-                    what = f"the input function {named_function(function)} returned shape {values.shape}"
-                    raise InputValueError(f"{what}, not ({nu},)")
-                if not np.isfinite(values).all():
-                    i = int(np.flatnonzero(~np.isfinite(values))[0])
-                    what = f"input '{names[i]}' is {values[i]} at t = {t:.6g} s"
-                    raise InputValueError(f"{what}, by the input function {named_function(function)}")
-                view(u, nu)[:] = values
-            except BaseException as error:  # It may not pass through C; the loop raises it again.
-                self.failure = error
-                return 1
-            return 0
-
-        return call
-
-    def _fill_method(self) -> None:
-        self.run.method = constants()[self.method.constant]
-        self.native.sym_run_set_defaults(self.run)
-        fill_tableau(self.run.tableau, self.method.tableau, self.memory)
+class Stepper(BoundRun):
+    """One run of one model, stepped."""
 
     def start(self, q: Array, v: Array, capacity: int) -> int:
         """Place the run at its initial state, with memory for `capacity` records.
@@ -271,6 +80,21 @@ class Stepper:
         self.run.n_event_records = 0
         t, q, v = self._event_records
         return [(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy()) for i in range(n)]
+
+    @property
+    def bendings(self) -> tuple[BeamBending, ...]:
+        """Bending of each beam at the accepted step where its theory errs most, axial loads apart."""
+        return self.amplified_bendings(())
+
+    def amplified_bendings(self, amplifications: Sequence[float]) -> tuple[BeamBending, ...]:
+        """Bending of each beam at that step, its error amplified by axial loads."""
+        self.native.sym_run_settle_beams(self.run)
+        _, t, q = self.beam_record
+        return worst_bendings(self.beams, t, q, amplifications)
+
+    def judge_beams(self) -> int:
+        """Judge the present state's beams, for integrators of others; returns a Status."""
+        return int(self.native.sym_run_judge_beams(self.run))
 
     def set_gains(self, gains: Array) -> None:
         """Baumgarte's gains (2 nc) [1/s]."""

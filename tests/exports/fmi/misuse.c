@@ -178,7 +178,7 @@ static void states_of_others(void) {
 static void model_exchange_without_arrays(void) {
     FMI_INSTANCE c = NEW(0);
     FMI(Boolean) flag;
-    const size_t n = fmi_states(c);
+    const size_t n = fmu_states(c);
     const double no_number = HUGE_VAL - HUGE_VAL;
     double *x = calloc(n, sizeof *x);
     REFUSED(FMI(EnterContinuousTimeMode)(c));

@@ -8,8 +8,6 @@ from typing import Any
 import fmpy
 import numpy as np
 import pytest
-from fmpy.fmi2 import FMU2Slave
-from fmpy.fmi3 import FMU3Slave
 from fmpy.simulation import FMICallException
 from fmpy.validation import validate_fmu
 
@@ -17,44 +15,15 @@ import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
 from tests.exports.fmi.logs import heard
+from tests.exports.fmi.test_fmu import Unit
 from tests.exports.test_controller import inside, rates
 
 STEPS = 20
 
 
-class Unit:
-    """A unit of Co-Simulation of either version, its variables by name."""
-
-    def __init__(self, path: Path, version: int) -> None:
-        said = fmpy.read_model_description(str(path))
-        self.references = {variable.name: variable.valueReference for variable in said.modelVariables}
-        kind: Any = FMU2Slave if version == 2 else FMU3Slave
-        self.slave = kind(
-            guid=said.guid,
-            unzipDirectory=fmpy.extract(str(path)),
-            modelIdentifier=said.coSimulation.modelIdentifier,
-            instanceName="unit",
-        )
-        self.version = version
-        self.slave.instantiate()
-
-    def begin(self, values: dict[str, float]) -> None:
-        """Initialise with values of variables."""
-        if self.version == 2:
-            self.slave.setupExperiment(startTime=0.0)
-        self.slave.enterInitializationMode()
-        self.put(values)
-        self.slave.exitInitializationMode()
-
-    def put(self, values: dict[str, float]) -> None:
-        """Set variables."""
-        into = self.slave.setReal if self.version == 2 else self.slave.setFloat64
-        into([self.references[name] for name in values], list(map(float, values.values())))
-
-    def get(self, *names: str) -> list[float]:
-        """Values of variables."""
-        of = self.slave.getReal if self.version == 2 else self.slave.getFloat64
-        return list(of([self.references[name] for name in names]))
+def put(unit: Unit, values: dict[str, float]) -> None:
+    for name, value in values.items():
+        unit.set(name, value)
 
 
 def entries(name: str, row: np.ndarray) -> dict[str, float]:
@@ -85,7 +54,8 @@ def test_a_unit_gives_what_python_gives(version: int, make: Any, tmp_path: Path)
     diagram = make()
     rng, t = np.random.default_rng(3), np.arange(STEPS) / 1000.0
     rows = {name: rng.uniform(-1.0, 1.0, (STEPS, 2)) for name in diagram.inlets}
-    unit = Unit(sf.export(diagram, f"fmu{version}", tmp_path / "fmu").files[0], version)  # type: ignore[arg-type]
+    path = sf.export(diagram, f"fmu{version}", tmp_path / "fmu").files[0]  # type: ignore[arg-type]
+    unit = Unit(path, version, True, tmp_path / "unit")
     moved = sf.Simulation(diagram).run(
         t[-1],
         dt=1e-3,
@@ -95,17 +65,18 @@ def test_a_unit_gives_what_python_gives(version: int, make: Any, tmp_path: Path)
     )
     wanted = moved["effort"]
     at = {k: {key: x for name in rows for key, x in entries(name, rows[name][k]).items()} for k in range(STEPS)}
-    unit.begin(at[0] | ({"pd.kp[0]": 12.0} if make is rates else {}))
+    put(unit, at[0] | ({"pd.kp[0]": 12.0} if make is rates else {}))
+    unit.start()
     found = [unit.get("effort[0]", "effort[1]")]
-    saved = unit.slave.getFMUState() if version == 3 else unit.slave.getFMUstate()
+    saved = unit.fmu.getFMUState() if version == 3 else unit.fmu.getFMUstate()
     for attempt in range(2):
         for k in range(1, STEPS):
-            unit.put(at[k])
-            unit.slave.doStep(t[k - 1], 1e-3)
+            put(unit, at[k])
+            unit.fmu.doStep(t[k - 1], 1e-3)
             found.append(unit.get("effort[0]", "effort[1]"))
         np.testing.assert_allclose(found, wanted, rtol=1e-11, atol=1e-11)
         if attempt == 0:
-            (unit.slave.setFMUState if version == 3 else unit.slave.setFMUstate)(saved)
+            (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
             found = found[:1]
 
 

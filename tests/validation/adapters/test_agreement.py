@@ -5,6 +5,7 @@ import pytest
 import symofros as sf
 from tests.models import sampled
 from tests.validation.subjects import UNIT, every_kind, pendulum, states_of, subject_of, tree
+from validation.adapters.exact import accelerations
 from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.checking import Settings, check
@@ -26,6 +27,16 @@ def test_pinocchio_agrees_with_mujoco(subject: Subject) -> None:
         quantity = QUANTITIES[name]
         errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
         assert errors.max() <= quantity.tolerance, name
+
+
+def test_engines_agree_with_the_truth_of_a_description() -> None:
+    """One truth: of an engine's trees, and of a description in our coordinates."""
+    subject, engine = every_kind(), pinocchio.build(every_kind())
+    assert not isinstance(engine, Unsupported)
+    states = states_of(subject)[-3:]
+    for q, v, tau, found in zip(states.q, states.v, states.applied, engine.forward_dynamics(states), strict=True):
+        true = accelerations(subject, q, v, tau)
+        assert abs(found - true).max() < QUANTITIES["forward_dynamics"].tolerance * abs(true).max()
 
 
 @pytest.mark.parametrize(

@@ -106,7 +106,7 @@ def test_a_stored_run_is_a_test_of_its_own(project: Path, monkeypatch: pytest.Mo
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [
-        (("--symofros-engine", "havok"), "no such engine; there are pinocchio"),
+        (("--symofros-engine", "havok"), "no engine 'havok'; there are pinocchio"),
         pytest.param(("--symofros-model", "nobody"), "neither a file nor a model", marks=pytest.mark.slow),
         pytest.param((*SMOKE, "--symofros-baseline", "test_own.py"), "can't be read as JSON", marks=pytest.mark.slow),
     ],

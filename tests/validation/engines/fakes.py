@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from validation.engines.documented import PAGE
 from validation.engines.interface import Slot, State, Tree
 from validation.engines.plugins import OWN
 
@@ -108,12 +110,23 @@ REFUSED = {"empty": object(), "unknown": Plugin("unknown", functions=("mass_metr
 
 def install(folder: Path) -> None:
     """A package in a folder whose entry points are all of these."""
-    (folder / "fake_engines.py").write_text(
-        "from tests.validation.engines.fakes import DEADLY, PLUGINS, REFUSED\n"
-        "globals().update(PLUGINS | DEADLY | REFUSED)\n"
-    )
-    points = "".join(f"{name} = fake_engines:{name}\n" for name in (*PLUGINS, *DEADLY, *REFUSED, "absent"))
-    info = folder / "fake_engines-1.0.dist-info"
+    text = "from tests.validation.engines.fakes import DEADLY, PLUGINS, REFUSED\n"
+    text += "globals().update(PLUGINS | DEADLY | REFUSED)\n"
+    _package(folder, "fake_engines", text, {name: name for name in (*PLUGINS, *DEADLY, *REFUSED, "absent")})
+
+
+def install_toy(folder: Path) -> str:
+    """The toy of docs/engines.md as a package in a folder; the program there that asks it."""
+    plugin, program = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    _package(folder, "toy_engine", plugin, {"toy": "PLUGIN"})
+    return str(program)
+
+
+def _package(folder: Path, module: str, text: str, points: dict[str, str]) -> None:
+    """A distribution of one module that offers plug-ins: name -> name in the module."""
+    (folder / f"{module}.py").write_text(text)
+    info = folder / f"{module}-1.0.dist-info"
     info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: fake-engines\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(f"[symofros.engines]\n{points}")
+    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {module.replace('_', '-')}\nVersion: 1.0\n")
+    stated = "".join(f"{name} = {module}:{place}\n" for name, place in points.items())
+    (info / "entry_points.txt").write_text(f"[symofros.engines]\n{stated}")

@@ -7,22 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+from tests.validation.engines.fakes import install_toy
 from validation.engines.documented import PAGE, page
 
 ROOT = Path(__file__).parents[3]
 
 
-def _blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", PAGE.read_text(), re.DOTALL)
-
-
 def test_a_strangers_engine_is_found_by_its_entry_point_and_judged(tmp_path: Path) -> None:
-    plugin, use = _blocks("python")
-    (tmp_path / "toy_engine.py").write_text(plugin)
-    info = tmp_path / "toy_engine-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: toy-engine\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text("[symofros.engines]\ntoy = toy_engine:PLUGIN\n")
+    use = install_toy(tmp_path)
     environment = {"PYTHONPATH": f"{tmp_path}:{ROOT}", "PATH": ""}
     run = subprocess.run(
         [sys.executable, "-c", use], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True

@@ -4,40 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import casadi as ca
-import numpy as np
 
 import symofros as sf
 
 from ...mechanics.assembly import BASE, Assembly, Mover
 from ..reach import armature
-from .algebra import (
-    ZERO,
-    Matrix,
-    Scalar,
-    Vector,
-    about,
-    add,
-    cross,
-    dot,
-    exact,
-    of_quaternion,
-    plus,
-    product,
-    scale,
-    skew,
-    symmetric,
-    times,
-    transposed,
-    turned,
-)
+from .algebra import SX, UNIT, ZERO, about, exact, of_quaternion, symmetric, turned
 
-UNIT: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-Motion = tuple[Vector, Vector]
+# Angular and linear.
+Motion = tuple[SX, SX]
 # Of an articulated body: n = J w' + H a, f = H^T w' + K a.
-Articulated = tuple[Matrix, Matrix, Matrix]
+Articulated = tuple[SX, SX, SX]
 
 
 @dataclass(frozen=True)
@@ -52,29 +31,30 @@ class Link:
         slides: Whether the joint is prismatic.
         v: Slice of its speeds in v.
         armature: Inertia added on the diagonal of M.
-        axes: Along which a free joint's speeds are.
+        axes: Those, as columns, that a free joint's speeds are along.
     """
 
     parent: int
-    R: Matrix
-    p: Vector
+    R: SX
+    p: SX
     mass: float
-    mc: Vector
-    J: Matrix
-    axis: Vector | None
+    mc: SX
+    J: SX
+    axis: SX | None
     slides: bool
     v: slice
     armature: float
-    axes: Matrix = UNIT
+    axes: SX = UNIT
 
-    def columns(self) -> list[tuple[Vector, Vector]]:
+    def columns(self) -> list[Motion]:
         """The joint's motions with unit speeds: (angular, linear)."""
         if self.axis is None:
-            return [(ZERO, e) for e in self.axes] + [(e, ZERO) for e in self.axes]
+            axes = ca.horzsplit(self.axes)
+            return [(ZERO, e) for e in axes] + [(e, ZERO) for e in axes]
         return [(ZERO, self.axis) if self.slides else (self.axis, ZERO)]
 
 
-def links_of(system: sf.System, assembly: Assembly, q: Any) -> list[Link]:
+def links_of(system: sf.System, assembly: Assembly, q: SX) -> list[Link]:
     """Every moving body of a description.
 
     Args:
@@ -85,72 +65,59 @@ def links_of(system: sf.System, assembly: Assembly, q: Any) -> list[Link]:
     return [_link(mover, q, armature(system, mover)) for mover in assembly.movers]
 
 
-def _link(mover: Mover, q_all: Any, armature: float) -> Link:
+def _link(mover: Mover, q_all: SX, armature: float) -> Link:
     R_AP, p_AP = exact(mover.X_AP.R), exact(mover.X_AP.p)
-    q = [q_all[i] for i in range(mover.q.start, mover.q.stop)]
+    q = q_all[mover.q]
     merged = mover.merged()
-    K = skew(exact(merged.p_BC))
-    J = merged.J_BC - merged.mass * np.array(product(K, K))
-    inertia = merged.mass, exact(merged.mass * merged.p_BC), exact(J)
+    K = ca.skew(exact(merged.p_BC))
+    inertia = merged.mass, exact(merged.mass * merged.p_BC), exact(ca.DM(merged.J_BC - merged.mass * (K @ K)))
     if mover.kind == "free":
-        R, p = product(R_AP, of_quaternion(q[3:])), add(p_AP, times(R_AP, q[:3]))
+        R, p = R_AP @ of_quaternion(q[3:]), p_AP + R_AP @ q[:3]
         return Link(mover.parent, R, p, *inertia, None, False, mover.v, armature)
     axis = exact(mover.axis)
     if mover.kind == "prismatic":
-        p = add(p_AP, scale(q[0], times(R_AP, axis)))
-        return Link(mover.parent, R_AP, p, *inertia, axis, True, mover.v, armature)
-    R = product(R_AP, about(axis, ca.sin(q[0]), ca.cos(q[0])))
+        return Link(mover.parent, R_AP, p_AP + q * (R_AP @ axis), *inertia, axis, True, mover.v, armature)
+    R = R_AP @ about(axis, ca.sin(q), ca.cos(q))
     return Link(mover.parent, R, p_AP, *inertia, axis, False, mover.v, armature)
 
 
 def in_world(links: Sequence[Link]) -> list[Link]:
     """The same bodies along world axes, so that wrenches pass from body to body without a rotation."""
     aligned: list[Link] = []
-    rotations: list[Matrix] = []
+    rotations: list[SX] = []
     for link in links:
         R_A = rotations[link.parent] if link.parent != BASE else UNIT
-        R = product(R_A, link.R)
+        R = R_A @ link.R
         rotations.append(R)
-        axis = None if link.axis is None else times(R, link.axis)
-        aligned.append(
-            replace(
-                link,
-                R=UNIT,
-                p=times(R_A, link.p),
-                mc=times(R, link.mc),
-                J=turned(R, link.J),
-                axis=axis,
-                axes=transposed(R),
-            )
-        )
+        axis = None if link.axis is None else R @ link.axis
+        moved = {"p": R_A @ link.p, "mc": R @ link.mc, "J": turned(R, link.J), "axis": axis, "axes": R}
+        aligned.append(replace(link, R=UNIT, **moved))
     return aligned
 
 
-def shifted(link: Link, n: Vector, f: Vector) -> Motion:
+def shifted(link: Link, n: SX, f: SX) -> Motion:
     """A wrench about the body's origin, about the parent's, in its axes."""
-    f = times(link.R, f)
-    return add(times(link.R, n), cross(link.p, f)), f
+    f = link.R @ f
+    return link.R @ n + ca.cross(link.p, f), f
 
 
-def composed(onto: tuple[Scalar, Vector, Matrix], link: Link, body: tuple[Scalar, Vector, Matrix]) -> Any:
+def composed(onto: tuple[SX, SX, SX], link: Link, body: tuple[SX, SX, SX]) -> tuple[SX, SX, SX]:
     """A parent's composite body with a child's added."""
     m, mc, J = body
-    h, p = times(link.R, mc), link.p
-    J = turned(link.R, J)
-    far = 2.0 * dot(p, h) + m * dot(p, p)
-    J = plus(J, symmetric(lambda i, j: (far if i == j else 0.0) - p[i] * h[j] - h[i] * p[j] - m * p[i] * p[j]))
-    return onto[0] + m, add(onto[1], h, scale(m, p)), plus(onto[2], J)
+    h, p = link.R @ mc, link.p
+    far = 2.0 * ca.dot(p, h) + m * ca.dot(p, p)
+    apart = far * UNIT - p @ h.T - h @ p.T - m * p @ p.T
+    return onto[0] + m, onto[1] + h + m * p, onto[2] + turned(link.R, J) + symmetric(apart)
 
 
-def shifted_to_parent(link: Link, J: Matrix, H: Matrix, K: Matrix) -> Articulated:
+def shifted_to_parent(link: Link, J: SX, H: SX, K: SX) -> Articulated:
     """An articulated inertia (n = J w' + H a, f = H^T w' + K a) about the parent's origin, in its axes."""
-    R, P = link.R, skew(link.p)
-    J, H, K = turned(R, J), product(product(R, H), transposed(R)), turned(R, K)
-    at_parent = plus(H, product(P, K))
-    HP, PH = product(H, P), product(P, transposed(at_parent))
-    return symmetric(lambda i, j: J[i][j] - HP[i][j] + PH[i][j]), at_parent, K
+    R, P = link.R, ca.skew(link.p)
+    J, H, K = turned(R, J), R @ H @ R.T, turned(R, K)
+    at_parent = H + P @ K
+    return symmetric(J - H @ P + P @ at_parent.T), at_parent, K
 
 
 def joined(a: Articulated, b: Articulated) -> Articulated:
     """The sum of two about one point."""
-    return plus(a[0], b[0]), plus(a[1], b[1]), plus(a[2], b[2])
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]

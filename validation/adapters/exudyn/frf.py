@@ -16,7 +16,7 @@ orders, twist and rotary inertia (lumped masses have no rotations), bodies on th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -26,8 +26,8 @@ from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import symofros as sf
 
-from ...contract.conventions import IN_WORLD, Chart, Slot, times
-from ...contract.interface import States, Subject, Unsupported
+from ...contract.conventions import FREE_WXYZ, Chart, Slot
+from ...contract.interface import SolvedEngine, States, Subject, Unsupported
 from ...mechanics.geometry import Array
 from ...mechanics.quadrature import STATION, gauss_stations
 from ...mechanics.shape_functions import of_family
@@ -42,7 +42,7 @@ CAPABILITIES = frozenset(
 
 
 @dataclass(frozen=True)
-class FloatingFrameEngine:
+class FloatingFrameEngine(SolvedEngine):
     """Two Exudyn bodies behind the `Engine` protocol: the beam, and the same without strain energy and damping.
 
     Attributes:
@@ -91,18 +91,13 @@ class FloatingFrameEngine:
         limp, elastic = (self._evaluated(states, system)[1] for system in (self.limp, self.elastic))
         return self.chart.our_forces(states.q, limp - elastic)
 
-    def kinetic_energy(self, states: States) -> Array:
-        """v^T M v / 2."""
-        return np.asarray(np.einsum("ni,nij,nj->n", states.v, self.mass_matrix(states), states.v) / 2.0)
-
     def inverse_dynamics(self, states: States) -> Array:
         """M a + h - Q, with Exudyn's elastic forces."""
-        return times(self.mass_matrix(states), states.a) + self.bias(states) - self.generalized_force(states)
+        return super().inverse_dynamics(replace(states, passive=self.generalized_force(states)))
 
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (Q - h), with Exudyn's elastic forces."""
-        net = self.generalized_force(states) - self.bias(states)
-        return np.asarray(np.linalg.solve(self.mass_matrix(states), net[..., None])[..., 0])
+        return super().forward_dynamics(replace(states, applied=self.generalized_force(states)))
 
 
 def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | Unsupported:
@@ -119,7 +114,7 @@ def build(subject: Subject, own_weight: bool = False) -> FloatingFrameEngine | U
     assert isinstance(beam, sf.Beam)
     assembly = subject.assembly
     free, elastic = assembly.movers
-    chart = Chart((Slot(free, 0, 0, IN_WORLD), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
+    chart = Chart((Slot(free, 0, 0, FREE_WXYZ, grounded=True), Slot(elastic, 7, 6)), assembly.nq, assembly.nv)
     mesh = _Mesh(beam, subject.system.parameter_values())
     load, felt = (assembly.gravity, np.zeros(3)) if own_weight else (np.zeros(3), assembly.gravity)
     elastic_body, limp_body = (_body(mesh, load, factor) for factor in (1.0, 0.0))

@@ -15,7 +15,7 @@ import numpy as np
 import symofros as sf
 
 from ...contract.conventions import times
-from ...contract.interface import States, Subject, Unsupported
+from ...contract.interface import SolvedEngine, States, Subject, Unsupported
 from ...contract.memory import LatestResults
 from ...contract.quantities import TREE_QUANTITIES
 from ...mechanics import carried
@@ -44,7 +44,7 @@ INTEGRATED = dict.fromkeys(("frame_pose", "frame_velocity", "frame_acceleration"
 
 
 @dataclass
-class MappedEngine:
+class MappedEngine(SolvedEngine):
     """Exudyn's bodies and elements behind the `Engine` protocol.
 
     Attributes:
@@ -91,15 +91,6 @@ class MappedEngine:
     def potential_energy(self, states: States) -> Array:
         """Gravitational potential energy of the rigid bodies (N,) [J]."""
         return self.solids.potential_energy(self._solid(self._all(states, moving=False)))
-
-    def inverse_dynamics(self, states: States) -> Array:
-        """M a + h - passive."""
-        return times(self.mass_matrix(states), states.a) + self.bias(states) - states.passive
-
-    def forward_dynamics(self, states: States) -> Array:
-        """M^-1 (applied - h)."""
-        net = states.applied - self.bias(states)
-        return np.asarray(np.linalg.solve(self.mass_matrix(states), net[:, :, None])[:, :, 0])
 
     def frame_pose(self, states: States) -> Array:
         """Position, then rotation row by row."""

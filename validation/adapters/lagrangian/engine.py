@@ -16,7 +16,7 @@ import numpy as np
 
 import symofros as sf
 
-from ...contract.interface import States, Subject, TreeEngine, Unsupported
+from ...contract.interface import SolvedEngine, States, Subject, TreeEngine, Unsupported
 from ...contract.quantities import FORCES_STATED, TREE_QUANTITIES
 from ...mechanics.assembly import Assembly
 from ...mechanics.geometry import Array, skew
@@ -34,7 +34,7 @@ MOST_COLUMNS = 20_000
 
 
 @dataclass(frozen=True)
-class LagrangianEngine:
+class LagrangianEngine(SolvedEngine):
     """The energies of a tree behind the `Engine` protocol.
 
     Attributes:
@@ -82,11 +82,6 @@ class LagrangianEngine:
     def inverse_dynamics(self, states: States) -> Array:
         """Lagrange's left side."""
         return self._each(self.tree.force, states) - states.passive
-
-    def forward_dynamics(self, states: States) -> Array:
-        """Accelerations v' (N, nv), by solving the equations of motion with the mass matrix."""
-        left = states.applied - self.bias(states)
-        return np.asarray(np.linalg.solve(self.mass_matrix(states), left[:, :, None])[:, :, 0])
 
     def frame_pose(self, states: States) -> Array:
         """Position, then rotation row by row."""

@@ -15,7 +15,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from ...contract.conventions import IN_WORLD, Slot
+from ...contract.conventions import FREE_WXYZ, Slot
 from ...contract.interface import States, Subject, Unsupported
 from ...contract.quantities import FRAME_QUANTITIES, MJCF_ROUTE
 from ...mechanics.assembly import Mover, assemble
@@ -26,7 +26,7 @@ from .tree import charted, explain, quiet
 NAME = "mujoco-mjcf"
 
 _FREE, _BALL = mujoco.mjtJoint.mjJNT_FREE, mujoco.mjtJoint.mjJNT_BALL
-_CHARTS = {int(_FREE): IN_WORLD, int(_BALL): "quaternion wxyz, body speeds"}
+_CHARTS = {int(_FREE): FREE_WXYZ, int(_BALL): "quaternion wxyz, body speeds"}
 _KINDS = {"free": _FREE, "ball": _BALL, "prismatic": mujoco.mjtJoint.mjJNT_SLIDE}
 _NAMELESS = re.compile(r"(body|site)(\d+)\Z")
 
@@ -118,7 +118,8 @@ def _forget_what_is_ignored(model: Any) -> None:
 def _slot(model: Any, j: int, mover: Mover) -> Slot:
     kind = int(model.jnt_type[j])
     assert kind == int(_KINDS.get(mover.kind, mujoco.mjtJoint.mjJNT_HINGE)), (kind, mover.kind)
-    return Slot(mover, int(model.jnt_qposadr[j]), int(model.jnt_dofadr[j]), _CHARTS.get(kind, ""))
+    start = int(model.jnt_qposadr[j]), int(model.jnt_dofadr[j])
+    return Slot(mover, *start, _CHARTS.get(kind, ""), grounded=mover.kind == "free")
 
 
 def _frame(model: Any, name: str) -> tuple[str, int] | None:

@@ -17,7 +17,6 @@ from ...engines.plugins.writing.source import Source, SourceModel
 from ...mechanics.joint_kinds import PartKind
 from ..charted import ChartedEngine
 from ..charted import build as build_charted
-from ..reach import armature
 
 NAME = "mujoco"
 # Kinds of simple joints that it has.
@@ -32,13 +31,7 @@ def write(engine: ChartedEngine, path: Path) -> None:
 def build(subject: Subject) -> ChartedEngine | Unsupported:
     """MuJoCo's model of a description, body by body, with everything fixed to a body merged into it."""
     engine = build_charted(NAME, subject, _JOINTS, whole=True, merged=True)
-    if isinstance(engine, Unsupported):
-        return Unsupported(explain(engine.reason))
-    for mover in subject.assembly.movers:
-        if mover.kind == "free" and armature(subject.system, mover):
-            # The rate of world components is another acceleration than the rate of body components.
-            return Unsupported(f"joint '{mover.joint.name}': an armature along body axes")
-    return engine
+    return Unsupported(explain(engine.reason)) if isinstance(engine, Unsupported) else engine
 
 
 def charted(name: str, model: Any, slots: tuple[Slot, ...], capabilities: frozenset[str]) -> ChartedEngine:

@@ -8,7 +8,7 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from ...contract.conventions import IN_WORLD, Slot
+from ...contract.conventions import FREE_WXYZ, Slot
 from ...contract.interface import Subject, Unsupported, UrdfSource
 from ...contract.quantities import SECOND_ROUTE
 from ...mechanics.assembly import Assembly, Mover, assemble
@@ -55,7 +55,8 @@ def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported
 
 
 def _slot(joint: Any, mover: Mover) -> Slot:
-    return Slot(mover, int(joint.qposadr[0]), int(joint.dofadr[0]), IN_WORLD if mover.kind == "free" else "")
+    free = mover.kind == "free"
+    return Slot(mover, int(joint.qposadr[0]), int(joint.dofadr[0]), FREE_WXYZ if free else "", grounded=free)
 
 
 def bare(urdf: bytes) -> str:

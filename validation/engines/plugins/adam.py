@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Difference, Tree
+from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
@@ -83,13 +83,13 @@ PLUGIN = SourcePlugin(
     package="adam-robotics",
     extra="symofros[engine-adam]",
     conventions=(
-        Difference("order of joints", "as asked for when the model is made"),
-        Difference(
+        Convention("order of joints", "as asked for when the model is made"),
+        Convention(
             "floating base", "always there: pose apart from q; linear and angular in the world (mixed representation)"
         ),
-        Difference("spatial vectors", "linear, then angular"),
-        Difference("armature", "none"),
-        Difference("gravity", "9.80665 m/s^2 downwards along z unless an argument says otherwise"),
+        Convention("spatial vectors", "linear, then angular"),
+        Convention("armature", "none"),
+        Convention("gravity", "9.80665 m/s^2 downwards along z unless an argument says otherwise"),
     ),
     kinds=KINDS | {"free": "floating base"},
     ways=WAYS,

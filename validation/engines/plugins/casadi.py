@@ -7,7 +7,7 @@ fault of its derivatives, or of this text.
 
 from __future__ import annotations
 
-from ..interface import Difference, Joint, Tree, Unsupported
+from ..interface import Convention, Joint, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, in_series, series
 
 _SETUP = """import casadi as ca
@@ -203,10 +203,10 @@ PLUGIN = SourcePlugin(
     package="casadi",
     extra="symofros[validation]",
     conventions=(
-        Difference("mechanics", "none of its own: equations by its derivatives, with the coordinates of the tree"),
-        Difference("derivatives", "by coordinates of any kind; along speeds by the chain rule"),
-        Difference("quaternion", "none; here scalar first, of unit length"),
-        Difference("solving", "solve and inv of SX expand into a factorisation without pivots"),
+        Convention("mechanics", "none of its own: equations by its derivatives, with the coordinates of the tree"),
+        Convention("derivatives", "by coordinates of any kind; along speeds by the chain rule"),
+        Convention("quaternion", "none; here scalar first, of unit length"),
+        Convention("solving", "solve and inv of SX expand into a factorisation without pivots"),
     ),
     kinds=dict.fromkeys(
         (

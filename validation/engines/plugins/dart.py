@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 
@@ -206,18 +206,18 @@ PLUGIN = SourcePlugin(
     package="dartpy",
     extra="symofros[engine-dart]",
     conventions=(
-        Difference("ball joint", "rotation vector; angular velocity in the body"),
-        Difference(
+        Convention("ball joint", "rotation vector; angular velocity in the body"),
+        Convention(
             "free joint", "rotation vector, position; angular and linear velocity along the axes of the link before"
         ),
-        Difference("planar joint", "x, y, angle; their rates"),
-        Difference("screw", "pitch for a whole turn"),
-        Difference(
+        Convention("planar joint", "x, y, angle; their rates"),
+        Convention("screw", "pitch for a whole turn"),
+        Convention(
             "getJacobianSpatialDeriv", "rate of a spatial vector, in the body's axes: the body's turning is not in it"
         ),
-        Difference("spatial vectors", "angular, then linear, in the body's axes unless a frame is named"),
-        Difference("Euler angles", "x, y, z; the order can be set in C++, its Python type is not bound"),
-        Difference("armature", "none"),
+        Convention("spatial vectors", "angular, then linear, in the body's axes unless a frame is named"),
+        Convention("Euler angles", "x, y, z; the order can be set in C++, its Python type is not bound"),
+        Convention("armature", "none"),
     ),
     kinds={
         "revolute x": "RevoluteJoint",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Difference, Joint, Slot, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 
@@ -275,15 +275,15 @@ PLUGIN = SourcePlugin(
     package="drake",
     extra="symofros[engine-drake]",
     conventions=(
-        Difference("quaternion", "scalar first, before the position"),
-        Difference("floating joints", "angular, then linear velocity, along the axes of the parent's frame"),
-        Difference("ball joint", "roll, pitch, yaw with R = Rz Ry Rx; angular velocity along the axes before"),
-        Difference("planar joint", "x, y, angle; their rates"),
-        Difference("universal joint", "about x, then y; rates of the angles"),
-        Difference("screw", "pitch for a whole turn"),
-        Difference("gravity forces", "as applied: the negative of g"),
-        Difference("armature", "of actuators, times gear ratio squared"),
-        Difference("bodies", "whose inertia no body can have are refused"),
+        Convention("quaternion", "scalar first, before the position"),
+        Convention("floating joints", "angular, then linear velocity, along the axes of the parent's frame"),
+        Convention("ball joint", "roll, pitch, yaw with R = Rz Ry Rx; angular velocity along the axes before"),
+        Convention("planar joint", "x, y, angle; their rates"),
+        Convention("universal joint", "about x, then y; rates of the angles"),
+        Convention("screw", "pitch for a whole turn"),
+        Convention("gravity forces", "as applied: the negative of g"),
+        Convention("armature", "of actuators, times gear ratio squared"),
+        Convention("bodies", "whose inertia no body can have are refused"),
     ),
     kinds={
         "revolute x": "RevoluteJoint",

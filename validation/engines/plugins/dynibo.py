@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Difference, Tree
+from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, Described, breadth_first, of_files, slots_of, through_reader
 
@@ -73,14 +73,14 @@ PLUGIN = SourcePlugin(
     package="dynibo",
     extra="symofros[engine-dynibo]",
     conventions=(
-        Difference("order of joints", "breadth first, siblings as the file states them"),
-        Difference(
+        Convention("order of joints", "breadth first, siblings as the file states them"),
+        Convention(
             "floating base", "apart from q: pose with the quaternion's scalar last; angular, then linear, in the world"
         ),
-        Difference("spatial vectors", "angular, then linear, along the world's axes at the link's origin"),
-        Difference("matrices", "flat, by columns"),
-        Difference("armature", "none: URDF has none"),
-        Difference("gravity", "9.80665 m/s^2 downwards along z, fixed"),
+        Convention("spatial vectors", "angular, then linear, along the world's axes at the link's origin"),
+        Convention("matrices", "flat, by columns"),
+        Convention("armature", "none: URDF has none"),
+        Convention("gravity", "9.80665 m/s^2 downwards along z, fixed"),
     ),
     kinds=KINDS | {"free": "FloatingRobot"},
     ways=WAYS,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..interface import Array, Difference, Link, Slot, Tree, Unsupported
+from ..interface import Array, Convention, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
@@ -161,11 +161,11 @@ PLUGIN = SourcePlugin(
     package="exudyn",
     extra="exudyn",
     conventions=(
-        Difference("right-hand side", "forces applied less h"),
-        Difference("coordinates", "offsets from reference values, here zero"),
-        Difference("axes", "x, y, z of a joint's frame; others by turning the link's frame"),
-        Difference("armature", "none; an object of its own on the same coordinates"),
-        Difference("joints", "revolute and prismatic; others are bodies with Euler parameters and constraints"),
+        Convention("right-hand side", "forces applied less h"),
+        Convention("coordinates", "offsets from reference values, here zero"),
+        Convention("axes", "x, y, z of a joint's frame; others by turning the link's frame"),
+        Convention("armature", "none; an object of its own on the same coordinates"),
+        Convention("joints", "revolute and prismatic; others are bodies with Euler parameters and constraints"),
     ),
     kinds={
         "revolute x": "RevoluteX",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Difference, Tree
+from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
@@ -56,12 +56,12 @@ PLUGIN = SourcePlugin(
     package="frax",
     extra="symofros[engine-frax]",
     conventions=(
-        Difference("order of joints", "as asked for, otherwise breadth first"),
-        Difference("quaternion", "scalar first"),
-        Difference("floating base", "linear velocity in the world, angular in the body, as MuJoCo has it"),
-        Difference("armature", "none"),
-        Difference("gravity", "9.81 m/s^2 downwards along z, fixed"),
-        Difference("precision", "single unless JAX is told otherwise"),
+        Convention("order of joints", "as asked for, otherwise breadth first"),
+        Convention("quaternion", "scalar first"),
+        Convention("floating base", "linear velocity in the world, angular in the body, as MuJoCo has it"),
+        Convention("armature", "none"),
+        Convention("gravity", "9.81 m/s^2 downwards along z, fixed"),
+        Convention("precision", "single unless JAX is told otherwise"),
     ),
     kinds=KINDS | {"free": "floating_base='quaternion'"},
     ways=WAYS,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Difference, Tree
+from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
 
@@ -167,13 +167,13 @@ PLUGIN = SourcePlugin(
     package="idyntree",
     extra="symofros[engine-idyntree]",
     conventions=(
-        Difference("order of joints", "as asked for when the model is loaded"),
-        Difference(
+        Convention("order of joints", "as asked for when the model is loaded"),
+        Convention(
             "floating base", "always there: pose apart from q; linear and angular in the world (mixed representation)"
         ),
-        Difference("spatial vectors", "linear, then angular"),
-        Difference("armature", "not in the dynamics"),
-        Difference("gravity", "an argument of the state"),
+        Convention("spatial vectors", "linear, then angular"),
+        Convention("armature", "not in the dynamics"),
+        Convention("gravity", "an argument of the state"),
     ),
     kinds=KINDS | {"free": "floating base"},
     ways=WAYS,

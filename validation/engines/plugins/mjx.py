@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Difference, Tree, Unsupported
+from ..interface import Convention, Tree, Unsupported
 from . import mujoco
 from .writing.source import Source, SourcePlugin, Way
 
@@ -39,8 +39,8 @@ PLUGIN = SourcePlugin(
     package="mujoco-mjx",
     extra="symofros[engine-mjx]",
     conventions=(
-        Difference("model", "of MuJoCo's compiler; conventions are MuJoCo's"),
-        Difference("precision", "single unless JAX is told otherwise"),
+        Convention("model", "of MuJoCo's compiler; conventions are MuJoCo's"),
+        Convention("precision", "single unless JAX is told otherwise"),
     ),
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,

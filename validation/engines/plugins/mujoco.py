@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Difference, Joint, Slot, Steps, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
@@ -309,12 +309,12 @@ PLUGIN = SourcePlugin(
     package="mujoco",
     extra="mujoco",
     conventions=(
-        Difference("quaternion", "w, x, y, z"),
-        Difference("free joint", "linear velocity in world axes, angular velocity in the axes of the body"),
-        Difference(
+        Convention("quaternion", "w, x, y, z"),
+        Convention("free joint", "linear velocity in world axes, angular velocity in the axes of the body"),
+        Convention(
             "constraints", "soft: a row's acceleration is aref - R f; R is least, not zero, at the impedance 0.9999"
         ),
-        Difference("armature", "part of the mass matrix; mj_rne leaves it out"),
+        Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
     ways=WAYS | constrained.WAYS,

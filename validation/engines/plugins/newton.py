@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..interface import Array, Difference, Joint, Link, Slot, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 # Everything is in single precision: some hundred of its roundings.
@@ -180,12 +180,12 @@ PLUGIN = SourcePlugin(
     package="newton",
     extra="symofros[engine-newton]",
     conventions=(
-        Difference("precision", "single"),
-        Difference("quaternion", "scalar last"),
-        Difference("ball joint", "angular velocity along the axes before the joint"),
-        Difference("twists and Jacobians of links", "linear velocity of the mass centre, then angular, in the world"),
-        Difference("armature", "an argument of the joint; 0.01 unless stated"),
-        Difference(
+        Convention("precision", "single"),
+        Convention("quaternion", "scalar last"),
+        Convention("ball joint", "angular velocity along the axes before the joint"),
+        Convention("twists and Jacobians of links", "linear velocity of the mass centre, then angular, in the world"),
+        Convention("armature", "an argument of the joint; 0.01 unless stated"),
+        Convention(
             "free joint", "linear velocity of the mass centre: a speed that depends on the body; not asked here"
         ),
     ),

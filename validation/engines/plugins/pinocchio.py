@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..functions import ALIGNED
-from ..interface import Array, Difference, End, Joint, Rows, Slot, Tree, Unsupported
+from ..interface import Array, Convention, End, Joint, Rows, Slot, Tree, Unsupported
 from .loops import pinocchio as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
@@ -350,12 +350,12 @@ PLUGIN = SourcePlugin(
     package="pin",
     extra="pin",
     conventions=(
-        Difference("quaternion", "x, y, z, w"),
-        Difference("free joint", "linear and angular velocity in the axes of the body"),
-        Difference(
+        Convention("quaternion", "x, y, z, w"),
+        Convention("free joint", "linear and angular velocity in the axes of the body"),
+        Convention(
             "constraints", "force on the first joint's body, along its frame; anchors' Jacobians have the other sign"
         ),
-        Difference("armature", "m.armature; rotorInertia and rotorGearRatio have no effect on rnea, crba, aba"),
+        Convention("armature", "m.armature; rotorInertia and rotorGearRatio have no effect on rnea, crba, aba"),
     ),
     kinds={},
     ways=WAYS | constrained.WAYS,

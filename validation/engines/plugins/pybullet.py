@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ..interface import Difference, Tree, Unsupported
+from ..interface import Convention, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, describe, slots_of
 
@@ -98,13 +98,13 @@ PLUGIN = SourcePlugin(
     package="pybullet",
     extra="symofros[engine-pybullet]",
     conventions=(
-        Difference("order of joints", "of the file's links, with URDF_MAINTAIN_LINK_ORDER"),
-        Difference("inertias", "made up from shapes unless URDF_USE_INERTIA_FROM_FILE is given"),
-        Difference("velocities of links", "of the mass centre"),
-        Difference("points of Jacobians", "from the link's origin, along the principal axes of its inertia"),
-        Difference("links without <inertial>", "get a mass of 1 kg and moments of 1 kg m^2, with a warning"),
-        Difference("files", "cached by name"),
-        Difference("armature", "none"),
+        Convention("order of joints", "of the file's links, with URDF_MAINTAIN_LINK_ORDER"),
+        Convention("inertias", "made up from shapes unless URDF_USE_INERTIA_FROM_FILE is given"),
+        Convention("velocities of links", "of the mass centre"),
+        Convention("points of Jacobians", "from the link's origin, along the principal axes of its inertia"),
+        Convention("links without <inertial>", "get a mass of 1 kg and moments of 1 kg m^2, with a warning"),
+        Convention("files", "cached by name"),
+        Convention("armature", "none"),
     ),
     kinds=KINDS,
     ways=WAYS,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..interface import Difference, Rows, Slot, Tree, Unsupported, Vector
+from ..interface import Convention, Rows, Slot, Tree, Unsupported, Vector
 from .writing.source import Source, SourcePlugin, Way
 
 # Where Debian's package for the system's Python puts it.
@@ -159,10 +159,10 @@ PLUGIN = SourcePlugin(
     package="python3-pykdl",
     extra="(Debian) python3-pykdl",
     conventions=(
-        Difference("dynamics", "of chains; trees have kinematics only"),
-        Difference("Jacobians", "linear, then angular, along the world's axes at the segment's tip"),
-        Difference("armature", "inertia of a joint"),
-        Difference("floating base", "none"),
+        Convention("dynamics", "of chains; trees have kinematics only"),
+        Convention("Jacobians", "linear, then angular, along the world's axes at the segment's tip"),
+        Convention("armature", "inertia of a joint"),
+        Convention("floating base", "none"),
     ),
     kinds={
         "revolute x": "RotX",

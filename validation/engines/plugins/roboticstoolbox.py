@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..interface import Array, Difference, Slot, Tree, Unsupported, Vector
+from ..interface import Array, Convention, Slot, Tree, Unsupported, Vector
 from .writing.source import Source, SourcePlugin, Way
 
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
@@ -96,12 +96,12 @@ PLUGIN = SourcePlugin(
     package="roboticstoolbox-python",
     extra="symofros[engine-roboticstoolbox]",
     conventions=(
-        Difference("axes", "x, y, z of the joint's frame; others by turning the frame"),
-        Difference("Jacobians", "columns of the path to the link only"),
-        Difference("coriolis", "a matrix C with C v = h - g"),
-        Difference("armature", "motor inertia Jm, times G^2"),
-        Difference("gravity", "acceleration of gravity, as its name says (since 1.0; before, its negative)"),
-        Difference("floating base", "none"),
+        Convention("axes", "x, y, z of the joint's frame; others by turning the frame"),
+        Convention("Jacobians", "columns of the path to the link only"),
+        Convention("coriolis", "a matrix C with C v = h - g"),
+        Convention("armature", "motor inertia Jm, times G^2"),
+        Convention("gravity", "acceleration of gravity, as its name says (since 1.0; before, its negative)"),
+        Convention("floating base", "none"),
     ),
     kinds={
         "revolute x": "ET.Rx",

@@ -6,7 +6,7 @@ from typing import Any
 
 import symofros
 
-from ..interface import Difference, Joint, Link, Slot, Tree, Unsupported
+from ..interface import Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
@@ -182,11 +182,11 @@ PLUGIN = SourcePlugin(
     package="symofros",
     extra="symofros",
     conventions=(
-        Difference("quaternion", "x, y, z, w"),
-        Difference("free joint", "linear and angular velocity in the axes of the body"),
-        Difference("planar joint", "three coordinates, x, y and an angle; their rates"),
-        Difference("several joints of a link", "each on a body of its own, without mass"),
-        Difference("armature", "the same for all speeds of a joint; it counts in the kinetic energy"),
+        Convention("quaternion", "x, y, z, w"),
+        Convention("free joint", "linear and angular velocity in the axes of the body"),
+        Convention("planar joint", "three coordinates, x, y and an angle; their rates"),
+        Convention("several joints of a link", "each on a body of its own, without mass"),
+        Convention("armature", "the same for all speeds of a joint; it counts in the kinetic energy"),
     ),
     kinds={},
     ways=WAYS,

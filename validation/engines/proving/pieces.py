@@ -6,7 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..interface import Array, HasLayout, Slot, State, Unsupported
+from ..interface import Array, HasLayout, Slot, State, Tree, Unsupported
+from ..plugins.writing.source import in_series
+
+# Kind of joint -> our chart of it.
+OURS = {
+    "revolute": "angle",
+    "prismatic": "length",
+    "helical": "screw angle",
+    "ball": "quaternion xyzw, body speeds",
+    "free": "free xyzw, body speeds",
+}
 
 
 @dataclass(frozen=True)
@@ -22,6 +32,12 @@ class Layout:
     nq: int
     nv: int
     slots: tuple[tuple[Slot, ...], ...]
+
+    @classmethod
+    def ours(cls, tree: Tree) -> Layout:
+        """Joints one after the other in the order of the links, in the charts of OURS."""
+        slots, nq, nv = in_series(tree, {(kind, ""): chart for kind, chart in OURS.items()})
+        return cls(nq, nv, slots)
 
 
 @dataclass(frozen=True)

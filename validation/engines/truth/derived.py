@@ -170,12 +170,6 @@ def momentum_rate(truth: Truth, q: Exact, v: Exact, a: Exact) -> Exact:
     return centroidal_matrix(truth, q) @ a + centroidal_rate(truth, q, v) @ v
 
 
-def gravity_about_com(truth: Truth, s: Point) -> Exact:
-    """Momentum's rate by gravity (6): no moment about the mass centre."""
-    total = sum(inertia.mass for inertia in truth.inertias)
-    return np.concatenate([total * truth.gravity_vector, zeros(3)])
-
-
 def unit_inertias() -> list[Inertia]:
     """Inertias whose multiples make any: mass, first moments, and Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin."""
     zero, one = Decimal(0), Decimal(1)

@@ -1,4 +1,4 @@
-"""Chains whose last body weighs up to 1e8 times, or 1e-8 of, the others: accelerations against fifty digits."""
+"""Chains whose last body weighs up to 1e8 times, or 1e-8 of, the others: accelerations against many digits."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Literal, cast
 
-import mpmath
 import numpy as np
 
 import symofros as sf
 
 from ...adapters import factory_of
+from ...adapters.exact import accelerations
 from ...contract.interface import EngineFactory, States, TreeEngine, Unsupported
 from ...contract.interface import Subject as Model
 from ...mechanics.geometry import Array
@@ -63,24 +63,9 @@ def state(links: int) -> tuple[Array, Array]:
 
 @cache
 def exact(links: int, ratio: float) -> Array:
-    """Accelerations with fifty digits, from absolute angles: M_ij = m_ij cos(t_i - t_j) and so on (links)."""
+    """Accelerations by the truth of many digits (links)."""
     q, v = state(links)
-    with mpmath.workdps(50):
-        t, w = [mpmath.mpf(float(x)) for x in np.cumsum(q)], [mpmath.mpf(float(x)) for x in np.cumsum(v)]
-        masses = [mpmath.mpf(1)] * (links - 1) + [mpmath.mpf(ratio)]
-        beyond = [mpmath.fsum(masses[i:]) for i in range(links)]
-        M, force = mpmath.matrix(links), mpmath.matrix(links, 1)
-        for i in range(links):
-            for j in range(links):
-                both = beyond[max(i, j)]
-                M[i, j] = both * mpmath.cos(t[i] - t[j])
-                force[i] -= both * mpmath.sin(t[i] - t[j]) * w[j] ** 2
-            M[i, i] += mpmath.mpf(MOMENT)
-            # A turn about +y takes x to -z: a level rod falls with a positive angle.
-            force[i] += beyond[i] * mpmath.mpf(GRAVITY) * mpmath.cos(t[i])
-        solution = mpmath.lu_solve(M, force)
-        absolute = [solution[i] for i in range(links)]
-        return np.array([float(absolute[i] - (absolute[i - 1] if i else 0)) for i in range(links)])
+    return accelerations(Model("chain", chain(links, ratio)), q, v, np.zeros(links))
 
 
 def error(a: Array, links: int, ratio: float) -> Cell:
@@ -187,7 +172,7 @@ def judge(maps: Maps) -> Verdict:
 STUDY = ParameterStudy(
     "Which mass ratios can a chain bear?",
     "Points of 1 kg on rods of 1 m, hinged into a chain; the last is heavier or lighter. Accelerations of one bent "
-    "posture in motion against fifty digits; and a second of fall.",
+    "posture in motion against the truth of many digits; and a second of fall.",
     RATIO,
     LINKS,
     "relative error [-]",
@@ -201,5 +186,5 @@ STUDY = ParameterStudy(
     "up to 1e5 nothing: eight digits are left in any case. Beyond it choose articulated bodies, "
     "sf.Options(forward_dynamics='articulated'); in motion leave the light links out, or carry the load by a joint "
     "nearer to the base.",
-    ("exact accelerations from absolute angles with fifty digits (mpmath)",),
+    ("exact accelerations: the truth of engines, of many digits (validation/engines/truth)",),
 )

@@ -17,7 +17,7 @@ import numpy as np
 
 import symofros as sf
 
-from ...contract.conventions import IN_WORLD, Chart
+from ...contract.conventions import Chart
 from ...contract.interface import Subject, Unsupported
 from ...mechanics.assembly import Assembly
 from ...mechanics.geometry import Array, matrix_quaternion, quaternion_product
@@ -292,7 +292,7 @@ class _Converted:
         for slot in self.chart.slots:
             part = slot.mover.q
             own = computed[:, slot.q : slot.q + part.stop - part.start]
-            if slot.chart == IN_WORLD:
+            if slot.grounded:
                 X = slot.mover.X_AP
                 back = quaternion_product(matrix_quaternion(X.R.T)[None], np.roll(own[:, 3:], -1, axis=1))
                 own = np.concatenate([(own[:, :3] - X.p) @ X.R, back], axis=1)

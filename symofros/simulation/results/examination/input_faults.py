@@ -6,7 +6,8 @@ import numpy as np
 
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import UNIT_TOLERANCE
-from symofros.simulation.stepping.stepper import InputValueError, Stepper
+from symofros.simulation.stepping.bound_run import InputValueError
+from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.user_functions import raised_where
 
 # Size of a state that makes feedback overflow.

@@ -11,9 +11,9 @@ import pytest
 import reference_models
 import symofros as sf
 from tests.validation.subjects import UNIT, every_kind, floating_arm, pendulum, states_of, subject_of, tree
+from validation.adapters.charted import ChartedEngine
 from validation.adapters.exudyn import tree as exudyn
 from validation.adapters.exudyn.mapped import MappedEngine
-from validation.adapters.exudyn.tree import KinematicTreeEngine
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.checking import Settings, check
 from validation.comparison.errors import compute, state_errors, typical_scales
@@ -55,7 +55,7 @@ def test_exudyn_agrees_with_pinocchio(subject: Subject) -> None:
 
 
 def test_trees_of_hinges_and_slides_go_through_its_own_recursions() -> None:
-    assert isinstance(exudyn.build(chain()), KinematicTreeEngine)
+    assert isinstance(exudyn.build(chain()), ChartedEngine)
     assert isinstance(exudyn.build(floating_arm()), MappedEngine)
 
 
@@ -88,5 +88,5 @@ def test_beams_are_left_to_finite_elements() -> None:
 def test_frames_on_the_base_rest() -> None:
     subject = chain()
     engine = exudyn.build(subject)
-    assert isinstance(engine, KinematicTreeEngine)
+    assert isinstance(engine, ChartedEngine)
     assert not np.any(engine.frame_acceleration(states_of(subject))[:, 1])

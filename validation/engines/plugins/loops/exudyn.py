@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...interface import Array, Constraint, Difference, Joint, Slot, Tree, Unsupported
+from ...interface import Array, Constraint, Convention, Joint, Slot, Tree, Unsupported
 from ..writing.source import Source, SourcePlugin, Way, series
 from . import exudyn_systems
 
@@ -313,14 +313,14 @@ PLUGIN = SourcePlugin(
     package="exudyn",
     extra="exudyn",
     conventions=(
-        Difference("coordinates", "six or seven of each body; here they follow from those of the joints"),
-        Difference("joints", "conditions between two markers; equations of index 1 are solved outside of Exudyn"),
-        Difference("inertia", "about the body's reference point, as xx, yy, zz, yz, xz, xy"),
-        Difference("NodeRigidBodyEP", "Euler parameters (w, x, y, z), their unit length a condition of its own"),
-        Difference("NodeRigidBodyRxyz", "R = Rx Ry Rz; rates of the angles"),
-        Difference("NodeRigidBodyRotVecLG", "rotation vector; the velocity is the angular one, in the body"),
-        Difference("universal joint", "ObjectJointGeneric that blocks the rotation about z: x before, y after"),
-        Difference("armature", "none"),
+        Convention("coordinates", "six or seven of each body; here they follow from those of the joints"),
+        Convention("joints", "conditions between two markers; equations of index 1 are solved outside of Exudyn"),
+        Convention("inertia", "about the body's reference point, as xx, yy, zz, yz, xz, xy"),
+        Convention("NodeRigidBodyEP", "Euler parameters (w, x, y, z), their unit length a condition of its own"),
+        Convention("NodeRigidBodyRxyz", "R = Rx Ry Rz; rates of the angles"),
+        Convention("NodeRigidBodyRotVecLG", "rotation vector; the velocity is the angular one, in the body"),
+        Convention("universal joint", "ObjectJointGeneric that blocks the rotation about z: x before, y after"),
+        Convention("armature", "none"),
     ),
     kinds={
         "revolute x": "ObjectJointRevoluteZ",

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...interface import Array, Difference, EngineModel, Slot, State, Steps, Tree, Unsupported
+from ...interface import Array, Convention, EngineModel, Slot, State, Steps, Tree, Unsupported
 from ...truth.charts import CHARTS
 
 # Names that not every tree's source defines -> why it may not.
@@ -151,7 +151,7 @@ class SourcePlugin:
     name: str
     package: str
     extra: str
-    conventions: tuple[Difference, ...]
+    conventions: tuple[Convention, ...]
     kinds: Mapping[str, str]
     ways: Mapping[str, Way]
     write: Callable[[Tree], Source | Unsupported]
