@@ -15,6 +15,7 @@ from symofros.description.beams.shapes import Family as Family
 from symofros.description.beams.shapes import Samples as Samples
 from symofros.description.beams.shapes import UserShape as UserShape
 from symofros.description.constraints import Closure as Closure
+from symofros.description.constraints import Constraint as Constraint
 from symofros.description.constraints import Coupling as Coupling
 from symofros.description.constraints import KnifeEdge as KnifeEdge
 from symofros.description.constraints import Rod as Rod
@@ -32,6 +33,8 @@ from symofros.description.joints.joint_kinds import KINDS as KINDS
 from symofros.description.parser import ExpressionError as ExpressionError
 from symofros.description.parser import parse as parse
 from symofros.description.parser import tokenize as tokenize
+from symofros.description.pose import IDENTITY_POSE as IDENTITY_POSE
+from symofros.description.pose import Pose as Pose
 from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
 from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
 from symofros.description.reading import in_order as in_order
