@@ -47,6 +47,7 @@ COMMANDS = {
     "faults": Command(
         "faults.command",
         "List real faults of public releases of engines, or reproduce some, each in an environment of its own.",
+    ),
     "diff": Command(
         "comparison.as_read",
         "Compare what an engine's own reader makes of a file with what ours does, as `symofros diff` compares files.",

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.description.contacts import Contact
+from symofros.description import Contact
 from symofros.mechanics.topology import Numbers
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
