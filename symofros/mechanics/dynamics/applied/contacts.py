@@ -15,8 +15,9 @@ from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.tree import frame_of
 
-# What roots are taken of is at least this: derivatives of a root of zero do not exist, and these are zero there.
-_TINY = 1e-300
+# What roots are taken of is at least this, a number of single precision too: derivatives of a root of zero do not exist,
+# and these are zero there.
+_TINY = 1e-30
 
 
 @dataclass(frozen=True)
