@@ -15,8 +15,8 @@ from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.tree import frame_of
 
-# What roots are taken of is at least this, a number of single precision too: derivatives of a root of zero do not exist,
-# and these are zero there.
+# What roots are taken of is at least this, a number of single precision too: the derivative of a root of zero does not
+# exist, and that of these is zero there.
 _TINY = 1e-30
 
 
