@@ -131,8 +131,9 @@ class Actions:
         for group, index, place in self._assignments[which]:
             (par if group == "par" else speeds)[index] = values[place]
         if not np.isfinite(speeds).all():
-            name = self.model.names.v[int(np.argmin(np.isfinite(speeds)))]
-            fault = Problem(f"speed '{name}' is not a finite number", "", "speeds are finite", "mend its formula")
+            i = int(np.argmin(np.isfinite(speeds)))
+            what, found = f"action sets speed '{self.model.names.v[i]}'", f"{speeds[i]} at t = {state[0]:.6g} s"
+            fault = Problem(what, found, "speeds are finite", "mend its formula")
             raise SymofrosError(fault)
         return par, speeds
 
