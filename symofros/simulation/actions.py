@@ -191,10 +191,14 @@ def _target(model: Model, event: Event, name: str) -> tuple[str, int]:
     names = model.names
     if found := coordinate_of(name, names.par):
         return "par", names.par.index(found)
+    if name in names.q:  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
+        what, rule = f"event '{event.name}': its action sets the coordinate '{name}'", "an action moves nothing at once"
+        remedy = f"set its speed, 'd{name}', or a parameter"
+        raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
     if found := speed_of(name, names.v):
         return "v", names.v.index(found)
     known = [*names.par, *names.v]
-    rule = "an action sets run-time parameters, and speeds: their names, or d and the coordinate's name"
+    rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
     what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
     raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
 
