@@ -112,6 +112,8 @@ if TYPE_CHECKING:
     from symofros.studio.advice.scene import Scene as Scene
     from symofros.studio.advice.scene_file import load_scene as load_scene
     from symofros.studio.advice.search import advise as advise
+    from symofros.studio.differences.diff import MechanismDiff as MechanismDiff
+    from symofros.studio.differences.diff import diff as diff
     from symofros.studio.viewer.record import record as record
     from symofros.studio.viewer.view import view as view
     from symofros.studio.viewer.viewer import Viewer as Viewer

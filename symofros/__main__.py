@@ -26,6 +26,7 @@ _COMMANDS = {
     "advise": ("symofros.commands.uses", "advise"),
     "export": ("symofros.commands.uses", "export_command"),
     "kernels": ("symofros.commands.kernels", "kernels"),
+    "diff": ("symofros.commands.differences", "diff"),
     "edit": ("symofros.commands.uses", "edit"),
     "view": ("symofros.commands.view", "view"),
     "check": ("symofros.commands.harness", "check"),

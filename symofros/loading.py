@@ -127,6 +127,12 @@ def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
     return replace(system, notes=(*system.notes, *remarks)) if remarks else system, reading.sources
 
 
+def applicable(path: Path, arguments: Mapping[str, Any]) -> dict[str, Any]:
+    """Those arguments of `load` that the format of a file has a use for."""
+    suffix, every = path.suffix.lower(), ("", _READABLE, "")
+    return {name: value for name, value in arguments.items() if suffix in _FORMAT_OPTIONS.get(name, every)[1]}
+
+
 def check_waivers(waive: Collection[str]) -> None:
     """Refuse checks that do not exist.
 

@@ -83,6 +83,8 @@ ALLOWED = table("""
     interop: base errors native expr description compiler runtime simulation
     # Advice compiles and simulates reduced systems, and counts what they take; rods tell what their sections resist.
     studio.advice: base errors expr description mechanics.beams runtime compiler simulation
+    # Files are read, and their bodies are numbers as they are for files without formulas.
+    studio.differences: base errors description mechanics.topology loading exports
     # The picture compiles its own frame poses, plays trajectories, and closes loops; beams lend their shape.
     studio.viewer: base errors description mechanics.beams mechanics.topology runtime compiler loading
         simulation diagrams exports
@@ -93,7 +95,7 @@ ALLOWED = table("""
     tools: base description compiler expr generator.passes runtime simulation diagrams
         studio.viewer studio.editor
     __init__: base errors expr description runtime compiler loading simulation diagrams diagrams.files
-        exports interop studio.advice studio.viewer
+        exports interop studio.advice studio.differences studio.viewer
 """)
 
 # The same of the harness: what a check is made of ...

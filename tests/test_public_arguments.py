@@ -155,7 +155,7 @@ def constructors() -> list[type]:
         "Problem",
         "ReadableEquations",
     }
-    made_here |= {"Rollout", "Trajectories", "Trajectory"}
+    made_here |= {"MechanismDiff", "Rollout", "Trajectories", "Trajectory"}
     classes = [getattr(module, name) for module in (sf, blocks) for name in dir(module) if name not in made_here]
     return [cls for cls in classes if isinstance(cls, type) and is_dataclass(cls)]
 

@@ -48,6 +48,10 @@ COMMANDS = {
         "faults.command",
         "List real faults of public releases of engines, or reproduce some, each in an environment of its own.",
     ),
+    "diff": Command(
+        "comparison.as_read",
+        "Compare what an engine's own reader makes of a file with what ours does, as `symofros diff` compares files.",
+    ),
     "accuracy": Command("accuracy.catalogue", "Measure beams against closed forms, tables and exact rods."),
     "diagrams": Command("diagrams.catalogue", "Run the paper's simulations from their block diagrams."),
     "stability": Command("stability.report", "Map where simulations fail, against closed forms and other engines."),

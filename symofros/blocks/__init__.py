@@ -56,6 +56,7 @@ from symofros.blocks.kinematics.forward import Extremities as Extremities
 from symofros.blocks.kinematics.forward import ForwardKinematics as ForwardKinematics
 from symofros.blocks.kinematics.forward import Jacobian as Jacobian
 from symofros.blocks.kinematics.inverse import InverseKinematics as InverseKinematics
+from symofros.blocks.model_function import ModelFunction as ModelFunction
 from symofros.blocks.network.udp import UdpReceiver as UdpReceiver
 from symofros.blocks.network.udp import UdpTransmitter as UdpTransmitter
 from symofros.blocks.network.zenoh import ZenohPublisher as ZenohPublisher

@@ -15,10 +15,12 @@ from symofros.description.beams.shapes import Family as Family
 from symofros.description.beams.shapes import Samples as Samples
 from symofros.description.beams.shapes import UserShape as UserShape
 from symofros.description.constraints import Closure as Closure
+from symofros.description.constraints import Constraint as Constraint
 from symofros.description.constraints import Coupling as Coupling
 from symofros.description.constraints import KnifeEdge as KnifeEdge
 from symofros.description.constraints import Rod as Rod
 from symofros.description.constraints import Rolling as Rolling
+from symofros.description.contacts import Contact as Contact
 from symofros.description.forces import Anchor as Anchor
 from symofros.description.forces import Connection as Connection
 from symofros.description.forces import Damper as Damper
@@ -32,6 +34,8 @@ from symofros.description.joints.joint_kinds import KINDS as KINDS
 from symofros.description.parser import ExpressionError as ExpressionError
 from symofros.description.parser import parse as parse
 from symofros.description.parser import tokenize as tokenize
+from symofros.description.pose import IDENTITY_POSE as IDENTITY_POSE
+from symofros.description.pose import Pose as Pose
 from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
 from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
 from symofros.description.reading import in_order as in_order

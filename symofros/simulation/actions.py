@@ -131,8 +131,9 @@ class Actions:
         for group, index, place in self._assignments[which]:
             (par if group == "par" else speeds)[index] = values[place]
         if not np.isfinite(speeds).all():
-            name = self.model.names.v[int(np.argmin(np.isfinite(speeds)))]
-            fault = Problem(f"speed '{name}' is not a finite number", "", "speeds are finite", "mend its formula")
+            i = int(np.argmin(np.isfinite(speeds)))
+            what, found = f"action sets speed '{self.model.names.v[i]}'", f"{speeds[i]} at t = {state[0]:.6g} s"
+            fault = Problem(what, found, "speeds are finite", "mend its formula")
             raise SymofrosError(fault)
         return par, speeds
 
@@ -152,8 +153,12 @@ class Actions:
         """Refuse parameters that change beams, whose bending is judged over the whole run."""
         for before, after in zip(stepper.beams, self.model.beams(par), strict=True):
             if (before.EI_z, before.EI_y, *before.scale) != (after.EI_z, after.EI_y, *after.scale):
+                what, found = (
+                    "an action changes an elastic beam",
+                    f"EI_z, EI_y = {before.EI_z:g}, {before.EI_y:g} before",
+                )
                 rule = "the length and stiffness of an elastic beam stay the same in a run"
-                raise SymofrosError(Problem("an elastic beam would change", "", rule, "make two runs"))
+                raise SymofrosError(Problem(what, found, rule, "make two runs"))
 
     def _done(
         self,
@@ -186,10 +191,14 @@ def _target(model: Model, event: Event, name: str) -> tuple[str, int]:
     names = model.names
     if found := coordinate_of(name, names.par):
         return "par", names.par.index(found)
+    if name in names.q:  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
+        what, rule = f"event '{event.name}': its action sets the coordinate '{name}'", "an action moves nothing at once"
+        remedy = f"set its speed, 'd{name}', or a parameter"
+        raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
     if found := speed_of(name, names.v):
         return "v", names.v.index(found)
     known = [*names.par, *names.v]
-    rule = "an action sets run-time parameters, and speeds: their names, or d and the coordinate's name"
+    rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
     what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
     raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
 

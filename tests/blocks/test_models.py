@@ -23,7 +23,9 @@ from symofros.blocks import (
     InverseDynamics,
     InverseKinematics,
     Jacobian,
+    ModelFunction,
 )
+from symofros.blocks.model_function import OFFERED
 from symofros.description.forces import Friction
 from symofros.diagrams.block import Block
 from symofros.diagrams.program.variants import friction_only
@@ -159,6 +161,45 @@ def test_inverse_dynamics_compensations_and_computed_torque(name: str) -> None:
     np.testing.assert_allclose(control["error"], error, rtol=1e-9, atol=1e-12)
     tau = m.inverse_dynamics(q, v, a + 50.0 * error + 12.0 * (0.3 * a - v))
     np.testing.assert_allclose(control["tau"], tau, rtol=1e-9, atol=1e-10 * np.abs(tau).max())
+
+
+@also_flexible
+def test_each_function_of_a_model_is_a_block(name: str) -> None:
+    (q, v, a), m, at = states(name), model(name), frame(name)
+    rng = np.random.default_rng(2)
+    given = {"q": q, "v": v, "a": a, "u": rng.normal(size=(COUNT, m.nu)), "lam": rng.normal(size=(COUNT, m.nc))}
+    absent = {"contact_forces": m.names.contacts, "section_forces": m.names.sections, "prescribed_efforts": ()}
+    offered = [key for key, row in OFFERED.items() if absent.get(key, True) and (m.nc or not row.constrained_only)]
+    offered = [key for key in offered if m.record.par_names or not key.endswith("by_par")]
+    assert {"kinetic_energy", "joint_wrenches", "frame_jacobian"} <= {*offered} and "contact_forces" in OFFERED
+    fed = []
+    for key in sorted(rng.choice(offered, 4, replace=False)):
+        row = OFFERED[key]
+        block = ModelFunction(name=key, model="m", function=key, frame=at if row.of_frame else "")
+        fed.append((block, {group: given[group] for group in row.inputs if group != "t" and given[group].size}))
+    for (block, inputs), found in zip(fed, through_each(name, *fed), strict=True):
+        expected = m.evaluate(block.function, block.frame, **inputs)
+        for output, values in zip(OFFERED[block.function].outputs, expected, strict=True):
+            np.testing.assert_allclose(
+                found[output.name], values, rtol=1e-9, atol=1e-9 * max(1.0, np.abs(values).max(initial=0))
+            )
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"function": "forward_dynamics"}, "ForwardDynamics"),
+        ({"function": "kinetic_enrgy"}, "kinetic_energy"),
+        ({"function": "frame_pose"}, "no frame"),
+        ({"function": "momentum", "frame": "rod"}, "functions of frames have one"),
+        ({"function": "closure_wrenches"}, "of a tree"),
+        ({"function": "contact_forces"}, "has no entries"),
+    ],
+)
+def test_functions_that_a_block_does_not_offer_are_refused(fields: dict[str, str], words: str) -> None:
+    with pytest.raises(sf.DescriptionError) as raised:
+        through("hull", ModelFunction(name="b", model="m", **fields), q=states("hull")[0])
+    assert words in str(raised.value)
 
 
 def friction(name: str, q: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -56,7 +56,7 @@ OF_THE_USER = {
 # Measured by what is connected: tests below.
 BY_WIRE = {"JointPD", "JointPID"}
 # Needs more than one port can say, or a model of another kind: J has a unit for each row and column.
-ELSEWHERE = {"Jacobian", "LQR", "InverseKinematics", "Square", "View3D"}
+ELSEWHERE = {"Jacobian", "ModelFunction", "LQR", "InverseKinematics", "Square", "View3D"}
 
 
 def library() -> set[str]:

@@ -256,6 +256,8 @@ def test_what_is_refused() -> None:
     assert outcome(dq1="1/grip").kind == "input failed" and "speed 'q1'" in outcome(dq1="1/grip").reason
     with pytest.raises(sf.UnknownNameError, match="its action sets 'girp'.*(?s:.)*did you mean 'grip'"):
         outcome(girp=1)
+    with pytest.raises(sf.UnknownNameError, match="sets the coordinate 'q1'(?s:.)*its speed, 'dq1'"):
+        outcome(q1=0.7)
     event = {"dock": sf.Event("t - 1e-3", action={"grip": 1})}
     with pytest.raises(sf.SymofrosError, match="'dock' has an action"):
         sf.Stepper(model, events=event, dt=1e-3)

@@ -68,12 +68,12 @@ class RigidLink:
     damping: tuple[float, ...] = ()
 
 
-def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[RigidLink], list[str]]:
+def rigid_links(system: System, form: Literal["URDF", "MJCF"] | None) -> tuple[list[RigidLink], list[str]]:
     """The bodies, parents first, and what was left out of them.
 
     Args:
         system: Checked.
-        form: The format.
+        form: The format; None for none, which holds every joint but general and prescribed ones.
 
     Raises:
         ExportError: Joints that the format can't hold; all are named.
@@ -112,8 +112,10 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"]) -> tuple[list[Rig
     return rigid, list(_lost(system))
 
 
-def _representable(joint: Joint, form: Literal["URDF", "MJCF"]) -> bool:
+def _representable(joint: Joint, form: Literal["URDF", "MJCF"] | None) -> bool:
     """Whether a format holds a joint, as one of its own or as a series of turns and slides."""
+    if form is None:
+        return not joint.prescribed and not joint.traits.user_defined
     own = {"URDF": joint.traits.urdf, "MJCF": joint.traits.mjcf}[form]
     return not joint.prescribed and (joint.traits.series or own is not None)
 

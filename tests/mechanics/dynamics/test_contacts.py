@@ -286,3 +286,16 @@ def test_runs_in_which_a_ball_sinks_to_its_centre_say_so(stiffness: float, deep:
         assert (
             any("contact 'floor' is" in note and "times its radius deep" in note for note in run.outcome.notes) == deep
         )
+
+
+def test_derivatives_in_single_precision_are_numbers_in_and_out_of_contact() -> None:
+    contact = sf.Contact("c", ("one", None), ("world", None), 1e4, radius=0.1, friction=0.5, dissipation=0.3)
+    body = sf.RigidBody("one", sf.Joint("z", "prismatic", axis=(0, 0, 1)), SOLID)
+    m = sf.compile(sf.System("s", [body], connections=[contact]))
+    q, v = np.array([[0.3], [0.1], [0.05]]), np.array([[0.0], [-0.5], [0.5]])
+    by_q, by_v, _ = m.with_precision("single").forward_dynamics_derivatives(
+        q.astype(np.float32), v.astype(np.float32), []
+    )
+    expected = m.forward_dynamics_derivatives(q, v, [])
+    np.testing.assert_allclose(by_q, expected[0], rtol=1e-4, atol=1e-3)
+    np.testing.assert_allclose(by_v, expected[1], rtol=1e-4, atol=1e-3)

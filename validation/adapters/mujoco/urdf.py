@@ -37,7 +37,7 @@ def build(subject: Subject) -> ChartedEngine | Unsupported:
 def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported:
     names = {mover.name: mover.name for mover in assembly.movers}
     try:
-        spec = mujoco.MjSpec.from_string(_bare(source.text))
+        spec = mujoco.MjSpec.from_string(bare(source.text))
         spec.option.gravity = assembly.gravity
         if source.floating_base:
             spec.worldbody.first_body().add_freejoint(name=_ROOT_JOINT)
@@ -59,7 +59,7 @@ def _slot(joint: Any, mover: Mover) -> Slot:
     return Slot(mover, int(joint.qposadr[0]), int(joint.dofadr[0]), FREE_WXYZ if free else "", grounded=free)
 
 
-def _bare(urdf: bytes) -> str:
+def bare(urdf: bytes) -> str:
     """The file without shapes, whose meshes need not be at hand, and with MuJoCo's own section: radians."""
     root = ElementTree.fromstring(urdf)
     for link in root.iter("link"):

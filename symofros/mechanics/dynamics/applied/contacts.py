@@ -15,8 +15,9 @@ from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.tree import frame_of
 
-# What roots are taken of is at least this: derivatives of a root of zero do not exist, and these are zero there.
-_TINY = 1e-300
+# What roots are taken of is at least this, a number of single precision too: the derivative of a root of zero does not
+# exist, and that of these is zero there.
+_TINY = 1e-30
 
 
 @dataclass(frozen=True)
@@ -54,23 +55,23 @@ def _touching(kinematics: TreeKinematics, frames: FrameKinematics, contact: Cont
     first, second = (frames.pose(end) for end in ends)
     radius = lowering.value(contact.radius)
     p_WC = first.p_WF + first.R_WF.times(point)
-    distance, normal = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
-    n_W = second.R_WF.times(normal)
-    p_WP = p_WC - n_W.scaled(distance)
+    distance, gradient = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
+    normal = second.R_WF.times(gradient)
+    p_WP = p_WC - normal.scaled(distance)
     gap = g.sub(distance, radius)
     depth = g.call("max", -gap, ZERO)
     # Of points fixed to the two bodies at the point of contact.
     at_first, at_second = (_velocity_at(g, frames.velocity(end), p_WP - frames.pose(end).p_WF) for end in ends)
     slip = at_first - at_second
-    approach = -slip.dot(n_W)
+    approach = -slip.dot(normal)
     elastic = g.mul(lowering.value(contact.stiffness), _power(g, depth, contact.exponent))
     damping = g.call("max", g.add(ONE, g.mul(lowering.value(contact.dissipation), approach)), ZERO)
     push = g.mul(elastic, damping)
-    drag = _friction(lowering, contact, push, slip + n_W.scaled(approach))
+    drag = _friction(lowering, contact, push, slip + normal.scaled(approach))
     energy = g.div(g.mul(elastic, depth), g.constant(contact.exponent + 1.0))
     size = _size(lowering, contact)
     share = ZERO if size is None else g.div(depth, size)
-    return TouchingBall(gap, depth, push, n_W.scaled(push) - drag, p_WP, energy, share)
+    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share)
 
 
 def _velocity_at(g: Graph, velocity: list[Edge], offset: Vec3) -> Vec3:

@@ -8,6 +8,7 @@
 | beam | a tube along its axis, as the equations bend it |
 | closure, rod, spring, slide | a connector between two points |
 | rolling contact, knife edge | a disc, a sphere, a blade |
+| compliant contact | its balls, and the solid that pushes them back |
 | visual shapes of a file | these |
 """
 
@@ -21,6 +22,7 @@ from symofros.base.arrays import Array
 from symofros.description import STATION, Anchor, Beam, Closure, Connection, KnifeEdge, RigidBody, Rod, Rolling
 from symofros.mechanics.beams import theory_of
 from symofros.mechanics.topology import BASE, Link, NamedFrame, Numbers, Placement, SpanningTree, frame_of
+from symofros.studio.viewer.drawing.contact_shapes import balls, surface
 from symofros.studio.viewer.drawing.drawing import (
     STATIONS,
     Color,
@@ -53,6 +55,8 @@ _BASE, _JOINT, _CLOSURE, _ROD, _SPRING, _SLIDE = (
     (0, 153, 136),
     (160, 160, 160),
 )
+
+_CONTACT: dict[str, Color] = {"balls": (204, 51, 17), "surface": (187, 187, 187)}
 
 # Shares of the mechanism's size.
 _ROD_RADIUS, _JOINT_RADIUS, _JOINT_LENGTH, _THIN, _NEAR = 0.006, 0.012, 0.045, 0.002, 1e-6
@@ -113,7 +117,8 @@ class _DrawingBuilder:
             Triad(frame.name, frame.link, *placed(frame.placement, self.numbers), self._frame_element(frame))
             for frame in self.tree.frames
         )
-        parts = (*self._skeleton(), *self._joints(), *boxes, *self._contacts(), *self._visuals())
+        marks = (*self._marks(), *self._contacts())
+        parts = (*self._skeleton(), *self._joints(), *boxes, *marks, *self._visuals())
         return Drawing(
             self.tree.system.name,
             parts,
@@ -314,6 +319,17 @@ class _DrawingBuilder:
         return LinkPoint(frame.link, placed(frame.placement, self.numbers)[0])
 
     def _contacts(self) -> Iterator[DrawnPart]:
+        """Balls and surfaces of compliant contacts."""
+        for item in self.tree.system.contacts:
+            shapes = {"balls": (item.first, balls), "surface": (item.second, surface)}
+            for label, (anchor, shape) in shapes.items():
+                frame, mesh = self._anchor(anchor), shape(item, self.numbers, self.size)
+                if mesh is not None:
+                    mesh = mesh.transformed(*placed(frame.placement, self.numbers))
+                    name, element = f"constraints/{item.name}.{label}", f"contacts/{item.name}"
+                    yield DrawnPart(name, "constraints", frame.link, mesh, _CONTACT[label], element)
+
+    def _marks(self) -> Iterator[DrawnPart]:
         """The marks of closures, rolling contacts and knife edges."""
         for item in self.tree.system.constraints:
             if isinstance(item, Closure):

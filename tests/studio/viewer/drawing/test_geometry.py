@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -153,3 +154,28 @@ def test_loops_that_cannot_close_are_reported() -> None:
     it = mechanism("four_bar")
     state, why = it.closed(it.state([0.5, -2.0, 2.5]), held=("q1", "q2"))
     assert "can't be assembled" in why and np.array_equal(state.q, [0.5, -2.0, 2.5])
+
+
+def test_contacts_show_their_balls_and_the_solids_that_push_them() -> None:
+    """Extents of the pieces, in their frames."""
+    solids: dict[str, tuple[dict[str, Any], tuple[float, float]]] = {
+        "sphere": ({"surface_radius": 0.3}, (-0.3, 0.3)),
+        "capsule": ({"surface_radius": 0.1, "length": 0.4}, (-0.3, 0.3)),
+        "box": ({"size": (0.2, 0.4, 0.6)}, (-0.3, 0.3)),
+    }
+    ball = sf.RigidBody("ball", sf.Joint("j", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    other = sf.RigidBody("other", sf.Joint("k", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    for surface, (measures, extent) in solids.items():
+        points = [(0, 0, 0.5), (0, 0, -0.5)]
+        touch = sf.Contact("c", ("ball", None), ("other", None), 1e4, surface, 0.05, points, **measures)
+        found = {
+            part.name: part for part in Mechanism(sf.System("s", [ball, other], connections=[touch])).drawing().parts
+        }
+        z = found["constraints/c.surface"].mesh.vertices[:, 2]
+        np.testing.assert_allclose((z.min(), z.max()), extent, atol=1e-3)
+        z = found["constraints/c.balls"].mesh.vertices[:, 2]
+        np.testing.assert_allclose((z.min(), z.max()), (-0.55, 0.55), atol=1e-3)
+        assert found["constraints/c.balls"].element == "contacts/c"
+    hollow = replace(touch, surface="cylinder", surface_radius=0.5, size=None, inside=True)
+    names = [part.name for part in Mechanism(sf.System("s", [ball, other], connections=[hollow])).drawing().parts]
+    assert "constraints/c.balls" in names and "constraints/c.surface" not in names

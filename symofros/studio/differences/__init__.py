@@ -1,0 +1,1 @@
+"""Whether files describe the same mechanism, and in which entry they first differ."""

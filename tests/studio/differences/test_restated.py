@@ -1,0 +1,150 @@
+"""One mechanism stated in two ways is the same; what is beyond a comparison is refused."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import symofros as sf
+from symofros.__main__ import app
+from tests.studio.differences.planted import CREATURE
+from tests.studio.differences.restated import restated
+from tests.studio.differences.test_planted import read_original
+
+COORDINATES = ("coordinates",)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("options", ["names", "frames", "zeros", "fuse", "names frames zeros fuse"])
+@pytest.mark.parametrize("robot", ["ur5", "panda", "go2", "icub"])
+def test_a_mechanism_that_is_stated_otherwise_is_the_same(robot: str, options: str, seed: int) -> None:
+    system = replace(read_original(robot), constraints=())  # Formulas name coordinates.
+    asked = {name: name in options.split() for name in ("names", "frames", "zeros", "fuse")}
+    found = sf.diff(system, restated(system, seed, **asked))
+    assert found.same, str(found)
+    assert max(found.errors.values()) < 1e-12
+    # Of the fingers either is the other's counterpart, with other limits.
+    beyond = [item for item in found.differences if item.changes != COORDINATES and "finger" not in item.joint]
+    assert not beyond, str(found)
+    assert "zeros" in options or "zero of the coordinate" not in {item.entry for item in found.differences}
+    assert all(len(line) <= 80 for line in str(found).splitlines())
+
+
+def pendulum(**joint: object) -> sf.System:
+    stated = {"axis": (0, 1, 0), "limits": sf.Limits(-1.0, 2.0)} | joint
+    inertia = sf.Inertia(2.0, (0.1, 0.0, 0.5), (0.3, 0.2, 0.1))
+    return sf.System("p", (sf.RigidBody("arm", sf.Joint("turn", "revolute", **stated), inertia),))  # type: ignore[arg-type]
+
+
+ELEMENTS = {
+    "damping": ((sf.Damper(0.2),), "dissipation"),
+    "friction": ((sf.Friction(0.2),), "dissipation"),
+    "stiffness": ((sf.Spring(3.0),), "springs"),
+}
+
+
+@pytest.mark.parametrize("entry", ELEMENTS)
+def test_other_elements_leave_the_mechanism_the_same(entry: str) -> None:
+    elements, changes = ELEMENTS[entry]
+    found = sf.diff(pendulum(), pendulum(elements=elements))
+    first = found.first_difference
+    assert found.same and not found.identical and first is not None
+    assert (first.entry, first.joint, first.link, first.changes) == (entry, "turn", "arm", (changes,))
+
+
+def test_the_sign_of_a_coordinate_takes_its_limits_along() -> None:
+    found = sf.diff(pendulum(), pendulum(axis=(0, -1, 0), limits=sf.Limits(-2.0, 1.0)))
+    assert found.same and found.coordinates == (("turn", "turn", -1.0, 0.0),)
+    assert [item.changes for item in found.differences] == [COORDINATES]
+    kept = sf.diff(pendulum(), pendulum(axis=(0, -1, 0)))
+    assert {item.entry for item in kept.differences} == {"sign of the coordinate", "lower limit", "upper limit"}
+
+
+def test_what_changes_no_motion_is_called_so() -> None:
+    """A body that turns about a vertical axis alone shows its moment about that axis, and nothing else."""
+    one, two = pendulum(axis=(0, 0, 1)), pendulum(axis=(0, 0, 1))
+    (body,) = two.bodies
+    changed = replace(two, bodies=(replace(body, inertia=sf.Inertia(2.0, (0.1, 0.0, 0.7), (0.35, 0.2, 0.1))),))  # type: ignore[arg-type]
+    found = sf.diff(one, changed)
+    assert found.same and found.identical and [item.changes for item in found.differences] == [(), ()]
+    assert "nothing that can be observed" in str(found)
+
+
+def test_which_file_is_likelier_right() -> None:
+    def legs(mass: float, moments: tuple[float, float, float]) -> sf.System:
+        bodies = [
+            sf.RigidBody(
+                name,
+                sf.Joint(f"hip_{name}", "revolute", position=(0, y, 0), axis=(0, 1, 0)),
+                sf.Inertia(mass if y > 0 else 1.3, (0, 0, -0.2), moments if y > 0 else (0.3, 0.3, 0.1)),
+            )
+            for name, y in {"left": 0.1, "right": -0.1}.items()
+        ]
+        return sf.System("legs", tuple(bodies))
+
+    good = legs(1.3, (0.3, 0.3, 0.1))
+    twin = sf.diff(legs(1.4, (0.3, 0.3, 0.1)), good).first_difference
+    assert twin is not None and (twin.entry, twin.link, twin.likelier) == ("mass", "left", 1) and "right" in twin.reason
+    waived = tuple(replace(body, waive=("nonphysical_inertia",)) for body in legs(1.3, (0.9, 0.3, 0.1)).bodies)
+    bad = replace(good, bodies=waived)
+    impossible = sf.diff(good, bad).first_difference
+    assert impossible is not None and (impossible.entry, impossible.likelier) == ("inertia", 0)
+    assert "no distribution of mass" in impossible.reason
+
+
+def test_constraints_are_compared_in_the_coordinates_of_the_first() -> None:
+    def fingers(ratio: float, sign: float = 1.0, scale: float = 1.0) -> sf.System:
+        inertia = sf.Inertia(1.0, (0.1, 0, 0.2), (0.1, 0.2, 0.15))
+        bodies = [
+            sf.RigidBody(f"f{k}", sf.Joint(f"q{k}", "prismatic", axis=(0, (1, sign)[k], 0)), inertia) for k in (0, 1)
+        ]
+        coupling = sf.Coupling("mimic", sf.formula(f"{scale}*(q1 - {sign}*{ratio}*q0)"))
+        return sf.System("hand", tuple(bodies), constraints=(coupling,))
+
+    assert sf.diff(fingers(2.0), fingers(2.0, scale=3.0)).same
+    assert sf.diff(fingers(2.0), fingers(2.0, sign=-1.0)).same
+    found = sf.diff(fingers(2.0), fingers(2.5))
+    assert not found.same and found.differences[0].changes == ("constraints",)
+
+
+def test_the_command(tmp_path: Path) -> None:
+    def ran(*words: object) -> tuple[int, str]:
+        done = CliRunner().invoke(app, ["diff", *map(str, words)])
+        return done.exit_code, done.output
+
+    exported = [file for file in sf.export(sf.load(CREATURE), "mjcf", tmp_path / "out").files if file.suffix == ".xml"]
+    damped = tmp_path / "damped.xml"
+    damped.write_text(CREATURE.read_text().replace('damping="0.1"', 'damping="0.15"'))
+    heavy = tmp_path / "heavy.xml"
+    heavy.write_text(CREATURE.read_text().replace('mass="0.6"', 'mass="0.7"'))
+    code, text = ran(CREATURE, *exported, damped, heavy)
+    assert code == 1 and "mass of link 'tail'" in text and all(len(line) <= 80 for line in text.splitlines())
+    assert ran(CREATURE, damped)[0] == 0 and ran(CREATURE, damped, "--strict")[0] == 1
+    code, text = ran(CREATURE, heavy, "--json")
+    (compared,) = json.loads(text)["comparisons"]
+    first = compared["differences"][0]
+    assert code == 1 and (first["entry"], first["link"], first["here"], first["there"]) == ("mass", "tail", 0.6, 0.7)
+    assert math.isclose(compared["errors"]["kinematics"], 0.0, abs_tol=1e-12)
+
+
+def test_many_equal_bodies_take_bounded_work() -> None:
+    """Renamed joints of one body are matched by their order where they are too many to weigh against each other."""
+    rng = np.random.default_rng(0)
+    joints = [(f"a{k}", tuple(rng.normal(size=3)), tuple(rng.normal(size=3))) for k in range(60)]
+
+    def star(prefix: str) -> sf.System:
+        inertia = sf.Inertia(1.0, (0.1, 0, 0.2), (0.1, 0.2, 0.15))
+        bodies = [
+            sf.RigidBody(prefix + name, sf.Joint(f"j{prefix}{name}", "revolute", position=p, axis=axis), inertia)
+            for name, p, axis in joints
+        ]
+        return sf.System("star", tuple(bodies))
+
+    assert sf.diff(star("x"), star("y")).same
+    with pytest.raises(sf.DescriptionError, match="too many bodies"):
+        many = tuple(sf.RigidBody(f"b{k}", sf.Joint(f"j{k}", "revolute")) for k in range(1001))
+        sf.diff(sf.System("many", many), star("x"))
