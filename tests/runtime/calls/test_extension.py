@@ -217,7 +217,8 @@ def test_a_call_within_a_call_changes_nothing(
     call_type: Any, m: sf.Model, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
 ) -> None:
     """While the code by vectors is compiled, a handler of a signal may call the same function."""
-    kernel, within = m.kernel("dynamics"), list[Any]()
+    kernel: Any = m.kernel("dynamics")
+    within = list[Any]()
     of_many = type(kernel).for_many
 
     def for_many(of: Any) -> Any:
@@ -229,7 +230,7 @@ def test_a_call_within_a_call_changes_nothing(
     call = plain_call(kernel, m.parameter_values, np.zeros(m.nu), m.record.quaternions, m._forget_plain_calls)
     q, _ = m.random_state(rng)
     v, u = rng.uniform(-1.0, 1.0, (MANY, m.nv)), rng.uniform(-1.0, 1.0, (MANY, m.nu))
-    given = {"q": np.tile(q, (MANY, 1)), "v": v, "u": u, "t": 0.0}
+    given: dict[str, Any] = {"q": np.tile(q, (MANY, 1)), "v": v, "u": u, "t": 0.0}
     results = call(given)
     assert within == [None] and results is not None
     for result, again in zip(results, call(given) or (), strict=True):
