@@ -98,9 +98,16 @@ class Inlet(Block):
         if self.port.shape is None:
             found, remedy = "its shape is unknown", "add_inlet(..., shape=(n,)); () is one number"
             rule = "a shape follows from an input that it feeds, from what is given, or is stated"
-        elif int(np.prod(self.own_shape)) in (1, int(np.prod(self.port.shape))):
-            return ()
+        elif self._fits(self.own_shape):
+            if self.port.default is None or self._fits(np.shape(self.port.default)):
+                return ()
+            found = f"a start of shape {np.shape(self.port.default)}"
         return _refused(self.name, found, rule, remedy).problems
+
+    def _fits(self, shape: Shape) -> bool:
+        """Whether numbers of a shape are one for all entries, or one each: in the signal's shape, or in a row."""
+        size = int(np.prod(self.port.shape or ()))
+        return int(np.prod(shape)) == 1 or shape in (self.port.shape, (size,))
 
     def ports(self, environment: Environment) -> Ports:
         """The signal."""

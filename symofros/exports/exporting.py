@@ -104,7 +104,8 @@ def export(
             these can hold; the notes say what they can't).
         folder: A new one, an empty one, or one of an earlier export.
         name: Name of files and functions; made of the system's name by default.
-        frames: Frames to generate kinematics for; all by default, of CUDA the last one.
+        frames: Frames to generate kinematics for; all by default, of CUDA the last one. This, `functions` and `start`
+            are of models, not of diagrams, which state themselves what they need and where they start.
         functions: Of "wasm", functions of the model beside those that every module has, such as
             "forward_dynamics_derivatives" or "joint_wrenches"; each makes it larger. Of "c", the functions that the
             package has beside those that its stepping method calls, in place of all: a fraction of the text of a large
@@ -134,8 +135,10 @@ def export(
     """
     given = {"method": method, "dt": dt, "rtol": rtol, "atol": atol, "beam_limit": beam_limit}
     if isinstance(model, Diagram):
+        _refuse_of_models(model, frames=frames, functions=functions, start=start)
         stepping = _stepping(given, model.simulation.keywords())
-        return _export_diagram(model, target, Path(folder), outputs, stepping)
+        named = model if name is None else replace(model, name=name)
+        return _export_diagram(named, target, Path(folder), outputs, stepping)
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
@@ -156,6 +159,24 @@ def export(
             return write_cuda_package(system, name, frames, place)
         material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target)
     return _COMPILED[target](material, place)
+
+
+def _refuse_of_models(diagram: Diagram, **given: object) -> None:
+    """Refuse arguments that have a meaning for a model alone.
+
+    Raises:
+        ExportError: One of them is given.
+    """
+    stated = [name for name, value in given.items() if value]
+    if stated:
+        raise ExportError(
+            Problem(
+                f"diagram '{diagram.name}': {stated[0]} is an argument of models",
+                ", ".join(stated),
+                "a diagram states where its mechanisms start and which functions its blocks need",
+                "add_model(..., start={...}) for a start, `outputs` for signals; or export a mechanism alone",
+            )
+        )
 
 
 def _export_diagram(

@@ -7,6 +7,7 @@ from symofros.expr.edges import ZERO as ZERO
 from symofros.expr.edges import Edge as Edge
 from symofros.expr.expression import CONSTANTS as CONSTANTS
 from symofros.expr.expression import Expression as Expression
+from symofros.expr.expression import NoValueError as NoValueError
 from symofros.expr.expression import evaluate as evaluate
 from symofros.expr.expression import lower as lower
 from symofros.expr.expression import spelled as spelled

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from symofros.base.arguments import check_argument
 from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -102,6 +103,10 @@ def _text(node: Expression, outer: int, spelling: Callable[[str], str]) -> str:
     return f"({text})" if own < outer else text
 
 
+class NoValueError(SymofrosError, ArithmeticError):
+    """A formula has a constant part that is no finite number, such as 1/(t - t)."""
+
+
 def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
     """Put a formula into a graph.
 
@@ -112,8 +117,26 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
 
     Raises:
         KeyError: A symbol has no binding.
-        ArithmeticError: A constant part divides by zero or leaves a function's domain.
+        NoValueError: A constant part divides by zero, leaves a function's domain or has no end.
     """
+    try:
+        edge = _lowered(expression, graph, bindings)
+        if _is_infinite(graph, edge):
+            raise OverflowError(f"{expression!s:.80} is infinite")
+    except ArithmeticError as error:
+        raise NoValueError(
+            Problem(
+                f"formula '{expression!s:.80}' has no value",
+                str(error),
+                "constant parts are finite: no division by zero, each within the domain of its function",
+                "mend the formula",
+            )
+        ) from None
+    return edge
+
+
+def _lowered(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
+    """As `lower`; raises what the graph raises, and OverflowError for infinite constants beside what varies."""
     kind = expression.kind
     if kind == "number":
         return graph.constant(expression.number)
@@ -121,14 +144,24 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
         if expression.name in CONSTANTS:
             return graph.constant(CONSTANTS[expression.name])
         return bindings[expression.name]
-    args = [lower(arg, graph, bindings) for arg in expression.args]
+    args = [_lowered(arg, graph, bindings) for arg in expression.args]
     if kind == "neg":
         return -args[0]
     if kind == "pow":
-        return graph.power(*args)
-    if kind in FUNCTIONS:
-        return graph.call(kind, *args)
-    return {"add": graph.add, "sub": graph.sub, "mul": graph.mul, "div": graph.div}[kind](*args)
+        edge = graph.power(*args)
+    elif kind in FUNCTIONS:
+        edge = graph.call(kind, *args)
+    else:
+        edge = {"add": graph.add, "sub": graph.sub, "mul": graph.mul, "div": graph.div}[kind](*args)
+    if not graph.is_constant(edge):
+        for arg, stated in zip(args, expression.args, strict=True):
+            if _is_infinite(graph, arg):
+                raise OverflowError(f"{stated!s:.80} is infinite")
+    return edge
+
+
+def _is_infinite(graph: Graph, edge: Edge) -> bool:
+    return math.isinf(graph.number(edge) or 0.0)
 
 
 def evaluate(expression: Expression | float, values: Mapping[str, float]) -> float:
@@ -161,7 +194,7 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
     if expression.kind == "symbol" and expression.name not in CONSTANTS:
         return values[expression.name]
     graph = Graph()
-    number = graph.number(lower(expression, graph, {name: graph.constant(values[name]) for name in used}))
+    number = graph.number(_lowered(expression, graph, {name: graph.constant(values[name]) for name in used}))
     assert number is not None  # Everything was a number, and numbers fold.
     return number
 

@@ -145,6 +145,8 @@ def test_the_header_names_inputs_outputs_and_parameters(compiler: tuple[str, ...
         ({"goal": 0.0, "q": [0.0, 0.0]}, "inlet 'v' is not given"),
         ({"goal": 0.0, "q": 0.0, "v": 0.0, "w": 1.0}, "no inlet 'w'"),
         ({"goal": 0.0, "q": [0.0, 0.0, 0.0], "v": 0.0}, "inlet 'q': does not fit"),
+        ({"goal": 0.0, "q": [[0.0], [0.0]], "v": 0.0}, r"inlet 'q': does not fit\n  found:  shape \(2, 1\)"),
+        ({"goal": "1/(t - t)", "q": 0.0, "v": 0.0}, r"formula '1/\(t - t\)' has no value"),
         ({"goal": "sin(q)", "q": 0.0, "v": 0.0}, "formulas of inlets are of the time t"),
         ({"goal": "sin(", "q": 0.0, "v": 0.0}, "inlet 'goal'"),
         ({"goal": float("nan"), "q": 0.0, "v": 0.0}, "not samples over time"),
@@ -184,3 +186,32 @@ def test_open_diagrams_that_cannot_leave_are_refused(tmp_path: Path) -> None:
     for target in ("mex", "sfunction", "wasm"):
         with pytest.raises(sf.ExportError, match="becomes a C program or an FMU"):
             sf.export(rates(), target, tmp_path / "c")
+
+
+def test_matrices_of_inlets_are_not_turned() -> None:
+    def doubled(value: Any, start: Any = None) -> Any:
+        diagram = sf.Diagram("matrix")
+        diagram.add(blocks.Gain(name="twice", gain=2.0))
+        diagram.add_inlet("x", "twice.u", shape=(2, 3), start=start)
+        diagram.outlets = {"y": "twice"}
+        return sf.Simulation(diagram).run(0.01, dt=1e-3, inputs={"x": value})["y"][-1]
+
+    table = np.arange(6.0).reshape(2, 3)
+    np.testing.assert_array_equal(doubled(table), 2.0 * table)
+    np.testing.assert_array_equal(doubled(table.ravel()), 2.0 * table)
+    for value, start in ((table.T, None), (table, table.T)):
+        with pytest.raises(sf.DescriptionError, match=r"inlet 'x': does not fit\n  found: .*\(3, 2\)"):
+            doubled(value, start)
+
+
+@pytest.mark.parametrize("given", [{"frames": ["tip"]}, {"functions": ["dynamics"]}, {"start": {"q1": 1.0}}])
+def test_arguments_of_models_are_refused_for_diagrams(given: dict[str, Any], tmp_path: Path) -> None:
+    with pytest.raises(sf.ExportError, match=f"{next(iter(given))} is an argument of models"):
+        sf.export(rates(), "c", tmp_path / "c", **given)
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_program_bears_the_name_that_is_given(tmp_path: Path) -> None:
+    there = {path.name for path in sf.export(rates(), "c", tmp_path / "c", name="own").files}
+    assert {"own.h", "own_program.c"} <= there and not any(name.startswith("rates") for name in there)
+    assert "own_program(void)" in (tmp_path / "c" / "own.h").read_text()

@@ -5,8 +5,9 @@ import sympy
 
 import symofros as sf
 from symofros.description.parser import parse
-from symofros.expr.expression import evaluate
+from symofros.expr.expression import evaluate, lower
 from symofros.expr.freeze import freeze
+from symofros.expr.graph import Graph
 
 a, b, x = sympy.symbols("a b x")
 
@@ -50,6 +51,25 @@ def test_expressions_without_c_form_are_refused(expression: sympy.Expr) -> None:
 
 def test_symbols_exclude_pi() -> None:
     assert parse("pi*r^2 + sin(q1)").symbols() == {"r", "q1"}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("x + 1/(t - t)", "division by the constant zero"),
+        ("x*sqrt(-1)", "sqrt(-1.0) is not a number"),
+        ("x + log(0)", "log(0) is infinite"),
+        ("exp(1000)", "exp(1000) is infinite"),
+    ],
+)
+def test_constant_parts_without_a_value_are_refused_in_words(text: str, found: str) -> None:
+    g = Graph()
+    with pytest.raises(sf.SymofrosError) as refused:
+        lower(parse(text), g, {"x": g.input("q", 0), "t": g.input("t", 0)})
+    problem = refused.value.problem
+    assert problem.what == f"formula '{text}' has no value" and problem.found == found
+    assert problem.rule and problem.remedy
+    assert lower(parse("1/exp(1000)"), g, {}) == 0
 
 
 def test_evaluate_refuses_division_by_zero() -> None:

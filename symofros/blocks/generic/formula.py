@@ -18,7 +18,7 @@ from symofros.diagrams.block import Block, Environment, EvaluationContext, Port,
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
-from symofros.expr import Expression, lower
+from symofros.expr import Expression, NoValueError, lower
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)
@@ -150,11 +150,11 @@ class Formula(Block):
                 else ([lower(value, context.g, bindings)], ())
                 for name, value in self._parsed.items()
             }
-        except ArithmeticError as error:
+        except NoValueError as error:
             raise refuse(
                 self.name,
                 "a formula has no value",
-                error,
+                error.problem.found,
                 "constant parts are within the domain of functions",
                 "mend the formula",
             ) from None

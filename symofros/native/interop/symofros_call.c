@@ -5,9 +5,10 @@
  * call takes a dict of the inputs by name, and one of arrays that receive outputs or None; it gives a list of the
  * outputs, or None where an input is no array of float64 of the expected length or of rows of it, a time no float, or a
  * quaternion not of unit length; where an array that is to receive an output does not fit, or overlaps another; where
- * batches do not have one length, or have as many states as threads may share. Such calls are made elsewhere, and
- * refused or converted there. Call.are_unit looks at the quaternions of a batch. SYM_UNIT_ROUNDING and SYM_MANY are
- * defined before this text. Step is the type of symofros_step.c.
+ * batches do not have one length, or have as many states as threads may share; and within another call of the same
+ * object, whose memory is in use. Such calls are made elsewhere, and refused or converted there. Call.are_unit looks at
+ * the quaternions of a batch. SYM_UNIT_ROUNDING and SYM_MANY are defined before this text. Step is the type of
+ * symofros_step.c.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
@@ -59,6 +60,7 @@ typedef struct {
     npy_intp most;      /* states of a call at most */
     PyObject *get_many; /* gives the address and scratch of what evaluates many, and what is kept for it */
     PyObject *kept, *kept_many; /* what C points into */
+    int busy; /* a call is under way, within which Python may make another, as handlers of signals do */
 } call_object;
 
 static double squared_length(const double *p, npy_intp step) {
@@ -206,7 +208,7 @@ static int find_many(call_object *self) {
         PyMem_Free(self->many.work);
         self->many.work = PyMem_Calloc((size_t)(work < 1 ? 1 : work), sizeof(double));
         if (self->many.work == NULL) PyErr_NoMemory();
-        self->kept_many = Py_NewRef(kept);
+        Py_XSETREF(self->kept_many, Py_NewRef(kept));
         self->many.evaluate = (batch_function)(uintptr_t)PyLong_AsVoidPtr(address);
     }
     Py_DECREF(found);
@@ -226,7 +228,8 @@ static PyObject *call(PyObject *callable, PyObject *const *args, size_t nargsf, 
         PyErr_SetString(PyExc_TypeError, "a call takes one dict of inputs, and one of arrays that receive outputs");
         return NULL;
     }
-    if (out && !PyDict_CheckExact(out)) Py_RETURN_NONE;
+    if (self->busy || (out && !PyDict_CheckExact(out))) Py_RETURN_NONE;
+    self->busy = 1;
     for (i = 0; as_expected && i < self->n_in; ++i) {
         const input *of = &self->in[i];
         PyObject *value = PyDict_GetItemWithError(args[0], of->name);
@@ -258,6 +261,7 @@ static PyObject *call(PyObject *callable, PyObject *const *args, size_t nargsf, 
     }
     Py_END_ALLOW_THREADS
 done:
+    self->busy = 0;
     while (n_held > 0) Py_DECREF(held[--n_held]);
     return results;
 }

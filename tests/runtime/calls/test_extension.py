@@ -213,6 +213,31 @@ def test_batches_that_threads_share_or_that_do_not_broadcast_fall_back_to_python
     assert forward({"q": q[:3], "v": np.zeros((2, m.nv)), "u": None, "t": 0.0}) is None
 
 
+def test_a_call_within_a_call_changes_nothing(
+    call_type: Any, m: sf.Model, monkeypatch: pytest.MonkeyPatch, rng: np.random.Generator
+) -> None:
+    """While the code by vectors is compiled, a handler of a signal may call the same function."""
+    kernel: Any = m.kernel("dynamics")
+    within = list[Any]()
+    of_many = type(kernel).for_many
+
+    def for_many(of: Any) -> Any:
+        within.append(call({group: x if group == "t" else x[7:14] for group, x in given.items()}))
+        return of_many(of)
+
+    monkeypatch.setattr("symofros.runtime.calls.plain.call_type", lambda _: call_type)
+    monkeypatch.setattr(type(kernel), "for_many", for_many)
+    call = plain_call(kernel, m.parameter_values, np.zeros(m.nu), m.record.quaternions, m._forget_plain_calls)
+    q, _ = m.random_state(rng)
+    v, u = rng.uniform(-1.0, 1.0, (MANY, m.nv)), rng.uniform(-1.0, 1.0, (MANY, m.nu))
+    given: dict[str, Any] = {"q": np.tile(q, (MANY, 1)), "v": v, "u": u, "t": 0.0}
+    results = call(given)
+    assert within == [None] and results is not None
+    for result, again in zip(results, call(given) or (), strict=True):
+        np.testing.assert_array_equal(result, again)
+    assert len(within) == 1
+
+
 def test_quaternions_of_batches_are_judged_in_each_state(forward: PlainCall, m: sf.Model) -> None:
     (first,) = m.record.quaternions["q"][:1]
     given = state(m) | {"q": np.tile(state(m)["q"], (5, 1))}
