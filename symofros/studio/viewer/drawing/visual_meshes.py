@@ -33,7 +33,11 @@ def visual_mesh(visual: Visual) -> Mesh | None:
     if visual.kind == "mesh":
         try:
             file = Path(visual.file)
-            return _scaled(_read(file, file.stat().st_mtime_ns), size)
+            with np.errstate(all="ignore"):  # What overflows is not finite, and refused as such.
+                mesh = _scaled(_read(file, file.stat().st_mtime_ns), size)
+            if not np.all(np.isfinite(mesh.vertices)):
+                raise ValueError(f"corners beyond all numbers at a scale of {size}")
+            return mesh
         except (OSError, ValueError) as error:
             warnings.warn(f"view: mesh '{Path(visual.file).name}' is not drawn: {str(error)[:200]}", stacklevel=2)
             return None
@@ -89,12 +93,10 @@ def _loaded(suffix: str, data: bytes) -> Mesh:
     )  # It writes tracebacks of what is raised here as well.
     try:
         # Of bytes, without a resolver: nothing that the file refers to is opened.
-        with np.errstate(all="ignore"):
-            surface = trimesh.load(
-                io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
-            )
-        with np.errstate(all="ignore"):  # What overflows is not finite, and refused as such.
-            vertices = np.array(surface.vertices, dtype=np.float64).reshape(-1, 3)
-            return Mesh(vertices, np.array(surface.faces, dtype=np.int64).reshape(-1, 3))
+        surface = trimesh.load(
+            io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
+        )
+        vertices = np.array(surface.vertices, dtype=np.float64).reshape(-1, 3)
+        return Mesh(vertices, np.array(surface.faces, dtype=np.int64).reshape(-1, 3))
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
         raise ValueError(f"not a {suffix} file: {error}") from None

@@ -168,3 +168,15 @@ def test_an_invalid_mesh_is_reported_once(
     with pytest.warns(UserWarning, match="'m.stl' is not drawn"):
         visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl")))
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("size", [1e300, 1e10])
+def test_meshes_that_overflow_when_scaled_are_refused_by_one_warning(tmp_path: Path, size: float) -> None:
+    file = tmp_path / "huge.obj"
+    lines = [f"v {x * 1e300} {y * 1e300} {z * 1e300}" for x, y, z in CORNERS]
+    file.write_text("\n".join([*lines, *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in FACES)]))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        assert visual_mesh(Visual("mesh", (size,) * 3, file=str(file))) is None
+    (warning,) = caught
+    assert "is not drawn" in str(warning.message)
