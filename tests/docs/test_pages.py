@@ -164,7 +164,7 @@ def test_two_processes_in_lock_step_have_the_bits_of_one_program(page: str, fold
     build, lock_step, _ = blocks(page, "sh")
     ports = [free_port(), free_port()]
     text = f"{build.text}{lock_step.text}wait\n".replace("47000", ports[0]).replace("47001", ports[1])
-    subprocess.run(["sh", "-e"], input=text, text=True, check=True, timeout=120)
+    subprocess.run(["/bin/sh", "-e"], input=text, text=True, check=True, timeout=120)
     apart = np.array([[float(x) for x in line.strip(",").split(",")] for line in Path("apart.csv").read_text().split()])
     together = np.loadtxt("together.csv", delimiter=",", skiprows=1)[:, 1:]
     assert apart.shape == together.shape == (2001, 6)
