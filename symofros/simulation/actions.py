@@ -154,12 +154,9 @@ class Actions:
         """Refuse parameters that change beams, whose bending is judged over the whole run."""
         for before, after in zip(stepper.beams, self.model.beams(par), strict=True):
             if (before.EI_z, before.EI_y, *before.scale) != (after.EI_z, after.EI_y, *after.scale):
-                what, found = (
-                    "an action changes an elastic beam",
-                    f"EI_z, EI_y = {before.EI_z:g}, {before.EI_y:g} before",
-                )
+                found = f"EI_z, EI_y = {before.EI_z:g}, {before.EI_y:g} before"
                 rule = "the length and stiffness of an elastic beam stay the same in a run"
-                raise SymofrosError(Problem(what, found, rule, "make two runs"))
+                raise SymofrosError(Problem("an action changes an elastic beam", found, rule, "make two runs"))
 
     def _done(
         self,
