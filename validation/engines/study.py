@@ -22,7 +22,7 @@ from .models.readers import Reading, readings
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
-from .verdicts import RED
+from .verdicts import RED, Cell, refusals
 from .workers import Job, Worker, registry
 
 # Part of the functions that are red on either of two trees that must be red on both.
@@ -170,7 +170,7 @@ def measure(
         )
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) for plugin in chosen.values()],
+        "engines": [_engine(plugin, [one.cell for one in cells]) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -190,8 +190,10 @@ def measure(
     return whole
 
 
-def _engine(plugin: EnginePlugin) -> Data:
+def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:
+    own = [cell for cell in cells if cell.engine == plugin.name and cell.verdict != "not offered"]
     return {
+        "refusals": refusals(own),
         "name": plugin.name,
         "version": plugin.version(),
         "conventions": [list(row) for row in plugin.conventions],

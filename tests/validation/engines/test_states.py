@@ -17,7 +17,7 @@ from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 from validation.engines.proving import scripts
 from validation.engines.scales import size_of
 from validation.engines.states import neutral
-from validation.engines.verdicts import expected, judge
+from validation.engines.verdicts import expected, judge, refusals
 from validation.engines.workers import Job
 
 INERTIA = ((0.2, 0.01, 0.0), (0.01, 0.3, 0.0), (0.0, 0.0, 0.4))
@@ -69,6 +69,14 @@ def test_a_planted_fault_of_a_state_is_seen_and_its_state_is_named(
     cell = asked(toy(fault, calls=60), monkeypatch).cell
     assert cell.verdict == verdict and cell.words.startswith(words), cell
     assert bool(words) or cell.words == ""
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [("", "refuses 0 of 1 cells in its own words, within"), ("refuses", "refuses 1 of 1 cells in its own words, above")],
+)
+def test_how_much_an_engine_refuses_is_bounded(fault: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert refusals([asked(toy(fault), monkeypatch).cell]).startswith(said)
 
 
 def test_every_planted_fault_is_asked_about() -> None:
