@@ -206,7 +206,7 @@ class Compilation:
         rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
         for text in (*inconsistencies(self.system), *rounded, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
-        units = self._units(_choose_toolchain(self.options))
+        units = self._units(_choose_toolchain(self.options), self.options.backend == "tape")
         if self.options.functions is None:
             return self._model(units, units.functions)
         return self._model(units, None, units.functions(chosen))
@@ -228,8 +228,8 @@ class Compilation:
         units = self._units(None)
         return self._model(units, None, units.functions(self.requests))
 
-    def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
-        return UnitCompiler(self.programs, self.record, self.options, toolchain)
+    def _units(self, toolchain: Toolchain | None, on_tape: bool = False) -> UnitCompiler:
+        return UnitCompiler(self.programs, self.record, self.options, toolchain, on_tape)
 
     def _model(
         self,
@@ -282,8 +282,8 @@ def inconsistencies(system: System) -> Iterator[str]:
 
 
 def _choose_toolchain(options: Options) -> Toolchain | None:
-    """The compiler; None where the interpreter is asked for, or is all there is."""
-    if options.backend == "interpreter":
+    """The compiler; None where an interpreter is asked for, or is all there is."""
+    if options.backend != "c":
         return None
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:

@@ -49,7 +49,7 @@ class Options(metaclass=CheckedCalls):
 
     functions: tuple[str, ...] | None = None
     frames: tuple[str, ...] | None = None
-    backend: Literal["c", "interpreter"] = "c"
+    backend: Literal["c", "tape", "interpreter"] = "c"
     flags: tuple[str, ...] | None = None
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"

@@ -19,6 +19,7 @@ from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
+from symofros.generator.codegen.tape import machine_text, tape_functions
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
@@ -30,6 +31,7 @@ from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
+from symofros.runtime.calls.tape import TapeUnit, tape_machine
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
@@ -47,12 +49,19 @@ class UnitCompiler:
         record: Names, sizes and hash of the model.
         options: Options of compilation.
         toolchain: C compiler; None where units are interpreted.
+        on_tape: Whether they are so by the tape machine, not by NumPy.
     """
 
     def __init__(
-        self, programs: ProgramBuilder, record: ModelRecord, options: Options, toolchain: Toolchain | None
+        self,
+        programs: ProgramBuilder,
+        record: ModelRecord,
+        options: Options,
+        toolchain: Toolchain | None,
+        on_tape: bool = False,
     ) -> None:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
+        self._on_tape = on_tape
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
         self._recipe = repr((programs.tree.system, options, np.__version__))
         self._told: dict[tuple[Request, ...], dict[Key, tuple[Choice, ...]]] = {}
@@ -150,9 +159,12 @@ class UnitCompiler:
         program = cache(form)
         if self._toolchain is None:
             with self._generating:
-                return InterpretedUnit(program())
+                return self._tape_unit(program()) if self._on_tape else InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
         return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes, meanwhile)
+
+    def _tape_unit(self, program: Program) -> TapeUnit:
+        return TapeUnit(tape_machine(machine_text()), *tape_functions(program), self._record)
 
     def _compile(
         self,
