@@ -29,6 +29,7 @@ from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.tape import machine_text
 from symofros.generator.held_beams import held_beams, may_be_held
 from symofros.generator.instants import has_instants, instants_at
 from symofros.generator.passes.count import Operations, count_program
@@ -43,6 +44,7 @@ from symofros.mechanics.topology.remarks import rounded_rotations
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.beams import ElasticBeam
+from symofros.runtime.build.prebuilt import prebuilt_library
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Array, LaneOptions, Precision, Unit
 from symofros.runtime.cuda.device_code import DeviceCode
@@ -206,7 +208,7 @@ class Compilation:
         rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
         for text in (*inconsistencies(self.system), *rounded, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
-        units = self._units(_choose_toolchain(self.options), self.options.backend == "tape")
+        units = self._units(*_choose_toolchain(self.options))
         if self.options.functions is None:
             return self._model(units, units.functions)
         return self._model(units, None, units.functions(chosen))
@@ -281,21 +283,24 @@ def inconsistencies(system: System) -> Iterator[str]:
             )
 
 
-def _choose_toolchain(options: Options) -> Toolchain | None:
-    """The compiler; None where an interpreter is asked for, or is all there is."""
+def _choose_toolchain(options: Options) -> tuple[Toolchain | None, bool]:
+    """The compiler, None where there is none or an interpreter is asked for; and whether that is the tape machine."""
     if options.backend != "c":
-        return None
+        return None, options.backend == "tape"
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
+        on_tape = prebuilt_library(machine_text()) is not None
+        slower = "in C, several" if on_tape else "by NumPy, some thousand"
         warnings.warn(
-            "no C compiler found: models run on the NumPy interpreter, some thousand times slower."
+            f"no C compiler found: models are interpreted {slower} times slower than compiled ones."
             " Install gcc or clang, or `pip install ziglang`.",
             CompilerMissingWarning,
             stacklevel=4,
         )
-    elif toolchain.is_fallback:
+        return None, on_tape
+    if toolchain.is_fallback:
         _warn_fallback()
-    return toolchain
+    return toolchain, False
 
 
 @cache

@@ -37,7 +37,8 @@ def machine_text() -> str:
     """C text of the machine that interprets tapes, with the routines that finish functions."""
     sines = trigonometry.routines(["sym_sincos_1(", f"sym_sincos_{WIDEST}("])
     solvers = [native_text(f"model/{name}.c.in") for name in ROUTINES if name != "sparse_system"]
-    return Template(native_text("tape/tape.c.in")).substitute(routines="\n".join([*sines, *solvers]))
+    header = native_text("tape/symofros_tape.h")
+    return Template(native_text("tape/tape.c.in")).substitute(header=header, routines="\n".join([*sines, *solvers]))
 
 
 def tape_functions(program: Program) -> tuple[Tape, list[TapeFunction]]:
@@ -198,7 +199,7 @@ class _Writer:
             self._add({MUL: "MUL", DIV: "DIV"}.get(name, name.upper()), node, [self._value(arg) for arg in args])
 
     def _sum(self, node: int, a: Edge, b: Edge) -> None:
-        """a + b, where a is positive by construction."""
+        """The sum of a, which is positive by construction, and b."""
         first, second = a in self._merged, abs(b) in self._merged
         sign = "ADD" if b > 0 else "SUB"
         if self._graph.number(b) is not None:
@@ -296,7 +297,7 @@ class _Writer:
 
 
 def _scheduled(instructions: Sequence[_Instruction]) -> list[_Instruction]:
-    """The same in an order that has long runs of one operation, each near where it stood, so that values live as long."""
+    """The same in an order of long runs of one operation, each instruction near where it stood: values live as long."""
     formed = {value: i for i, one in enumerate(instructions) for value in one.writes}
     needs = [{formed[value] for value in one.reads if value in formed} for one in instructions]
     users: list[list[int]] = [[] for _ in instructions]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import weakref
 from collections.abc import Mapping, Sequence
@@ -13,17 +14,16 @@ from typing import Any
 import numpy as np
 
 from symofros.errors import CompileError, Problem
-from symofros.native import HEADERS, native_text
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
+from symofros.runtime.build.prebuilt import machine_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls.declarations import interface, model_abi
 from symofros.runtime.calls.library import ModelUnit
 from symofros.runtime.record import ModelRecord
 
-_HEADER = "tape/symofros_tape.h"
 # Each operation rounds once, whatever the processor could do at once.
 _FLAGS = (*DEFAULT_FLAGS, "-O3", "-ffp-contract=off")
-_LOCK = threading.Lock()  # Of slots.
+# Of slots; a model that is collected meanwhile gives its own back in the same thread.
+_LOCK = threading.RLock()
 
 
 @dataclass(frozen=True)
@@ -83,19 +83,15 @@ class TapeFunction:
 
 @cache
 def tape_machine(source: str) -> Any:
-    """The library that interprets tapes, loaded; compiled at the first use on a machine, then taken from the cache.
+    """The library that interprets tapes, loaded.
 
     Args:
         source: Its C text.
 
     Raises:
-        CompileError: There is no C compiler.
+        CompileError: There is no C compiler, and no library came with the package.
     """
-    toolchain = find_toolchain(None)
-    if toolchain is None:
-        raise CompileError(NO_COMPILER)
-    source = source.replace('#include "symofros_tape.h"', native_text(_HEADER))
-    return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
+    return interface().dlopen(str(machine_library(source, _FLAGS)))
 
 
 class TapeUnit(ModelUnit):
@@ -194,20 +190,26 @@ class TapeUnit(ModelUnit):
 
     def _place(self, tape: Any) -> int:
         """The slot of a tape, until this unit is gone."""
-        with _LOCK:
-            slot = int(self._library.sym_tape_place(tape))
-            if slot < 0:
-                most = self._sizes["SYM_TAPE_SLOTS"]
-                raise CompileError(
-                    Problem(
-                        "there is no room for another function on tape",
-                        f"{most} functions and parts of functions are held",
-                        f"a process holds at most {most} at a time",
-                        "let go of models that are not used any more, or compile with backend='c'",
-                    )
+        slot = self._free_slot(tape)
+        if slot < 0:
+            gc.collect()  # Models that are gone may wait for it: their functions refer to each other.
+            slot = self._free_slot(tape)
+        if slot < 0:
+            most = self._sizes["SYM_TAPE_SLOTS"]
+            raise CompileError(
+                Problem(
+                    "there is no room for another function on tape",
+                    f"{most} functions and parts of functions are held",
+                    f"a process holds at most {most} at a time",
+                    "let go of models that are not used any more, or compile with backend='c'",
                 )
-            self._slots.append(slot)
+            )
+        self._slots.append(slot)
         return slot
+
+    def _free_slot(self, tape: Any) -> int:
+        with _LOCK:
+            return int(self._library.sym_tape_place(tape))
 
 
 _PREFIX = "SYM_TAPE_"
