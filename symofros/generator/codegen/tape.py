@@ -59,7 +59,8 @@ def _routine(program: Program, function: Function, solver: Solver, terms: Tape) 
     parts = [_tape(program.graph, ("pre", *part.inputs), part.outputs, program.pre) for part in solver.parts]
     by_name = {output.name: output for output in function.outputs}
     nc, nv = by_name["G"].shape
-    nq, extra, columns = 0, 0, ()
+    nq, extra = 0, 0
+    columns: tuple[int, ...] = ()
     match solver.routine:
         case "constrained" | "null_space":
             nq = solver.parts[0].outputs[0].shape[0]
@@ -230,7 +231,7 @@ class _Writer:
             angle = graph.args[other][0]
             if other not in done and (angle in (own, *ready) or (len(ready) < WIDEST and self._is_there(angle, done))):
                 ready.setdefault(angle, {})[graph.op[other]] = other
-        formed, writes, reads = [], [], []
+        formed, writes, reads = list[int](), list[int](), list[int]()
         chosen = [own, *(angle for angle in ready if angle != own)][:WIDEST]
         for angle in chosen:
             pair = ready[angle]

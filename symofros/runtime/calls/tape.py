@@ -131,7 +131,8 @@ class TapeUnit(ModelUnit):
 
     @property
     def _sizes(self) -> Mapping[str, int]:
-        return self.ffi.typeof("enum sym_tape_sizes").relements
+        sizes: Mapping[str, int] = self.ffi.typeof("enum sym_tape_sizes").relements
+        return sizes
 
     def _own(self, kind: str, value: Any = None) -> Any:
         """Memory of C that lives as long as this unit."""
