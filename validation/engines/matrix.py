@@ -188,7 +188,7 @@ def _said(one: Judged, more: str) -> Judged:
 
 
 def _stated(plugin: EnginePlugin, one: Judged) -> Judged:
-    """An answer off the truth that what the engine says of itself explains is not red; one that is right stays right."""
+    """What the engine says of itself explains answers that are off the truth; one that is right stays right."""
     cell = one.cell
     for statement in getattr(plugin, "statements", ()) if cell.verdict in ("wrong", "imprecise") else ():
         is_about = re.fullmatch(statement.functions, cell.function) and statement.holds(one.tree, one.text)
