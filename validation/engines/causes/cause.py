@@ -124,7 +124,7 @@ def read(path: Path) -> list[Cause]:
     for row in rows:
         if unknown := row.keys() - names:
             raise ValueError(f"{path.name}: unknown entries: {sorted(unknown)}; a cause has {sorted(names)}")
-        values: dict[str, Any] = {name: tuple(value) if isinstance(value, list) else value for name, value in row.items()}
+        values: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
         cause = Cause(path.stem, **values)
         for broken, rule in _rules(cause):
             if broken:
