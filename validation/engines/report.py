@@ -13,7 +13,7 @@ from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table
 from . import parts
 from .causes import shown
 from .causes.cause import Cause
-from .causes.grouping import WITHDRAWN, Group, causes_of, stale
+from .causes.grouping import Group, causes_of, stale
 from .proving.scripts import NO_SCRIPT
 from .study import measure
 from .verdicts import RED
@@ -44,7 +44,7 @@ class _Found:
     """What the cells of a report come to: causes of the red ones, those withdrawn, causes that explain none."""
 
     groups: list[Group]
-    withdrawn: list[Group]
+    withdrawn: list[str]
     stale: list[Cause]
 
     @classmethod
@@ -52,8 +52,7 @@ class _Found:
         """Of the JSON of a report."""
         cells, corrected = parts.cells(data), parts.cells(data, "corrected")
         groups = causes_of(cells, corrected=corrected)
-        aside = causes_of(cells, verdicts=WITHDRAWN)
-        return cls(groups, aside, stale([*groups, *aside], [engine["name"] for engine in data["engines"]]))
+        return cls(groups, shown.withdrawn(cells), stale(groups, [engine["name"] for engine in data["engines"]]))
 
     def by(self, engine: str) -> list[Group]:
         """The causes of an engine, the heaviest first."""
@@ -91,7 +90,7 @@ def compose(data: Data) -> Report:
         (
             *(_engine(engine, data, found) for engine in sorted(data["engines"], key=itemgetter("name"))),
             Section("Engines", (overview, *_missing(data)), "overview"),
-            Section("Cells withdrawn, and why", (Bullets(tuple(map(shown.withdrawn, found.withdrawn))),), "withdrawn"),
+            Section("Cells withdrawn, and why", (Bullets(tuple(found.withdrawn)),), "withdrawn"),
             Section(
                 "Functions", tuple(_functions(engine, data) for engine in data["engines"]), "functions", page_only=True
             ),
