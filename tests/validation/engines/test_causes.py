@@ -94,6 +94,7 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
     ("changed", "said"),
     [
         ("wat: it is wrong", "unknown entries"),
+        ("offends:", "entries missing: .'offends'."),
         ("fault: nowhere", "the name of a file"),
         ("thread: somewhere", "a thread is an address"),
         ("searched: ''", "says when no thread was found"),
@@ -103,9 +104,9 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
 )
 def test_files_that_break_a_rule_are_refused(tmp_path: Path, changed: str, said: str) -> None:
     good = {"name": "a", "what": "It is wrong.", "shows": "balls", "offends": "M.", "searched": '"2026-11-28"'}
-    name, _, value = changed.partition(": ")
+    name, _, value = changed.partition(":")
     path = tmp_path / "toy.yaml"
-    rows = [f"{key}: {text}" for key, text in (good | {name: value}).items()]
+    rows = [f"{key}: {text}" for key, text in (good | {name: value}).items() if text]
     path.write_text("- " + "\n  ".join(rows) + "\n", encoding="utf-8")
     with pytest.raises(ValueError, match=said):
         read(path)
