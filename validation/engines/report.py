@@ -171,7 +171,8 @@ def _functions(engine: Row, data: Data) -> Section:
     )
     title = f"{engine['name']}: {counted(len(names), 'function')}"
     table = Table.of("function | its name | right | red | otherwise", rows)
-    return Section(title, (table,), f"functions-{engine['name']}", page_only=True)
+    said = (f"{engine['refusals']}.".capitalize(),) if "refusals" in engine else ()
+    return Section(title, (*said, table), f"functions-{engine['name']}", page_only=True)
 
 
 def _fared(cells: list[Row]) -> Iterator[str | Cell]:
@@ -194,9 +195,11 @@ def _overview(data: Data, found: _Found) -> Table:
 
 
 def _missing(data: Data) -> tuple[Text, ...]:
-    """Engines that are not installed."""
+    """Engines that are not installed, and those that refuse so much that what is left shows little."""
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
-    return (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
+    refusing = [f"{one['name']} {said}" for one in data["engines"] if "above" in (said := one.get("refusals", ""))]
+    said = (f"Not installed here: {absent}." if absent else "", *(f"{one}." for one in refusing))
+    return tuple(Text(one, "soft") for one in said if one)
 
 
 def _conventions(data: Data) -> Table:

@@ -23,6 +23,7 @@ from .models.readers import Reading, readings
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
+from .verdicts import Cell, refusals
 from .workers import Job, Worker, registry
 
 # What a file's reading shows in: the functions that every number of it enters.
@@ -154,7 +155,7 @@ def measure(
         )
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) for plugin in chosen.values()],
+        "engines": [_engine(plugin, [one.cell for one in cells]) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -175,8 +176,10 @@ def measure(
     return whole
 
 
-def _engine(plugin: EnginePlugin) -> Data:
+def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:
+    own = [cell for cell in cells if cell.engine == plugin.name and cell.verdict != "not offered"]
     return {
+        "refusals": refusals(own),
         "name": plugin.name,
         "version": plugin.version(),
         "conventions": [list(row) for row in plugin.conventions],
