@@ -121,6 +121,6 @@ def test_the_images_run_the_two_commands_of_the_readme() -> None:
 def test_ci_builds_with_the_extra_that_brings_its_tools() -> None:
     extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
     script = (ROOT / ".ci/build").read_text()
-    assert "[test,release]" in script
+    assert "[test,release,zig]" in script
     for module, package in {"build": "build", "twine": "twine"}.items():
         assert f"-m {module}" in script and any(line.startswith(package) for line in extras["release"])
