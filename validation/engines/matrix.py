@@ -112,14 +112,14 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
         verdict: Verdict = "refuses" if value.offered else "not offered"
         return Cell(plugin.name, tree.name, answer.function, verdict, words=value.reason), None
     if isinstance(value, Raised):
-        return Cell(plugin.name, tree.name, answer.function, "raises", words=value.words), None
+        return Cell(plugin.name, tree.name, answer.function, "plug-in", words=value.words), None
     try:
         want = truths.of(answer.function, tree, answer, plugin.slacks.get(answer.function, 0.0))
     except ZeroDivisionError:
         return Cell(plugin.name, tree.name, answer.function, "not offered", words="the truth is singular"), None
     except Exception as error:  # Of a layout that can't be: a fault of the plug-in's, or of ours.
         said = f"the truth in its layout: {words(error)}"
-        return Cell(plugin.name, tree.name, answer.function, "raises", words=said), None
+        return Cell(plugin.name, tree.name, answer.function, "plug-in", words=said), None
     return judge(plugin.name, tree, answer.function, value, want), want
 
 

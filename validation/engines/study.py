@@ -22,6 +22,7 @@ from .models.readers import Reading, readings
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
+from .verdicts import RED
 from .workers import Job, Worker, registry
 
 # Part of the functions that are red on either of two trees that must be red on both.
@@ -39,7 +40,6 @@ READ = (
     "link_poses",
     "link_jacobians",
 )
-RED = ("wrong", "imprecise", "crashes")
 
 
 def gathered(

@@ -14,7 +14,23 @@ from .proving.pieces import Layout
 from .truth.arithmetic import Exact
 from .truth.dynamics import ROUNDING, Point, Truth, digits
 
-Verdict = Literal["right", "imprecise", "wrong", "refuses", "raises", "crashes", "not offered"]
+# "raises": an exception inside the engine that is no refusal of its own. "refuses": in the engine's own words.
+# "precondition": documented or asserted by the engine. "repairs": it changed the input, with a warning. "plug-in": a
+# limit, refusal or exception of a plug-in or of this harness, which says nothing of the engine.
+Verdict = Literal[
+    "right",
+    "imprecise",
+    "wrong",
+    "raises",
+    "refuses",
+    "precondition",
+    "repairs",
+    "crashes",
+    "plug-in",
+    "not offered",
+]
+# Faults of an engine.
+RED: tuple[Verdict, ...] = ("wrong", "imprecise", "crashes", "raises")
 
 # An answer may be off by what BACKWARD roundings of its inputs and of each link's force and moment make of it, and by
 # FORWARD of its largest entry: good recursions lose some tens of roundings, engines that form 1e3 products in series
