@@ -93,7 +93,7 @@ class Prover:
         path = self.folder / file_of(red)
         if path.exists():
             kept = path.read_text(encoding="utf-8")
-            output, failed = fails(path)
+            output, failed = fails(path, self.worker.python(plugin.name))
             if failed and kept.startswith(_title(plugin, red)):
                 return _proof(plugin, red, kept, output, failed)
         crashes = red.cell.verdict == "crashes"
@@ -103,7 +103,7 @@ class Prover:
         self.folder.mkdir(parents=True, exist_ok=True)
         script = text(plugin, small, thread(plugin.name, red.cell.model, red.cell.function))
         path.write_text(script, encoding="utf-8")
-        output, failed = fails(path)
+        output, failed = fails(path, self.worker.python(plugin.name))
         return _proof(plugin, red, script, output, failed)
 
     def shrunk(self, plugin: EnginePlugin, red: Judged) -> Judged:
@@ -226,10 +226,15 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     return "\n".join([head + red.answer.script.rstrip(), "import numpy as np", *lines, ""])
 
 
-def fails(path: Path) -> tuple[str, bool]:
-    """Run a script in a fresh process: what it says, and whether it fails by its assertion or by a crash."""
+def fails(path: Path, python: str = sys.executable) -> tuple[str, bool]:
+    """Run a script in a fresh process: what it says, and whether it fails by its assertion or by a crash.
+
+    Args:
+        path: The script.
+        python: The interpreter that runs it.
+    """
     try:
-        done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=_TIME)
+        done = subprocess.run([python, str(path)], capture_output=True, text=True, timeout=_TIME)
     except subprocess.TimeoutExpired:
         return f"no end in {_TIME:g} s, which proves nothing", False
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
