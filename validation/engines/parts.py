@@ -115,7 +115,7 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
         result["absent"] = result["absent"] | part["absent"]
         result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
         result["proofs"] = [*result["proofs"], *part["proofs"]]
-        for table in ("cells", "identities"):
+        for table in ("cells", "corrected", "identities"):
             result[table] = result[table] | part[table]
     # Each part's sources are to be those of now.
     result["digests"] = sorted({one for part in parts for one in (part.get("digest", ""), *part.get("digests", ()))})

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...contract.raised import Raised, attempted
+from ..causes.grouping import cause_of
 from ..functions import FUNCTIONS
 from ..interface import Array, EnginePlugin
 from ..matrix import SEED, Judged, Truths, judged
@@ -19,7 +20,6 @@ from ..plugins.writing.source import SourcePlugin
 from ..workers import Crashed, Job, Worker
 from .pieces import taken
 from .shrink import TRIES, Case, size, smallest
-from .threads import NONE, thread
 
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05
@@ -48,7 +48,7 @@ class Proof:
         text: The script; "" where there is none.
         output: What it printed, and how it ended; or why there is no script.
         proven: Whether it failed as it must.
-        thread: Public thread that knows the fault, or "none found".
+        thread: Public thread that knows the fault, or that none was found.
     """
 
     engine: str
@@ -101,7 +101,7 @@ class Prover:
         if not small.answer.script.strip():
             return _proof(plugin, red, "", NO_SCRIPT, False)
         self.folder.mkdir(parents=True, exist_ok=True)
-        script = text(plugin, small, thread(plugin.name, red.cell.model, red.cell.function))
+        script = text(plugin, small, _thread(red))
         path.write_text(script, encoding="utf-8")
         output, failed = fails(path, self.worker.python(plugin.name))
         return _proof(plugin, red, script, output, failed)
@@ -169,7 +169,7 @@ def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: 
         text=script,
         output=output,
         proven=failed,
-        thread=thread(plugin.name, cell.model, cell.function),
+        thread=_thread(red),
     )
 
 
@@ -178,6 +178,12 @@ def file_of(red: Judged) -> str:
     cell = red.cell
     stem = f"{cell.engine}-{cell.model}-{cell.function}".replace(":", "-").replace(" ", "_")
     return "".join(letter for letter in stem if letter.isalnum() or letter in "-_") + ".py"
+
+
+def _thread(red: Judged) -> str:
+    """The public thread that knows the cause of a cell."""
+    cause = cause_of(red.cell)
+    return cause.known if cause else "not searched: its cause is not yet found"
 
 
 def _title(plugin: EnginePlugin, red: Judged) -> str:
@@ -205,13 +211,13 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     Args:
         plugin: The engine.
         red: The case.
-        known: Public thread that knows the fault.
+        known: Public thread that knows the fault, or that none was found.
     """
     function = FUNCTIONS[red.cell.function.partition(":")[0]]
     verdict = {"crashes": "crashes"}.get(red.cell.verdict, f"is {red.cell.verdict}")
     about = _SHAPES.sub("", function.text)
     head = f"{_title(plugin, red)}{plugin.functions[red.cell.function]} {verdict} ({about}).\n"
-    if known != NONE:
+    if known.startswith("https://"):
         head += f"# Known: {known}.\n"
     if red.want is None:
         return f"{head}{red.answer.script}\n"
