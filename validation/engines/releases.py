@@ -10,6 +10,7 @@ import copy
 import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
@@ -19,7 +20,7 @@ from pathlib import Path
 import symofros as sf
 from symofros.harness import folder_of
 
-from ..faults.environment import NotAskedError, kept, own_variables
+from ..faults.environment import NotAskedError, default_folder, kept, own_variables
 from ..worker_process import WorkerError
 from .interface import EnginePlugin
 from .workers import LIMIT, Answer, Crashed, Job, Worker, registry
@@ -58,8 +59,8 @@ def plugins_of(package: str) -> list[EnginePlugin]:
     return [plugin for plugin in registry().plugins.values() if plugin.package == package]
 
 
-def stated(text: str, requires: Sequence[str] = ()) -> tuple[list[EnginePlugin], Release]:
-    """The plug-ins and the release that NAME==VERSION states.
+def stated(text: str, requires: Sequence[str] = ()) -> list[tuple[EnginePlugin, Release]]:
+    """The release that NAME==VERSION states, with each plug-in that asks it.
 
     Args:
         text: Name of a plug-in, or of its package, with a version; without one, the newest release.
@@ -74,7 +75,8 @@ def stated(text: str, requires: Sequence[str] = ()) -> tuple[list[EnginePlugin],
     if not plugins:
         known = ", ".join(sorted({one.package for one in registry().plugins.values()} | set(registry().plugins)))
         raise ValueError(f"no engine '{name}'; there are {known}")
-    return plugins, Release(plugins[0].package, version, tuple(requires) or _beside(plugins[0]))
+    release = Release(plugins[0].package, version, tuple(requires) or _beside(plugins[0]))
+    return [(plugin, release) for plugin in plugins]
 
 
 def _beside(plugin: EnginePlugin) -> tuple[str, ...]:
@@ -92,19 +94,22 @@ class _Process(Worker):
 
     Attributes:
         crashes: How often the engine took it along, or gave no answer in time.
+        seconds: Time that was spent waiting for its answers.
     """
 
-    crashes = 0
+    crashes, seconds = 0, 0.0
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """As any engine, until it has crashed too often."""
-        if self.crashes >= CRASHES:
-            return
-        for answer in super().ask(job):
+        answers, answer = super().ask(job), None
+        while self.crashes < CRASHES:
+            begun = time.monotonic()
+            answer = next(answers, None)
+            self.seconds += time.monotonic() - begun
+            if answer is None:
+                return
             self.crashes += isinstance(answer.value, Crashed)
             yield answer
-            if self.crashes >= CRASHES:
-                return
 
     def memory(self) -> float:
         """The most that it has held so far [MB]; 0 where the system does not say."""
@@ -147,7 +152,7 @@ class Opened:
 
     Attributes:
         plugins: Plug-ins by the names that engines have here.
-        release: The release of each.
+        release: The release of each, as it was stated.
         processes: The plug-in's name there, and the process, of each.
         failures: Releases that can't be asked -> why.
         worker: Asks them all.
@@ -157,16 +162,39 @@ class Opened:
     release: dict[str, Release] = field(default_factory=dict)
     processes: dict[str, tuple[str, _Process]] = field(default_factory=dict)
     failures: dict[Release, str] = field(default_factory=dict)
-
-    @property
-    def worker(self) -> ReleasesWorker:
-        """A worker for all of them."""
-        return ReleasesWorker(self.processes)
+    worker: Worker = field(default_factory=Worker)
 
     @property
     def crashing(self) -> list[str]:
         """Engines that crashed so often that the rest was not asked."""
         return [name for name, (_, process) in self.processes.items() if process.crashes >= CRASHES]
+
+
+def newest() -> list[str]:
+    """The packages of all plug-ins that an index may have, for the newest release of each."""
+    packages = dict.fromkeys(
+        plugin.package for plugin in registry().plugins.values() if not plugin.extra.startswith("(")
+    )
+    return [package for package in packages if package != "symofros"]
+
+
+@contextmanager
+def in_reach(
+    present: Mapping[str, EnginePlugin], pairs: Sequence[tuple[EnginePlugin, Release]], folder: Path | None
+) -> Iterator[Opened]:
+    """Engines that can be asked: those of this environment, or the releases that are stated.
+
+    Args:
+        present: Engines of this environment.
+        pairs: Plug-ins with releases; none: the engines of this environment.
+        folder: Folder of the environments; None: in the cache folder.
+    """
+    if not pairs:
+        with Worker() as worker:
+            yield Opened(dict(present), worker=worker)
+        return
+    with opened(pairs, folder or default_folder()) as made:
+        yield made
 
 
 @contextmanager
@@ -200,8 +228,9 @@ def opened(
             while label in made.plugins:  # The same release beside other packages.
                 label += "'"
             made.plugins[label] = _as_release(plugins[name], label, version)
-            made.release[label] = replace(release, version=version)
+            made.release[label] = release
             made.processes[label] = name, process
+        made.worker = ReleasesWorker(made.processes)
         yield made
 
 

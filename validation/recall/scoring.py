@@ -18,12 +18,12 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from itertools import takewhile
 from typing import Literal
 
-from ..engines.matrix import Judged
-from ..engines.verdicts import RED
+from ..engines.causes.grouping import Group, causes_of
+from ..engines.verdicts import RED, Cell
 from ..faults.entry import Fault
 
 LOST = 20
@@ -59,7 +59,24 @@ _FORMATS = {"mjcf": "<mujoco", "urdf": "<robot", "sdf": "<sdf", "usd": "#usda"}
 _SETUP = {"mj_forward", "mj_step", "value", "World"}
 _SHORTEST = 4
 Score = Literal["hit", "half a hit", "miss", "not asked"]
-Group = Sequence[Judged]
+
+
+@dataclass(frozen=True)
+class Names:
+    """What cells of an engine are called elsewhere.
+
+    Attributes:
+        natives: Name of a function -> what the engine calls it.
+        forms: Name of a file -> its format.
+    """
+
+    natives: Mapping[str, str] = field(default_factory=dict)
+    forms: Mapping[str, str] = field(default_factory=dict)
+
+
+def grouped(cells: Sequence[Cell]) -> list[Group]:
+    """Red cells put together by what they have in common; no stated cause, which people found, has a part in it."""
+    return causes_of(cells, known=())
 
 
 @dataclass(frozen=True)
@@ -111,11 +128,11 @@ class Scored:
 
 def scored(
     fault: Fault,
-    wrong: Sequence[Judged],
-    right: Sequence[Judged] | None,
-    natives: Mapping[str, str],
-    grouped: Callable[[Sequence[Judged]], Sequence[Group]],
+    wrong: Sequence[Cell],
+    right: Sequence[Cell] | None,
+    names: Names,
     explained: Callable[[Group], str],
+    together: Callable[[Sequence[Cell]], list[Group]] = grouped,
 ) -> Scored:
     """The score of one fault.
 
@@ -123,15 +140,14 @@ def scored(
         fault: The fault.
         wrong: All cells at the wrong release.
         right: All cells at the right one; None where there is none yet.
-        natives: Name of a function -> what the engine calls it.
-        grouped: Puts red cells together.
+        names: What they are called elsewhere.
         explained: Why a group that is new at the right release is no false alarm; "" for no reason.
+        together: Puts red cells together.
     """
-    groups = [_shown(fault, group, natives) for group in grouped(new(wrong, right or ()))]
+    groups = [_shown(fault, group, names) for group in together(new(wrong, right or ()))]
     groups.sort(key=lambda one: ("function", "family", "").index(one.names))
-    others = tuple(
-        _shown(fault, group, natives, explained(group)) for group in grouped(new(right, wrong)) if right is not None
-    )
+    at_right = together(new(right, wrong)) if right is not None else []
+    others = tuple(_shown(fault, group, names, explained(group)) for group in at_right)
     wanted = ("function", "family") if right is not None or fault.kind in _READ else ("function",)
     naming = [one for one in groups if one.names in wanted]
     if not naming:
@@ -144,39 +160,33 @@ def scored(
     return Scored("hit", "", tuple(groups), others)
 
 
-def new(cells: Sequence[Judged] | None, than: Sequence[Judged]) -> list[Judged]:
+def new(cells: Sequence[Cell], than: Sequence[Cell]) -> list[Cell]:
     """Red cells that are not there, or less red, in others."""
-    known = {_place(one): _badness(one) for one in than}
-    return [one for one in cells or () if _badness(one) > known.get(_place(one), 0)]
+    known = {(cell.model, cell.function): _badness(cell) for cell in than}
+    return [cell for cell in cells if _badness(cell) > known.get((cell.model, cell.function), 0)]
 
 
-def _place(one: Judged) -> tuple[str, str]:
-    return one.cell.model, one.cell.function
+def _badness(cell: Cell) -> int:
+    return _BADNESS.get(cell.verdict, _WORST) if cell.verdict in RED else 0
 
 
-def _badness(one: Judged) -> int:
-    return _BADNESS.get(one.cell.verdict, _WORST) if one.cell.verdict in RED else 0
+def _shown(fault: Fault, group: Group, names: Names, explained: str = "") -> Shown:
+    worst = max(group.cells, key=_badness).verdict
+    own = list(dict.fromkeys(names.natives.get(name, name) for name in group.functions))
+    return Shown(list(group.functions), own, list(group.models), worst, named(fault, group, names), explained)
 
 
-def _shown(fault: Fault, group: Group, natives: Mapping[str, str], explained: str = "") -> Shown:
-    functions = list(dict.fromkeys(one.cell.function for one in group))
-    worst = max(group, key=_badness).cell.verdict
-    models = list(dict.fromkeys(one.cell.model for one in group))
-    own = list(dict.fromkeys(natives.get(name, name) for name in functions))
-    return Shown(functions, own, models, worst, named(fault, group, natives), explained)
-
-
-def named(fault: Fault, group: Group, natives: Mapping[str, str]) -> str:
+def named(fault: Fault, group: Group, names: Names) -> str:
     """What of a fault a group names: "function", "family" or ""."""
     known = _identifiers(fault)
     of_format = {form for form, mark in _FORMATS.items() if mark in fault.script}
     is_family = False
-    for one in group:
-        native = _words(natives.get(one.cell.function, one.cell.function))
+    for cell in group.cells:
+        native = _words(names.natives.get(cell.function, cell.function))
         if any(word == other or other.startswith(f"{word}_") for word in native for other in known):
             return "function"
-        text = f"{one.cell.function} {one.cell.model}".lower()
-        is_read = fault.kind in _READ and one.form != "" and (not of_format or one.form in of_format)
+        form, text = names.forms.get(cell.model, ""), f"{cell.function} {cell.model}".lower()
+        is_read = fault.kind in _READ and form != "" and (not of_format or form in of_format)
         is_family = is_family or is_read or any(word in text for word in FAMILIES[fault.kind])
     return "family" if is_family else ""
 

@@ -11,15 +11,13 @@ from __future__ import annotations
 import re
 import shlex
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import symofros as sf
 
-from ..engines.interface import Tree, Unsupported
-from ..engines.matrix import Judged
+from ..engines.causes.grouping import Group
 from ..engines.verdicts import Cell
-from ..engines.workers import Answer
 from ..faults.environment import NotAskedError, own_variables
 
 SECONDS = 1800
@@ -27,7 +25,7 @@ _LINE = re.compile(r"^(ok|PASSED|not ok|FAILED|ERROR)\s+(?:\d+\s+)?(?:- )?(.+?)(
 _HOLDS = ("ok", "PASSED")
 
 
-def asked(command: str, python: Path, engine: str, version: str) -> list[Judged]:
+def asked(command: str, python: Path, engine: str, version: str) -> list[Cell]:
     """What a suite says of a release: a cell for each line of its verdicts.
 
     Raises:
@@ -54,16 +52,14 @@ def _filled(part: str, given: dict[str, str]) -> str:
     return part
 
 
-def read(text: str, engine: str) -> Iterator[Judged]:
+def read(text: str, engine: str) -> Iterator[Cell]:
     """The cells that a suite's output states; the name of a check stands for its function."""
     for line in text.splitlines():
         match = _LINE.match(line.strip())
         if match:
-            function = match[2].strip()
-            cell = Cell(engine, "", function, "right" if match[1] in _HOLDS else "wrong")
-            yield Judged(cell, Answer(function, Unsupported("")), None, Tree("", ()))
+            yield Cell(engine, "", match[2].strip(), "right" if match[1] in _HOLDS else "wrong")
 
 
-def grouped(cells: list[Judged]) -> list[list[Judged]]:
+def apart(cells: Sequence[Cell]) -> list[Group]:
     """Each check of a suite is a group of its own."""
-    return [[one] for one in cells]
+    return [Group(cell.engine, None, (cell,)) for cell in cells]
