@@ -12,6 +12,9 @@ from ..verdicts import RED, Cell, judge
 from .cause import Cause, stated
 from .corrections import CORRECTIONS
 
+# Verdicts of cells that differ from the truth and are no fault.
+WITHDRAWN = ("precondition", "repairs")
+_GRAVITY = {"wrong": 2, "crashes": 2, "raises": 1}
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5
 
@@ -48,18 +51,21 @@ class Group:
         return tuple(dict.fromkeys(cell.model for cell in (*self.cells, *self.hidden)))
 
     @property
-    def gross(self) -> bool:
-        """Whether more than digits are lost."""
-        return any(cell.verdict != "imprecise" for cell in (*self.cells, *self.hidden))
+    def gravity(self) -> int:
+        """2 where numbers are wrong or the process ends, 1 for exceptions, 0 for lost digits."""
+        return max(_GRAVITY.get(cell.verdict, 0) for cell in (*self.cells, *self.hidden))
 
     @property
-    def weight(self) -> tuple[bool, int, int]:
-        """What is mended first is largest: gross faults, then those of most kinds of trees, then of most cells."""
-        return self.gross, len(self.models), len(self.cells) + len(self.hidden)
+    def weight(self) -> tuple[int, int, int]:
+        """What is mended first is largest: the gravest, then what most kinds of trees show, then most cells."""
+        return self.gravity, len(self.models), len(self.cells) + len(self.hidden)
 
 
 def causes_of(
-    cells: Iterable[Cell], known: Sequence[Cause] | None = None, corrected: Iterable[Cell] = ()
+    cells: Iterable[Cell],
+    known: Sequence[Cause] | None = None,
+    corrected: Iterable[Cell] = (),
+    verdicts: Sequence[str] = RED,
 ) -> list[Group]:
     """What the red cells among `cells` come from, the heaviest first.
 
@@ -67,6 +73,7 @@ def causes_of(
         cells: Cells of any verdict, of one engine or more.
         known: Causes to look among; None: all that are stated; (): each is to be found from the cells alone.
         corrected: Cells of `without_their_causes`.
+        verdicts: Verdicts of the cells that are asked about.
     """
     known = stated() if known is None else known
     shown: dict[Cause | None, list[Cell]] = {None: []}
@@ -76,7 +83,7 @@ def causes_of(
         (hidden, corrected, [cause for cause in known if not cause.correction]),
     ):
         for cell in chosen:
-            if cell.verdict in RED:
+            if cell.verdict in verdicts:
                 place.setdefault(_first(cell, possible), []).append(cell)
     groups = [
         Group(cause.engine, cause, tuple(shown.get(cause, ())), tuple(hidden.get(cause, ())))
@@ -97,11 +104,9 @@ def _first(cell: Cell, known: Iterable[Cause]) -> Cause | None:
     return next((cause for cause in known if cause.explains(cell)), None)
 
 
-def stale(cells: Iterable[Cell], corrected: Iterable[Cell] = ()) -> list[Cause]:
-    """Causes of the engines that were asked which explain no cell any more."""
-    cells = list(cells)
-    live = {group.cause for group in causes_of(cells, corrected=corrected)}
-    asked = {cell.engine for cell in cells}
+def stale(groups: Iterable[Group], engines: Iterable[str]) -> list[Cause]:
+    """Causes of some engines that explain no cell of any group."""
+    live, asked = {group.cause for group in groups}, set(engines)
     return [cause for cause in stated() if cause.engine in asked and cause not in live]
 
 
