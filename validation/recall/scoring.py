@@ -2,10 +2,11 @@
 
 A red cell is *new* where it is red at the wrong release and at the right one is not asked, or less red; where there is
 no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *names* the
-fault if the engine's own name of one of its functions is in the fault's sentence or script; it is of its *family* if a
-word of the fault's class (`FAMILIES`) is in the name of a function or a tree, or, for what readers make of files, if
-the engine read a file of the script's format. No entry states by hand what it is to be seen in, so that a frozen one is
-judged as any other.
+fault if the engine's own name of one of its functions is in the fault's sentence or script, or if most of its trees or
+functions have a word of the fault's sentence that few faults have. It is of its *family* if a word of the fault's class
+(`FAMILIES`) is in the name of a function or a tree, or, for what readers make of files, if the engine read a file of
+the script's format; unless it names another fault that went between the same releases. No entry states by hand what it
+is to be seen in, so that a frozen one is judged as any other.
 
 hit: some new group names the fault or is of its family; without a right release, names it. half a hit: all such groups
 are imprecise only, or they are lost among `LOST` new groups or more. miss: neither. A false alarm is a group of cells
@@ -17,14 +18,16 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import cache
 from itertools import takewhile
 from typing import Literal
 
 from ..engines.causes.grouping import Group, causes_of
 from ..engines.verdicts import RED, Cell
-from ..faults.entry import Fault
+from ..faults.entry import Fault, faults
 
 LOST = 20
 # From the mildest to the worst; what is no number is as bad as a wrong one.
@@ -58,6 +61,9 @@ _FORMATS = {"mjcf": "<mujoco", "urdf": "<robot", "sdf": "<sdf", "usd": "#usda"}
 # What nearly every script calls: a name of nothing.
 _SETUP = {"mj_forward", "mj_step", "value", "World"}
 _SHORTEST = 4
+# Letters by which words are compared, and how many faults a word may be of that tells them apart.
+_STEM, _FEW = 5, 3
+_NAMING = ("function", "words", "family", "")
 Score = Literal["hit", "half a hit", "miss", "not asked"]
 
 
@@ -88,7 +94,7 @@ class Shown:
         natives: What the engine calls them.
         models: Trees and files.
         verdict: The worst verdict.
-        names: "function", "family" or "": what of the fault it names.
+        names: What of the fault it names: "function", "words", "family" or "".
         explained: Why it is no false alarm; "" for no reason, or where that was not asked.
     """
 
@@ -145,10 +151,11 @@ def scored(
         together: Puts red cells together.
     """
     groups = [_shown(fault, group, names) for group in together(new(wrong, right or ()))]
-    groups.sort(key=lambda one: ("function", "family", "").index(one.names))
+    groups.sort(key=lambda one: _NAMING.index(one.names))
     at_right = together(new(right, wrong)) if right is not None else []
     others = tuple(_shown(fault, group, names, explained(group)) for group in at_right)
-    wanted = ("function", "family") if right is not None or fault.kind in _READ else ("function",)
+    # Of what no release is right yet, more is red than this fault.
+    wanted = _NAMING[:3] if right is not None or fault.kind in _READ else _NAMING[:2]
     naming = [one for one in groups if one.names in wanted]
     if not naming:
         said = f"{len(groups)} new groups, none of which names it" if groups else "nothing new is red"
@@ -177,18 +184,44 @@ def _shown(fault: Fault, group: Group, names: Names, explained: str = "") -> Sho
 
 
 def named(fault: Fault, group: Group, names: Names) -> str:
-    """What of a fault a group names: "function", "family" or ""."""
-    known = _identifiers(fault)
+    """What of a fault a group names: "function", "words", "family" or ""."""
+    if said := _named_itself(fault, group, names):
+        return said
+    between = (one for one in faults().values() if one.engine == fault.engine and one is not fault)
+    gone = [one for one in between if has(one, fault.wrong) and fault.right and not has(one, fault.right)]
+    if any(_named_itself(one, group, names) for one in gone):
+        return ""
     of_format = {form for form, mark in _FORMATS.items() if mark in fault.script}
-    is_family = False
     for cell in group.cells:
-        native = _words(names.natives.get(cell.function, cell.function))
-        if any(word == other or other.startswith(f"{word}_") for word in native for other in known):
-            return "function"
         form, text = names.forms.get(cell.model, ""), f"{cell.function} {cell.model}".lower()
         is_read = fault.kind in _READ and form != "" and (not of_format or form in of_format)
-        is_family = is_family or is_read or any(word in text for word in FAMILIES[fault.kind])
-    return "family" if is_family else ""
+        if is_read or any(word in text for word in FAMILIES[fault.kind]):
+            return "family"
+    return ""
+
+
+def _named_itself(fault: Fault, group: Group, names: Names) -> str:
+    """Whether a group names this fault alone, by "function" or by "words"."""
+    known, rare = _identifiers(fault), _stems(fault.fault) - _frequent()
+    shared: Counter[str] = Counter()
+    for cell in group.cells:
+        native = names.natives.get(cell.function, cell.function)
+        if any(word == other or other.startswith(f"{word}_") for word in _words(native) for other in known):
+            return "function"
+        shared.update(rare & _stems(f"{native} {cell.function} {cell.model}"))
+    return "words" if 2 * max(shared.values(), default=0) >= len(group.cells) else ""
+
+
+def _stems(text: str) -> set[str]:
+    """Beginnings of the words of a text."""
+    return {word[:_STEM] for word in re.findall(r"[a-z]+", text.lower()) if len(word) >= _STEM}
+
+
+@cache
+def _frequent() -> set[str]:
+    """Stems that more than `_FEW` faults have in their sentences."""
+    counted = Counter(stem for fault in faults().values() for stem in _stems(fault.fault))
+    return {stem for stem, number in counted.items() if number > _FEW}
 
 
 def _words(text: str) -> set[str]:
