@@ -11,6 +11,8 @@ from .interface import EnginePlugin
 from .releases import Opened, Release, opened
 from .verdicts import RED, Cell
 
+# Releases in a row that are asked before it is taken that none there answers.
+_FEW = 3
 # What cells an opened release gives on one tree or file.
 Ask = Callable[[Opened], Sequence[Cell]]
 
@@ -36,26 +38,46 @@ class Search:
             self.said[version] = self.ask(version)
         return self.said[version]
 
-    def first(self, places: Sequence[int]) -> int | None:
-        """The first of some places whose release says something."""
-        return next((k for k in places if not isinstance(self.at(k), str)), None)
+    def change(self, bad: int, step: int) -> tuple[int, int | None]:
+        """The last release that is red from a red one on, and the first after it that is not, if one answers.
 
-    def change(self, low: int, high: int) -> int:
-        """The first release above `low` that says what `high` says, and `low` does not, if there is one change between.
+        Strides are doubled until a release is not red, then halved; what says nothing is passed over.
 
-        Releases that say nothing are passed over.
+        Args:
+            bad: Place of a release that is red.
+            step: 1 for later releases, -1 for earlier ones.
         """
-        left, wanted = list(range(low + 1, high)), self.at(high)
+        last, good, stride = bad, self._answering(bad + step, step), 1
+        while good is not None and self.at(good):
+            last, stride = good, 2 * stride
+            good = self._answering(last + step * stride, step)
+        while good is None and stride > 1:  # The end, or nothing but silence: what is before that?
+            stride //= 2
+            place = self._answering(last + step * stride, step)
+            if place is not None and self.at(place):
+                last = place
+            else:
+                good = place
+        return self._halved(last, good, step) if good is not None else (last, None)
+
+    def _halved(self, last: int, good: int, step: int) -> tuple[int, int]:
+        """The same, between a red release and one that is not."""
+        left = list(range(last + step, good, step))
         while left:
             middle = left[len(left) // 2]
             answer = self.at(middle)
             if isinstance(answer, str):
                 left.remove(middle)
-            elif answer is wanted:
-                high, left = middle, [k for k in left if k < middle]
+            elif answer:
+                last, left = middle, left[left.index(middle) + 1 :]
             else:
-                left = [k for k in left if k > middle]
-        return high
+                good, left = middle, left[: left.index(middle)]
+        return last, good
+
+    def _answering(self, place: int, step: int) -> int | None:
+        """The first release that answers, of a few from a place on."""
+        few = range(place, place + step * _FEW, step)
+        return next((k for k in few if 0 <= k < len(self.releases) and not isinstance(self.at(k), str)), None)
 
 
 def history(
@@ -101,16 +123,11 @@ def history(
 def _found(search: Search, bad: int, package: str) -> Iterator[str]:
     """The first bad release and the first good one after it."""
     listed = search.releases
-    oldest = search.first(range(bad))
-    if oldest is None or search.at(oldest) is True:
-        yield f"first bad: {package} {listed[bad if oldest is None else oldest]}, the oldest that answers, or before"
-    else:
-        yield f"first bad: {package} {listed[search.change(oldest, bad)]}"
-    latest = search.first(range(len(listed) - 1, bad, -1))
-    if latest is None or search.at(latest) is True:
-        yield f"first good: none yet; {package} {listed[bad if latest is None else latest]} is the newest that answers"
-    else:
-        yield f"first good: {package} {listed[search.change(bad, latest)]}"
+    first, before = search.change(bad, -1)
+    yield f"first bad: {package} {listed[first]}" + (", or one before: none of those answers" if before is None else "")
+    last, good = search.change(bad, 1)
+    none = f"none that answers; {listed[last]} is still red"
+    yield f"first good: {none if good is None else f'{package} {listed[good]}'}"
 
 
 def _silent(said: Mapping[str, bool | str]) -> Iterator[str]:

@@ -7,12 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ..reporting.record import Data
+from ..reporting.numbers import counted
+from ..reporting.record import Data, Section, Table
 from . import parts
 
 _NOT_OFFERED = "not offered"
 # What is said of an engine's release beside its name.
 _VERSION = "version"
+_SHOWN = ("function", "model", "before", "after")
 
 
 def load(path: Path | None) -> Data | None:
@@ -55,3 +57,15 @@ def between(before: Data, after: Data) -> list[dict[str, str]]:
 def _verdicts(data: Data) -> Mapping[tuple[str, str, str], str]:
     rows = parts.unnested(data["cells"], parts.CELLS)
     return {(row["engine"], row["function"], row["model"]): row["verdict"] for row in rows}
+
+
+def shown(data: Data) -> tuple[Section, ...]:
+    """The section of a report on what changed; none where there was nothing to compare with."""
+    if "changed" not in data:
+        return ()
+    rows = data["changed"]
+    versions = {row["engine"]: f"{row['engine']} {row['from']} to {row['to']}" for row in rows}
+    head = "engine | function | tree | before | now"
+    lines = ((versions[row["engine"]], *(row[name] for name in _SHOWN)) for row in rows)
+    said = f"{counted(len(rows), 'cell')} changed" if rows else "No cell changed"
+    return (Section("What changed", (f"{said} against the stored run.", Table.of(head, lines)), "changed", not rows),)

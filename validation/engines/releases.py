@@ -164,10 +164,11 @@ class Opened:
     failures: dict[Release, str] = field(default_factory=dict)
     worker: Worker = field(default_factory=Worker)
 
-    @property
-    def crashing(self) -> list[str]:
-        """Engines that crashed so often that the rest was not asked."""
-        return [name for name, (_, process) in self.processes.items() if process.crashes >= CRASHES]
+    def stated(self, name: str) -> dict[str, bool]:
+        """What a report has of an engine that is a release: that it is one, and whether it crashed too often."""
+        if name not in self.processes:
+            return {}
+        return {"release": True, "gave_up": self.processes[name][1].crashes >= CRASHES}
 
 
 def newest() -> list[str]:

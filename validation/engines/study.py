@@ -223,12 +223,12 @@ def measure(
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) | {"gave_up": name in reach.crashing} for name, plugin in chosen.items()],
+        "engines": [_engine(plugin) | reach.stated(name) for name, plugin in chosen.items()],
         "absent": {str(release): why for release, why in reach.failures.items()} if at else absent,
         "models": [name for name in wanted if not smoke or name in {one.cell.model for one in cells}],
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
-        # Exceptions inside plug-ins that come with this package are faults of ours, if they are for this release.
-        "ours": [name for name, plugin in chosen.items() if plugin is OWN.get(name)],
+        # Exceptions inside plug-ins that come with this package are faults of ours, with whatever release.
+        "ours": [name for name, plugin in chosen.items() if plugin is OWN.get(name) or name in reach.release],
         # What an engine does not offer is what is left: a third of all.
         "cells": parts.nested((asdict(one.cell) for one in cells if one.cell.verdict != "not offered"), parts.CELLS),
         "corrected": parts.nested(map(asdict, without_their_causes(cells)), parts.CELLS),

@@ -10,8 +10,8 @@ is to be seen in, so that a frozen one is judged as any other.
 
 hit: some new group names the fault or is of its family; without a right release, names it. half a hit: all such groups
 are imprecise only, or they are lost among `LOST` new groups or more. miss: neither. A false alarm is a group of cells
-that are red at the right release and not, or less, at the wrong one, where no other fault of the set that the right
-release still has, and no cause that is stated of the engine, explains it.
+that are red at the right release, where the wrong one's answer was right, or less wrong, and which neither another
+fault of the set that the right release still has nor a cause that is stated of the engine explains.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ LOST = 20
 # From the mildest to the worst; what is no number is as bad as a wrong one.
 _BADNESS = {"imprecise": 1}
 _WORST = 2
+_ANSWERED = ("right", "imprecise")
 # Class of a fault -> words that names of functions or trees have where they are about it.
 FAMILIES: Mapping[str, tuple[str, ...]] = {
     "dynamics": (
@@ -152,7 +153,9 @@ def scored(
     """
     groups = [_shown(fault, group, names) for group in together(new(wrong, right or ()))]
     groups.sort(key=lambda one: _NAMING.index(one.names))
-    at_right = together(new(right, wrong)) if right is not None else []
+    answered = {(cell.model, cell.function) for cell in wrong if cell.verdict in _ANSWERED}
+    alarming = [cell for cell in new(right or (), wrong) if (cell.model, cell.function) in answered]
+    at_right = together(alarming)
     others = tuple(_shown(fault, group, names, explained(group)) for group in at_right)
     # Of what no release is right yet, more is red than this fault.
     wanted = _NAMING[:3] if right is not None or fault.kind in _READ else _NAMING[:2]
