@@ -87,7 +87,7 @@ def compose(data: Data) -> Report:
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
         f"{counted(len(data['functions']), 'function')}: {tally['right']} cells right, {red} red, behind them "
         f"{counted(len(found.groups), 'cause')}, by {scripts} that fail as they must{_shortcomings(data, raising)}.",
-        all_proven and sound,
+        all_proven and sound and not data.get("changed"),
         (_CAUSES, *_stale(found), _TEXT),
         (
             *changes.shown(data),
