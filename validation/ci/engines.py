@@ -29,7 +29,7 @@ def _worker() -> Worker:
 def _cells(engine: str, kind: str, functions: tuple[str, ...]) -> dict[str, Cell]:
     """The cells of an engine on the tree of a kind, by function."""
     plugin = registry().plugins[engine]
-    job = Job(engine, suited(tree_of(kind), plugin), functions, SEED)
+    job = Job(engine, suited(tree_of(kind), plugin), functions, SEED, further=True)
     return {one.cell.function: one.cell for one in judged(plugin, job, Truths(), _worker())}
 
 

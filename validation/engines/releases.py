@@ -100,15 +100,15 @@ class _Process(Worker):
     crashes, seconds = 0, 0.0
 
     def ask(self, job: Job) -> Iterator[Answer]:
-        """As any engine, until it has crashed too often."""
+        """As any engine, until it has crashed too often; at which state a crash comes is looked for all the same."""
         answers, answer = super().ask(job), None
-        while self.crashes < CRASHES:
+        while self.crashes < CRASHES or not job.further:
             begun = time.monotonic()
             answer = next(answers, None)
             self.seconds += time.monotonic() - begun
             if answer is None:
                 return
-            self.crashes += isinstance(answer.value, Crashed)
+            self.crashes += job.further and isinstance(answer.value, Crashed)
             yield answer
 
     def memory(self) -> float:

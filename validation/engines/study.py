@@ -61,7 +61,7 @@ def gathered(
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = Truths()
         for plugin in plugins.values():
-            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED)
+            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED, further=True)
             cells += judged(plugin, job, truths, worker)
         after(tree.name)
     return cells
@@ -77,7 +77,8 @@ def read(
         for plugin in plugins.values():
             if reading.form in plugin.formats:
                 asked = tuple(one for one in plugin.functions if one in READ)
-                job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
+                tree = suited(reading.tree, plugin)
+                job = Job(plugin.name, tree, asked, SEED, form=reading.form, text=reading.text, further=True)
                 cells += judged(plugin, job, truths, worker)
         after(name)
     return cells
