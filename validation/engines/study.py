@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated
@@ -224,7 +225,7 @@ def measure(
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) | reach.stated(name) for name, plugin in chosen.items()],
+        "engines": [{**_engine(plugin), **reach.stated(name)} for name, plugin in chosen.items()],
         "absent": {str(release): why for release, why in reach.failures.items()} if at else absent,
         "models": [name for name in wanted if not smoke or name in {one.cell.model for one in cells}],
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -287,9 +288,13 @@ def _within_a_minute(reach: releases.Opened, every: Questions, wanted: Sequence[
     cells: list[Judged] = []
     some = {name: every[name] for name in in_turn() if name in wanted}
     for name, plugin in reach.plugins.items():
-        end = time.monotonic() + SMOKE
-        cells += about({name: plugin}, some, reach.worker, str, lambda end=end: time.monotonic() < end)[0]
+        goes_on = partial(_is_before, time.monotonic() + SMOKE)
+        cells += about({name: plugin}, some, reach.worker, str, goes_on)[0]
     return cells
+
+
+def _is_before(end: float) -> bool:
+    return time.monotonic() < end
 
 
 def _engine(plugin: EnginePlugin) -> Data:

@@ -209,7 +209,7 @@ def _named_itself(fault: Fault, group: Group, names: Names) -> str:
     shared: Counter[str] = Counter()
     for cell in group.cells:
         native = names.natives.get(cell.function, cell.function)
-        if any(word == other or other.startswith(f"{word}_") for word in _words(native) for other in known):
+        if known & {name for word in _words(native) for name in (word, f"{word}_fun")}:  # CasADi's functions.
             return "function"
         shared.update(rare & _stems(f"{native} {cell.function} {cell.model}"))
     return "words" if 2 * max(shared.values(), default=0) >= len(group.cells) else ""
