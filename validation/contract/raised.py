@@ -31,6 +31,8 @@ _LIBRARIES = sys.stdlib_module_names | {"numpy", "scipy"}
 _MISFITS = (TypeError, AttributeError, NameError, ImportError, SyntaxError, AssertionError)
 # What interpreter and libraries of C++ raise of their own, whatever was asked.
 _INTERNAL = (SystemError, MemoryError, IndexError, ArithmeticError, UnicodeError)
+# Most letters of an exception's words.
+_LONG = 300
 # Words about shapes of arrays say nothing of a tree, which has none.
 _SHAPES = re.compile(r"\bshapes?\b|dimension|mismatch|broadcast|\bndim\b|size[12]\(\)")
 
@@ -68,6 +70,8 @@ def not_installed(error: BaseException) -> str:
 def words(error: BaseException) -> str:
     """Kind and message of an exception on one line, with the file, line and function that raised it."""
     said = " ".join(f"{type(error).__name__}: {error}".split())
+    if len(said) > _LONG:  # Arrays of numbers, as a rule: what is wrong stands before or after them.
+        said = f"{said[: _LONG // 2]} ... {said[-_LONG // 2 :]}"
     places = traceback.extract_tb(error.__traceback__)
     return f"{said} ({Path(places[-1].filename).name}:{places[-1].lineno}, in {places[-1].name})" if places else said
 

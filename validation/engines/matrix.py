@@ -188,9 +188,9 @@ def _said(one: Judged, more: str) -> Judged:
 
 
 def _stated(plugin: EnginePlugin, one: Judged) -> Judged:
-    """A red answer that what the engine says of itself explains is none; one that is right stays right."""
+    """What the engine says of itself explains answers that are off the truth; one that is right stays right."""
     cell = one.cell
-    for statement in getattr(plugin, "statements", ()) if cell.verdict in RED else ():
+    for statement in getattr(plugin, "statements", ()) if cell.verdict in ("wrong", "imprecise") else ():
         is_about = re.fullmatch(statement.functions, cell.function) and statement.holds(one.tree, one.text)
         if is_about and any(re.search(statement.warned, said) for said in one.answer.warned or ("",)):
             said = f"{statement.words} ({statement.source}): {cell.verdict} by {cell.error:.1e}"

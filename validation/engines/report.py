@@ -13,7 +13,7 @@ from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table
 from . import changes, parts
 from .causes import shown
 from .causes.cause import Cause
-from .causes.grouping import WITHDRAWN, Group, causes_of, stale
+from .causes.grouping import Group, causes_of, stale
 from .proving.scripts import NO_SCRIPT
 from .releases import CRASHES
 from .study import measure
@@ -45,7 +45,7 @@ class _Found:
     """What the cells of a report come to: causes of the red ones, those withdrawn, causes that explain none."""
 
     groups: list[Group]
-    withdrawn: list[Group]
+    withdrawn: list[str]
     stale: list[Cause]
 
     @classmethod
@@ -53,8 +53,7 @@ class _Found:
         """Of the JSON of a report."""
         cells, corrected = parts.cells(data), parts.cells(data, "corrected")
         groups = causes_of(cells, corrected=corrected)
-        aside = causes_of(cells, verdicts=WITHDRAWN)
-        return cls(groups, aside, stale([*groups, *aside], [engine["name"] for engine in data["engines"]]))
+        return cls(groups, shown.withdrawn(cells), stale(groups, [engine["name"] for engine in data["engines"]]))
 
     def by(self, engine: str) -> list[Group]:
         """The causes of an engine, the heaviest first."""
@@ -93,7 +92,7 @@ def compose(data: Data) -> Report:
             *changes.shown(data),
             *(_engine(engine, data, found) for engine in sorted(data["engines"], key=itemgetter("name"))),
             Section("Engines", (overview, *_missing(data), *_releases(data)), "overview"),
-            Section("Cells withdrawn, and why", (Bullets(tuple(map(shown.withdrawn, found.withdrawn))),), "withdrawn"),
+            Section("Cells withdrawn, and why", (Bullets(tuple(found.withdrawn)),), "withdrawn"),
             Section(
                 "Functions", tuple(_functions(engine, data) for engine in data["engines"]), "functions", page_only=True
             ),
@@ -186,7 +185,8 @@ def _functions(engine: Row, data: Data) -> Section:
     )
     title = f"{engine['name']}: {counted(len(names), 'function')}"
     table = Table.of("function | its name | right | red | otherwise", rows)
-    return Section(title, (table,), f"functions-{engine['name']}", page_only=True)
+    said = (f"{engine['refusals']}.".capitalize(),) if "refusals" in engine else ()
+    return Section(title, (*said, table), f"functions-{engine['name']}", page_only=True)
 
 
 def _fared(cells: list[Row]) -> Iterator[str | Cell]:
@@ -209,9 +209,11 @@ def _overview(data: Data, found: _Found) -> Table:
 
 
 def _missing(data: Data) -> tuple[Text, ...]:
-    """Engines that are not installed."""
+    """Engines that are not installed, and those that refuse so much that what is left shows little."""
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
-    return (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
+    refusing = [f"{one['name']} {said}" for one in data["engines"] if "above" in (said := one.get("refusals", ""))]
+    said = (f"Not installed here: {absent}." if absent else "", *(f"{one}." for one in refusing))
+    return tuple(Text(one, "soft") for one in said if one)
 
 
 def _conventions(data: Data) -> Table:

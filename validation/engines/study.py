@@ -28,7 +28,7 @@ from .models.readers import Reading, readings
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
-from .verdicts import Cell
+from .verdicts import Cell, refusals
 from .workers import Job, Worker, registry
 
 # What a file's reading shows in: the functions that every number of it enters.
@@ -225,7 +225,9 @@ def measure(
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
         "question": parts.question(),
-        "engines": [{**_engine(plugin), **reach.stated(name)} for name, plugin in chosen.items()],
+        "engines": [
+            {**_engine(plugin, [one.cell for one in cells]), **reach.stated(name)} for name, plugin in chosen.items()
+        ],
         "absent": {str(release): why for release, why in reach.failures.items()} if at else absent,
         "models": [name for name in wanted if not smoke or name in {one.cell.model for one in cells}],
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -297,8 +299,10 @@ def _is_before(end: float) -> bool:
     return time.monotonic() < end
 
 
-def _engine(plugin: EnginePlugin) -> Data:
+def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:
+    own = [cell for cell in cells if cell.engine == plugin.name and cell.verdict != "not offered"]
     return {
+        "refusals": refusals(own),
         "name": plugin.name,
         "version": plugin.version(),
         "conventions": [list(row) for row in plugin.conventions],

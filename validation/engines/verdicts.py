@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -47,6 +48,9 @@ _FAR = 100.0
 _SMALL = 1e-3
 # What differences leave of zeros (`arithmetic`).
 _NOTHING = 1e-30
+
+# Part of what an engine offers that it may refuse in words: one that refuses more is not shown to be right by the rest.
+REFUSALS = 0.25
 
 
 @dataclass(frozen=True)
@@ -159,6 +163,18 @@ def _truth(tree: Tree, layout: Layout, roundings: int | None, place: bytes) -> T
 def placed(state: State) -> bytes:
     """A key of a state."""
     return b"|".join(np.asarray(part).tobytes() for part in vars(state).values())
+
+
+def refusals(cells: Collection[Cell]) -> str:
+    """How much of what an engine offers it refuses, and whether that is too much to call it right.
+
+    Args:
+        cells: All cells of the engine, those of functions that it does not offer left out.
+    """
+    refused = sum(cell.verdict == "refuses" for cell in cells)
+    bound = f"the bound of {REFUSALS:.0%}"
+    held = f"within {bound}" if refused <= REFUSALS * len(cells) else f"above {bound}: what is left shows little of it"
+    return f"refuses {refused} of {len(cells)} cells in its own words, {held}"
 
 
 def largest(values: Array) -> float:

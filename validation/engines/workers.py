@@ -27,6 +27,7 @@ from .truth.dynamics import random_state
 # machine.
 LIMIT = 300.0
 T = TypeVar("T")
+Ask = Callable[[State], Array | Unsupported | Raised]
 
 
 @dataclass(frozen=True)
@@ -130,7 +131,7 @@ def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: 
     before = [one for pieces in job.before if isinstance(one := assembled(layout, pieces), State)]
     value: Array | Unsupported | Raised = Unsupported("not called")
     if job.called:
-        ask = _asker(job, model, function) if before else lambda state: model.call(function, state)
+        ask: Ask = _asker(job, model, function) if before else lambda state: model.call(function, state)
         for state in (*before, visit.state):
             value = _called(job, ask, state)
     is_told = isinstance(value, np.ndarray) or (isinstance(value, Raised) and value.kind == "raises")
@@ -138,7 +139,8 @@ def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: 
     if is_told or not job.called:
         # Whoever writes scripts of one state writes none of several.
         writes = not before or isinstance(model, SourceModel)
-        script = attempted(model.script, function, *before, visit.state) if writes else ""
+        states = (*before, visit.state)
+        script = attempted(lambda: model.script(function, *states)) if writes else ""
     if isinstance(script, Raised):
         value, script = Raised(f"the script of {function}: {script.words}"), ""
     return Answer(function, value, layout, visit.state, script, visit.name)
@@ -153,15 +155,15 @@ def _at_all(job: Job, model: EngineModel, layout: Layout, function: str, further
             yield Answer(function, value, layout, visit.state, at=visit.name)
 
 
-def _asker(job: Job, model: EngineModel, function: str) -> Callable[[State], Array | Unsupported]:
+def _asker(job: Job, model: EngineModel, function: str) -> Ask:
     """Calls of a function that share the engine's data, as far as the plug-in can."""
     if not isinstance(model, SourceModel):
         return lambda state: model.call(function, state)
-    ask = model.kept(function)
-    return (lambda state: ask) if isinstance(ask, Unsupported) else ask
+    made = attempted(model.kept, function)
+    return (lambda state: made) if isinstance(made, Unsupported | Raised) else made
 
 
-def _called(job: Job, ask: Callable[[State], Array | Unsupported], state: State) -> Array | Unsupported | Raised:
+def _called(job: Job, ask: Ask, state: State) -> Array | Unsupported | Raised:
     """What a call returns; an array of numbers, if it is one."""
     given = State(*(np.array(part) for part in vars(state).values()))
     value = attempted(ask, given)

@@ -57,14 +57,16 @@ def test_without_stated_causes_functions_that_are_red_on_the_same_trees_are_one(
 
 def test_what_no_stated_cause_explains_and_what_explains_nothing_are_said(data: dict[str, Any]) -> None:
     row = {"gravity": {"ball": ["wrong", 0.5, 1e-12], "free": ["wrong", 0.5, 1e-12]}}
-    aside = {"bias": {"ball": ["precondition", 0.5, 1e-12, "Manual, p. 3: no balls."]}}
+    aside = {"bias": {"ball": ["precondition", 0.5, 1e-12, "no balls (manual, p. 3): wrong by 5.0e-01"]}}
     engine = {"name": "toy", "version": "1", "conventions": [], "functions": {"gravity": "weight", "bias": "h"}}
+    engine["refusals"] = "refuses 9 of 9 cells in its own words, above the bound of 25%"
     toy = data | {"engines": [engine], "cells": {"toy": row | aside}, "identities": {}, "proofs": []}
     report = compose(toy)
     assert "2 red, behind them 1 cause," in report.summary
     assert "causes, 1 of them not yet found" in {fact.label for fact in report.facts}
     for text in (html.page(report), markdown.page(report, Provenance.of({}), "")):
-        assert "Cause not yet found:" in text and "Manual, p. 3: no balls." in text
+        assert "Cause not yet found:" in text and "no balls (manual, p. 3)." in text
+        assert "toy refuses 9 of 9 cells" in text
     frax = next(cause for cause in stated() if cause.engine == "frax")
     assert stale([], ["frax"]) == [frax] and not stale([], ["toy"])
 
@@ -94,6 +96,7 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
     ("changed", "said"),
     [
         ("wat: it is wrong", "unknown entries"),
+        ("offends:", "entries missing: .'offends'."),
         ("fault: nowhere", "the name of a file"),
         ("thread: somewhere", "a thread is an address"),
         ("searched: ''", "says when no thread was found"),
@@ -103,9 +106,9 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
 )
 def test_files_that_break_a_rule_are_refused(tmp_path: Path, changed: str, said: str) -> None:
     good = {"name": "a", "what": "It is wrong.", "shows": "balls", "offends": "M.", "searched": '"2026-11-28"'}
-    name, _, value = changed.partition(": ")
+    name, _, value = changed.partition(":")
     path = tmp_path / "toy.yaml"
-    rows = [f"{key}: {text}" for key, text in (good | {name: value}).items()]
+    rows = [f"{key}: {text}" for key, text in (good | {name: value}).items() if text]
     path.write_text("- " + "\n  ".join(rows) + "\n", encoding="utf-8")
     with pytest.raises(ValueError, match=said):
         read(path)

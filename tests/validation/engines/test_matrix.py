@@ -140,6 +140,5 @@ def test_trees_that_one_cause_shows_on_share_a_script() -> None:
         for kind in ("universal", "three hinges", "euler zyx")
         for one in _judged(kind, "coriolis_forces", "coriolis_symmetry")
     ]
-    assert [[one.cell.model for one in group] for group in fault_groups(reds)] == [
-        ["universal", "three hinges", "euler zyx"]
-    ] * 2
+    groups = [[one.cell.model for one in group] for group in fault_groups(reds)]
+    assert groups == [["universal", "three hinges", "euler zyx"]] * 2

@@ -120,11 +120,14 @@ def read(path: Path) -> list[Cause]:
     """
     rows: list[dict[str, Any]] = _read(path)
     names = {field.name for field in fields(Cause)} - {"engine"}
+    needed = {"name", "what", "shows", "offends"}
     causes = []
     for row in rows:
         if unknown := row.keys() - names:
             raise ValueError(f"{path.name}: unknown entries: {sorted(unknown)}; a cause has {sorted(names)}")
-        values = {name: tuple(value) if isinstance(value, list) else value for name, value in row.items()}
+        if missing := needed - row.keys():
+            raise ValueError(f"{path.name}: {row.get('name', 'a cause')}: entries missing: {sorted(missing)}")
+        values: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in row.items()}
         cause = Cause(path.stem, **values)
         for broken, rule in _rules(cause):
             if broken:

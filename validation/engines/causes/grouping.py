@@ -12,8 +12,6 @@ from ..verdicts import RED, Cell, judge
 from .cause import Cause, stated
 from .corrections import CORRECTIONS
 
-# Verdicts of cells that differ from the truth and are no fault.
-WITHDRAWN = ("precondition", "repairs")
 _GRAVITY = {"wrong": 2, "crashes": 2, "raises": 1}
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5
@@ -62,10 +60,7 @@ class Group:
 
 
 def causes_of(
-    cells: Iterable[Cell],
-    known: Sequence[Cause] | None = None,
-    corrected: Iterable[Cell] = (),
-    verdicts: Sequence[str] = RED,
+    cells: Iterable[Cell], known: Sequence[Cause] | None = None, corrected: Iterable[Cell] = ()
 ) -> list[Group]:
     """What the red cells among `cells` come from, the heaviest first.
 
@@ -73,7 +68,6 @@ def causes_of(
         cells: Cells of any verdict, of one engine or more.
         known: Causes to look among; None: all that are stated; (): each is to be found from the cells alone.
         corrected: Cells of `without_their_causes`.
-        verdicts: Verdicts of the cells that are asked about.
     """
     known = stated() if known is None else known
     shown: dict[Cause | None, list[Cell]] = {None: []}
@@ -83,7 +77,7 @@ def causes_of(
         (hidden, corrected, [cause for cause in known if not cause.correction]),
     ):
         for cell in chosen:
-            if cell.verdict in verdicts:
+            if cell.verdict in RED:
                 place.setdefault(_first(cell, possible), []).append(cell)
     groups = [
         Group(cause.engine, cause, tuple(shown.get(cause, ())), tuple(hidden.get(cause, ())))
@@ -147,8 +141,8 @@ def _alike(cells: Sequence[Cell]) -> list[list[Cell]]:
             else:
                 own.append([cell])
         lots += own
-    groups: dict[tuple[str, str, frozenset[str]], list[Cell]] = {}
+    groups: dict[tuple[str, frozenset[str]], list[Cell]] = {}
     for lot in lots:
-        key = lot[0].engine, lot[0].verdict, frozenset(cell.model for cell in lot)
+        key = lot[0].engine, frozenset(cell.model for cell in lot)
         groups.setdefault(key, []).extend(lot)
     return list(groups.values())

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from ...reporting.numbers import counted
 from ...reporting.record import Block, Bullets, Code, Section
-from ..verdicts import Cell
+from ..verdicts import RED, Cell
 from .grouping import Group, by_function
 
+# Verdicts of cells that differ from the truth and are no fault, and where their words say by how much.
+_WITHDRAWN = ("precondition", "repairs")
+_OFF = re.compile(rf": (?:{'|'.join(RED)}) by ")
 # Names that a line shows before it counts the others.
 _FEW = 3
 
@@ -115,8 +118,16 @@ def _of_function(cells: Sequence[Cell], proof: Mapping[str, Any] | None) -> str:
     return f"`{first.function}` {first.verdict} on {', '.join(cell.model for cell in cells)}: {said}{script}"
 
 
-def withdrawn(group: Group) -> str:
-    """Cells that are no fault, though the answer differs from the truth, and why."""
-    why = (group.cause.documented if group.cause else "") or group.cells[0].words
-    number, functions = counted(len(group.cells), "cell"), named(group.functions, code=True)
-    return f"{group.engine}, {number}, {group.cells[0].verdict}: {why} {functions} on {named(group.models)}."
+def withdrawn(cells: Iterable[Cell]) -> list[str]:
+    """Of cells that are no fault, though their answers differ from the truth: what the engine says, and where."""
+    lots: dict[tuple[str, str, str], list[Cell]] = {}
+    for cell in cells:
+        if cell.verdict in _WITHDRAWN:
+            # After what the engine says comes how far each cell is off (`matrix`).
+            lots.setdefault((cell.engine, cell.verdict, _OFF.split(cell.words)[0]), []).append(cell)
+    return [
+        f"**{engine}**, {verdict} of {counted(len(own), 'cell')}: {said}. "
+        f"{named(list(dict.fromkeys(cell.function for cell in own)), code=True)} on "
+        f"{named(list(dict.fromkeys(cell.model for cell in own)))}."
+        for (engine, verdict, said), own in lots.items()
+    ]
