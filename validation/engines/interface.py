@@ -45,6 +45,8 @@ def vector(values: Array) -> Vector:
 GROUP = "symofros.engines"
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+# Length of the one step that integrators are asked for [s].
+STEP = 0.015625
 
 
 class Steps(NamedTuple):
@@ -92,6 +94,9 @@ class Joint:
         offset: See `mimics`.
         locked: Coordinate that a joint of one coordinate is locked at, by the engine: the joint moves no more. None for
             none.
+        damping: Force against each of its speeds, for a unit of speed.
+        stiffness: Force of a spring on a joint of one coordinate, for a unit of it.
+        rest: Coordinate at which the spring has no force.
     """
 
     kind: str
@@ -108,6 +113,9 @@ class Joint:
     ratio: float = 1.0
     offset: float = 0.0
     locked: float | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -121,6 +129,7 @@ class Link:
         mass: Mass [kg].
         com: Mass centre (3) in the link's frame [m].
         inertia: Inertia (3, 3) about the mass centre, along the link's axes [kg m^2].
+        compensation: Part of its weight that a force at its mass centre bears.
     """
 
     name: str
@@ -129,6 +138,7 @@ class Link:
     mass: float = 1.0
     com: Vector = ORIGIN
     inertia: Rows = IDENTITY
+    compensation: float = 0.0
 
 
 class End(NamedTuple):
@@ -165,6 +175,52 @@ class Constraint:
 
 
 @dataclass(frozen=True)
+class Tendon:
+    """A length, and the spring and the damper that act along it.
+
+    Attributes:
+        kind: "coupling", a sum of coordinates, or "path", as constraints have them.
+        ends: See `Constraint`.
+        coefficients: See `Constraint`.
+        stiffness: Force against a unit of length beyond `rest`.
+        damping: Force against a unit of the length's rate.
+        rest: Length at which the spring has no force.
+    """
+
+    kind: str
+    ends: tuple[End, ...]
+    coefficients: tuple[float, ...] = ()
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A force along a joint's coordinate or a tendon: gain control + bias, with l and l' the length times gear.
+
+    Attributes:
+        link: Link whose only joint it drives; "" for a tendon.
+        tendon: Number of the tendon that it pulls; None for a joint.
+        gear: Factor of length and force.
+        gain: Force for a unit of control.
+        bias: Force b0 + b1 l + b2 l'.
+        control: Control that it has.
+        control_limits: Least and greatest control that counts; () for none.
+        force_limits: Least and greatest force; () for none.
+    """
+
+    link: str = ""
+    tendon: int | None = None
+    gear: float = 1.0
+    gain: float = 1.0
+    bias: Vector = ORIGIN
+    control: float = 0.0
+    control_limits: tuple[float, ...] = ()
+    force_limits: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class Tree:
     """A mechanism as it is stated to all engines.
 
@@ -175,6 +231,9 @@ class Tree:
         constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
         attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
         fused: Whether the engine fuses links that don't move against each other.
+        tendons: Lengths over its joints or links.
+        actuators: What drives it.
+        sensors: Frames of links at which sensors stand.
     """
 
     name: str
@@ -183,6 +242,27 @@ class Tree:
     constraints: tuple[Constraint, ...] = ()
     attached: str = ""
     fused: bool = False
+    tendons: tuple[Tendon, ...] = ()
+    actuators: tuple[Actuator, ...] = ()
+    sensors: tuple[End, ...] = ()
+
+    @property
+    def forces(self) -> frozenset[str]:
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "tendons", "actuators"."""
+        joints = [joint for link in self.links for joint in link.joints]
+        stated = {
+            "dampers": any(joint.damping for joint in joints),
+            "springs": any(joint.stiffness for joint in joints),
+            "compensation": any(link.compensation for link in self.links),
+            "tendons": bool(self.tendons),
+            "actuators": bool(self.actuators),
+        }
+        return frozenset(name for name, there in stated.items() if there)
+
+    @property
+    def demands(self) -> frozenset[str]:
+        """What an engine must know by name to be asked about it: transformations, forces, "sensors"."""
+        return self.transformations | self.forces | ({"sensors"} if self.sensors else set())
 
     @property
     def transformations(self) -> frozenset[str]:

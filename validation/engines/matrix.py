@@ -8,14 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..contract.raised import Raised, words
-from .functions import CONSTRAINED, FUNCTIONS
+from .functions import FUNCTIONS, suits
 from .interface import EnginePlugin, State, Steps, Tree, Unsupported, vector
 from .verdicts import Cell, Expected, Verdict, expected, judge
 from .workers import Answer, Crashed, Job, Worker, answered
 
 SEED = 20
-# What is asked of a tree with constraints besides, for identities.
-_BESIDES = ("mass_matrix", "bias")
 
 
 @dataclass(frozen=True)
@@ -76,12 +74,10 @@ def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
 
 
 def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
-    """The functions of an engine that a tree is for: those of constraints where it has any."""
-    if tree.transformations - set(getattr(plugin, "transformations", ())):
+    """The functions of an engine that a tree is for; none where it does not know what the tree demands."""
+    if tree.demands - set(getattr(plugin, "demands", ())):
         return ()
-    if tree.constraints:
-        return tuple(name for name in plugin.functions if name in _BESIDES or name.partition(":")[0] in CONSTRAINED)
-    return tuple(name for name in plugin.functions if name.partition(":")[0] not in CONSTRAINED)
+    return tuple(name for name in plugin.functions if suits(name.partition(":")[0], tree))
 
 
 def judged(

@@ -26,7 +26,7 @@ def test_engines_are_right_about_transformed_models(name: str) -> None:
     offering = [
         engine
         for engine in ("pinocchio", "mujoco")
-        if tree.transformations <= set(getattr(OWN[engine], "transformations", ()))
+        if tree.demands <= set(getattr(OWN[engine], "demands", ()))
     ]
     assert offering
     for engine in offering:

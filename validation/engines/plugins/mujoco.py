@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Slot, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
@@ -65,7 +65,9 @@ class _Bodies:
             self.children[link.parent].append(k)
         self.slots: dict[int, tuple[Slot, ...]] = {}
         self.nq = self.nv = 0
-        self.coupled = {end.link for one in tree.constraints if one.kind == "coupling" for end in one.ends}
+        lines = (*tree.constraints, *tree.tendons)
+        self.coupled = {end.link for one in lines if one.kind == "coupling" for end in one.ends}
+        self.coupled |= {one.link for one in tree.actuators}
 
     def element(self, k: int) -> str | Unsupported:
         """The element of a link and of what it carries."""
@@ -83,7 +85,8 @@ class _Bodies:
         if isinstance(inner, Unsupported):
             return inner
         own = [inertial if link.mass else "", *joints, constrained.sites(self.tree, link.name), *inner]
-        return f'<body name="{_name(link.name)}" {_frame(R, p)}>' + "".join(own) + "</body>"
+        borne = f' gravcomp="{link.compensation!r}"' if link.compensation else ""
+        return f'<body name="{_name(link.name)}" {_frame(R, p)}{borne}>' + "".join(own) + "</body>"
 
     def elements(self, k: int) -> list[str] | Unsupported:
         """The elements of a link's children; -1 is the world."""
@@ -121,7 +124,7 @@ class _Bodies:
             named = f' name="{link.name}"' if link.name in self.coupled else ""
             for kind, axis in _elements(joint):
                 about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
-                elements.append(f'<joint{named} type="{kind}"{about}{armature}/>')
+                elements.append(f'<joint{named} type="{kind}"{about}{armature}{constrained.forces(joint)}/>')
         self.slots[k] = tuple(own)
         return elements
 
@@ -159,6 +162,7 @@ def write(tree: Tree) -> Source | Unsupported:
     if tree.fused:
         xml = xml.replace("<compiler ", '<compiler fusestatic="true" ')
     lines = ["import numpy as np", "import mujoco as mj", *_compiled(tree, xml), "d = mj.MjData(m)"]
+    lines += constrained.controls(tree)
     # A model that is attached takes a prefix to its names; links that are fused are there no more.
     own = attached(tree)
     names = [("own_" if k in own else "") + link.name for k, link in enumerate(tree.links)]
@@ -200,14 +204,30 @@ _SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 _TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
 _INVERSE_FD = f"{_QVA}{_SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
-_TRANSITION = (
-    "m.opt.timestep = 1.0\nm.opt.integrator = mj.mjtIntegrator.mjINT_EULER\n"
-    f"d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
-    "mj.mjd_transitionFD(m, d, 1e-6, True, A, None, None, None)\n"
-)
+_COPY = "from copy import copy\nn = copy(m)\n"
+_EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
+
+
+def _transition(step: float, settings: str = "") -> str:
+    """Derivatives of Euler's step, with options of a model of its own."""
+    return (
+        f"{_COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
+        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\n"
+    )
+
+
+_TRANSITION = _transition(1.0, _EXPLICIT)
 # One-sided differences are off by the step times the second derivative, centred ones by its square times the third.
 _INVERSE_STEPS = Steps("inverse_dynamics", 1e-6, 1e-4)
 _FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
+
+
+def _step(integrator: str, settings: str = "") -> Way:
+    """A step of mj_step, with options of a model of its own."""
+    code = f"{_COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
+    state = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau"
+    return Way(f"mj_step, {integrator}", f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]")
+
 
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
@@ -282,6 +302,29 @@ WAYS = {
         "mj.mj_differentiatePos(m, value, 1.0, q, q1)",
     ),
 }
+WAYS |= {
+    "step_dampers_implicit": _step("mjINT_EULER"),
+    "step_semi_implicit": _step("mjINT_EULER", _EXPLICIT),
+    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
+    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+    "step_dampers_implicit_derivative": Way(
+        "mjd_transitionFD", f"{_transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
+    ),
+    # Tendons and actuators that couple joints are solved for by iterations.
+    "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
+    "step_rk4_manifold": _step("mjINT_RK4"),
+    "passive_forces": Way("qfrc_passive", f"{_QV}value = d.qfrc_passive"),
+    "tendon_lengths": Way("ten_length", f"{_QV}value = d.ten_length"),
+    "tendon_arms": Way("ten_J", f"{_QV}value = d.ten_J.reshape(-1, m.nv)"),
+    "actuator_lengths": Way("actuator_length", f"{_QV}value = d.actuator_length"),
+    "actuator_arms": Way(
+        "actuator_moment",
+        f"{_QV}value = np.zeros((m.nu, m.nv))\n"
+        "mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
+    ),
+    "actuator_forces": Way("actuator_force", f"{_QV}value = d.actuator_force"),
+    "actuated_forces": Way("qfrc_actuator", f"{_QV}value = d.qfrc_actuator"),
+}
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -320,7 +363,15 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    transformations={"attached": "MjSpec, attach_body", "fused": "fusestatic"},
+    demands={
+        "attached": "MjSpec, attach_body",
+        "fused": "fusestatic",
+        "dampers": "damping",
+        "springs": "stiffness, springref",
+        "compensation": "gravcomp",
+        "tendons": "tendon/fixed, tendon/spatial",
+        "actuators": "general, motor, position, velocity",
+    },
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

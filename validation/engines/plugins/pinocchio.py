@@ -361,7 +361,7 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    transformations={"locked": "buildReducedModel", "attached": "appendModel"},
+    demands={"locked": "buildReducedModel", "attached": "appendModel"},
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

@@ -55,6 +55,11 @@ class Chart:
     rates: Callable[[Joint, Exact], Exact]
     sample: Callable[[Joint, Draw], Array]
 
+    @property
+    def is_flat(self) -> bool:
+        """Whether speeds are the rates of the coordinates."""
+        return self.rates is _same
+
 
 def _turn(axis: Exact, q: Any) -> Exact:
     return rotation(axis, *cos_sin(q))

@@ -234,14 +234,23 @@ def mass_matrix_rate(truth: Truth, s: Point) -> Exact:
     return truth.kinematics.along(truth.M, s.q, s.v)
 
 
-_STEPS = 13
+_ROWS = 13
 
 
-def integrated(truth: Truth, q: Exact, v: Exact) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits."""
+def integrated(truth: Truth, q: Exact, v: Exact, rows: int = _ROWS) -> Exact:
+    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits.
+
+    Args:
+        truth: The truth.
+        q: Coordinates.
+        v: Speeds.
+        rows: Rows of the table: what v of order one takes, unless other is said.
+    """
     rates = truth.kinematics.rates
+    if not truth.kinematics.curved:
+        return q + rates(q) @ v
     table: list[Exact] = []
-    for row in range(_STEPS):
+    for row in range(rows):
         n = 2 * (row + 1)
         before, point = q, q + (rates(q) @ v) / n
         for _ in range(n - 1):
@@ -255,7 +264,7 @@ def integrated(truth: Truth, q: Exact, v: Exact) -> Exact:
     return table[-1]
 
 
-def _to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
+def to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
     """Speeds (nv, n) whose rates are nearest to columns (nq, n)."""
     N = truth.kinematics.rates(q)
     return solve(N.T @ N, N.T @ columns)
@@ -264,13 +273,13 @@ def _to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
 def integrated_dq(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its configuration, in tangents at both."""
     columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
-    return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+    return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
 
 
 def integrated_dv(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its speeds, in the tangent at the result."""
     columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
-    return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+    return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
 
 
 def difference_dq(truth: Truth, s: Point) -> Exact:

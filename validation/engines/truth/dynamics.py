@@ -14,6 +14,7 @@ import numpy as np
 from ..interface import Array, HasLayout, State, Tree
 from .arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
 from .charts import CHARTS, Pose
+from .forces import Forces
 from .kinematics import Inertia, Kinematics
 
 _REMEMBERED = 1000
@@ -48,7 +49,7 @@ class Truth:
 
     def __init__(self, tree: Tree, model: HasLayout, roundings: int | None = None) -> None:
         self.tree, self.kinematics = tree, Kinematics(tree, model)
-        self.nv = model.nv
+        self.nv, self.own = model.nv, Forces(tree, self.kinematics)
         # Differences of several functions ask for the same again and again.
         self.remembered: dict[tuple[object, ...], Exact] = {}
         self.gravity_vector = exact(tree.gravity)
@@ -128,8 +129,8 @@ class Truth:
         return self.ID(q, zeros(self.nv), zeros(self.nv))
 
     def FD(self, q: Exact, v: Exact, tau: Exact) -> Exact:
-        """M^-1 (tau - h) (nv)."""
-        return solve(self.M(q), tau - self.h(q, v))
+        """M^-1 (tau + Q - h) (nv), Q what the tree states to act on itself."""
+        return solve(self.M(q), tau + self.own.applied(q, v) - self.h(q, v))
 
     def inverse(self, q: Exact) -> Exact:
         """M^-1 (nv, nv)."""

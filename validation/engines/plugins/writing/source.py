@@ -145,7 +145,7 @@ class SourcePlugin:
         write_reading: Tree, format, file's text -> text that has the engine read the file.
         find: Version of an engine that is no Python distribution.
         constraints: Kinds of constraints that it has of its own -> what it calls them.
-        transformations: What it does to trees that are built (`Tree.transformations`) -> what it calls that.
+        demands: What it knows of `Tree.demands` -> what it calls that.
     """
 
     name: str
@@ -160,7 +160,7 @@ class SourcePlugin:
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
     find: Callable[[], str] | None = None
     constraints: Mapping[str, str] = field(default_factory=dict)
-    transformations: Mapping[str, str] = field(default_factory=dict)
+    demands: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def functions(self) -> Mapping[str, str]:
@@ -183,8 +183,8 @@ class SourcePlugin:
 
     def build(self, tree: Tree) -> EngineModel | Unsupported:
         """The tree by the engine's API."""
-        for name in tree.transformations - set(self.transformations):
-            return Unsupported(f"no model is {name}", offered=False)
+        for name in sorted(tree.demands - set(self.demands)):
+            return Unsupported(f"no trees with {name}", offered=False)
         for one in tree.constraints:
             if one.kind not in self.constraints:
                 return Unsupported(f"no constraint of kind {one.kind}", offered=False)
