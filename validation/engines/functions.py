@@ -219,6 +219,7 @@ def _steps() -> dict[str, Function]:
     rows = {
         "semi_implicit": ("v+ = v + h M^-1 f, f = tau + Q - (bias); q+ where v+ leads in h", single("nothing")),
         "dampers_implicit": ("M + h D in place of M, D of the joints' dampers", single("dampers")),
+        "semi_implicit_straight": ("the same with q+ = q + h N(q) v+", single("nothing", steps.straight)),
         "dampers_implicit_straight": ("the same with q+ = q + h N(q) v+", single("dampers", steps.straight)),
         "forces_implicit": ("M + h D in place of M, D = -dQ/dv, for lone free bodies -df/dv", single("forces")),
         "velocities_implicit": ("M + h D in place of M, D = -df/dv", single("velocities")),
@@ -270,7 +271,7 @@ def _column(rows: list[tuple[Exact, Exact]], place: int) -> Exact:
 
 
 ACTING = _acting()
-_ACTED_ON = ("mass_matrix", "bias", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
+_ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
 FUNCTIONS |= STEPS | ACTING
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 
@@ -45,6 +45,11 @@ def _linear_first(call: str, state: str) -> str:
     return f"{state}value = [np.roll({call}, 3, axis=0) for b in links]"
 
 
+_FORWARD = f"{_QV}s.setForces(tau)\n"
+# Dampers and springs of joints act as they will after the skeleton's time step; of none, as they do now.
+_NOW = "s.setTimeStep(0.0)\n"
+_WORLD = f"w = dart.simulation.World()\nw.setGravity(s.getGravity()); w.addSkeleton(s); w.setTimeStep({STEP})\n"
+
 WAYS = {
     "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
     "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
@@ -54,7 +59,11 @@ WAYS = {
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
     "forward_dynamics": Way(
         "computeForwardDynamics",
-        f"{_QV}s.setForces(tau)\ns.computeForwardDynamics()\nvalue = s.getAccelerations()",
+        f"{_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()",
+    ),
+    "step_stiffness_implicit": Way(
+        "World.step",
+        f"import numpy as np\n{_WORLD}{_FORWARD}w.step()\nvalue = np.r_[s.getPositions(), s.getVelocities()]",
     ),
     "kinetic_energy": Way("computeKineticEnergy", f"{_QV}value = s.computeKineticEnergy()"),
     "potential_energy": Way("computePotentialEnergy", f"{_Q}value = s.computePotentialEnergy()"),
@@ -136,6 +145,7 @@ def write(tree: Tree) -> Source | Unsupported:
                 return Unsupported("speeds of free joints are along the axes of the link before", offered=False)
         parent = "None" if link.parent < 0 else f"b{link.parent}"
         lines.append(f"j, b{k} = s.create{native.name}AndBodyNodePair({parent})")
+        lines += [f"j.{name}" for name in (_forces(joint, native.size) if steps else ())]
         # The axis is z unless another is set.
         if native.settings and not (
             native.name in ("RevoluteJoint", "PrismaticJoint") and joint.axis == (0.0, 0.0, 1.0)
@@ -154,6 +164,14 @@ def write(tree: Tree) -> Source | Unsupported:
         count += native.size
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
+
+
+def _forces(joint: Joint, size: int) -> list[str]:
+    """Calls on a joint that set its damper and spring."""
+    calls = [f"setDampingCoefficient({k}, {joint.damping!r})" for k in range(size if joint.damping else 0)]
+    if joint.stiffness:
+        calls += [f"setSpringStiffness(0, {joint.stiffness!r})", f"setRestPosition(0, {joint.rest!r})"]
+    return calls
 
 
 def _gravity(tree: Tree) -> list[str]:
@@ -218,6 +236,7 @@ PLUGIN = SourcePlugin(
         Convention("spatial vectors", "angular, then linear, in the body's axes unless a frame is named"),
         Convention("Euler angles", "x, y, z; the order can be set in C++, its Python type is not bound"),
         Convention("armature", "none"),
+        Convention("dampers and springs", "as they will be after the skeleton's time step, in forward dynamics, too"),
     ),
     kinds={
         "revolute x": "RevoluteJoint",
@@ -240,4 +259,5 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
+    demands={"dampers": "setDampingCoefficient", "springs": "setSpringStiffness"},
 )

@@ -34,11 +34,13 @@ class Way(NamedTuple):
         code: Statements that leave the result in `value`; they may use what the source defines, and the parts of the
             state by their names (`interface.State`).
         slack: Error that the engine documents, as part of the largest entry, or the steps of its differences.
+        built: Text of the source -> what it is in the model that this way has of its own; () for none.
     """
 
     native: str
     code: str
     slack: float | Steps = 0.0
+    built: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,12 +74,19 @@ class Source:
             code = code.replace(general, own)
         return code
 
-    def script(self, code: str, state: State) -> str:
-        """The statements that build the tree, state what the code needs, and run it."""
-        code = self.spelled(code)
+    def script(self, way: Way, state: State) -> str:
+        """The statements that build the tree, state what a way needs, and run it."""
+        code = self.spelled(way.code)
         used = [name for name in _INPUTS if name in identifiers(code)]
         given = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
-        return "\n".join([*self.text(), *given, code])
+        return "\n".join([*self.built(way), *given, code])
+
+    def built(self, way: Way) -> tuple[str, ...]:
+        """The statements that build the tree as a way needs it."""
+        lines = self.text()
+        for general, own in way.built:
+            lines = tuple(line.replace(general, own) for line in lines)
+        return lines
 
     def text(self) -> tuple[str, ...]:
         """The statements that build the tree, with all that functions need."""
@@ -113,8 +122,9 @@ class SourceModel:
         for name in (OPTIONAL.keys() & identifiers(text)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
         code, names, values = compile(text, function, "exec"), dict(self.names), []
+        way = self._ways[function]
         try:
-            exec("\n".join(self._source.closing), names)
+            exec("\n".join(self._source.built(way) if way.built else self._source.closing), names)
             for state in states:
                 names.update({name: getattr(state, name).copy() for name in _INPUTS})
                 exec(code, names)
@@ -127,7 +137,7 @@ class SourceModel:
 
     def script(self, function: str, state: State) -> str:
         """The text that the call runs, with the state that it needs (`EngineModel`)."""
-        return self._source.script(self._ways[function].code, state)
+        return self._source.script(self._ways[function], state)
 
 
 def identifiers(code: str) -> set[str]:
