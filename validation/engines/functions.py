@@ -226,9 +226,11 @@ def _steps() -> dict[str, Function]:
         "stiffness_implicit": ("v+ = v + h (M + h D + h^2 K)^-1 (f - h K v)", single("stiffness")),
         "stiffness_implicit_lone": ("the same, for lone free bodies D = -df/dv", single("discrete")),
         "euler": ("q+ = q + h N v, v+ = v + h M^-1 f", runge_kutta(steps.EULER)),
+        "midpoint": ("the midpoint rule, in coordinates", runge_kutta(steps.MIDPOINT)),
         "rk2": ("Heun's method of order 2, in coordinates", runge_kutta(steps.HEUN)),
         "rk3": ("Kutta's method of order 3, in coordinates", runge_kutta(steps.THIRD)),
         "rk4": ("the classical method of order 4, in coordinates", runge_kutta(steps.CLASSICAL)),
+        "trapezoidal": ("the trapezoidal rule for q (flat charts) and v", steps.trapezoidal),
         "rk4_manifold": ("the same, of displacements (Munthe-Kaas)", runge_kutta(steps.CLASSICAL, on_manifold=True)),
     }
     return {f"step_{name}": Function(f"{after} {text}", truth) for name, (text, truth) in rows.items()}
@@ -277,11 +279,12 @@ FUNCTIONS |= STEPS | ACTING
 _BESIDES = ("mass_matrix", "bias")
 
 
-def suits(name: str, tree: Tree) -> bool:
-    """Whether a function is for a tree: of constraints and of forces only where it has some."""
+def suits(way: str, tree: Tree) -> bool:
+    """Whether a way to a function is for a tree: of constraints and of forces only where it has some."""
+    name = way.partition(":")[0]
     needs = FUNCTIONS[name].needs
     if tree.constraints:
-        return name in CONSTRAINED or name in _BESIDES
+        return name in CONSTRAINED or way in _BESIDES
     if needs:
         return bool(tree.demands & set(needs))
     return name in STEPS or name in _ACTED_ON if tree.forces else name not in CONSTRAINED

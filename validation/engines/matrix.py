@@ -77,7 +77,7 @@ def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
     """The functions of an engine that a tree is for; none where it does not know what the tree demands."""
     if tree.demands - set(getattr(plugin, "demands", ())):
         return ()
-    return tuple(name for name in plugin.functions if suits(name.partition(":")[0], tree))
+    return tuple(name for name in plugin.functions if suits(name, tree))
 
 
 def judged(

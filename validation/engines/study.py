@@ -16,7 +16,7 @@ from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
-from .models import hostile, kinds, loops, transformed
+from .models import acting, hostile, kinds, loops, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
 from .plugins import OWN
@@ -124,8 +124,9 @@ def proofs(
 
 
 def trees() -> dict[str, Tree]:
-    """All trees: one for each kind of joint, the hostile set, loops, transformed models."""
-    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees() | loops.trees() | transformed.trees()
+    """All trees: one for each kind of joint, the hostile set, loops, transformed models, those that forces act on."""
+    plain = {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees()
+    return plain | loops.trees() | transformed.trees() | acting.trees()
 
 
 def measure(

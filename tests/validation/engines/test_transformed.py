@@ -24,9 +24,7 @@ FUNCTIONS = ("mass_matrix", "bias", "gravity", "link_jacobians")
 def test_engines_are_right_about_transformed_models(name: str) -> None:
     tree = trees()[name]
     offering = [
-        engine
-        for engine in ("pinocchio", "mujoco")
-        if tree.demands <= set(getattr(OWN[engine], "demands", ()))
+        engine for engine in ("pinocchio", "mujoco") if tree.demands <= set(getattr(OWN[engine], "demands", ()))
     ]
     assert offering
     for engine in offering:

@@ -6,6 +6,7 @@ K = -dQ/dq (`forces`):
     semi-implicit       v+ = v + h (M + h D)^-1 f,            q+ = q (+) h v+
     implicit            the same with D = -df/dv
     stiffness implicit  v+ = v + h (M + h D + h^2 K)^-1 (f - h K v)
+    trapezoidal         q+ = q + h (v + v+) / 2, v+ = v + h (a + a+) / 2 with the accelerations at both ends
     Runge-Kutta         stages of (N v, M^-1 f) in coordinates; or, on the manifold (Munthe-Kaas), of the displacement u
                         with q = q0 (+) u, whose rate is that which makes the velocity v
 """
@@ -29,6 +30,8 @@ from .dynamics import Point, Truth
 _H = Decimal(STEP)
 # What displacements of a step take: 25 digits, too.
 _ROWS = 5
+# Iterations of an implicit step shrink its error by some h each.
+_ITERATIONS, _SETTLED = 40, Decimal(10) ** -25
 Implicit = Literal["nothing", "dampers", "forces", "velocities", "stiffness", "discrete"]
 
 
@@ -148,6 +151,20 @@ def runge_kutta(tableau: Tableau, on_manifold: bool = False) -> TruthOf:
         return np.concatenate([end, s.v + _sum(tableau.last, accelerations, t.nv)])
 
     return function
+
+
+def trapezoidal(t: Truth, s: Point) -> Exact:
+    """A step (nq + nv) of the trapezoidal rule, by iteration; speeds are the rates of coordinates."""
+    before = t.FD(s.q, s.v, s.tau)
+    a, last = before, s.v
+    for _ in range(_ITERATIONS):
+        v = s.v + _H / 2 * (before + a)
+        q = s.q + _H / 2 * (s.v + v)
+        a = t.FD(q, v, s.tau)
+        if max(map(abs, v - last)) < _SETTLED:
+            break
+        last = v
+    return np.concatenate([q, v])
 
 
 def _displacement_rate(t: Truth, q: Exact, u: Exact, end: Exact, v: Exact) -> Exact:
