@@ -46,6 +46,9 @@ FUNCTIONS: dict[str, Function] = {
     "joint_wrenches": Function(
         "what holds each link with all it carries, at its origin along its axes (L, 6)", derived.joint_wrenches
     ),
+    "subtree_momenta": Function(
+        "momentum of each link with all it carries, about their mass centre (L, 6)", derived.subtree_momenta
+    ),
     "forward_dynamics": Function("M^-1 (tau - h) (nv)", lambda t, s: t.FD(s.q, s.v, s.tau)),
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
     "potential_energy": Function("V = -sum m g^T p", lambda t, s: t.V(s.q)),
@@ -273,8 +276,27 @@ def _column(rows: list[tuple[Exact, Exact]], place: int) -> Exact:
 
 
 ACTING = _acting()
+
+
+def _measured() -> dict[str, Function]:
+    """What sensors read at q, v, a, at their frames and along their axes unless said otherwise."""
+    rows = {
+        "accelerometers": ("acceleration less that of gravity (n, 3)", derived.accelerometers),
+        "gyroscopes": ("angular velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, 3:]),
+        "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
+        "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
+        "wrench_sensors": (
+            "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
+            derived.wrench_sensors,
+        ),
+    }
+    return {name: Function(text, truth, ("sensors",)) for name, (text, truth) in rows.items()}
+
+
+MEASURED = _measured()
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
-FUNCTIONS |= STEPS | ACTING
+_SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
+FUNCTIONS |= STEPS | ACTING | MEASURED
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")
 
@@ -287,4 +309,6 @@ def suits(way: str, tree: Tree) -> bool:
         return name in CONSTRAINED or way in _BESIDES
     if needs:
         return bool(tree.demands & set(needs))
+    if tree.sensors:
+        return name in _SENSED
     return name in STEPS or name in _ACTED_ON if tree.forces else name not in CONSTRAINED

@@ -169,6 +169,11 @@ def write(tree: Tree) -> Source | Unsupported:
     if tree.fused:
         return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
+    if tree.sensors:
+        optional["frames"] = (
+            f"frames = range({len(tree.sensors)})",
+            "def data(kind, k): return d.sensor(f'{kind}{k}').data",
+        )
     spelling = constrained.spelling(tree) if tree.constraints else {}
     return Source(tuple(lines), slots, nq, nv, optional, spelling=spelling)
 
@@ -200,6 +205,7 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
 _Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
 _QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
 _QVA = f"{_QV}d.qacc[:] = a\n"
+_MEASURED = f"{_QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
 _SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 _TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
@@ -313,6 +319,28 @@ WAYS |= {
     # Tendons and actuators that couple joints are solved for by iterations.
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
     "step_rk4_manifold": _step("mjINT_RK4"),
+    # About the mass centre of the whole mechanism that the body is in.
+    "joint_wrenches": Way(
+        "mj_rnePostConstraint: cfrc_int",
+        f"""{_QVA}mj.mj_rnePostConstraint(m, d)
+value = []
+for b in bs:
+    moment, force = d.cfrc_int[b].reshape(2, 3)
+    R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
+    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
+    ),
+    "subtree_momenta": Way(
+        "mj_subtreeVel",
+        f"{_QV}mj.mj_subtreeVel(m, d)\n"
+        "value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]",
+    ),
+    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in frames]"),
+    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in frames]"),
+    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in frames]"),
+    "wrench_sensors": Way(
+        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in frames]"
+    ),
+    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in frames]"),
     "passive_forces": Way("qfrc_passive", f"{_QV}value = d.qfrc_passive"),
     "tendon_lengths": Way("ten_length", f"{_QV}value = d.ten_length"),
     "tendon_arms": Way("ten_J", f"{_QV}value = d.ten_J.reshape(-1, m.nv)"),
@@ -369,6 +397,7 @@ PLUGIN = SourcePlugin(
         "dampers": "damping",
         "springs": "stiffness, springref",
         "compensation": "gravcomp",
+        "sensors": "sensor",
         "tendons": "tendon/fixed, tendon/spatial",
         "actuators": "general, motor, position, velocity",
     },

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arithmetic import Exact, eye, skew, solve, stack, zeros
+from .arithmetic import Exact, exact, eye, orthonormal, skew, solve, stack, zeros
 from .dynamics import Point, Truth
 from .kinematics import Inertia
 
@@ -71,6 +71,59 @@ def joint_wrenches(truth: Truth, s: Point) -> Exact:
             about = moment + skew(poses[k][1] - poses[link.parent][1]) @ force
             held[link.parent] = held[link.parent] + np.concatenate([force, about])
     return np.array([np.concatenate([R.T @ held[k][:3], R.T @ held[k][3:]]) for k, (R, _) in enumerate(poses)])
+
+
+def twists(truth: Truth, s: Point) -> Exact:
+    """Velocities of the sensors' frames, along their axes (n, 6)."""
+    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
+    return np.array([np.concatenate([R.T @ (J @ s.v)[:3], R.T @ (J @ s.v)[3:]]) for R, _, J in frames])
+
+
+def _sensed_accelerations(truth: Truth, s: Point) -> Exact:
+    """Accelerations of the sensors' points and angular accelerations, along world axes (n, 6)."""
+
+    def jacobians_there(q: Exact) -> Exact:
+        return np.array([truth.kinematics.held(q, end).J for end in truth.tree.sensors])
+
+    return jacobians_there(s.q) @ s.a + truth.kinematics.along(jacobians_there, s.q, s.v) @ s.v
+
+
+def accelerometers(truth: Truth, s: Point) -> Exact:
+    """Accelerations of the sensors' points less gravity's, along the sensors' axes (n, 3)."""
+    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
+    accelerations = _sensed_accelerations(truth, s)
+    return np.array([R.T @ (a[:3] - truth.gravity_vector) for (R, _, _), a in zip(frames, accelerations, strict=True)])
+
+
+def angular_accelerations(truth: Truth, s: Point) -> Exact:
+    """Angular accelerations of the sensors, along world axes (n, 3)."""
+    return _sensed_accelerations(truth, s)[:, 3:]
+
+
+def wrench_sensors(truth: Truth, s: Point) -> Exact:
+    """Wrench (force; moment) of each sensor's link's joint on its subtree, at the sensor, along its axes (n, 6)."""
+    held, places = joint_wrenches(truth, s), [link.name for link in truth.tree.links]
+    rows = []
+    for end in truth.tree.sensors:
+        wrench, R = held[places.index(end.link)], orthonormal(end.R)
+        moment = wrench[3:] - skew(exact(end.p)) @ wrench[:3]
+        rows.append(np.concatenate([R.T @ wrench[:3], R.T @ moment]))
+    return np.array(rows)
+
+
+def subtree_momenta(truth: Truth, s: Point) -> Exact:
+    """Momentum (linear; angular, about its mass centre) of each link with all it carries, along world axes (L, 6)."""
+    poses, velocity = truth.kinematics.poses(s.q), truth.kinematics.jacobians(s.q) @ s.v
+    # Of each subtree: mass, first moment about the world's origin, momentum about it.
+    sums = []
+    for inertia, (R, p), twist in zip(truth.inertias, poses, velocity, strict=True):
+        momentum = inertia.turned(R).matrix() @ twist
+        about = np.concatenate([momentum[:3], momentum[3:] + skew(p) @ momentum[:3]])
+        sums.append(np.concatenate([[inertia.mass], inertia.mass * p + R @ inertia.first, about]))
+    for k, link in reversed(list(enumerate(truth.tree.links))):
+        if link.parent >= 0:
+            sums[link.parent] = sums[link.parent] + sums[k]
+    return np.array([np.concatenate([x[4:7], x[7:] - skew(x[1:4]) @ x[4:7] / (x[0] or 1)]) for x in sums])
 
 
 def turned(truth: Truth, q: Exact, local: Exact) -> Exact:

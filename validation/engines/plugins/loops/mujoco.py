@@ -1,4 +1,4 @@
-"""MuJoCo's elements beyond bodies: equality constraints, tendons, actuators."""
+"""MuJoCo's elements beyond bodies: equality constraints, tendons, actuators, sensors."""
 
 from __future__ import annotations
 
@@ -29,10 +29,11 @@ def _site(name: str, end: End) -> str:
 
 
 def sites(tree: Tree, link: str) -> str:
-    """The sites of a link, "" for the world, that constraints hold and tendons run over."""
+    """The sites of a link, "" for the world, that constraints hold, tendons run over and sensors stand on."""
     lines = [(f"s{number}", one) for number, one in enumerate(tree.constraints)]
     lines += [(f"n{number}", one) for number, one in enumerate(tree.tendons)]
-    return "".join(
+    sensors = "".join(_site(f"o{k}", end) for k, end in enumerate(tree.sensors) if end.link == link)
+    return sensors + "".join(
         _site(f"{name}_{place}", end)
         for name, one in lines
         if one.kind != "coupling"
@@ -42,12 +43,21 @@ def sites(tree: Tree, link: str) -> str:
 
 
 def elements(tree: Tree) -> str:
-    """The elements of MJCF that state constraints, tendons and actuators, with links' joints named as the links."""
+    """The elements of MJCF beyond bodies, with links' joints named as the links."""
     equalities = [_equality(number, one) for number, one in enumerate(tree.constraints)]
     tendons = [_tendon(number, one) for number, one in enumerate(tree.constraints)]
     tendons += [_line(f"n{number}", f"n{number}", one, _spring(one)) for number, one in enumerate(tree.tendons)]
     parts = {"tendon": tendons, "equality": equalities, "actuator": [_actuator(one) for one in tree.actuators]}
+    parts["sensor"] = [_sensor(kind, k) for k in range(len(tree.sensors)) for kind in _SENSORS]
     return "".join(f"<{name}>{''.join(part)}</{name}>" for name, part in parts.items() if any(part))
+
+
+_SENSORS = ("accelerometer", "gyro", "velocimeter", "force", "torque", "frameangacc")
+
+
+def _sensor(kind: str, k: int) -> str:
+    at = f'objtype="site" objname="o{k}"' if kind.startswith("frame") else f'site="o{k}"'
+    return f'<{kind} name="{kind}{k}" {at}/>'
 
 
 def _spring(one: Tendon) -> str:
