@@ -16,7 +16,7 @@ from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
-from .models import acting, hostile, kinds, loops, transformed
+from .models import acting, hostile, kinds, loops, sensed, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
 from .plugins import OWN
@@ -124,9 +124,11 @@ def proofs(
 
 
 def trees() -> dict[str, Tree]:
-    """All trees: one for each kind of joint, the hostile set, loops, transformed models, those that forces act on."""
-    plain = {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees()
-    return plain | loops.trees() | transformed.trees() | acting.trees()
+    """All trees: one for each kind of joint, hostile ones, loops, transformed models, with forces, with sensors."""
+    made = {name: kinds.tree_of(name) for name in kinds.KINDS}
+    for family in (hostile, loops, transformed, acting, sensed):
+        made |= family.trees()
+    return made
 
 
 def measure(

@@ -1,21 +1,24 @@
-"""Steps of integrators, and trees that forces of their own act on: the truth against what defines it, engines by it."""
+"""Steps, forces of a tree's own, sensors: the truth against what defines it, and engines by it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from validation.engines.functions import STEPS
-from validation.engines.interface import STEP, Tree
+from validation.engines.interface import ORIGIN, STEP, Tree
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
-from validation.engines.models.acting import trees
+from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.truth.dynamics import Point, Truth, digits
 from validation.engines.verdicts import judge
 from validation.engines.workers import Job, answered
 
-TREES = trees()
+TREES = acting.trees()
+SENSED = sensed.trees()
 # (engine, tree, a step that is asked for, one that leaves out what the tree is about).
 FAULTS = [
     ("mujoco", "dampers on hinges", "step_dampers_implicit", "step_semi_implicit"),
@@ -43,6 +46,27 @@ def test_engines_are_right_about_trees_that_forces_act_on(engine: str, name: str
     verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], TREES[name])}
     assert set(verdicts.values()) <= {"right", "not offered"}
     assert engine == "exudyn" or set(verdicts.values()) == {"right"}
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pinocchio"])
+@pytest.mark.parametrize("name", SENSED)
+def test_sensors_read_what_they_document(engine: str, name: str) -> None:
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], SENSED[name])}
+    assert "accelerometers" in verdicts and "gyroscopes" in verdicts
+    assert set(verdicts.values()) <= {"right", "not offered"}
+
+
+def test_a_sensor_that_forgets_where_it_stands_is_a_red_cell() -> None:
+    names = ("accelerometers", "velocimeters", "wrench_sensors", "gyroscopes")
+    tree = SENSED["sensors on hinges"]
+    at_origins = replace(tree, sensors=tuple(end._replace(p=ORIGIN) for end in tree.sensors))
+    want, given = (_judged("mujoco", one, *names) for one in (tree, at_origins))
+    verdicts = []
+    for name in names:
+        expected = want[name].want
+        assert expected is not None
+        verdicts.append(judge("planted", tree, name, np.asarray(given[name].answer.value), expected).verdict)
+    assert verdicts == ["wrong", "wrong", "wrong", "right"]
 
 
 @pytest.mark.parametrize("kind", ["revolute oblique", "ball", "free", "three hinges"])

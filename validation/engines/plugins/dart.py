@@ -57,6 +57,7 @@ WAYS = {
     "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
     "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+    "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
     "forward_dynamics": Way(
         "computeForwardDynamics",
         f"{_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()",

@@ -144,6 +144,44 @@ WAYS |= {
     ),
 }
 
+# With the forces that make the accelerations a.
+_DRIVEN = (
+    f"{_QV}{_FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
+)
+_SENSORS = """builder = drake.DiagramBuilder()
+builder.AddSystem(p)
+sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in frames]
+for sensor in sensors:
+    for name in NAMES:
+        builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
+whole = builder.Build()
+root = whole.CreateDefaultContext()
+c = p.GetMyMutableContextFromRoot(root)
+"""
+_READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
+
+
+def _sensors(kind: str, *names: str, more: str = "") -> Way:
+    """Readings of sensors in a diagram with the plant, which it then owns."""
+    text = _SENSORS.replace("KIND", kind).replace("MORE", more).replace("NAMES", repr(("body_poses", *names)))
+    return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
+
+
+WAYS |= {
+    "joint_wrenches": Way(
+        "reaction_forces",
+        f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []
+for j in js:
+    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
+    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
+    value.append([*force, *(moment + np.cross(x.translation(), force))])""",
+    ),
+    "accelerometers": _sensors(
+        "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
+    ),
+    "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
+}
+
 
 def _gradient(result: str, seeds: str) -> str:
     """Derivatives by Drake's automatic differentiation."""
@@ -262,7 +300,13 @@ def write(tree: Tree) -> Source | Unsupported:
     lines.append("p.Finalize()")
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
-    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, closing=_CLOSING)
+    optional: dict[str, tuple[str, ...]] = {"links": (links,)}
+    optional["js"] = (f"js = [p.GetJointByName(f'j{{k}}') for k in range({len(tree.links)})]",)
+    if tree.sensors:
+        places = [link.name for link in tree.links]
+        frames = ", ".join(f"({places.index(end.link)}, {end.R!r}, {list(end.p)!r})" for end in tree.sensors)
+        optional["frames"] = (f"frames, gravity = [{frames}], {list(tree.gravity)!r}",)
+    return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING)
 
 
 _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
@@ -362,6 +406,7 @@ PLUGIN = SourcePlugin(
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={
+        "sensors": "Accelerometer, Gyroscope",
         "dampers": "damping",
         "springs": "RevoluteSpring, PrismaticSpring",
         "tendons": "LinearSpringDamper",

@@ -8,8 +8,10 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import STEP, Array, Convention, Joint, Slot, Steps, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
+from .loops import mujoco_forces as forces
+from .loops.mujoco_forces import EXPLICIT, QV, QVA, SQUARE, Q, transition
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
@@ -202,88 +204,64 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
     ]
 
 
-_Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
-_QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
-_QVA = f"{_QV}d.qacc[:] = a\n"
-_MEASURED = f"{_QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
-_SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 _TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
-_INVERSE_FD = f"{_QVA}{_SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
-_COPY = "from copy import copy\nn = copy(m)\n"
-_EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
-
-
-def _transition(step: float, settings: str = "") -> str:
-    """Derivatives of Euler's step, with options of a model of its own."""
-    return (
-        f"{_COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
-        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\n"
-    )
-
-
-_TRANSITION = _transition(1.0, _EXPLICIT)
+_INVERSE_FD = f"{QVA}{SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
+_TRANSITION = transition(1.0, EXPLICIT)
 # One-sided differences are off by the step times the second derivative, centred ones by its square times the third.
 _INVERSE_STEPS = Steps("inverse_dynamics", 1e-6, 1e-4)
 _FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
 
 
-def _step(integrator: str, settings: str = "") -> Way:
-    """A step of mj_step, with options of a model of its own."""
-    code = f"{_COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
-    state = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau"
-    return Way(f"mj_step, {integrator}", f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]")
-
-
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
-    "mass_matrix": Way("mj_fullM", f"{_Q}{_SQUARE}mj.mj_fullM(m, d, value)"),
+    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}mj.mj_fullM(m, d, value)"),
     "mass_matrix:mj_mulM": Way(
-        "mj_mulM", f"{_Q}{_SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
+        "mj_mulM", f"{Q}{SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),
     "mass_matrix:mjd_inverseFD": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _INVERSE_STEPS
     ),
-    "mass_matrix_inverse": Way("mj_solveM", f"{_Q}{_SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
-    "bias": Way("qfrc_bias", f"{_QV}value = d.qfrc_bias"),
-    "inverse_dynamics": Way("mj_inverse", f"{_QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
-    "inverse_dynamics:mj_rne": Way("mj_rne", f"{_QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)"),
-    "forward_dynamics": Way("mj_forward", f"d.qfrc_applied[:] = tau\n{_QV}value = d.qacc"),
-    "kinetic_energy": Way("mj_energyVel", f"{_QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
-    "potential_energy": Way("mj_energyPos", f"{_Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
-    "link_poses": Way("xpos, xmat", f"{_Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
-    "mass_centre": Way("subtree_com", f"{_Q}value = d.subtree_com[0]"),
+    "mass_matrix_inverse": Way("mj_solveM", f"{Q}{SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
+    "bias": Way("qfrc_bias", f"{QV}value = d.qfrc_bias"),
+    "inverse_dynamics": Way("mj_inverse", f"{QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
+    "inverse_dynamics:mj_rne": Way("mj_rne", f"{QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)"),
+    "forward_dynamics": Way("mj_forward", f"d.qfrc_applied[:] = tau\n{QV}value = d.qacc"),
+    "kinetic_energy": Way("mj_energyVel", f"{QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
+    "potential_energy": Way("mj_energyPos", f"{Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
+    "link_poses": Way("xpos, xmat", f"{Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
+    "mass_centre": Way("subtree_com", f"{Q}value = d.subtree_com[0]"),
     "mass_centre_jacobian": Way(
-        "mj_jacSubtreeCom", f"{_Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"
+        "mj_jacSubtreeCom", f"{Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"
     ),
-    "link_jacobians": Way("mj_jacBody", f"{_Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
+    "link_jacobians": Way("mj_jacBody", f"{Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
     "link_jacobian_rates": Way(
-        "mj_jacDot", f"{_QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
+        "mj_jacDot", f"{QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
     ),
     "link_velocities": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
+        f"{QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
         "value = np.roll(value, 3, axis=1)",
     ),
     "velocity_local": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
+        f"{QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
         "value = np.roll(value, 3, axis=1)",
     ),
     "link_accelerations": Way(
         "mj_objectAcceleration",
-        f"{_QVA}mj.mj_rnePostConstraint(m, d)\n"
+        f"{QVA}mj.mj_rnePostConstraint(m, d)\n"
         f"{_TWISTS}mj.mj_objectAcceleration(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
         "value = np.roll(value, 3, axis=1) + np.r_[m.opt.gravity, np.zeros(3)]",
     ),
     "centroidal_matrix": Way(
         "mj_jacSubtreeCom, mj_angmomMat",
-        f"{_Q}J = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, J, 0)\n"
+        f"{Q}J = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, J, 0)\n"
         "A = np.zeros((3, m.nv))\nmj.mj_angmomMat(m, d, A, 0)\nvalue = np.vstack([m.body_subtreemass[0] * J, A])",
     ),
     "centroidal_momentum": Way(
         "mj_subtreeVel",
-        f"{_QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
+        f"{QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
     ),
     "inverse_dynamics_dq": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _INVERSE_STEPS
@@ -294,7 +272,7 @@ WAYS = {
     "inverse_dynamics_dv:qDeriv": Way(
         "mj_implicit",
         "m.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
-        f"{_QV}mj.mj_implicit(m, d)\n{_SQUARE}for i in range(m.nv):\n"
+        f"{QV}mj.mj_implicit(m, d)\n{SQUARE}for i in range(m.nv):\n"
         "    row = slice(m.D_rowadr[i], m.D_rowadr[i] + m.D_rownnz[i])\n    value[i, m.D_colind[row]] = -d.qDeriv[row]",
     ),
     "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _FORWARD_STEPS),
@@ -307,51 +285,6 @@ WAYS = {
         "q1, value = q.copy(), np.zeros(m.nv)\nmj.mj_integratePos(m, q1, v2, 1.0)\n"
         "mj.mj_differentiatePos(m, value, 1.0, q, q1)",
     ),
-}
-WAYS |= {
-    "step_dampers_implicit": _step("mjINT_EULER"),
-    "step_semi_implicit": _step("mjINT_EULER", _EXPLICIT),
-    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
-    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
-    "step_dampers_implicit_derivative": Way(
-        "mjd_transitionFD", f"{_transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
-    ),
-    # Tendons and actuators that couple joints are solved for by iterations.
-    "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
-    "step_rk4_manifold": _step("mjINT_RK4"),
-    # About the mass centre of the whole mechanism that the body is in.
-    "joint_wrenches": Way(
-        "mj_rnePostConstraint: cfrc_int",
-        f"""{_QVA}mj.mj_rnePostConstraint(m, d)
-value = []
-for b in bs:
-    moment, force = d.cfrc_int[b].reshape(2, 3)
-    R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
-    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
-    ),
-    "subtree_momenta": Way(
-        "mj_subtreeVel",
-        f"{_QV}mj.mj_subtreeVel(m, d)\n"
-        "value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]",
-    ),
-    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in frames]"),
-    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in frames]"),
-    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in frames]"),
-    "wrench_sensors": Way(
-        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in frames]"
-    ),
-    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in frames]"),
-    "passive_forces": Way("qfrc_passive", f"{_QV}value = d.qfrc_passive"),
-    "tendon_lengths": Way("ten_length", f"{_QV}value = d.ten_length"),
-    "tendon_arms": Way("ten_J", f"{_QV}value = d.ten_J.reshape(-1, m.nv)"),
-    "actuator_lengths": Way("actuator_length", f"{_QV}value = d.actuator_length"),
-    "actuator_arms": Way(
-        "actuator_moment",
-        f"{_QV}value = np.zeros((m.nu, m.nv))\n"
-        "mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
-    ),
-    "actuator_forces": Way("actuator_force", f"{_QV}value = d.actuator_force"),
-    "actuated_forces": Way("qfrc_actuator", f"{_QV}value = d.qfrc_actuator"),
 }
 
 
@@ -385,10 +318,11 @@ PLUGIN = SourcePlugin(
         Convention(
             "constraints", "soft: a row's acceleration is aref - R f; R is least, not zero, at the impedance 0.9999"
         ),
+        Convention("force, torque", "what holds the sensor's body, as cfrc_int: at rest the force is upwards"),
         Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=WAYS | constrained.WAYS,
+    ways=WAYS | constrained.WAYS | forces.WAYS,
     write=write,
     constraints=constrained.KINDS,
     demands={

@@ -180,6 +180,10 @@ class _ModelText:
         optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
         if all(self.joints) and len(set(self.joints)) == len(self.joints):
             optional["js"] = (f"js = [{', '.join(self.joints)}]",)
+        if tree.sensors:
+            made = (f"pin.Frame('o{k}', {{}}, 0, {{}}, pin.FrameType.OP_FRAME)" for k in range(len(tree.sensors)))
+            stated = (text.format(*self.place(end)) for text, end in zip(made, tree.sensors, strict=True))
+            optional["frames"] = (f"frames = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constrained.optional(tree.constraints, self.place)
         return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
 
@@ -327,6 +331,16 @@ for _frame, _rf in _FRAMES.items():
         ),
     }
 
+_SENSED = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL).{{}} for f in frames])"
+WAYS |= {
+    "gyroscopes": Way("getFrameVelocity", _SENSED.format("Velocity", "angular")),
+    "velocimeters": Way("getFrameVelocity", _SENSED.format("Velocity", "linear")),
+    "accelerometers": Way(
+        "getFrameClassicalAcceleration less gravity",
+        _SENSED.format("ClassicalAcceleration", "linear - d.oMf[f].rotation.T @ m.gravity.linear"),
+    ),
+}
+
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has Pinocchio read a file."""
@@ -361,7 +375,7 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    demands={"locked": "buildReducedModel", "attached": "appendModel"},
+    demands={"locked": "buildReducedModel", "attached": "appendModel", "sensors": "frames"},
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )
