@@ -15,7 +15,7 @@ R of a placement turns components of the placed frame into those of the frame it
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import entry_points
 from typing import NamedTuple, Protocol
 
@@ -140,6 +140,19 @@ class Link:
     inertia: Rows = IDENTITY
     compensation: float = 0.0
 
+    def before(self, change: str) -> Link:
+        """The link before a change (`Tree.changed`)."""
+        x, y, z = self.com
+        match change:
+            case "mass":
+                return replace(self, mass=2.0 * self.mass)
+            case "inertia":
+                return replace(self, com=(y, z, x), inertia=rows(np.array(self.inertia)[::-1, ::-1]))
+            case "frame":
+                first, *rest = self.joints
+                return replace(self, joints=(replace(first, R=IDENTITY, p=(0.5, 0.25, -0.125)), *rest))
+        return self
+
 
 class End(NamedTuple):
     """A frame that a constraint holds.
@@ -231,6 +244,8 @@ class Tree:
         constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
         attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
         fused: Whether the engine fuses links that don't move against each other.
+        changed: What the engine changes, once model and data are there and used, from `before` to what is stated:
+            "mass", "inertia" (with mass centres), "frame" (placements of joints) or "gravity"; "" for nothing.
         tendons: Lengths over its joints or links.
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
@@ -242,6 +257,7 @@ class Tree:
     constraints: tuple[Constraint, ...] = ()
     attached: str = ""
     fused: bool = False
+    changed: str = ""
     tendons: tuple[Tendon, ...] = ()
     actuators: tuple[Actuator, ...] = ()
     sensors: tuple[End, ...] = ()
@@ -266,10 +282,18 @@ class Tree:
 
     @property
     def transformations(self) -> frozenset[str]:
-        """What engines must do to it once it is built: "locked", "attached", "fused"."""
+        """What engines must do to it once it is built: "locked", "attached", "fused", "changed mass" and the like."""
         locked = any(joint.locked is not None for link in self.links for joint in link.joints)
         stated = {"locked": locked, "attached": bool(self.attached), "fused": self.fused}
-        return frozenset(name for name, there in stated.items() if there)
+        names = {name for name, there in stated.items() if there}
+        return frozenset(names | ({f"changed {self.changed}"} if self.changed else set()))
+
+    @property
+    def before(self) -> Tree:
+        """The tree that an engine builds first, where it changes one thing of it after."""
+        x, y, z = self.gravity
+        links = tuple(link.before(self.changed) for link in self.links)
+        return replace(self, links=links, gravity=(z, x, y) if self.changed == "gravity" else self.gravity, changed="")
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import STEP, Array, Convention, Joint, Slot, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 
@@ -123,8 +124,33 @@ def _native(joint: Joint) -> _Native | None:
     return _JOINTS.get(joint.kind)
 
 
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the skeleton a tree's numbers of what is changed."""
+    if tree.changed == "gravity":
+        return [f"s.setGravity({list(tree.gravity)!r})"]
+    lines = []
+    for k, link in enumerate(tree.links):
+        if tree.changed == "mass":
+            lines.append(f"b{k}.setMass({link.mass!r})")
+        elif tree.changed == "inertia":
+            lines.append(f"b{k}.setInertia({_inertia(link)})")
+        else:
+            at = _placement(np.array(link.joints[0].R), np.array(link.joints[0].p))
+            lines.append(f"b{k}.getParentJoint().setTransformFromParentBodyNode({at})")
+    return lines
+
+
+def _inertia(link: Link) -> str:
+    return f"dart.dynamics.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a skeleton; links without a joint hang on weld joints."""
+    if tree.changed:
+        first = write(tree.before)
+        before = _changing(replace(tree.before, changed=tree.changed))
+        closing = (*before, "s.getMassMatrix(); s.getCoriolisAndGravityForces()", *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     lines = [*_IMPORTS, "s = dart.dynamics.Skeleton('tree')"]
     lines += _gravity(tree)
     slots: list[tuple[Slot, ...]] = []
@@ -157,9 +183,7 @@ def write(tree: Tree) -> Source | Unsupported:
             lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
         if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
-        lines.append(
-            f"b{k}.setInertia(dart.dynamics.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))"
-        )
+        lines.append(f"b{k}.setInertia({_inertia(link)})")
         places = tuple(range(count, count + native.size))
         slots.append((Slot(native.chart, places, places),) if steps else ())
         count += native.size
@@ -260,5 +284,12 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
-    demands={"dampers": "setDampingCoefficient", "springs": "setSpringStiffness"},
+    demands={
+        "dampers": "setDampingCoefficient",
+        "springs": "setSpringStiffness",
+        "changed mass": "setMass",
+        "changed inertia": "setInertia",
+        "changed frame": "setTransformFromParentBodyNode",
+        "changed gravity": "setGravity",
+    },
 )

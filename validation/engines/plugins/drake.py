@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -188,6 +189,7 @@ def _gradient(result: str, seeds: str) -> str:
     return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 ad = p.ToAutoDiffXd()
 d = ad.CreateDefaultContext()
+d.SetTimeStateAndParametersFrom(c)
 {_QV}N = p.MakeVelocityToQDotMap(c).toarray()
 {seeds}
 ad.SetPositions(d, q_)
@@ -253,8 +255,25 @@ def _spring(tree: Tree, tendon: Tendon) -> str:
     return f"p.AddForceElement(drake.LinearSpringDamper({ends}, {numbers}))"
 
 
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the context a tree's numbers of what is changed."""
+    lines = []
+    for k, link in enumerate(tree.links):
+        R, p, _ = series(link.joints).steps[0]
+        if tree.changed == "frame":
+            lines.append(f"p.GetFrameByName('P{k}').SetPoseInParentFrame(c, X({_array(R)}, {_array(p)}))")
+        else:
+            inertia = f"inertia({link.mass!r}, {list(link.com)!r}, {link.inertia!r})"
+            lines.append(f"b{k}.SetSpatialInertiaInBodyFrame(c, {inertia})")
+    return lines
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a plant; links without a joint are welded."""
+    if tree.changed:
+        first = write(tree.before)
+        closing = (*_CLOSING, "p.CalcMassMatrix(c)", *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
     lines += _gravity(tree)
     chosen: list[list[_Native]] = []
@@ -407,6 +426,9 @@ PLUGIN = SourcePlugin(
     write_reading=write_reading,
     demands={
         "sensors": "Accelerometer, Gyroscope",
+        "changed mass": "SetSpatialInertiaInBodyFrame",
+        "changed inertia": "SetSpatialInertiaInBodyFrame",
+        "changed frame": "SetPoseInParentFrame",
         "dampers": "damping",
         "springs": "RevoluteSpring, PrismaticSpring",
         "tendons": "LinearSpringDamper",

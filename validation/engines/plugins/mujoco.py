@@ -11,7 +11,7 @@ import numpy as np
 from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .loops import mujoco_forces as forces
-from .loops.mujoco_forces import EXPLICIT, QV, QVA, SQUARE, Q, transition
+from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
@@ -155,8 +155,33 @@ def document(tree: Tree, principal: bool = False) -> tuple[str, tuple[tuple[Slot
     return xml, tuple(made.slots[k] for k in range(len(tree.links))), made.nq, made.nv
 
 
+# Fields of MuJoCo's model that state what is changed.
+_CHANGED = {
+    "mass": ("body_mass",),
+    "inertia": ("body_inertia", "body_ipos", "body_iquat"),
+    "frame": ("body_pos", "body_quat"),
+    "gravity": ("opt.gravity",),
+}
+
+
+def _changing(tree: Tree, xml: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Statements that build the changed model beside the first, and those that turn this into it for each call."""
+    lines = ("from copy import copy", "first = copy(m)", f"last = mj.MjModel.from_xml_string('''{xml}''')")
+    closing = []
+    for source in ("first", "last"):
+        closing += [f"m.{name}[:] = {source}.{name}" for name in _CHANGED[tree.changed]]
+        closing += ["mj.mj_setConst(m, d)", *(["mj.mj_forward(m, d)"] if source == "first" else [])]
+    return lines, tuple(closing)
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
+    if tree.changed:
+        first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
+        if isinstance(first, Unsupported) or isinstance(last, Unsupported):
+            return first if isinstance(first, Unsupported) else Unsupported("", offered=False)
+        lines, closing = _changing(tree, last[0])
+        return replace(first, lines=(*first.lines, *lines), closing=closing)
     made = document(tree, principal=True)
     if isinstance(made, Unsupported):
         return made
@@ -271,8 +296,8 @@ WAYS = {
     ),
     "inverse_dynamics_dv:qDeriv": Way(
         "mj_implicit",
-        "m.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
-        f"{QV}mj.mj_implicit(m, d)\n{SQUARE}for i in range(m.nv):\n"
+        f"{COPY}n.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
+        f"{QV}mj.mj_implicit(n, d)\n{SQUARE}for i in range(m.nv):\n"
         "    row = slice(m.D_rowadr[i], m.D_rowadr[i] + m.D_rownnz[i])\n    value[i, m.D_colind[row]] = -d.qDeriv[row]",
     ),
     "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _FORWARD_STEPS),
@@ -328,6 +353,7 @@ PLUGIN = SourcePlugin(
     demands={
         "attached": "MjSpec, attach_body",
         "fused": "fusestatic",
+        **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in _CHANGED.items()},
         "dampers": "damping",
         "springs": "stiffness, springref",
         "compensation": "gravcomp",

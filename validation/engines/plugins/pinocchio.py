@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -188,8 +189,28 @@ class _ModelText:
         return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
 
 
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the model a tree's numbers of what is changed; each link stands at its one joint."""
+    if tree.changed == "gravity":
+        return [f"m.gravity.linear = {_array(tree.gravity)}"]
+    lines = []
+    for k, link in enumerate(tree.links):
+        joint = link.joints[0]
+        if tree.changed == "frame":
+            lines.append(f"m.jointPlacements[j{k}] = {_placement(np.array(joint.R), np.array(joint.p))}")
+        else:
+            lines.append(f"m.inertias[j{k}] = pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})")
+    return lines
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
+    if tree.changed:
+        first = write(tree.before)
+        used = "pin.computeAllTerms(m, d, pin.neutral(m), np.zeros(m.nv))"
+        before = _changing(replace(tree.before, changed=tree.changed))
+        closing = (*before, *CLOSING, used, *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     text = _ModelText(tree)
     for k in range(len(tree.links)):
         obstacle = text.add(k)
@@ -375,7 +396,15 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    demands={"locked": "buildReducedModel", "attached": "appendModel", "sensors": "frames"},
+    demands={
+        "locked": "buildReducedModel",
+        "attached": "appendModel",
+        "sensors": "frames",
+        "changed mass": "inertias",
+        "changed inertia": "inertias",
+        "changed frame": "jointPlacements",
+        "changed gravity": "gravity",
+    },
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
 )

@@ -10,21 +10,22 @@ QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
 QVA = f"{QV}d.qacc[:] = a\n"
 _MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
-_COPY = "from copy import copy\nn = copy(m)\n"
+# Options of a model of its own: what others are asked stays as it was.
+COPY = "from copy import copy\nn = copy(m)\n"
 EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
 
 
 def transition(step: float, settings: str = "") -> str:
     """Derivatives of Euler's step, with options of a model of its own."""
     return (
-        f"{_COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
+        f"{COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
         "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\n"
     )
 
 
 def _step(integrator: str, settings: str = "") -> Way:
     """A step of mj_step, with options of a model of its own."""
-    code = f"{_COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
+    code = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
     state = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau"
     return Way(f"mj_step, {integrator}", f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]")
 
