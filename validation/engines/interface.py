@@ -249,6 +249,7 @@ class Tree:
         tendons: Lengths over its joints or links.
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
+        away: Added to the positions that random states have of free joints [m].
     """
 
     name: str
@@ -261,6 +262,7 @@ class Tree:
     tendons: tuple[Tendon, ...] = ()
     actuators: tuple[Actuator, ...] = ()
     sensors: tuple[End, ...] = ()
+    away: Vector = ORIGIN
 
     @property
     def forces(self) -> frozenset[str]:

@@ -52,7 +52,8 @@ WAYS = {
     "link_velocities": Way(
         "getLinkState",
         f"{_STATES.format(v='v')}"
-        "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states]",
+        "def arm(s): return -np.reshape(p.getMatrixFromQuaternion(s[5]), (3, 3)) @ s[2]\n"
+        "value = [[*(np.array(s[6]) + np.cross(s[7], arm(s))), *s[7]] for s in states]",
     ),
     # Points are stated from the link's origin, along the principal axes of its inertia.
     "link_jacobians": Way(

@@ -197,8 +197,10 @@ def com(truth: Truth, q: Exact) -> Exact:
 
 
 def com_jacobian(truth: Truth, q: Exact) -> Exact:
-    """Jacobian of the mass centre (3, nv)."""
-    return truth.kinematics.tangent(lambda point: com(truth, point), q)
+    """Jacobian of the mass centre (3, nv): the momentum's, for a unit of mass."""
+    poses, jacobians_ = truth.kinematics.poses(q), truth.kinematics.jacobians(q)
+    momentum = sum(i.turned(R).matrix()[:3] @ J for i, (R, _), J in zip(truth.inertias, poses, jacobians_, strict=True))
+    return momentum / sum(i.mass for i in truth.inertias)
 
 
 def centroidal_matrix(truth: Truth, q: Exact) -> Exact:

@@ -41,10 +41,11 @@ class Kinematics:
     Args:
         tree: The tree.
         model: Says how the engine keeps its joints.
+        roundings: Of each link, parts (L, 3) of its position in the world that it is off by; None for none.
     """
 
-    def __init__(self, tree: Tree, model: HasLayout) -> None:
-        self.tree, self.slots = tree, model.slots
+    def __init__(self, tree: Tree, model: HasLayout, roundings: Exact | None = None) -> None:
+        self.tree, self.slots, self._roundings = tree, model.slots, roundings
         self.nq, self.nv = model.nq, model.nv
         # Speeds that are no rates of coordinates.
         self.curved = sorted(
@@ -146,6 +147,8 @@ class Kinematics:
                         for place, (linear, spin) in zip(slot.v, columns, strict=True):
                             J[:3, place] = J[:3, place] + R_before @ linear
                             J[3:, place] = J[3:, place] + R_before @ spin
+            if self._roundings is not None:
+                R, p, J = _moved(R, p, J, eye(3), R.T @ (self._roundings[index] * p))
             frames.append((R, p, J))
         return frames
 
