@@ -10,17 +10,19 @@ from ..reporting.numbers import counted
 from ..reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from . import parts
 from .proving.scripts import NO_SCRIPT
-from .study import RED, measure
+from .study import measure
+from .verdicts import RED
 
 _TEXT = """Each engine builds the same small trees by its own API and answers in its own conventions: coordinates,
-speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean
-(`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off by what
-2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more than a
-millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says in words that it
-can't. **crashes**: takes its process with it. **raises**: the plug-in, not the engine, ends in an exception: nothing is
-said of the engine. Empty: not offered. A proven fault has a script that imports the engine alone, was shrunk to the
-plainest tree and state that still show it, and was run in a process of its own to fail; one that does not end proves
-nothing."""
+speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds
+mean (`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off
+by what 2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more
+than a millionth of the largest entry. **imprecise**: off by more, but less than that. **crashes**: takes its process
+with it. **raises**: an exception inside the engine that is no refusal. **refuses**: says in words that it can't.
+**precondition**: the engine documents or asserts that it is not for this. **repairs**: it changed what it was given,
+with a warning. **plug-in**: the plug-in, not the engine, is in the way: nothing is said of the engine. Empty: not
+offered. A proven fault has a script that imports the engine alone, was shrunk to the plainest tree and state that
+still show it, and was run in a process of its own to fail; one that does not end proves nothing."""
 _DECISION = "**Which engine is wrong:** {}, proven by {}."
 _COUNTED = """A cell counts where the answer is wrong against the truth in many digits; {} more lose digits beyond what
 rounding explains."""
@@ -39,18 +41,20 @@ def compose(data: Data) -> Report:
     cells, proofs, identities = data["cells"], data["proofs"], data["identities"]
     tally = Counter(cell["verdict"] for cell in cells)
     red = sum(tally[name] for name in RED)
-    wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
+    wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes", "raises"))
     listed = ", ".join(f"{engine} in {number}" for engine, number in wrong.most_common())
     listed = f"{listed} cells of [the matrix](engines.html#overview)" if listed else "none"
     proven, held = sum(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
     scripts, open_faults = counted(proven, "script"), len(proofs) - proven
     all_proven = all(proof["proven"] or proof["output"] == NO_SCRIPT for proof in proofs)
     # Of plug-ins from elsewhere an exception is an answer; of ours it is a fault of ours.
-    raising = Counter(cell["engine"] for cell in cells if cell["verdict"] == "raises")
+    raising = Counter(cell["engine"] for cell in cells if cell["verdict"] == "plug-in")
     sound = not raising.keys() & set(data.get("ours", ()))
     said = f", {open_faults} of {len(proofs)} faults not proven" if open_faults else ""
     said += f"; {counted(raising.total(), 'cell')} where a plug-in raises" if raising else ""
-    head = "engine | version | right | wrong | imprecise | crashes | refuses | raises | faults proven | measured"
+    head = (
+        "engine | version | right | wrong | imprecise | crashes | raises | refuses | plug-in | faults proven | measured"
+    )
     overview = Table.of(head, (_tally(engine, data) for engine in data["engines"]))
     absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
     missing = (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
@@ -72,7 +76,7 @@ def compose(data: Data) -> Report:
         ),
         facts=(
             Fact(str(tally["right"]), "cells right"),
-            Fact(str(red), "red cells: wrong, imprecise, crashing"),
+            Fact(str(red), "red cells: wrong, imprecise, crashing, raising"),
             Fact(str(proven), f"scripts that prove them, of {len(proofs)} faults", all_proven),
             *((Fact(str(raising.total()), "cells where a plug-in raises", sound),) if raising else ()),
             Fact(str(tally["refuses"]), "cells where the engine refuses in words"),
@@ -91,7 +95,7 @@ def _wrong_about(data: Data, wrong: Counter[str]) -> Iterator[tuple[str, ...]]:
     """What each engine is wrong about or crashes at, the functions of most such cells first."""
     for name, number in wrong.most_common():
         own = [cell for cell in data["cells"] if cell["engine"] == name]
-        functions = Counter(cell["function"] for cell in own if cell["verdict"] in ("wrong", "crashes"))
+        functions = Counter(cell["function"] for cell in own if cell["verdict"] in ("wrong", "crashes", "raises"))
         *few, rest = *functions.most_common(_NAMED), len(functions) - _NAMED
         said = ", ".join(f"`{function}` ({count})" for function, count in few)
         more = f", and {counted(rest, 'function')} more" if rest > 0 else ""
@@ -103,7 +107,7 @@ def _tally(engine: Row, data: Data) -> tuple[str, ...]:
     name, tally = engine["name"], Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
     own = [proof["proven"] for proof in data["proofs"] if proof["engine"] == name]
     proofs = (f"{sum(own)} of {len(own)}" if not all(own) else len(own)) if any(tally[red] for red in RED) else ""
-    further = *(tally[name] for name in ("imprecise", "crashes", "refuses", "raises")), proofs
+    further = *(tally[name] for name in ("imprecise", "crashes", "raises", "refuses", "plug-in")), proofs
     counts = verdict(tally["wrong"], not tally["wrong"]), *further
     measured = {name: data.get(name, "") for name in parts.ORIGIN} | engine.get("measured", {})
     when = f"{measured['date']}, {measured['revision'][:8]}"

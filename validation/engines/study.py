@@ -22,6 +22,7 @@ from .models.readers import Reading, readings
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
+from .verdicts import RED, Cell, refusals
 from .workers import Job, Worker, registry
 
 # Part of the functions that are red on either of two trees that must be red on both.
@@ -39,7 +40,6 @@ READ = (
     "link_poses",
     "link_jacobians",
 )
-RED = ("wrong", "imprecise", "crashes")
 
 
 def gathered(
@@ -58,7 +58,7 @@ def gathered(
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = Truths()
         for plugin in plugins.values():
-            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED)
+            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED, further=True)
             cells += judged(plugin, job, truths, worker)
         after(tree.name)
     return cells
@@ -74,7 +74,8 @@ def read(
         for plugin in plugins.values():
             if reading.form in plugin.formats:
                 asked = tuple(one for one in plugin.functions if one in READ)
-                job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
+                tree = suited(reading.tree, plugin)
+                job = Job(plugin.name, tree, asked, SEED, form=reading.form, text=reading.text, further=True)
                 cells += judged(plugin, job, truths, worker)
         after(name)
     return cells
@@ -172,7 +173,7 @@ def measure(
         )
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) for plugin in chosen.values()],
+        "engines": [_engine(plugin, [one.cell for one in cells]) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -192,8 +193,10 @@ def measure(
     return whole
 
 
-def _engine(plugin: EnginePlugin) -> Data:
+def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:
+    own = [cell for cell in cells if cell.engine == plugin.name and cell.verdict != "not offered"]
     return {
+        "refusals": refusals(own),
         "name": plugin.name,
         "version": plugin.version(),
         "conventions": [list(row) for row in plugin.conventions],

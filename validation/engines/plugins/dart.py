@@ -10,6 +10,7 @@ import numpy as np
 
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
+from .writing.urdf import UNIT_AXIS
 
 
 class _Native(NamedTuple):
@@ -292,4 +293,7 @@ PLUGIN = SourcePlugin(
         "changed frame": "setTransformFromParentBodyNode",
         "changed gravity": "setGravity",
     },
+    # Its parsers return no skeleton, and write why to the log.
+    refusals=("no skeleton: see the log",),
+    statements=(UNIT_AXIS,),
 )

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..interface import STEP, Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
+from .writing.urdf import UNIT_AXIS
 
 
 class _Native(NamedTuple):
@@ -113,7 +114,8 @@ WAYS = {
 }
 
 
-_SIMULATION = f"""sim = drake.Simulator(p, c)
+_SIMULATION = f"""c.SetTime(0.0)
+sim = drake.Simulator(p, c)
 INTEGRATOR{_QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
 sim.AdvanceTo({STEP})
 value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
@@ -149,15 +151,17 @@ WAYS |= {
 _DRIVEN = (
     f"{_QV}{_FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
 )
-_SENSORS = """builder = drake.DiagramBuilder()
-builder.AddSystem(p)
-sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in frames]
-for sensor in sensors:
-    for name in NAMES:
-        builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
-whole = builder.Build()
-root = whole.CreateDefaultContext()
-c = p.GetMyMutableContextFromRoot(root)
+# The diagram, built once, owns the plant.
+_SENSORS = """if "root" not in globals():
+    builder = drake.DiagramBuilder()
+    builder.AddSystem(p)
+    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in frames]
+    for sensor in sensors:
+        for name in NAMES:
+            builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
+    whole = builder.Build()
+    root = whole.CreateDefaultContext()
+    c = p.GetMyMutableContextFromRoot(root)
 """
 _READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
 
@@ -433,4 +437,5 @@ PLUGIN = SourcePlugin(
         "springs": "RevoluteSpring, PrismaticSpring",
         "tendons": "LinearSpringDamper",
     },
+    statements=(UNIT_AXIS,),
 )

@@ -206,4 +206,5 @@ PLUGIN = SourcePlugin(
     ways=WAYS,
     write=write,
     demands={"dampers": "jointDControlVector", "springs": "jointPControlVector"},
+    calls=4,
 )

@@ -8,11 +8,12 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Statement, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .loops import mujoco_forces as forces
 from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
+from .writing.urdf import UNIT_AXIS
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -363,4 +364,21 @@ PLUGIN = SourcePlugin(
     },
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
+    statements=(
+        Statement(
+            "precondition",
+            "mj_rne leaves armature out: mj_inverse adds armature*qacc, later M*qacc, to what it gives",
+            "mujoco, src/engine/engine_inverse.c: mj_inverseSkip",
+            "inverse_dynamics:mj_rne",
+            lambda tree, text: any(any(joint.armature) for link in tree.links for joint in link.joints),
+        ),
+        Statement(
+            "precondition",
+            "a row's reference acceleration is -b v - k r: what the rate of a tendon's Jacobian adds, J'v, is left out",
+            "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
+            "constraint_velocity_products|constrained_acceleration|constraint_forces",
+            lambda tree, text: any(one.kind == "path" for one in tree.constraints),
+        ),
+        UNIT_AXIS,
+    ),
 )

@@ -6,7 +6,7 @@ import re
 
 from ..interface import STEP, Convention, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, describe, slots_of
+from .writing.urdf import KINDS, UNIT_AXIS, describe, slots_of
 
 # One client serves all models; its gravity stays.
 _SETUP = """from tempfile import NamedTemporaryFile
@@ -129,4 +129,5 @@ PLUGIN = SourcePlugin(
     formats=tuple(_LOADS),
     write_reading=write_reading,
     demands={"dampers": "dynamics, damping"},
+    statements=(UNIT_AXIS,),
 )

@@ -289,10 +289,10 @@ def mass_matrix_rate(truth: Truth, s: Point) -> Exact:
     return truth.kinematics.along(truth.M, s.q, s.v)
 
 
-_ROWS = 13
+ROWS = 13
 
 
-def integrated(truth: Truth, q: Exact, v: Exact, rows: int = _ROWS) -> Exact:
+def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
     """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits.
 
     Args:
@@ -327,14 +327,22 @@ def to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
 
 def integrated_dq(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its configuration, in tangents at both."""
-    columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
-    return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    def compute() -> Exact:
+        columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
+        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    return truth.once(("integrated_dq", *s.q, *s.v2), compute)
 
 
 def integrated_dv(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its speeds, in the tangent at the result."""
-    columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
-    return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    def compute() -> Exact:
+        columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
+        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    return truth.once(("integrated_dv", *s.q, *s.v2), compute)
 
 
 def difference_dq(truth: Truth, s: Point) -> Exact:

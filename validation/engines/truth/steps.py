@@ -28,10 +28,10 @@ from .derived import TruthOf, to_tangent
 from .dynamics import Point, Truth
 
 _H = Decimal(STEP)
-# What displacements of a step take: 25 digits, too.
-_ROWS = 5
-# Iterations of an implicit step shrink its error by some h each.
-_ITERATIONS, _SETTLED = 40, Decimal(10) ** -25
+# What short displacements take for 25 digits.
+_ROWS, _SHORT = 5, Decimal("0.05")
+# Newton's steps, of which each doubles the digits.
+_ITERATIONS, _SETTLED = 12, Decimal(10) ** -25
 Implicit = Literal["nothing", "dampers", "forces", "velocities", "stiffness", "discrete"]
 
 
@@ -69,7 +69,7 @@ def derivative(step: TruthOf) -> TruthOf:
 
 def along(t: Truth, q: Exact, u: Exact) -> Exact:
     """The configuration q (+) u."""
-    return derived.integrated(t, q, u, _ROWS)
+    return derived.integrated(t, q, u, _ROWS if max(map(abs, u)) < _SHORT else derived.ROWS)
 
 
 def straight(t: Truth, q: Exact, u: Exact) -> Exact:
@@ -154,17 +154,21 @@ def runge_kutta(tableau: Tableau, on_manifold: bool = False) -> TruthOf:
 
 
 def trapezoidal(t: Truth, s: Point) -> Exact:
-    """A step (nq + nv) of the trapezoidal rule, by iteration; speeds are the rates of coordinates."""
-    before = t.FD(s.q, s.v, s.tau)
-    a, last = before, s.v
+    """A step (nq + nv) of the trapezoidal rule, by Newton's method; speeds are the rates of coordinates."""
+    before, v = t.FD(s.q, s.v, s.tau), s.v
+
+    def end(v: Exact) -> Exact:
+        return s.q + _H / 2 * (s.v + v)
+
+    def excess(v: Exact) -> Exact:
+        return v - s.v - _H / 2 * (before + t.FD(end(v), v, s.tau))
+
     for _ in range(_ITERATIONS):
-        v = s.v + _H / 2 * (before + a)
-        q = s.q + _H / 2 * (s.v + v)
-        a = t.FD(q, v, s.tau)
-        if max(map(abs, v - last)) < _SETTLED:
+        change = solve(t.along_speeds(excess, v), excess(v))
+        v = v - change
+        if max(map(abs, change)) < _SETTLED:
             break
-        last = v
-    return np.concatenate([q, v])
+    return np.concatenate([end(v), v])
 
 
 def _displacement_rate(t: Truth, q: Exact, u: Exact, end: Exact, v: Exact) -> Exact:
