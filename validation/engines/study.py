@@ -22,7 +22,7 @@ from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
-from .models import hostile, kinds, loops, transformed
+from .models import acting, hostile, kinds, loops, sensed, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
 from .plugins import OWN
@@ -120,9 +120,10 @@ Questions = Mapping[str, Tree | Reading]
 
 
 def lots() -> list[Questions]:
-    """All questions by name: one tree for each kind of joint, the hostile set, loops, transformed models; and files."""
+    """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
     own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
-    return [*own, hostile.trees(), loops.trees(), transformed.trees(), readings(), formats()]
+    trees = (family.trees() for family in (hostile, loops, transformed, acting, sensed))
+    return [*own, *trees, readings(), formats()]
 
 
 def questions() -> dict[str, Tree | Reading]:
