@@ -222,13 +222,11 @@ def measure(
             if prove and run.writes and not smoke
             else []
         )
-    chosen = reach.plugins
+    chosen, plain = reach.plugins, [one.cell for one in cells]
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
         "question": parts.question(),
-        "engines": [
-            {**_engine(plugin, [one.cell for one in cells]), **reach.stated(name)} for name, plugin in chosen.items()
-        ],
+        "engines": [{**_engine(plugin, plain), **reach.stated(name)} for name, plugin in chosen.items()],
         "absent": {str(release): why for release, why in reach.failures.items()} if at else absent,
         "models": [name for name in wanted if not smoke or name in {one.cell.model for one in cells}],
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},

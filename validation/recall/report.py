@@ -113,7 +113,8 @@ def _line(row: Row) -> tuple[str, ...]:
     link = f"[{row['name']}](#{row['name']})" if _shown(row) else row["name"]
     stated = link, row["engine"], row["wrong"], row["right"] or "none yet", row["kind"]
     numbers = (str(len(row["groups"])), verdict(row["alarms"], not row["alarms"]), f"{row['minutes']:.1f}")
-    return *stated, f"{row['score']}{why}", seen, *numbers, str(row["memory"]), str(row["disk"])
+    by = f" by {naming['names']}" if seen and naming else ""
+    return *stated, f"{row['score']}{by}{why}", seen, *numbers, str(row["memory"]), str(row["disk"])
 
 
 def _functions(group: Row) -> str:
