@@ -7,6 +7,7 @@ truths are worked out and answers are judged here.
 from __future__ import annotations
 
 import copy
+import re
 import shutil
 import sys
 import tempfile
@@ -27,6 +28,8 @@ from .workers import LIMIT, Answer, Crashed, Job, Worker, registry
 
 # So many crashes are an answer; what else could be asked of a release is not.
 CRASHES = 3
+# What ends the name of a package in a requirement.
+_NAME = re.compile(r"[^\w.-]")
 # The harness's own packages, which a release's process gets beside `symofros`.
 _OWN = ("validation", "reference_models")
 
@@ -80,12 +83,14 @@ def stated(text: str, requires: Sequence[str] = ()) -> list[tuple[EnginePlugin, 
 
 
 def _beside(plugin: EnginePlugin) -> tuple[str, ...]:
-    """What the extra of a plug-in has beside the engine: what the engine is asked by."""
+    """What the extra of an engine has beside it: what it is asked by."""
     distribution, _, extra = plugin.extra.rstrip("]").partition("[")
     with suppress(metadata.PackageNotFoundError):
-        rows = [row.partition(";") for row in metadata.requires(distribution) or ()] if extra else []
+        rows = (
+            [row.partition(";") for row in metadata.requires(distribution) or ()] if extra.startswith("engine-") else []
+        )
         own = [name.strip() for name, _, marker in rows if f"extra == '{extra}'" in marker.replace('"', "'")]
-        return tuple(one for one in own if not one.startswith((plugin.package, distribution)))
+        return tuple(one for one in own if _NAME.split(one, maxsplit=1)[0] not in (plugin.package, distribution))
     return ()
 
 
@@ -222,7 +227,7 @@ def opened(
             try:
                 process = stack.enter_context(_process(plugins[name], release, folder, ours, limit))
                 version = str(next(process.call(("importlib.metadata", "version"), release.package)))
-            except NotAskedError as error:
+            except (NotAskedError, WorkerError) as error:
                 made.failures[release] = str(error)
                 continue
             label = f"{name} {version}" if several else name
