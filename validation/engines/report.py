@@ -100,7 +100,7 @@ def compose(data: Data) -> Report:
             Section("Conventions", (_conventions(data),), "conventions", page_only=True),
         ),
         facts=_facts(data, found, all_proven, sound),
-        digest=(overview,),
+        digest=(overview, *(block for section in changes.shown(data) for block in section.blocks)),
         decisions=(
             decision,
             Bullets(tuple(_first(data, found))),

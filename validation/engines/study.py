@@ -215,6 +215,10 @@ def measure(
     # A part of the questions, or other engines than those of this environment, leave the whole report as it is.
     run.writes = run.asked or not (at or smoke)
     with releases.in_reach(chosen, pairs, environments) as reach:
+        for why in reach.failures.values():
+            run.say(why, bad=True)
+        if pairs and not reach.plugins:
+            raise typer.Exit(Exit.MISSED)
         run.expect(len(wanted), "asking engines")
         cells = _within_a_minute(reach, every, wanted) if smoke else _all(run, reach, every, wanted)
         proven = (
