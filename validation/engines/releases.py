@@ -134,11 +134,28 @@ class ReleasesWorker(Worker):
     def __init__(self, processes: Mapping[str, tuple[str, _Process]]) -> None:
         super().__init__()
         self._processes = processes
+        self._judging = dict.fromkeys(processes, 0.0)
+        self._last = "", time.monotonic(), 0.0
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """The answers of the engine's own release."""
+        self._attribute(job.engine)
         name, process = self._processes[job.engine]
         return process.ask(replace(job, engine=name))
+
+    def _attribute(self, engine: str) -> None:
+        """Count what has passed besides waiting as judging the engine that was asked before."""
+        before, since, waited = self._last
+        now, waiting = time.monotonic(), sum(process.seconds for _, process in self._processes.values())
+        if before:
+            self._judging[before] += now - since - (waiting - waited)
+        self._last = engine, now, waiting
+
+    def alone(self) -> dict[str, float]:
+        """Seconds that each would have taken by itself: those that ask the same of one tree share its truths."""
+        self._attribute(self._last[0])
+        longest = max(self._judging.values(), default=0.0)
+        return {label: process.seconds + longest for label, (_, process) in self._processes.items()}
 
     def python(self, engine: str) -> str:
         """The interpreter that an engine runs in."""
@@ -168,6 +185,10 @@ class Opened:
     processes: dict[str, tuple[str, _Process]] = field(default_factory=dict)
     failures: dict[Release, str] = field(default_factory=dict)
     worker: Worker = field(default_factory=Worker)
+
+    def alone(self) -> dict[str, float]:
+        """Seconds that each release would have taken by itself."""
+        return self.worker.alone() if isinstance(self.worker, ReleasesWorker) else {}
 
     def stated(self, name: str) -> dict[str, bool]:
         """What a report has of an engine that is a release: that it is one, and whether it crashed too often."""

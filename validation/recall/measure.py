@@ -117,20 +117,16 @@ def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Re
     with opened([(plugin, release) for release in wanted for plugin in plugins], folder) as reach:
         for release, words in reach.failures.items():
             said[release].words = words
-        begun = time.monotonic()
-
-        def alone() -> dict[str, float]:
-            """Seconds that each would have taken by itself: its own, and those that went into truths."""
-            own = {label: process.seconds for label, (_, process) in reach.processes.items()}
-            shared = time.monotonic() - begun - sum(own.values())
-            return {label: shared + seconds for label, seconds in own.items()}
-
         every = questions()
         asked = {name: every[name] for name in in_turn()} if smoke else every
         cells, _ = about(
-            reach.plugins, asked, reach.worker, str, lambda: not smoke or max(alone().values(), default=0.0) < SMOKE
+            reach.plugins,
+            asked,
+            reach.worker,
+            str,
+            lambda: not smoke or max(reach.alone().values(), default=0.0) < SMOKE,
         )
-        seconds = alone()
+        seconds = reach.alone()
         for label, release in reach.release.items():
             one, (name, process) = said[release], reach.processes[label]
             one.cells += [replace(cell.cell, engine=name) for cell in cells if cell.cell.engine == label]
@@ -144,7 +140,7 @@ def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Re
 def _row(fault: Fault, said: Mapping[Release, Asked], by_suite: bool) -> dict[str, Any]:
     """A fault's row of the report."""
     sides = {side: said[Release(fault.engine, version, tuple(fault.requires))] for side, version in _releases(fault)}
-    words = "; ".join(one.words for one in sides.values() if one.words)
+    words = "; ".join(dict.fromkeys(one.words for one in sides.values() if one.words))
     result = Scored("not asked", words) if words else _score(fault, sides["wrong"], sides.get("right"), by_suite)
     if words == NO_PLUGIN:
         result = Scored("miss", NO_PLUGIN)

@@ -90,6 +90,7 @@ def test_releases_are_engines_of_the_matrix(asked: Opened) -> None:
     assert verdicts["toy 1.0"] == ["wrong"] * 4 and verdicts["toy 2.0"] == ["right"] * 4
     assert verdicts["toy 3.0"] == ["crashes"] * CRASHES and asked.stated("toy 3.0")["gave_up"]
     assert verdicts["toy 4.0"] == ["plug-in"] * 4
+    assert set(asked.alone()) == set(asked.plugins) and min(asked.alone().values()) > 0.0
     assert not asked.stated("toy 4.0")["gave_up"] and asked.processes["toy 2.0"][1].memory() >= 0.0
 
 
