@@ -2,8 +2,8 @@
 
 A red cell is *new* where it is red at the wrong release and at the right one is not asked, or less red; where there is
 no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *names* the
-fault if the engine's own name of one of its functions is in the fault's sentence or script, or if most of its trees or
-functions have a word of the fault's sentence that few faults have. It is of its *family* if a word of the fault's class
+fault if the engine's own name of one of its functions is in the fault's sentence or script, or if the names of most of
+its trees have a word of the fault's sentence that few faults have. It is of its *family* if a word of the fault's class
 (`FAMILIES`) is in the name of a function or a tree, or, for what readers make of files, if the engine read a file of
 the script's format; unless it names another fault that went between the same releases. No entry states by hand what it
 is to be seen in, so that a frozen one is judged as any other.
@@ -211,13 +211,13 @@ def _named_itself(fault: Fault, group: Group, names: Names) -> str:
         native = names.natives.get(cell.function, cell.function)
         if known & {name for word in _words(native) for name in (word, f"{word}_fun")}:  # CasADi's functions.
             return "function"
-        shared.update(rare & _stems(f"{native} {cell.function} {cell.model}"))
+        shared.update(rare & _stems(cell.model))
     return "words" if 2 * max(shared.values(), default=0) >= len(group.cells) else ""
 
 
 def _stems(text: str) -> set[str]:
-    """Beginnings of the words of a text."""
-    return {word[:_STEM] for word in re.findall(r"[a-z]+", text.lower()) if len(word) >= _STEM}
+    """Beginnings of the words of a text; names of code are none."""
+    return {word[:_STEM].lower() for word in re.findall(r"\b[A-Za-z][a-z]+\b", text) if len(word) >= _STEM}
 
 
 @cache
