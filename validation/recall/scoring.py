@@ -62,8 +62,8 @@ _FORMATS = {"mjcf": "<mujoco", "urdf": "<robot", "sdf": "<sdf", "usd": "#usda"}
 # What nearly every script calls: a name of nothing.
 _SETUP = {"mj_forward", "mj_step", "value", "World"}
 _SHORTEST = 4
-# Letters by which words are compared, and how many faults a word may be of that tells them apart.
-_STEM, _FEW = 5, 3
+# Letters of a word that can tell faults apart, and how many of them it may be of.
+_LONG, _FEW = 5, 3
 _NAMING = ("function", "words", "family", "")
 Score = Literal["hit", "half a hit", "miss", "not asked"]
 
@@ -205,26 +205,26 @@ def named(fault: Fault, group: Group, names: Names) -> str:
 
 def _named_itself(fault: Fault, group: Group, names: Names) -> str:
     """Whether a group names this fault alone, by "function" or by "words"."""
-    known, rare = _identifiers(fault), _stems(fault.fault) - _frequent()
+    known, rare = _identifiers(fault), _plain_words(fault.fault) - _frequent()
     shared: Counter[str] = Counter()
     for cell in group.cells:
         native = names.natives.get(cell.function, cell.function)
         if known & {name for word in _words(native) for name in (word, f"{word}_fun")}:  # CasADi's functions.
             return "function"
-        shared.update(rare & _stems(cell.model))
+        shared.update(rare & _plain_words(cell.model))
     return "words" if 2 * max(shared.values(), default=0) >= len(group.cells) else ""
 
 
-def _stems(text: str) -> set[str]:
-    """Beginnings of the words of a text; names of code are none."""
-    return {word[:_STEM].lower() for word in re.findall(r"\b[A-Za-z][a-z]+\b", text) if len(word) >= _STEM}
+def _plain_words(text: str) -> set[str]:
+    """The longer words of a text, without the s of a plural; names of code are none."""
+    return {word.lower().removesuffix("s") for word in re.findall(r"\b[A-Za-z][a-z]+\b", text) if len(word) >= _LONG}
 
 
 @cache
 def _frequent() -> set[str]:
-    """Stems that more than `_FEW` faults have in their sentences."""
-    counted = Counter(stem for fault in faults().values() for stem in _stems(fault.fault))
-    return {stem for stem, number in counted.items() if number > _FEW}
+    """Words that more than `_FEW` faults have in their sentences."""
+    counted = Counter(word for fault in faults().values() for word in _plain_words(fault.fault))
+    return {word for word, number in counted.items() if number > _FEW}
 
 
 def _words(text: str) -> set[str]:
