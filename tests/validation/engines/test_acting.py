@@ -13,6 +13,8 @@ from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
+from validation.engines.proving.pieces import taken
+from validation.engines.proving.shrink import Case, smallest
 from validation.engines.truth.arithmetic import Exact
 from validation.engines.truth.dynamics import Point, Truth, digits
 from validation.engines.verdicts import judge
@@ -106,3 +108,12 @@ def test_an_engine_is_asked_for_no_forces_that_it_does_not_know() -> None:
     assert asked(OWN["pinocchio"], TREES["motors"]) == ()
     assert "tendon_arms" not in asked(OWN["mujoco"], TREES["motors"])
     assert not {"passive_forces", "actuator_forces"} & set(asked(OWN["mujoco"], tree_of("ball")))
+
+
+def test_a_fault_of_forces_is_shrunk_to_the_part_that_shows_it() -> None:
+    tree = TREES["springs and dampers on branches"]
+    (answer,) = answered(Job("mujoco", tree, ("sizes",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    case = Case(tree, taken(answer.layout, answer.state))
+    least = smallest(case, lambda one: any(joint.damping for link in one.tree.links for joint in link.joints))
+    assert len(least.tree.links) == 1 and least.tree.forces == {"dampers"}
