@@ -198,8 +198,8 @@ def write(tree: Tree) -> Source | Unsupported:
         return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
     if tree.sensors:
-        optional["frames"] = (
-            f"frames = range({len(tree.sensors)})",
+        optional["sensed"] = (
+            f"sensed = range({len(tree.sensors)})",
             "def data(kind, k): return d.sensor(f'{kind}{k}').data",
         )
     spelling = constrained.spelling(tree) if tree.constraints else {}
