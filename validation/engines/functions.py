@@ -243,6 +243,7 @@ STEPS = _steps()
 STEPS["step_dampers_implicit_derivative"] = Function(
     "derivative of q+, v+ of that step by q, v along speeds (2 nv, 2 nv)",
     steps.derivative(STEPS["step_dampers_implicit"].truth),
+    ("dampers", "springs", "tendons", "actuators"),
 )
 
 

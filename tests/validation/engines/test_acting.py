@@ -13,6 +13,9 @@ from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
+from validation.engines.proving.pieces import taken
+from validation.engines.proving.shrink import Case, smallest
+from validation.engines.truth.arithmetic import Exact
 from validation.engines.truth.dynamics import Point, Truth, digits
 from validation.engines.verdicts import judge
 from validation.engines.workers import Job, answered
@@ -87,10 +90,12 @@ def test_a_step_that_leaves_a_part_out_is_a_red_cell(engine: str, name: str, ask
 @pytest.mark.parametrize("name", ["actuators on tendons", "tendon over points"])
 def test_moment_arms_are_the_derivatives_of_lengths(name: str) -> None:
     truth, s = _truth(TREES[name])
-    for k in range(len(TREES[name].tendons)):
-        rates = truth.value(lambda t, s, k=k: t.kinematics.tangent(lambda q: t.own.lines(q)[k][0], s.q), s)
-        arms = truth.value(lambda t, s, k=k: t.own.lines(s.q)[k][1], s)
-        assert np.max(np.abs(digits(rates - arms))) < 1e-30
+
+    def excess(t: Truth, s: Point) -> Exact:
+        lengths = t.kinematics.tangent(lambda q: np.array([length for length, _ in t.own.lines(q)]), s.q)
+        return lengths - np.array([arms for _, arms in t.own.lines(s.q)])
+
+    assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
 
 
 def test_methods_of_order_four_agree_to_that_order_in_coordinates_and_on_their_manifold() -> None:
@@ -103,3 +108,12 @@ def test_an_engine_is_asked_for_no_forces_that_it_does_not_know() -> None:
     assert asked(OWN["pinocchio"], TREES["motors"]) == ()
     assert "tendon_arms" not in asked(OWN["mujoco"], TREES["motors"])
     assert not {"passive_forces", "actuator_forces"} & set(asked(OWN["mujoco"], tree_of("ball")))
+
+
+def test_a_fault_of_forces_is_shrunk_to_the_part_that_shows_it() -> None:
+    tree = TREES["springs and dampers on branches"]
+    (answer,) = answered(Job("mujoco", tree, ("sizes",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    case = Case(tree, taken(answer.layout, answer.state))
+    least = smallest(case, lambda one: any(joint.damping for link in one.tree.links for joint in link.joints))
+    assert len(least.tree.links) == 1 and least.tree.forces == {"dampers"}

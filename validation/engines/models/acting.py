@@ -41,15 +41,13 @@ def _passive() -> list[Tree]:
         Tree("springs and dampers on hinges and a slide", _chain("both", both, slide, both)),
         Tree("springs and dampers on branches", _chain("both, branched", both, both, slide, branches=True)),
         Tree("a damped free body", (body,)),
-        Tree("two damped free bodies, one with a hinge", _free_pair()),
+        Tree("a damped hinge on a damped free base", _carried(body)),
         Tree("borne weights", borne),
     ]
 
 
-def _free_pair() -> tuple[Link, ...]:
-    draw = np.random.default_rng(10)
-    base, alone = (link(draw, name, -1, Joint("free", damping=0.5)) for name in "ac")
-    return base, link(draw, "b", 0, placed(draw, _DAMPED)), alone
+def _carried(base: Link) -> tuple[Link, ...]:
+    return base, link(np.random.default_rng(10), "b", 0, placed(np.random.default_rng(12), _DAMPED))
 
 
 def _tendons() -> list[Tree]:

@@ -91,7 +91,7 @@ def _free_with_branches() -> Tree:
 
 def _far(name: str, p: Vector) -> Tree:
     """A chain whose first joint stands far from the world's origin."""
-    first, *rest = _chain("far")
+    first, *rest = _chain("far", 2)
     joint = replace(first.joints[0], p=p)
     return Tree(name, (replace(first, joints=(joint,)), *rest))
 

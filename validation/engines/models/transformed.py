@@ -47,6 +47,6 @@ def trees() -> dict[str, Tree]:
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
     )
     changed = tuple(
-        Tree(f"{what} changed", parts[:4], changed=what) for what in ("mass", "inertia", "frame", "gravity")
+        Tree(f"{what} changed", parts[:2], changed=what) for what in ("mass", "inertia", "frame", "gravity")
     )
     return {tree.name: tree for tree in (*made, *changed)}

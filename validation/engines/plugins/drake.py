@@ -155,7 +155,7 @@ _DRIVEN = (
 _SENSORS = """if "root" not in globals():
     builder = drake.DiagramBuilder()
     builder.AddSystem(p)
-    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in frames]
+    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in sensed]
     for sensor in sensors:
         for name in NAMES:
             builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
@@ -328,7 +328,7 @@ def write(tree: Tree) -> Source | Unsupported:
     if tree.sensors:
         places = [link.name for link in tree.links]
         frames = ", ".join(f"({places.index(end.link)}, {end.R!r}, {list(end.p)!r})" for end in tree.sensors)
-        optional["frames"] = (f"frames, gravity = [{frames}], {list(tree.gravity)!r}",)
+        optional["sensed"] = (f"sensed, gravity = [{frames}], {list(tree.gravity)!r}",)
     return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING)
 
 

@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Statement, Steps, Tree, Unsupported
+from ..interface import Array, Constraint, Convention, Joint, Slot, Statement, Steps, Tendon, Tree, Unsupported
 from .loops import mujoco as constrained
 from .loops import mujoco_forces as forces
 from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
@@ -68,7 +68,7 @@ class _Bodies:
             self.children[link.parent].append(k)
         self.slots: dict[int, tuple[Slot, ...]] = {}
         self.nq = self.nv = 0
-        lines = (*tree.constraints, *tree.tendons)
+        lines: tuple[Constraint | Tendon, ...] = (*tree.constraints, *tree.tendons)
         self.coupled = {end.link for one in lines if one.kind == "coupling" for end in one.ends}
         self.coupled |= {one.link for one in tree.actuators}
 
@@ -181,8 +181,8 @@ def write(tree: Tree) -> Source | Unsupported:
         first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
         if isinstance(first, Unsupported) or isinstance(last, Unsupported):
             return first if isinstance(first, Unsupported) else Unsupported("", offered=False)
-        lines, closing = _changing(tree, last[0])
-        return replace(first, lines=(*first.lines, *lines), closing=closing)
+        both, closing = _changing(tree, last[0])
+        return replace(first, lines=(*first.lines, *both), closing=closing)
     made = document(tree, principal=True)
     if isinstance(made, Unsupported):
         return made
@@ -198,8 +198,8 @@ def write(tree: Tree) -> Source | Unsupported:
         return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
     if tree.sensors:
-        optional["frames"] = (
-            f"frames = range({len(tree.sensors)})",
+        optional["sensed"] = (
+            f"sensed = range({len(tree.sensors)})",
             "def data(kind, k): return d.sensor(f'{kind}{k}').data",
         )
     spelling = constrained.spelling(tree) if tree.constraints else {}

@@ -185,7 +185,7 @@ class _ModelText:
         if tree.sensors:
             made = (f"pin.Frame('o{k}', {{}}, 0, {{}}, pin.FrameType.OP_FRAME)" for k in range(len(tree.sensors)))
             stated = (text.format(*self.place(end)) for text, end in zip(made, tree.sensors, strict=True))
-            optional["frames"] = (f"frames = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
+            optional["sensed"] = (f"sensed = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constrained.optional(tree.constraints, self.place)
         return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
 
@@ -353,7 +353,7 @@ for _frame, _rf in _FRAMES.items():
         ),
     }
 
-_SENSED = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL).{{}} for f in frames])"
+_SENSED = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL).{{}} for f in sensed])"
 WAYS |= {
     "gyroscopes": Way("getFrameVelocity", _SENSED.format("Velocity", "angular")),
     "velocimeters": Way("getFrameVelocity", _SENSED.format("Velocity", "linear")),

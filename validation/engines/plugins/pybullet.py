@@ -63,12 +63,12 @@ WAYS = {
     ),
 }
 
-# A joint has a motor that holds it still unless its greatest force is zero, a link a damper of 0.04.
+# A joint has a motor that holds it still unless its greatest force is zero, and a greatest speed; a link has a damper.
 _STEP = f"""gravity
 joints
 p.setTimeStep({STEP})
 for k in range(-1, p.getNumJoints(robot)):
-    p.changeDynamics(robot, k, linearDamping=0, angularDamping=0)
+    p.changeDynamics(robot, k, linearDamping=0, angularDamping=0, maxJointVelocity=1e9)
 for k, position, speed, force in zip(moving, q, v, tau):
     p.resetJointState(robot, k, position, speed)
     p.setJointMotorControl2(robot, k, p.VELOCITY_CONTROL, force=0)

@@ -154,7 +154,11 @@ def runge_kutta(tableau: Tableau, on_manifold: bool = False) -> TruthOf:
 
 
 def trapezoidal(t: Truth, s: Point) -> Exact:
-    """A step (nq + nv) of the trapezoidal rule, by Newton's method; speeds are the rates of coordinates."""
+    """A step (nq + nv) of the trapezoidal rule, by Newton's method; speeds are the rates of coordinates.
+
+    Raises:
+        ZeroDivisionError: Accelerations change so much in a step that its equation may have several roots.
+    """
     before, v = t.FD(s.q, s.v, s.tau), s.v
 
     def end(v: Exact) -> Exact:
@@ -164,7 +168,11 @@ def trapezoidal(t: Truth, s: Point) -> Exact:
         return v - s.v - _H / 2 * (before + t.FD(end(v), v, s.tau))
 
     for _ in range(_ITERATIONS):
-        change = solve(t.along_speeds(excess, v), excess(v))
+        derivative = t.along_speeds(excess, v)
+        # The equation is v = F(v): with |dF/dv| < 1/2 there is one root.
+        if np.max(np.abs(derivative - eye(t.nv)).sum(axis=1)) > Decimal("0.5"):
+            raise ZeroDivisionError("the step is too long for its equation to have one root")
+        change = solve(derivative, excess(v))
         v = v - change
         if max(map(abs, change)) < _SETTLED:
             break

@@ -56,13 +56,13 @@ for b in bs:
         f"{QV}mj.mj_subtreeVel(m, d)\n"
         "value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]",
     ),
-    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in frames]"),
-    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in frames]"),
-    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in frames]"),
+    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in sensed]"),
+    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in sensed]"),
+    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in sensed]"),
     "wrench_sensors": Way(
-        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in frames]"
+        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
     ),
-    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in frames]"),
+    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),
     "passive_forces": Way("qfrc_passive", f"{QV}value = d.qfrc_passive"),
     "tendon_lengths": Way("ten_length", f"{QV}value = d.ten_length"),
     "tendon_arms": Way("ten_J", f"{QV}value = d.ten_J.reshape(-1, m.nv)"),

@@ -23,7 +23,7 @@ OPTIONAL = {
     "loops_generic": "not for constraints of this kind",
     "cm": "not for constraints of this kind",
     "axes": "not for trees without constraints",
-    "frames": "not for trees without sensors",
+    "sensed": "not for trees without sensors",
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
