@@ -108,8 +108,10 @@ HARNESS = table("""
     # Processes that do jobs of any of them; the other side imports what a job names.
     worker_loop:
     worker_process: worker_loop
+    # Real faults of releases, and the environments that releases are asked in.
+    faults:      program reporting
     # Engines in their own conventions, and the truth that they are held to: what a check asks them is turned into ours.
-    engines:     contract reporting worker_process
+    engines:     contract reporting worker_process faults
     adapters:    engines contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics
@@ -121,7 +123,7 @@ HARNESS = table("""
 STUDIES = table("""
     oracle:
     truth_data:
-    faults:
+    recall:
     cross_check:
     ci:          cross_check
     campaigns:
@@ -136,7 +138,7 @@ STUDIES = table("""
     adversary:   accuracy
     mutation:
     dashboard:   adversary cross_check cuda environments campaigns diagrams accuracy timing stability
-                 studies pareto mutation
+                 studies pareto mutation recall
 """)
 # The oracle answers for itself: of the harness it knows how joints come apart, and the models, nothing else.
 MAY_USE = (

@@ -48,6 +48,10 @@ COMMANDS = {
         "faults.command",
         "List real faults of public releases of engines, or reproduce some, each in an environment of its own.",
     ),
+    "recall": Command(
+        "recall.report",
+        "Score the harness, or another test suite, by real faults of engines' releases: which does it see?",
+    ),
     "diff": Command(
         "comparison.as_read",
         "Compare what an engine's own reader makes of a file with what ours does, as `symofros diff` compares files.",

@@ -55,6 +55,7 @@ class WorkerProcess:
             it, and processor time and memory can be bounded. Where the system can't fork, the whole is started anew.
         log: File that gets what the jobs print, that of the latest alone, the last line of which says why one crashed;
             None: the standard error of this process.
+        python: Interpreter that runs it, of another environment; that of this process unless stated.
     """
 
     def __init__(
@@ -66,7 +67,9 @@ class WorkerProcess:
         preload: Sequence[str] = (),
         fresh: bool = False,
         log: Path | None = None,
+        python: Path | None = None,
     ) -> None:
+        self._python = str(python or sys.executable)
         self._environment = {**os.environ, **(environment or {})}
         self._path, self._preload = list(sys.path if path is None else path), tuple(preload)
         self._folder, self._fresh, self._log = folder, fresh, log
@@ -160,7 +163,7 @@ class WorkerProcess:
         self._messages = queue.SimpleQueue()
         with open(self._log or os.devnull, "ab") as log:
             process = subprocess.Popen(
-                [sys.executable, "-P", str(_SCRIPT)],
+                [self._python, "-P", str(_SCRIPT)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log if self._log else None,

@@ -12,11 +12,13 @@ from ..engines import report as engines
 from ..environments import report as environments
 from ..mutation import report as mutants
 from ..pareto import report as pareto
+from ..recall import report as recall
 from ..reporting.record import Topic
 from ..stability import report as stability
 from ..studies.reports import exports, fuzz, mutation, oracle, rollouts
 from ..timing import report as timing
 
-_CORRECTNESS = (check, oracle, mutation, mutants, fuzz, adversary, engines, campaign, accuracy, diagrams, stability)
+_TRUTH = (check, oracle, mutation, mutants, fuzz, adversary, engines, recall, campaign)
+_CORRECTNESS = (*_TRUTH, accuracy, diagrams, stability)
 _SPEED = (timing, rollouts, exports, environments, cuda, pareto)
 TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}

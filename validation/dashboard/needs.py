@@ -11,6 +11,7 @@ from symofros.tools import present as graphics_processor
 
 from ..cuda import warp
 from ..engines.plugins import OWN
+from ..faults.environment import default_folder
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,14 @@ def _engines() -> str:
     return f"engines {', '.join(absent)} (or parts measured elsewhere, --part)" if absent else ""
 
 
+def _releases() -> str:
+    return (
+        ""
+        if default_folder().is_dir()
+        else "environments of releases: `recall` installs them, half an hour of downloads"
+    )
+
+
 def _processor() -> str:
     return "a graphics processor" if graphics_processor() is None else warp.missing()
 
@@ -57,6 +66,7 @@ NEEDS: dict[str, Needs] = {
     "mutants": Needs((*_ENGINES, "pytest", "xdist")),
     "adversary": Needs(("hypothesis",)),
     "engines": Needs(besides=_engines),
+    "recall": Needs(besides=_releases),
     "campaign": Needs((*_ENGINES, "pyarrow", "distributed")),
     "timing": Needs(_ENGINES, ("c++",)),
     "rollouts": Needs(("mujoco",)),

@@ -8,7 +8,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .truth import constraints, derived
+from .interface import Tree
+from .truth import constraints, derived, steps
 from .truth.arithmetic import Exact
 from .truth.derived import FRAMES, Frame, TruthOf
 from .truth.dynamics import Point, Truth
@@ -21,10 +22,12 @@ class Function:
     Attributes:
         text: What it is, with shape and conventions.
         truth: Its value in many digits.
+        needs: Of `Tree.demands`, those in any of which it shows; () for trees that state none.
     """
 
     text: str
     truth: TruthOf
+    needs: tuple[str, ...] = ()
 
 
 def _momentum(t: Truth, s: Point) -> Exact:
@@ -42,6 +45,9 @@ FUNCTIONS: dict[str, Function] = {
     "inverse_dynamics": Function("M a + h (nv)", lambda t, s: t.ID(s.q, s.v, s.a)),
     "joint_wrenches": Function(
         "what holds each link with all it carries, at its origin along its axes (L, 6)", derived.joint_wrenches
+    ),
+    "subtree_momenta": Function(
+        "momentum of each link with all it carries, about their mass centre (L, 6)", derived.subtree_momenta
     ),
     "forward_dynamics": Function("M^-1 (tau - h) (nv)", lambda t, s: t.FD(s.q, s.v, s.tau)),
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
@@ -207,3 +213,103 @@ def _derivatives(name: str, of: Callable[[Truth, Exact, Exact, Exact], Exact]) -
 
 CONSTRAINED = _constrained()
 FUNCTIONS |= CONSTRAINED
+
+
+def _steps() -> dict[str, Function]:
+    """One step of `interface.STEP` from q and v under tau: coordinates, then speeds, after it."""
+    after = "q+, v+ (nq + nv) after a step:"
+    single, runge_kutta = steps.single, steps.runge_kutta
+    rows = {
+        "semi_implicit": ("v+ = v + h M^-1 f, f = tau + Q - (bias); q+ where v+ leads in h", single("nothing")),
+        "dampers_implicit": ("M + h D in place of M, D of the joints' dampers", single("dampers")),
+        "semi_implicit_straight": ("the same with q+ = q + h N(q) v+", single("nothing", steps.straight)),
+        "dampers_implicit_straight": ("the same with q+ = q + h N(q) v+", single("dampers", steps.straight)),
+        "forces_implicit": ("M + h D in place of M, D = -dQ/dv, for lone free bodies -df/dv", single("forces")),
+        "velocities_implicit": ("M + h D in place of M, D = -df/dv", single("velocities")),
+        "stiffness_implicit": ("v+ = v + h (M + h D + h^2 K)^-1 (f - h K v)", single("stiffness")),
+        "stiffness_implicit_lone": ("the same, for lone free bodies D = -df/dv", single("discrete")),
+        "euler": ("q+ = q + h N v, v+ = v + h M^-1 f", runge_kutta(steps.EULER)),
+        "midpoint": ("the midpoint rule, in coordinates", runge_kutta(steps.MIDPOINT)),
+        "rk2": ("Heun's method of order 2, in coordinates", runge_kutta(steps.HEUN)),
+        "rk3": ("Kutta's method of order 3, in coordinates", runge_kutta(steps.THIRD)),
+        "rk4": ("the classical method of order 4, in coordinates", runge_kutta(steps.CLASSICAL)),
+        "trapezoidal": ("the trapezoidal rule for q (flat charts) and v", steps.trapezoidal),
+        "rk4_manifold": ("the same, of displacements (Munthe-Kaas)", runge_kutta(steps.CLASSICAL, on_manifold=True)),
+    }
+    return {f"step_{name}": Function(f"{after} {text}", truth) for name, (text, truth) in rows.items()}
+
+
+STEPS = _steps()
+STEPS["step_dampers_implicit_derivative"] = Function(
+    "derivative of q+, v+ of that step by q, v along speeds (2 nv, 2 nv)",
+    steps.derivative(STEPS["step_dampers_implicit"].truth),
+    ("dampers", "springs", "tendons", "actuators"),
+)
+
+
+def _acting() -> dict[str, Function]:
+    """What a tree's own forces show in."""
+    passive = ("dampers", "springs", "compensation", "tendons")
+    tendons, actuators = ("tendons",), ("actuators",)
+    return {
+        "passive_forces": Function(
+            "forces of springs, dampers, compensated weights (nv)", lambda t, s: t.own.passive(s.q, s.v), passive
+        ),
+        "tendon_lengths": Function("lengths of tendons (n)", lambda t, s: _column(t.own.lines(s.q), 0), tendons),
+        "tendon_arms": Function("their derivatives (n, nv)", lambda t, s: _column(t.own.lines(s.q), 1), tendons),
+        "actuator_lengths": Function(
+            "lengths that actuators act on, times gear (nu)",
+            lambda t, s: _column(t.own.transmissions(s.q), 0),
+            actuators,
+        ),
+        "actuator_arms": Function(
+            "their derivatives (nu, nv)", lambda t, s: _column(t.own.transmissions(s.q), 1), actuators
+        ),
+        "actuator_forces": Function("forces of actuators (nu)", lambda t, s: t.own.efforts(s.q, s.v), actuators),
+        "actuated_forces": Function(
+            "what they do along the speeds (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
+        ),
+    }
+
+
+def _column(rows: list[tuple[Exact, Exact]], place: int) -> Exact:
+    return np.array([row[place] for row in rows])
+
+
+ACTING = _acting()
+
+
+def _measured() -> dict[str, Function]:
+    """What sensors read at q, v, a, at their frames and along their axes unless said otherwise."""
+    rows = {
+        "accelerometers": ("acceleration less that of gravity (n, 3)", derived.accelerometers),
+        "gyroscopes": ("angular velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, 3:]),
+        "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
+        "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
+        "wrench_sensors": (
+            "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
+            derived.wrench_sensors,
+        ),
+    }
+    return {name: Function(text, truth, ("sensors",)) for name, (text, truth) in rows.items()}
+
+
+MEASURED = _measured()
+_ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
+_SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
+FUNCTIONS |= STEPS | ACTING | MEASURED
+# What is asked of a tree with constraints besides, for identities.
+_BESIDES = ("mass_matrix", "bias")
+
+
+def suits(way: str, tree: Tree) -> bool:
+    """Whether a way to a function is for a tree: of constraints and of forces only where it has some."""
+    name = way.partition(":")[0]
+    needs = FUNCTIONS[name].needs
+    if tree.constraints:
+        return name in CONSTRAINED or way in _BESIDES
+    if needs:
+        return bool(tree.demands & set(needs))
+    if tree.sensors:
+        return name in _SENSED
+    return name in STEPS or name in _ACTED_ON if tree.forces else name not in CONSTRAINED

@@ -15,7 +15,7 @@ R of a placement turns components of the placed frame into those of the frame it
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib.metadata import entry_points
 from typing import Literal, NamedTuple, Protocol
 
@@ -45,6 +45,8 @@ def vector(values: Array) -> Vector:
 GROUP = "symofros.engines"
 ORIGIN: Vector = (0.0, 0.0, 0.0)
 IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+# Length of the one step that integrators are asked for [s].
+STEP = 0.015625
 
 
 class Steps(NamedTuple):
@@ -118,6 +120,9 @@ class Joint:
         offset: See `mimics`.
         locked: Coordinate that a joint of one coordinate is locked at, by the engine: the joint moves no more. None for
             none.
+        damping: Force against each of its speeds, for a unit of speed.
+        stiffness: Force of a spring on a joint of one coordinate, for a unit of it.
+        rest: Coordinate at which the spring has no force.
     """
 
     kind: str
@@ -134,6 +139,9 @@ class Joint:
     ratio: float = 1.0
     offset: float = 0.0
     locked: float | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -147,6 +155,7 @@ class Link:
         mass: Mass [kg].
         com: Mass centre (3) in the link's frame [m].
         inertia: Inertia (3, 3) about the mass centre, along the link's axes [kg m^2].
+        compensation: Part of its weight that a force at its mass centre bears.
     """
 
     name: str
@@ -155,6 +164,20 @@ class Link:
     mass: float = 1.0
     com: Vector = ORIGIN
     inertia: Rows = IDENTITY
+    compensation: float = 0.0
+
+    def before(self, change: str) -> Link:
+        """The link before a change (`Tree.changed`)."""
+        x, y, z = self.com
+        match change:
+            case "mass":
+                return replace(self, mass=2.0 * self.mass)
+            case "inertia":
+                return replace(self, com=(y, z, x), inertia=rows(np.array(self.inertia)[::-1, ::-1]))
+            case "frame":
+                first, *rest = self.joints
+                return replace(self, joints=(replace(first, R=IDENTITY, p=(0.5, 0.25, -0.125)), *rest))
+        return self
 
 
 class End(NamedTuple):
@@ -191,6 +214,52 @@ class Constraint:
 
 
 @dataclass(frozen=True)
+class Tendon:
+    """A length, and the spring and the damper that act along it.
+
+    Attributes:
+        kind: "coupling", a sum of coordinates, or "path", as constraints have them.
+        ends: See `Constraint`.
+        coefficients: See `Constraint`.
+        stiffness: Force against a unit of length beyond `rest`.
+        damping: Force against a unit of the length's rate.
+        rest: Length at which the spring has no force.
+    """
+
+    kind: str
+    ends: tuple[End, ...]
+    coefficients: tuple[float, ...] = ()
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A force along a joint's coordinate or a tendon: gain control + bias, with l and l' the length times gear.
+
+    Attributes:
+        link: Link whose only joint it drives; "" for a tendon.
+        tendon: Number of the tendon that it pulls; None for a joint.
+        gear: Factor of length and force.
+        gain: Force for a unit of control.
+        bias: Force b0 + b1 l + b2 l'.
+        control: Control that it has.
+        control_limits: Least and greatest control that counts; () for none.
+        force_limits: Least and greatest force; () for none.
+    """
+
+    link: str = ""
+    tendon: int | None = None
+    gear: float = 1.0
+    gain: float = 1.0
+    bias: Vector = ORIGIN
+    control: float = 0.0
+    control_limits: tuple[float, ...] = ()
+    force_limits: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
 class Tree:
     """A mechanism as it is stated to all engines.
 
@@ -201,6 +270,12 @@ class Tree:
         constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
         attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
         fused: Whether the engine fuses links that don't move against each other.
+        changed: What the engine changes, once model and data are there and used, from `before` to what is stated:
+            "mass", "inertia" (with mass centres), "frame" (placements of joints) or "gravity"; "" for nothing.
+        tendons: Lengths over its joints or links.
+        actuators: What drives it.
+        sensors: Frames of links at which sensors stand.
+        away: Added to the positions that random states have of free joints [m].
     """
 
     name: str
@@ -209,13 +284,44 @@ class Tree:
     constraints: tuple[Constraint, ...] = ()
     attached: str = ""
     fused: bool = False
+    changed: str = ""
+    tendons: tuple[Tendon, ...] = ()
+    actuators: tuple[Actuator, ...] = ()
+    sensors: tuple[End, ...] = ()
+    away: Vector = ORIGIN
+
+    @property
+    def forces(self) -> frozenset[str]:
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "tendons", "actuators"."""
+        joints = [joint for link in self.links for joint in link.joints]
+        stated = {
+            "dampers": any(joint.damping for joint in joints),
+            "springs": any(joint.stiffness for joint in joints),
+            "compensation": any(link.compensation for link in self.links),
+            "tendons": bool(self.tendons),
+            "actuators": bool(self.actuators),
+        }
+        return frozenset(name for name, there in stated.items() if there)
+
+    @property
+    def demands(self) -> frozenset[str]:
+        """What an engine must know by name to be asked about it: transformations, forces, "sensors"."""
+        return self.transformations | self.forces | ({"sensors"} if self.sensors else set())
 
     @property
     def transformations(self) -> frozenset[str]:
-        """What engines must do to it once it is built: "locked", "attached", "fused"."""
+        """What engines must do to it once it is built: "locked", "attached", "fused", "changed mass" and the like."""
         locked = any(joint.locked is not None for link in self.links for joint in link.joints)
         stated = {"locked": locked, "attached": bool(self.attached), "fused": self.fused}
-        return frozenset(name for name, there in stated.items() if there)
+        names = {name for name, there in stated.items() if there}
+        return frozenset(names | ({f"changed {self.changed}"} if self.changed else set()))
+
+    @property
+    def before(self) -> Tree:
+        """The tree that an engine builds first, where it changes one thing of it after."""
+        x, y, z = self.gravity
+        links = tuple(link.before(self.changed) for link in self.links)
+        return replace(self, links=links, gravity=(z, x, y) if self.changed == "gravity" else self.gravity, changed="")
 
 
 @dataclass(frozen=True)
@@ -300,7 +406,7 @@ class EnginePlugin(Protocol):
         slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry, or the steps
             of its differences.
 
-    A plug-in may have more: `transformations`, `refusals`, `statements`, `roundoff` and `calls` of
+    A plug-in may have more: `demands`, `refusals`, `statements`, `roundoff` and `calls` of
     `plugins.writing.source.SourcePlugin`.
     """
 

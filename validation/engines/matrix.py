@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..contract.raised import Raised, words
-from .functions import CONSTRAINED, FUNCTIONS
+from .functions import FUNCTIONS, suits
 from .interface import DOUBLE, EnginePlugin, Tree, Unsupported, vector
 from .proving.pieces import Pieces, taken
 from .states import AGAIN, visits
@@ -33,8 +33,6 @@ _AFTER_ONE = ", after another state on the same model: right by itself"
 _AFTER_ALL = ", after other states on the same model: right by itself"
 _AFTER = ", after {} at another state on the same model: right by itself"
 _NO_MORE = ", in one of many calls: not again"
-# What is asked of a tree with constraints besides, for identities.
-_BESIDES = ("mass_matrix", "bias")
 
 
 @dataclass(frozen=True)
@@ -96,12 +94,10 @@ def suited(tree: Tree, plugin: EnginePlugin) -> Tree:
 
 
 def asked(plugin: EnginePlugin, tree: Tree) -> tuple[str, ...]:
-    """The functions of an engine that a tree is for: those of constraints where it has any."""
-    if tree.transformations - set(getattr(plugin, "transformations", ())):
+    """The functions of an engine that a tree is for; none where it does not know what the tree demands."""
+    if tree.demands - set(getattr(plugin, "demands", ())):
         return ()
-    if tree.constraints:
-        return tuple(name for name in plugin.functions if name in _BESIDES or name.partition(":")[0] in CONSTRAINED)
-    return tuple(name for name in plugin.functions if name.partition(":")[0] not in CONSTRAINED)
+    return tuple(name for name in plugin.functions if suits(name, tree))
 
 
 def judged(

@@ -10,11 +10,12 @@ from typing import Any
 
 from ..reporting.numbers import counted
 from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Text, Topic, verdict
-from . import parts
+from . import changes, parts
 from .causes import shown
 from .causes.cause import Cause
 from .causes.grouping import Group, causes_of, stale
 from .proving.scripts import NO_SCRIPT
+from .releases import CRASHES
 from .study import measure
 from .verdicts import RED
 
@@ -85,11 +86,12 @@ def compose(data: Data) -> Report:
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
         f"{counted(len(data['functions']), 'function')}: {tally['right']} cells right, {red} red, behind them "
         f"{counted(len(found.groups), 'cause')}, by {scripts} that fail as they must{_shortcomings(data, raising)}.",
-        all_proven and sound,
+        all_proven and sound and not data.get("changed"),
         (_CAUSES, *_stale(found), _TEXT),
         (
+            *changes.shown(data),
             *(_engine(engine, data, found) for engine in sorted(data["engines"], key=itemgetter("name"))),
-            Section("Engines", (overview, *_missing(data)), "overview"),
+            Section("Engines", (overview, *_missing(data), *_releases(data)), "overview"),
             Section("Cells withdrawn, and why", (Bullets(tuple(found.withdrawn)),), "withdrawn"),
             Section(
                 "Functions", tuple(_functions(engine, data) for engine in data["engines"]), "functions", page_only=True
@@ -98,13 +100,25 @@ def compose(data: Data) -> Report:
             Section("Conventions", (_conventions(data),), "conventions", page_only=True),
         ),
         facts=_facts(data, found, all_proven, sound),
-        digest=(overview,),
+        digest=(overview, *(block for section in changes.shown(data) for block in section.blocks)),
         decisions=(
             decision,
             Bullets(tuple(_first(data, found))),
             Text(_COUNTED, "soft"),
         ),
     )
+
+
+def _releases(data: Data) -> Iterator[Text]:
+    """What is said of releases beside their cells: those that crash, and those that the plug-in is not made for."""
+    for engine in data["engines"]:
+        name = f"{engine['name']} {engine['version']}"
+        if engine.get("gave_up"):
+            yield Text(f"{name} crashes: after {CRASHES} crashes nothing more was asked of it.", "bad")
+        cells = [one for one in data["cells"] if (one["engine"], one["verdict"]) == (engine["name"], "plug-in")]
+        if engine.get("release") and cells:
+            said = f"in {counted(len(cells), 'cell')}, first {cells[0]['function']} on {cells[0]['model']}"
+            yield Text(f"The plug-in does not fit {name}: {said}: {cells[0]['words']}.", "bad")
 
 
 def _shortcomings(data: Data, raising: Counter[str]) -> str:

@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..reporting.command import Run, known
+from ..faults.environment import NotAskedError
+from ..reporting.command import Exit, Run, known
 from ..reporting.record import Data
-from . import parts
+from . import changes, parts, releases
+from .bisection import history
 from .causes.grouping import by_function, causes_of, without_their_causes
 from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
-from .models import hostile, kinds, loops, transformed
+from .models import acting, hostile, kinds, loops, sensed, transformed
 from .models.formats import formats
 from .models.readers import Reading, readings
 from .plugins import OWN
@@ -109,9 +114,54 @@ def proofs(
     return results
 
 
-def trees() -> dict[str, Tree]:
-    """All trees: one for each kind of joint, the hostile set, loops, transformed models."""
-    return {name: kinds.tree_of(name) for name in kinds.KINDS} | hostile.trees() | loops.trees() | transformed.trees()
+# Seconds for each engine of the smoke tier, so that what is begun then ends within a minute.
+SMOKE = 50.0
+Questions = Mapping[str, Tree | Reading]
+
+
+def lots() -> list[Questions]:
+    """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
+    own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
+    trees = (family.trees() for family in (hostile, loops, transformed, acting, sensed))
+    return [*own, *trees, readings(), formats()]
+
+
+def questions() -> dict[str, Tree | Reading]:
+    """All questions by name."""
+    return {name: question for lot in lots() for name, question in lot.items()}
+
+
+def in_turn() -> Iterator[str]:
+    """The names of all questions, one of each lot after the other: who stops early has asked of everything."""
+    return (name for names in zip_longest(*lots()) for name in names if name is not None)
+
+
+def about(
+    plugins: Mapping[str, EnginePlugin],
+    asked: Questions,
+    worker: Worker,
+    after: Callable[[str], object],
+    goes_on: Callable[[], bool] = lambda: True,
+) -> tuple[list[Judged], list[str]]:
+    """The cells of engines on trees and files, and the names of those that are left when it goes on no more.
+
+    Args:
+        plugins: Engines.
+        asked: The questions.
+        worker: Process that the engines run in.
+        after: Told the name of each when it is done.
+        goes_on: Asked before each.
+    """
+    cells: list[Judged] = []
+    left: list[str] = []
+    for name, question in asked.items():
+        if not goes_on():
+            left.append(name)
+        elif isinstance(question, Reading):
+            cells += read(plugins, {name: question}, worker, after)
+        else:
+            cells += gathered(plugins, [question], worker, after)
+    return cells, left
 
 
 def measure(
@@ -123,44 +173,69 @@ def measure(
     part: Annotated[
         list[Path] | None, typer.Option(help="Take over the engines of a stored engines.json; repeatable.")
     ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME==VERSION", help="This release, in an environment of its own; NAME: the newest."),
+    ] = None,
+    newest: Annotated[
+        bool, typer.Option("--newest", help="The newest release of every engine, each likewise.")
+    ] = False,
+    requires: Annotated[
+        list[str] | None, typer.Option("--with", metavar="REQUIREMENT", help="Install this beside the release, too.")
+    ] = None,
+    environments: Annotated[Path | None, typer.Option(help="Folder of releases' environments.")] = None,
+    smoke: Annotated[
+        bool, typer.Option("--smoke", help="What fits into a minute for each engine; no scripts.")
+    ] = False,
+    baseline: Annotated[
+        Path | None, typer.Option(help="Say which cells changed against a stored engines.json.")
+    ] = None,
+    bisect: Annotated[
+        str | None, typer.Option(metavar="ENGINE/TREE/FUNCTION", help="First bad and first good release of this cell.")
+    ] = None,
 ) -> Data:
     """Hold engines against thirty digits of truth: every kind of joint, every function that they offer.
 
     A run may be made in parts: --engine for some engines, into a folder of their own; then once more with --part for
     each folder's engines.json, which measures the engines that no part has, and writes one report of all.
     """
+    at = releases.newest() if newest else at or []
+    if bisect:
+        raise typer.Exit(_bisected(bisect, at, requires or (), environments))
     try:
-        stored = parts.load(part or ())
-    except parts.PartsDisagree as error:
-        raise typer.BadParameter(str(error), param_hint="--part") from None
+        stored, before = parts.load(part or ()), changes.load(baseline)
+        pairs = [pair for text in at for pair in releases.stated(text, requires or ())]
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
     plugins = registry().plugins
     present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
-    left = [name for name in present if name not in parts.engines_of(stored)]
-    for name in engines or ():
-        if name in parts.engines_of(stored):
-            raise typer.BadParameter(f"engine '{name}' is in a stored part, too", param_hint="--engine")
-    chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
-    chosen = {name: plugin for name, plugin in chosen.items() if name in left}
-    all_trees, files = trees(), readings() | formats()
-    names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
-    wanted = [all_trees[name] for name in names_wanted if name in all_trees]
-    run.expect(len(names_wanted), "asking engines")
-    with Worker() as worker:
-        cells = gathered(chosen, wanted, worker, run.advance)
-        cells += read(chosen, {name: files[name] for name in names_wanted if name in files}, worker, run.advance)
+    chosen = _chosen(engines, present, parts.engines_of(stored))
+    every = questions()
+    wanted = known(models, every, "--kinds", "kind")
+    # A part of the questions, or other engines than those of this environment, leave the whole report as it is.
+    run.writes = run.asked or not (at or smoke)
+    with releases.in_reach(chosen, pairs, environments) as reach:
+        for why in reach.failures.values():
+            run.say(why, bad=True)
+        if pairs and not reach.plugins:
+            raise typer.Exit(Exit.MISSED)
+        run.expect(len(wanted), "asking engines")
+        cells = _within_a_minute(reach, every, wanted) if smoke else _all(run, reach, every, wanted)
         proven = (
-            proofs(chosen, cells, worker, run.folder / "engines", lambda one: run.advance(one.file), tries)
-            if prove
+            proofs(reach.plugins, cells, reach.worker, run.folder / "engines", lambda one: run.advance(one.file), tries)
+            if prove and run.writes and not smoke
             else []
         )
+    chosen, plain = reach.plugins, [one.cell for one in cells]
+    absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin, [one.cell for one in cells]) for plugin in chosen.values()],
-        "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
-        "models": names_wanted,
+        "engines": [{**_engine(plugin, plain), **reach.stated(name)} for name, plugin in chosen.items()],
+        "absent": {str(release): why for release, why in reach.failures.items()} if at else absent,
+        "models": [name for name in wanted if not smoke or name in {one.cell.model for one in cells}],
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
-        # Exceptions inside plug-ins that come with this package are faults of ours.
-        "ours": [name for name in chosen if plugins[name] is OWN.get(name)],
+        # Exceptions inside plug-ins that come with this package are faults of ours, with whatever release.
+        "ours": [name for name, plugin in chosen.items() if plugin is OWN.get(name) or name in reach.release],
         # What an engine does not offer is what is left: a third of all.
         "cells": parts.nested((asdict(one.cell) for one in cells if one.cell.verdict != "not offered"), parts.CELLS),
         "corrected": parts.nested(map(asdict, without_their_causes(cells)), parts.CELLS),
@@ -173,7 +248,58 @@ def measure(
         raise typer.BadParameter(str(error), param_hint="--part") from None
     for one in stored:
         parts.write_scripts(one["proofs"], run.folder / "engines")
-    return whole
+    return dict(whole) | ({"changed": changes.between(before, whole)} if before else {})
+
+
+def _bisected(cell: str, at: Sequence[str], requires: Sequence[str], environments: Path | None) -> Exit:
+    """Print the history of a cell; the exit code."""
+    engine, _, rest = cell.partition("/")
+    (tree,) = known([rest.rpartition("/")[0]], questions(), "--bisect", "tree")
+    question, version = {tree: questions()[tree]}, at[0].partition("==")[2] if at else ""
+
+    def ask(reach: releases.Opened) -> list[Cell]:
+        return [one.cell for one in about(reach.plugins, question, reach.worker, str)[0]]
+
+    try:
+        (pair,) = releases.stated(f"{engine}=={version}", requires)
+        for line in history(cell, pair, requires, environments, ask):
+            typer.echo(line)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--bisect") from None
+    except NotAskedError as error:
+        typer.echo(str(error))
+        return Exit.MISSED
+    return Exit.GOOD
+
+
+def _chosen(
+    engines: list[str] | None, present: Mapping[str, EnginePlugin], stored: set[str]
+) -> dict[str, EnginePlugin]:
+    """The engines to ask: those that are named, or all; what stored parts have is not asked again."""
+    for name in engines or ():
+        if name in stored:
+            raise typer.BadParameter(f"engine '{name}' is in a stored part, too", param_hint="--engine")
+    named = known(engines, present, "--engine", "engine present")
+    return {name: present[name] for name in named if name not in stored}
+
+
+def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
+    """The cells of all engines."""
+    return about(reach.plugins, {name: every[name] for name in wanted}, reach.worker, run.advance)[0]
+
+
+def _within_a_minute(reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
+    """What fits into a minute for each engine."""
+    cells: list[Judged] = []
+    some = {name: every[name] for name in in_turn() if name in wanted}
+    for name, plugin in reach.plugins.items():
+        goes_on = partial(_is_before, time.monotonic() + SMOKE)
+        cells += about({name: plugin}, some, reach.worker, str, goes_on)[0]
+    return cells
+
+
+def _is_before(end: float) -> bool:
+    return time.monotonic() < end
 
 
 def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -237,11 +237,16 @@ class Worker(WorkerProcess):
 
     Args:
         limit: Seconds for one answer.
+        options: Of `WorkerProcess`.
     """
 
-    def __init__(self, limit: float = LIMIT) -> None:
-        super().__init__()
+    def __init__(self, limit: float = LIMIT, **options: Any) -> None:
+        super().__init__(**options)
         self._limit = limit
+
+    def python(self, engine: str) -> str:
+        """The interpreter that an engine runs in."""
+        return self._python
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """An answer for each function of a job, in order; what a crash left is asked of a new process."""

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..reporting.command import Exit, known
 from .entry import Fault, Side, faults, frozen
-from .environment import NotAskedError, make, printed
+from .environment import NotAskedError, default_folder, kept, printed
 
 
 def register(app: typer.Typer) -> None:
@@ -51,8 +49,7 @@ def reproduce(fault: Fault, side: Side) -> bool:
         typer.echo(f"{fault.name}: no release is right yet")
         return True
     try:
-        with tempfile.TemporaryDirectory(prefix="symofros-fault-") as folder:
-            value = printed(make(Path(folder) / "environment", fault.requirements(side)), fault.script)
+        value = printed(kept(default_folder(), fault.requirements(side)), fault.script)
     except NotAskedError as error:
         typer.echo(f"{fault.name}:\n{error}")
         return False

@@ -38,7 +38,17 @@ def test_pinocchio_is_right_for_every_kind_of_joint(kind: str) -> None:
     assert (cell.verdict, cell.words) == (("wrong", said) if kind.startswith("mimic") else ("right", ""))
 
 
-@pytest.mark.parametrize("name", ["fixed links amid", "hinges at one point", "gravity aside", "kilometres"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "fixed links amid",
+        "hinges at one point",
+        "gravity aside",
+        "kilometres",
+        "base 10 km away",
+        "free base 10 km away",
+    ],
+)
 def test_engines_are_right_about_hostile_trees(name: str) -> None:
     for engine in ("pinocchio", "mujoco"):
         assert {cell.verdict for cell in cells(OWN[engine], trees()[name], SIMPLE)} == {"right"}
@@ -52,6 +62,14 @@ def test_engines_are_right_about_files_that_they_read_themselves(name: str) -> N
         job = Job(engine, reading.tree, functions, SEED, form=reading.form, text=reading.text)
         verdicts = {one.cell.verdict for one in judged(plugin, job, Truths())}
         assert verdicts == ({"not offered"} if (name, engine) == ("urdf: mimic", "mujoco") else {"right"})
+
+
+def test_digits_that_are_lost_about_a_far_origin_are_seen() -> None:
+    verdicts = {
+        engine: next(cells(OWN[engine], trees()["base 10 km away"], ("mass_matrix_inverse",))).verdict
+        for engine in ("pinocchio", "mujoco")
+    }
+    assert verdicts == {"pinocchio": "imprecise", "mujoco": "right"}
 
 
 def _judged(kind: str, *functions: str) -> list[Judged]:

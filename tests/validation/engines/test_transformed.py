@@ -15,6 +15,7 @@ from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.arithmetic import exact
 from validation.engines.truth.dynamics import Truth, digits
+from validation.engines.verdicts import judge
 from validation.engines.workers import Job
 
 FUNCTIONS = ("mass_matrix", "bias", "gravity", "link_jacobians")
@@ -24,9 +25,7 @@ FUNCTIONS = ("mass_matrix", "bias", "gravity", "link_jacobians")
 def test_engines_are_right_about_transformed_models(name: str) -> None:
     tree = trees()[name]
     offering = [
-        engine
-        for engine in ("pinocchio", "mujoco")
-        if tree.transformations <= set(getattr(OWN[engine], "transformations", ()))
+        engine for engine in ("pinocchio", "mujoco") if tree.demands <= set(getattr(OWN[engine], "demands", ()))
     ]
     assert offering
     for engine in offering:
@@ -36,6 +35,16 @@ def test_engines_are_right_about_transformed_models(name: str) -> None:
 
 def test_an_engine_that_locks_no_joints_is_asked_nothing_of_locked_ones() -> None:
     assert list(cells(OWN["mujoco"], trees()["locked hinge amid"])) == []
+
+
+@pytest.mark.parametrize("what", ["mass", "inertia", "frame", "gravity"])
+def test_a_change_that_an_engine_does_not_take_up_is_a_red_cell(what: str) -> None:
+    changed = trees()[f"{what} changed"]
+    (want,), (stale,) = (
+        judged(OWN["mujoco"], Job("mujoco", tree, ("bias",), SEED), Truths()) for tree in (changed, changed.before)
+    )
+    assert want.cell.verdict == "right" and want.want is not None
+    assert judge("planted", changed, "bias", np.asarray(stale.answer.value), want.want).verdict == "wrong"
 
 
 def test_a_locked_joint_is_a_placement() -> None:

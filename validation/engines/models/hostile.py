@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
+from ..interface import ORIGIN, Joint, Link, Rows, Tree, Vector, rows, vector
 from .kinds import OBLIQUE, link, placed, shifted
 
 _NOTHING: Rows = (ORIGIN, ORIGIN, ORIGIN)
@@ -89,6 +89,13 @@ def _free_with_branches() -> Tree:
     )
 
 
+def _far(name: str, p: Vector) -> Tree:
+    """A chain whose first joint stands far from the world's origin."""
+    first, *rest = _chain("far", 2)
+    joint = replace(first.joints[0], p=p)
+    return Tree(name, (replace(first, joints=(joint,)), *rest))
+
+
 def trees() -> dict[str, Tree]:
     """The hostile set, by name."""
     draw = np.random.default_rng(7)
@@ -110,6 +117,9 @@ def trees() -> dict[str, Tree]:
         Tree("kilometres", tuple(_resized(one, 1e3) for one in _chain("large"))),
         Tree("gravity aside", light, gravity=shifted(draw, 20.0)),
         Tree("armature everywhere", armature),
+        _far("base 100 m away", (64.0, -48.0, 60.0)),
+        _far("base 10 km away", (6400.0, -4800.0, 6000.0)),
+        replace(_free_with_branches(), name="free base 10 km away", away=(6400.0, -4800.0, 6000.0)),
         Tree("six oblique hinges", _chain("six", 6)),
     )
     return {tree.name: tree for tree in made}

@@ -1,4 +1,4 @@
-"""Trees that an engine transforms once it has built them: joints locked, models attached, links fused."""
+"""Trees that an engine transforms once it has built them: joints locked, models attached, links fused, changes."""
 
 from __future__ import annotations
 
@@ -46,4 +46,7 @@ def trees() -> dict[str, Tree]:
         Tree("attached branches", parts, attached="c"),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
     )
-    return {tree.name: tree for tree in made}
+    changed = tuple(
+        Tree(f"{what} changed", parts[:2], changed=what) for what in ("mass", "inertia", "frame", "gravity")
+    )
+    return {tree.name: tree for tree in (*made, *changed)}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS
 
@@ -46,6 +47,11 @@ def _linear_first(call: str, state: str) -> str:
     return f"{state}value = [np.roll({call}, 3, axis=0) for b in links]"
 
 
+_FORWARD = f"{_QV}s.setForces(tau)\n"
+# Dampers and springs of joints act as they will after the skeleton's time step; of none, as they do now.
+_NOW = "s.setTimeStep(0.0)\n"
+_WORLD = f"w = dart.simulation.World()\nw.setGravity(s.getGravity()); w.addSkeleton(s); w.setTimeStep({STEP})\n"
+
 WAYS = {
     "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
     "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
@@ -53,9 +59,14 @@ WAYS = {
     "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
     "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+    "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
     "forward_dynamics": Way(
         "computeForwardDynamics",
-        f"{_QV}s.setForces(tau)\ns.computeForwardDynamics()\nvalue = s.getAccelerations()",
+        f"{_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()",
+    ),
+    "step_stiffness_implicit": Way(
+        "World.step",
+        f"import numpy as np\n{_WORLD}{_FORWARD}w.step()\nvalue = np.r_[s.getPositions(), s.getVelocities()]",
     ),
     "kinetic_energy": Way("computeKineticEnergy", f"{_QV}value = s.computeKineticEnergy()"),
     "potential_energy": Way("computePotentialEnergy", f"{_Q}value = s.computePotentialEnergy()"),
@@ -114,8 +125,33 @@ def _native(joint: Joint) -> _Native | None:
     return _JOINTS.get(joint.kind)
 
 
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the skeleton a tree's numbers of what is changed."""
+    if tree.changed == "gravity":
+        return [f"s.setGravity({list(tree.gravity)!r})"]
+    lines = []
+    for k, link in enumerate(tree.links):
+        if tree.changed == "mass":
+            lines.append(f"b{k}.setMass({link.mass!r})")
+        elif tree.changed == "inertia":
+            lines.append(f"b{k}.setInertia({_inertia(link)})")
+        else:
+            at = _placement(np.array(link.joints[0].R), np.array(link.joints[0].p))
+            lines.append(f"b{k}.getParentJoint().setTransformFromParentBodyNode({at})")
+    return lines
+
+
+def _inertia(link: Link) -> str:
+    return f"dart.dynamics.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})"
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a skeleton; links without a joint hang on weld joints."""
+    if tree.changed:
+        first = write(tree.before)
+        before = _changing(replace(tree.before, changed=tree.changed))
+        closing = (*before, "s.getMassMatrix(); s.getCoriolisAndGravityForces()", *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     lines = [*_IMPORTS, "s = dart.dynamics.Skeleton('tree')"]
     lines += _gravity(tree)
     slots: list[tuple[Slot, ...]] = []
@@ -137,6 +173,7 @@ def write(tree: Tree) -> Source | Unsupported:
                 return Unsupported("speeds of free joints are along the axes of the link before", offered=False)
         parent = "None" if link.parent < 0 else f"b{link.parent}"
         lines.append(f"j, b{k} = s.create{native.name}AndBodyNodePair({parent})")
+        lines += [f"j.{name}" for name in (_forces(joint, native.size) if steps else ())]
         # The axis is z unless another is set.
         if native.settings and not (
             native.name in ("RevoluteJoint", "PrismaticJoint") and joint.axis == (0.0, 0.0, 1.0)
@@ -147,14 +184,20 @@ def write(tree: Tree) -> Source | Unsupported:
             lines.append(f"j.setTransformFromParentBodyNode({_placement(R, p)})")
         if steps and (np.any(p_end) or not np.array_equal(R_end, np.eye(3))):
             lines.append(f"j.setTransformFromChildBodyNode({_placement(R_end.T, -R_end.T @ p_end)})")
-        lines.append(
-            f"b{k}.setInertia(dart.dynamics.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)}))"
-        )
+        lines.append(f"b{k}.setInertia({_inertia(link)})")
         places = tuple(range(count, count + native.size))
         slots.append((Slot(native.chart, places, places),) if steps else ())
         count += native.size
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
+
+
+def _forces(joint: Joint, size: int) -> list[str]:
+    """Calls on a joint that set its damper and spring."""
+    calls = [f"setDampingCoefficient({k}, {joint.damping!r})" for k in range(size if joint.damping else 0)]
+    if joint.stiffness:
+        calls += [f"setSpringStiffness(0, {joint.stiffness!r})", f"setRestPosition(0, {joint.rest!r})"]
+    return calls
 
 
 def _gravity(tree: Tree) -> list[str]:
@@ -219,6 +262,7 @@ PLUGIN = SourcePlugin(
         Convention("spatial vectors", "angular, then linear, in the body's axes unless a frame is named"),
         Convention("Euler angles", "x, y, z; the order can be set in C++, its Python type is not bound"),
         Convention("armature", "none"),
+        Convention("dampers and springs", "as they will be after the skeleton's time step, in forward dynamics, too"),
     ),
     kinds={
         "revolute x": "RevoluteJoint",
@@ -241,6 +285,14 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
+    demands={
+        "dampers": "setDampingCoefficient",
+        "springs": "setSpringStiffness",
+        "changed mass": "setMass",
+        "changed inertia": "setInertia",
+        "changed frame": "setTransformFromParentBodyNode",
+        "changed gravity": "setGravity",
+    },
     # Its parsers return no skeleton, and write why to the log.
     refusals=("no skeleton: see the log",),
     statements=(UNIT_AXIS,),

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS
 
@@ -113,11 +114,86 @@ WAYS = {
 }
 
 
+_SIMULATION = f"""c.SetTime(0.0)
+sim = drake.Simulator(p, c)
+INTEGRATOR{_QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+sim.AdvanceTo({STEP})
+value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
+_FIXED = f"""drake.ResetIntegratorFromFlags(sim, 'NAME', {STEP})
+sim.get_mutable_integrator().set_fixed_step_mode(True)
+"""
+
+
+def _integrated(name: str) -> Way:
+    """A step of an integrator that the simulator of a continuous plant has."""
+    return Way(name, _SIMULATION.replace("INTEGRATOR", _FIXED.replace("NAME", name)))
+
+
+WAYS |= {
+    "step_dampers_implicit_straight": Way(
+        "MultibodyPlant with a time step",
+        _SIMULATION.replace("INTEGRATOR", ""),
+        0.0,
+        (("Plant(0.0)", f"Plant({STEP})"),),
+    ),
+    "step_semi_implicit_straight": _integrated("semi_explicit_euler"),
+    "step_euler": _integrated("explicit_euler"),
+    "step_rk2": _integrated("runge_kutta2"),
+    "step_rk3": _integrated("runge_kutta3"),
+    "passive_forces": Way(
+        "CalcForceElementsContribution",
+        f"{_QV}{_FORCES}zero = 0 * v\nvalue = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p))"
+        " - p.CalcInverseDynamics(c, zero, forces) - p.CalcGravityGeneralizedForces(c)",
+    ),
+}
+
+# With the forces that make the accelerations a.
+_DRIVEN = (
+    f"{_QV}{_FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
+)
+# The diagram, built once, owns the plant.
+_SENSORS = """if "root" not in globals():
+    builder = drake.DiagramBuilder()
+    builder.AddSystem(p)
+    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in sensed]
+    for sensor in sensors:
+        for name in NAMES:
+            builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
+    whole = builder.Build()
+    root = whole.CreateDefaultContext()
+    c = p.GetMyMutableContextFromRoot(root)
+"""
+_READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
+
+
+def _sensors(kind: str, *names: str, more: str = "") -> Way:
+    """Readings of sensors in a diagram with the plant, which it then owns."""
+    text = _SENSORS.replace("KIND", kind).replace("MORE", more).replace("NAMES", repr(("body_poses", *names)))
+    return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
+
+
+WAYS |= {
+    "joint_wrenches": Way(
+        "reaction_forces",
+        f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []
+for j in js:
+    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
+    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
+    value.append([*force, *(moment + np.cross(x.translation(), force))])""",
+    ),
+    "accelerometers": _sensors(
+        "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
+    ),
+    "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
+}
+
+
 def _gradient(result: str, seeds: str) -> str:
     """Derivatives by Drake's automatic differentiation."""
     return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 ad = p.ToAutoDiffXd()
 d = ad.CreateDefaultContext()
+d.SetTimeStateAndParametersFrom(c)
 {_QV}N = p.MakeVelocityToQDotMap(c).toarray()
 {seeds}
 ad.SetPositions(d, q_)
@@ -167,12 +243,44 @@ def _frame(name: str, body: str, R: Array, p: Array) -> str:
     return f"p.AddFrame(drake.FixedOffsetFrame({name!r}, {body}, X({_array(R)}, {_array(p)})))"
 
 
+def _damping(joint: Joint) -> str:
+    """Arguments of a joint that state its damper."""
+    if not joint.damping:
+        return ""
+    names = ("angular_damping", "translational_damping") if joint.kind == "free" else ("damping",)
+    return "".join(f", {name}={joint.damping!r}" for name in names)
+
+
+def _spring(tree: Tree, tendon: Tendon) -> str:
+    """The spring and damper between two points."""
+    bodies = {link.name: f"b{k}" for k, link in enumerate(tree.links)} | {"": "p.world_body()"}
+    ends = ", ".join(f"{bodies[end.link]}, {list(end.p)}" for end in tendon.ends)
+    numbers = f"{tendon.rest!r}, {tendon.stiffness!r}, {tendon.damping!r}"
+    return f"p.AddForceElement(drake.LinearSpringDamper({ends}, {numbers}))"
+
+
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the context a tree's numbers of what is changed."""
+    lines = []
+    for k, link in enumerate(tree.links):
+        R, p, _ = series(link.joints).steps[0]
+        if tree.changed == "frame":
+            lines.append(f"p.GetFrameByName('P{k}').SetPoseInParentFrame(c, X({_array(R)}, {_array(p)}))")
+        else:
+            inertia = f"inertia({link.mass!r}, {list(link.com)!r}, {link.inertia!r})"
+            lines.append(f"b{k}.SetSpatialInertiaInBodyFrame(c, {inertia})")
+    return lines
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a plant; links without a joint are welded."""
+    if tree.changed:
+        first = write(tree.before)
+        closing = (*_CLOSING, "p.CalcMassMatrix(c)", *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
     lines += _gravity(tree)
     chosen: list[list[_Native]] = []
-    joints: list[list[str]] = []
     for k, link in enumerate(tree.links):
         lines.append(
             f"b{k} = p.AddRigidBody({link.name!r}, inertia({link.mass!r}, {list(link.com)!r}, {link.inertia!r}))"
@@ -185,7 +293,6 @@ def write(tree: Tree) -> Source | Unsupported:
             ends = f"{_frame(f'P{k}', parent, R_end, p_end)}, b{k}.body_frame()"
             lines.append(f"p.AddJoint(drake.WeldJoint('j{k}', {ends}, drake.RigidTransform()))")
             chosen.append([])
-            joints.append([])
             continue
         R, p, joint = steps[0]
         native = _native(joint)
@@ -198,17 +305,31 @@ def write(tree: Tree) -> Source | Unsupported:
         if np.any(p_end) or not np.array_equal(R_end, np.eye(3)):
             after = _frame(f"C{k}", f"b{k}", R_end.T, -R_end.T @ p_end)
         frames = f"'j{k}', {_frame(f'P{k}', parent, R, p)}, {after}"
-        call = native.call.format(frames=frames, axis=_array(joint.axis), turn=2 * math.pi * joint.pitch)
+        turn = 2 * math.pi * joint.pitch
+        call = native.call.format(frames=frames, axis=_array(joint.axis), turn=turn)[:-1] + _damping(joint) + ")"
         lines.append(f"j{k} = p.AddJoint(drake.{call})")
         if any(joint.armature):
             lines.append(f"motor = p.AddJointActuator('m{k}', j{k})")
             lines.append(f"motor.set_default_rotor_inertia({joint.armature[0]!r}); motor.set_default_gear_ratio(1.0)")
+        if joint.stiffness:
+            if joint.kind not in ("revolute", "prismatic"):
+                return Unsupported("springs act on joints of one coordinate", offered=False)
+            spring = f"{joint.kind.capitalize()}Spring(j{k}, {joint.rest!r}, {joint.stiffness!r})"
+            lines.append(f"p.AddForceElement(drake.{spring})")
         chosen.append([native])
-        joints.append([f"j{k}"])
+    if any(tendon.kind != "path" or len(tendon.ends) != 2 for tendon in tree.tendons):
+        return Unsupported("springs run straight from point to point", offered=False)
+    lines += [_spring(tree, tendon) for tendon in tree.tendons]
     lines.append("p.Finalize()")
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
-    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, closing=_CLOSING)
+    optional: dict[str, tuple[str, ...]] = {"links": (links,)}
+    optional["js"] = (f"js = [p.GetJointByName(f'j{{k}}') for k in range({len(tree.links)})]",)
+    if tree.sensors:
+        places = [link.name for link in tree.links]
+        frames = ", ".join(f"({places.index(end.link)}, {end.R!r}, {list(end.p)!r})" for end in tree.sensors)
+        optional["sensed"] = (f"sensed, gravity = [{frames}], {list(tree.gravity)!r}",)
+    return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING)
 
 
 _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
@@ -307,5 +428,14 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_PARSERS),
     write_reading=write_reading,
+    demands={
+        "sensors": "Accelerometer, Gyroscope",
+        "changed mass": "SetSpatialInertiaInBodyFrame",
+        "changed inertia": "SetSpatialInertiaInBodyFrame",
+        "changed frame": "SetPoseInParentFrame",
+        "dampers": "damping",
+        "springs": "RevoluteSpring, PrismaticSpring",
+        "tendons": "LinearSpringDamper",
+    },
     statements=(UNIT_AXIS,),
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..interface import Array, Convention, Link, Slot, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Link, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
@@ -19,7 +19,8 @@ tree = mbs.AddObject(items.ObjectKinematicTree(nodeNumber=node, gravity=gravity,
     jointTypes=[getattr(exu.JointType, name) for name in types], linkParents=parents,
     jointTransformations=exu.Matrix3DList([np.array(R) for R in rotations]), jointOffsets=exu.Vector3DList(offsets),
     linkInertiasCOM=exu.Matrix3DList([np.array(J) for J in inertias]), linkCOMs=exu.Vector3DList(coms),
-    linkMasses=masses))
+    linkMasses=masses, jointPControlVector=stiffness, jointPositionOffsetVector=rest, jointDControlVector=damping,
+    jointVelocityOffsetVector=still))
 if any(armatures):
     mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], massMatrix=np.diag(armatures)))
 def sensor(link, place, name):
@@ -43,6 +44,24 @@ def state(q, v=None, a=None):
 def forces():
     solver.ComputeODE2RHS(mbs)
     return np.array(solver.GetSystemResidual()[:n])"""
+
+
+def _step(kind: str) -> Way:
+    """A step of SolveDynamic."""
+    return Way(
+        f"SolveDynamic, {kind}",
+        f"""initial, s = exu.ConfigurationType.Initial, mbs.systemData
+mbs.SetObjectParameter(tree, "jointForceVector", tau.tolist())
+s.SetODE2Coordinates(q, configuration=initial)
+s.SetODE2Coordinates_t(v, configuration=initial)
+settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 1, {STEP}
+settings.timeIntegration.verboseMode, settings.timeIntegration.adaptiveStep = 0, False
+mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.{kind})
+mbs.SetObjectParameter(tree, "jointForceVector", still)
+value = np.r_[s.GetODE2Coordinates(), s.GetODE2Coordinates_t()]""",
+    )
+
+
 WAYS = {
     "sizes": Way("numberOfODE2Coordinates", "value = [n, n]"),
     "mass_matrix": Way(
@@ -62,6 +81,11 @@ WAYS = {
         "value = np.zeros((len(links), 6, n))\nfor k, unit in enumerate(np.eye(n)):\n    state(q, unit)\n"
         "    value[:, :, k] = read(2)",
     ),
+    "step_euler": _step("ExplicitEuler"),
+    "step_midpoint": _step("ExplicitMidpoint"),
+    "step_rk4": _step("RK44"),
+    # Newton's method ends at a relative residual of 1e-8, which the equation's condition makes larger in the speeds.
+    "step_trapezoidal": _step("TrapezoidalIndex2")._replace(slack=1e-7),
 }
 _LETTERS = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
 
@@ -88,6 +112,8 @@ class _Links:
         self.parents: list[int] = []
         self.masses: list[float] = []
         self.armatures: list[float] = []
+        # Of each link's joint: damping, stiffness, coordinate at rest.
+        self.forces: list[tuple[float, float, float]] = []
         self.rotations: list[Array] = []
         self.offsets: list[Array] = []
         self.inertias: list[Array] = []
@@ -122,6 +148,7 @@ class _Links:
             self.turns.append(T)
             self.masses.append(0.0)
             self.armatures.append(sum(joint.armature))
+            self.forces.append((joint.damping, joint.stiffness, joint.rest))
             self.coms.append(np.zeros(3))
             self.inertias.append(np.zeros((3, 3)))
             carrier = len(self.types) - 1
@@ -148,6 +175,7 @@ def write(tree: Tree) -> Source | Unsupported:
     lines = (
         f"types, parents, masses = {made.types!r}, {made.parents!r}, {made.masses!r}",
         *(f"{name} = [{', '.join(map(_plain, getattr(made, name)))}]" for name in listed),
+        *(f"{name} = {[row[k] for row in made.forces]!r}" for k, name in enumerate(("damping", "stiffness", "rest"))),
         f"gravity, armatures = {list(tree.gravity)!r}, {made.armatures!r}",
         f"links, places = {[k for k, _, _ in made.carriers]!r}, [{', '.join(map(_plain, places))}]",
         f"turns = [{', '.join(map(_plain, turns))}]",
@@ -177,5 +205,6 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    demands={"dampers": "jointDControlVector", "springs": "jointPControlVector"},
     calls=4,
 )

@@ -76,6 +76,19 @@ forces = iDynTree.FreeFloatingGeneralizedTorques(robot.model())
 assert robot.inverseDynamics(*rates(a), none, forces)
 value = np.concatenate([forces.baseWrench().asVector().toNumPy(), forces.jointTorques().toNumPy()])[cut:]""",
     ),
+    "joint_wrenches": Way(
+        "inverseDynamicsWithInternalJointForceTorques",
+        """state(q, v)
+none = iDynTree.LinkWrenches(robot.model())
+none.zero()
+forces = iDynTree.FreeFloatingGeneralizedTorques(robot.model())
+held = iDynTree.LinkWrenches(robot.model())
+assert robot.inverseDynamicsWithInternalJointForceTorques(*rates(a), none, forces, held)
+value = []
+for name, j in zip(links, js):
+    R = robot.getWorldTransform(name).asHomogeneousTransform().toNumPy()[:3, :3]
+    value.append((held(j).asVector().toNumPy().reshape(2, 3) @ R).flatten())""",
+    ),
     "link_poses": Way(
         "getWorldTransform",
         """state(q, v)
@@ -147,16 +160,20 @@ def read(tree: Tree, described: Described) -> Source:
     setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
+    optional = {
+        "links": (f"links = {list(described.links)}",),
+        "n": ("n = 6 + robot.getNrOfDegreesOfFreedom()",),
+        "state": tuple(line.replace("{gravity}", gravity) for line in _FLOATING_STATE),
+    }
+    # Links that don't move are frames of others, and nothing holds a floating base.
+    if not floating and all(joint.kind != "fixed" for link in tree.links for joint in link.joints):
+        optional["js"] = (f"js = [robot.model().getLinkIndex(name) for name in {list(described.links)}]",)
     return Source(
         tuple(setup.split("\n")),
         slots_of(tree, described, described.moving, _BASE),
         nq=count + 7 * floating,
         nv=count + 6 * floating,
-        optional={
-            "links": (f"links = {list(described.links)}",),
-            "n": ("n = 6 + robot.getNrOfDegreesOfFreedom()",),
-            "state": tuple(line.replace("{gravity}", gravity) for line in _FLOATING_STATE),
-        },
+        optional=optional,
         spelling={general: own.replace("{gravity}", gravity) for general, own in spelling.items()},
     )
 
@@ -171,6 +188,7 @@ PLUGIN = SourcePlugin(
             "floating base", "always there: pose apart from q; linear and angular in the world (mixed representation)"
         ),
         Convention("spatial vectors", "linear, then angular"),
+        Convention("internal wrenches", "at the link's origin along the world's axes, in the mixed representation"),
         Convention("armature", "not in the dynamics"),
         Convention("gravity", "an argument of the state"),
     ),

@@ -8,8 +8,10 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Statement, Steps, Tree, Unsupported
+from ..interface import Array, Constraint, Convention, Joint, Slot, Statement, Steps, Tendon, Tree, Unsupported
 from .loops import mujoco as constrained
+from .loops import mujoco_forces as forces
+from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
 from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
 from .writing.urdf import UNIT_AXIS
 
@@ -66,7 +68,9 @@ class _Bodies:
             self.children[link.parent].append(k)
         self.slots: dict[int, tuple[Slot, ...]] = {}
         self.nq = self.nv = 0
-        self.coupled = {end.link for one in tree.constraints if one.kind == "coupling" for end in one.ends}
+        lines: tuple[Constraint | Tendon, ...] = (*tree.constraints, *tree.tendons)
+        self.coupled = {end.link for one in lines if one.kind == "coupling" for end in one.ends}
+        self.coupled |= {one.link for one in tree.actuators}
 
     def element(self, k: int) -> str | Unsupported:
         """The element of a link and of what it carries."""
@@ -84,7 +88,8 @@ class _Bodies:
         if isinstance(inner, Unsupported):
             return inner
         own = [inertial if link.mass else "", *joints, constrained.sites(self.tree, link.name), *inner]
-        return f'<body name="{_name(link.name)}" {_frame(R, p)}>' + "".join(own) + "</body>"
+        borne = f' gravcomp="{link.compensation!r}"' if link.compensation else ""
+        return f'<body name="{_name(link.name)}" {_frame(R, p)}{borne}>' + "".join(own) + "</body>"
 
     def elements(self, k: int) -> list[str] | Unsupported:
         """The elements of a link's children; -1 is the world."""
@@ -122,7 +127,7 @@ class _Bodies:
             named = f' name="{link.name}"' if link.name in self.coupled else ""
             for kind, axis in _elements(joint):
                 about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
-                elements.append(f'<joint{named} type="{kind}"{about}{armature}/>')
+                elements.append(f'<joint{named} type="{kind}"{about}{armature}{constrained.forces(joint)}/>')
         self.slots[k] = tuple(own)
         return elements
 
@@ -151,8 +156,33 @@ def document(tree: Tree, principal: bool = False) -> tuple[str, tuple[tuple[Slot
     return xml, tuple(made.slots[k] for k in range(len(tree.links))), made.nq, made.nv
 
 
+# Fields of MuJoCo's model that state what is changed.
+_CHANGED = {
+    "mass": ("body_mass",),
+    "inertia": ("body_inertia", "body_ipos", "body_iquat"),
+    "frame": ("body_pos", "body_quat"),
+    "gravity": ("opt.gravity",),
+}
+
+
+def _changing(tree: Tree, xml: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Statements that build the changed model beside the first, and those that turn this into it for each call."""
+    lines = ("from copy import copy", "first = copy(m)", f"last = mj.MjModel.from_xml_string('''{xml}''')")
+    closing = []
+    for source in ("first", "last"):
+        closing += [f"m.{name}[:] = {source}.{name}" for name in _CHANGED[tree.changed]]
+        closing += ["mj.mj_setConst(m, d)", *(["mj.mj_forward(m, d)"] if source == "first" else [])]
+    return lines, tuple(closing)
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
+    if tree.changed:
+        first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
+        if isinstance(first, Unsupported) or isinstance(last, Unsupported):
+            return first if isinstance(first, Unsupported) else Unsupported("", offered=False)
+        both, closing = _changing(tree, last[0])
+        return replace(first, lines=(*first.lines, *both), closing=closing)
     made = document(tree, principal=True)
     if isinstance(made, Unsupported):
         return made
@@ -160,12 +190,18 @@ def write(tree: Tree) -> Source | Unsupported:
     if tree.fused:
         xml = xml.replace("<compiler ", '<compiler fusestatic="true" ')
     lines = ["import numpy as np", "import mujoco as mj", *_compiled(tree, xml), "d = mj.MjData(m)"]
+    lines += constrained.controls(tree)
     # A model that is attached takes a prefix to its names; links that are fused are there no more.
     own = attached(tree)
     names = [("own_" if k in own else "") + link.name for k, link in enumerate(tree.links)]
     if tree.fused:
         return Source(tuple(lines), slots, nq, nv)
     optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | constrained.optional(tree)
+    if tree.sensors:
+        optional["sensed"] = (
+            f"sensed = range({len(tree.sensors)})",
+            "def data(kind, k): return d.sensor(f'{kind}{k}').data",
+        )
     spelling = constrained.spelling(tree) if tree.constraints else {}
     return Source(tuple(lines), slots, nq, nv, optional, spelling=spelling)
 
@@ -194,71 +230,64 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
     ]
 
 
-_Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
-_QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
-_QVA = f"{_QV}d.qacc[:] = a\n"
-_SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 _TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
-_INVERSE_FD = f"{_QVA}{_SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
-_TRANSITION = (
-    "m.opt.timestep = 1.0\nm.opt.integrator = mj.mjtIntegrator.mjINT_EULER\n"
-    f"d.qfrc_applied[:] = tau\n{_QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
-    "mj.mjd_transitionFD(m, d, 1e-6, True, A, None, None, None)\n"
-)
+_INVERSE_FD = f"{QVA}{SQUARE}mj.mjd_inverseFD(m, d, 1e-6, False, "
+_TRANSITION = transition(1.0, EXPLICIT)
 # One-sided differences are off by the step times the second derivative, centred ones by its square times the third.
 _INVERSE_STEPS = Steps("inverse_dynamics", 1e-6, 1e-4)
 _FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
 
+
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
-    "mass_matrix": Way("mj_fullM", f"{_Q}{_SQUARE}mj.mj_fullM(m, d, value)"),
+    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}mj.mj_fullM(m, d, value)"),
     "mass_matrix:mj_mulM": Way(
-        "mj_mulM", f"{_Q}{_SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
+        "mj_mulM", f"{Q}{SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),
     "mass_matrix:mjd_inverseFD": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _INVERSE_STEPS
     ),
-    "mass_matrix_inverse": Way("mj_solveM", f"{_Q}{_SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
-    "bias": Way("qfrc_bias", f"{_QV}value = d.qfrc_bias"),
-    "inverse_dynamics": Way("mj_inverse", f"{_QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
-    "inverse_dynamics:mj_rne": Way("mj_rne", f"{_QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)"),
-    "forward_dynamics": Way("mj_forward", f"d.qfrc_applied[:] = tau\n{_QV}value = d.qacc"),
-    "kinetic_energy": Way("mj_energyVel", f"{_QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
-    "potential_energy": Way("mj_energyPos", f"{_Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
-    "link_poses": Way("xpos, xmat", f"{_Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
-    "mass_centre": Way("subtree_com", f"{_Q}value = d.subtree_com[0]"),
+    "mass_matrix_inverse": Way("mj_solveM", f"{Q}{SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
+    "bias": Way("qfrc_bias", f"{QV}value = d.qfrc_bias"),
+    "inverse_dynamics": Way("mj_inverse", f"{QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
+    "inverse_dynamics:mj_rne": Way("mj_rne", f"{QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 1, value)"),
+    "forward_dynamics": Way("mj_forward", f"d.qfrc_applied[:] = tau\n{QV}value = d.qacc"),
+    "kinetic_energy": Way("mj_energyVel", f"{QV}mj.mj_energyVel(m, d)\nvalue = d.energy[1]"),
+    "potential_energy": Way("mj_energyPos", f"{Q}mj.mj_energyPos(m, d)\nvalue = d.energy[0]"),
+    "link_poses": Way("xpos, xmat", f"{Q}value = np.hstack([d.xpos[bs], d.xmat[bs]])"),
+    "mass_centre": Way("subtree_com", f"{Q}value = d.subtree_com[0]"),
     "mass_centre_jacobian": Way(
-        "mj_jacSubtreeCom", f"{_Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"
+        "mj_jacSubtreeCom", f"{Q}value = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, value, 0)"
     ),
-    "link_jacobians": Way("mj_jacBody", f"{_Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
+    "link_jacobians": Way("mj_jacBody", f"{Q}{_JACOBIANS}mj.mj_jacBody(m, d, value[k, :3], value[k, 3:], b)"),
     "link_jacobian_rates": Way(
-        "mj_jacDot", f"{_QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
+        "mj_jacDot", f"{QV}{_JACOBIANS}mj.mj_jacDot(m, d, value[k, :3], value[k, 3:], d.xpos[b], b)"
     ),
     "link_velocities": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
+        f"{QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
         "value = np.roll(value, 3, axis=1)",
     ),
     "velocity_local": Way(
         "mj_objectVelocity",
-        f"{_QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
+        f"{QV}{_TWISTS}mj.mj_objectVelocity(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 1)\n"
         "value = np.roll(value, 3, axis=1)",
     ),
     "link_accelerations": Way(
         "mj_objectAcceleration",
-        f"{_QVA}mj.mj_rnePostConstraint(m, d)\n"
+        f"{QVA}mj.mj_rnePostConstraint(m, d)\n"
         f"{_TWISTS}mj.mj_objectAcceleration(m, d, mj.mjtObj.mjOBJ_XBODY, b, value[k], 0)\n"
         "value = np.roll(value, 3, axis=1) + np.r_[m.opt.gravity, np.zeros(3)]",
     ),
     "centroidal_matrix": Way(
         "mj_jacSubtreeCom, mj_angmomMat",
-        f"{_Q}J = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, J, 0)\n"
+        f"{Q}J = np.zeros((3, m.nv))\nmj.mj_jacSubtreeCom(m, d, J, 0)\n"
         "A = np.zeros((3, m.nv))\nmj.mj_angmomMat(m, d, A, 0)\nvalue = np.vstack([m.body_subtreemass[0] * J, A])",
     ),
     "centroidal_momentum": Way(
         "mj_subtreeVel",
-        f"{_QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
+        f"{QV}mj.mj_subtreeVel(m, d)\nvalue = np.r_[m.body_subtreemass[0] * d.subtree_linvel[0], d.subtree_angmom[0]]",
     ),
     "inverse_dynamics_dq": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}value, None, None, None, None, None, None)\nvalue = value.T", _INVERSE_STEPS
@@ -268,8 +297,8 @@ WAYS = {
     ),
     "inverse_dynamics_dv:qDeriv": Way(
         "mj_implicit",
-        "m.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
-        f"{_QV}mj.mj_implicit(m, d)\n{_SQUARE}for i in range(m.nv):\n"
+        f"{COPY}n.opt.integrator = mj.mjtIntegrator.mjINT_IMPLICIT\n"
+        f"{QV}mj.mj_implicit(n, d)\n{SQUARE}for i in range(m.nv):\n"
         "    row = slice(m.D_rowadr[i], m.D_rowadr[i] + m.D_rownnz[i])\n    value[i, m.D_colind[row]] = -d.qDeriv[row]",
     ),
     "forward_dynamics_dq": Way("mjd_transitionFD", f"{_TRANSITION}value = A[m.nv:, :m.nv]", _FORWARD_STEPS),
@@ -315,13 +344,24 @@ PLUGIN = SourcePlugin(
         Convention(
             "constraints", "soft: a row's acceleration is aref - R f; R is least, not zero, at the impedance 0.9999"
         ),
+        Convention("force, torque", "what holds the sensor's body, as cfrc_int: at rest the force is upwards"),
         Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=WAYS | constrained.WAYS,
+    ways=WAYS | constrained.WAYS | forces.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    transformations={"attached": "MjSpec, attach_body", "fused": "fusestatic"},
+    demands={
+        "attached": "MjSpec, attach_body",
+        "fused": "fusestatic",
+        **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in _CHANGED.items()},
+        "dampers": "damping",
+        "springs": "stiffness, springref",
+        "compensation": "gravcomp",
+        "sensors": "sensor",
+        "tendons": "tendon/fixed, tendon/spatial",
+        "actuators": "general, motor, position, velocity",
+    },
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
     statements=(

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..interface import SINGLE, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
+from ..interface import SINGLE, STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, series
 
 # Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
@@ -55,6 +55,13 @@ WAYS = {
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
     ),
 }
+WAYS["step_semi_implicit"] = Way(
+    "SolverFeatherstone",
+    f"""solver, after, control = newton.solvers.SolverFeatherstone(m, angular_damping=0.0), m.state(), m.control()
+{_QV}control.joint_f.assign(tau.astype(np.float32))
+solver.step(s, after, control, None, {STEP})
+value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]""",
+)
 
 
 def _array(values: object) -> str:
@@ -111,6 +118,9 @@ def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[st
     _, _, joint = steps[0]
     if any(one.form or one.mimics for _, _, one in steps):
         return "no such form of a joint"
+    alone = len(steps) == 1 and joint.kind in ("revolute", "prismatic")
+    if any(one.damping or one.stiffness for _, _, one in steps) and not alone:
+        return "dampers and springs stand on hinges and slides alone"
     if len(steps) == 1 and joint.kind == "ball":
         armature = joint.armature[0] if joint.armature else 0.0
         return f"b.add_joint_ball({{ends}}, armature={armature!r})", [("quaternion xyzw, parent speeds", 4, 3)]
@@ -125,9 +135,11 @@ def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[st
             return "axes of one joint share a frame, linear before angular"
         linear, angular = linear + found[0], angular + found[1]
         parts.append((found[2], len(found[0]) + len(found[1]), len(found[0]) + len(found[1])))
-    if len(steps) == 1 and joint.kind in ("revolute", "prismatic"):
+    if alone:
         armature = joint.armature[0] if joint.armature else 0.0
         about = f"axis={_array(joint.axis)}, armature={armature!r}"
+        forces = {"damping": joint.damping, "stiffness": joint.stiffness, "rest_q": joint.rest}
+        about += "".join(f", {name}={value!r}" for name, value in forces.items() if value)
         return f"b.add_joint_{joint.kind}({{ends}}, {about})", parts
     return f"b.add_joint_d6({{ends}}, linear_axes=[{', '.join(linear)}], angular_axes=[{', '.join(angular)}])", parts
 
@@ -202,6 +214,7 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    demands={"dampers": "damping", "springs": "stiffness, rest_q"},
     statements=(
         Statement(
             "repairs",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -181,12 +182,36 @@ class _ModelText:
         optional: dict[str, tuple[str, ...]] = {"fs": (f"fs = [{', '.join(self.frames)}]",)}
         if all(self.joints) and len(set(self.joints)) == len(self.joints):
             optional["js"] = (f"js = [{', '.join(self.joints)}]",)
+        if tree.sensors:
+            made = (f"pin.Frame('o{k}', {{}}, 0, {{}}, pin.FrameType.OP_FRAME)" for k in range(len(tree.sensors)))
+            stated = (text.format(*self.place(end)) for text, end in zip(made, tree.sensors, strict=True))
+            optional["sensed"] = (f"sensed = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constrained.optional(tree.constraints, self.place)
         return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
 
 
+def _changing(tree: Tree) -> list[str]:
+    """Statements that give the model a tree's numbers of what is changed; each link stands at its one joint."""
+    if tree.changed == "gravity":
+        return [f"m.gravity.linear = {_array(tree.gravity)}"]
+    lines = []
+    for k, link in enumerate(tree.links):
+        joint = link.joints[0]
+        if tree.changed == "frame":
+            lines.append(f"m.jointPlacements[j{k}] = {_placement(np.array(joint.R), np.array(joint.p))}")
+        else:
+            lines.append(f"m.inertias[j{k}] = pin.Inertia({link.mass!r}, {_array(link.com)}, {_array(link.inertia)})")
+    return lines
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
+    if tree.changed:
+        first = write(tree.before)
+        used = "pin.computeAllTerms(m, d, pin.neutral(m), np.zeros(m.nv))"
+        before = _changing(replace(tree.before, changed=tree.changed))
+        closing = (*before, *CLOSING, used, *_changing(tree))
+        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
     text = _ModelText(tree)
     for k in range(len(tree.links)):
         obstacle = text.add(k)
@@ -328,6 +353,16 @@ for _frame, _rf in _FRAMES.items():
         ),
     }
 
+_SENSED = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL).{{}} for f in sensed])"
+WAYS |= {
+    "gyroscopes": Way("getFrameVelocity", _SENSED.format("Velocity", "angular")),
+    "velocimeters": Way("getFrameVelocity", _SENSED.format("Velocity", "linear")),
+    "accelerometers": Way(
+        "getFrameClassicalAcceleration less gravity",
+        _SENSED.format("ClassicalAcceleration", "linear - d.oMf[f].rotation.T @ m.gravity.linear"),
+    ),
+}
+
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has Pinocchio read a file."""
@@ -362,7 +397,15 @@ PLUGIN = SourcePlugin(
     ways=WAYS | constrained.WAYS,
     write=write,
     constraints=constrained.KINDS,
-    transformations={"locked": "buildReducedModel", "attached": "appendModel"},
+    demands={
+        "locked": "buildReducedModel",
+        "attached": "appendModel",
+        "sensors": "frames",
+        "changed mass": "inertias",
+        "changed inertia": "inertias",
+        "changed frame": "jointPlacements",
+        "changed gravity": "gravity",
+    },
     formats=("urdf", "mjcf"),
     write_reading=write_reading,
     statements=(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from ..interface import Convention, Tree, Unsupported
+from ..interface import STEP, Convention, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, describe, slots_of
 
@@ -52,7 +52,8 @@ WAYS = {
     "link_velocities": Way(
         "getLinkState",
         f"{_STATES.format(v='v')}"
-        "value = [[*(np.array(s[6]) + np.cross(s[7], np.array(s[4]) - s[0])), *s[7]] for s in states]",
+        "def arm(s): return -np.reshape(p.getMatrixFromQuaternion(s[5]), (3, 3)) @ s[2]\n"
+        "value = [[*(np.array(s[6]) + np.cross(s[7], arm(s))), *s[7]] for s in states]",
     ),
     # Points are stated from the link's origin, along the principal axes of its inertia.
     "link_jacobians": Way(
@@ -61,6 +62,21 @@ WAYS = {
         "value = [np.concatenate(p.calculateJacobian(robot, k, [0, 0, 0], q.tolist(), zero, zero)) for k in links]",
     ),
 }
+
+# A joint has a motor that holds it still unless its greatest force is zero, and a greatest speed; a link has a damper.
+_STEP = f"""gravity
+joints
+p.setTimeStep({STEP})
+for k in range(-1, p.getNumJoints(robot)):
+    p.changeDynamics(robot, k, linearDamping=0, angularDamping=0, maxJointVelocity=1e9)
+for k, position, speed, force in zip(moving, q, v, tau):
+    p.resetJointState(robot, k, position, speed)
+    p.setJointMotorControl2(robot, k, p.VELOCITY_CONTROL, force=0)
+    p.setJointMotorControl2(robot, k, p.TORQUE_CONTROL, force=force)
+p.stepSimulation()
+states = p.getJointStates(robot, moving)
+value = [*(s[0] for s in states), *(s[1] for s in states)]"""
+WAYS["step_semi_implicit"] = Way("stepSimulation", _STEP)
 
 
 def write(tree: Tree) -> Source | Unsupported:
@@ -105,11 +121,13 @@ PLUGIN = SourcePlugin(
         Convention("links without <inertial>", "get a mass of 1 kg and moments of 1 kg m^2, with a warning"),
         Convention("files", "cached by name"),
         Convention("armature", "none"),
+        Convention("stepSimulation", "links are damped by 0.04 and joints held by motors unless both are set to zero"),
     ),
     kinds=KINDS,
     ways=WAYS,
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,
+    demands={"dampers": "dynamics, damping"},
     statements=(UNIT_AXIS,),
 )

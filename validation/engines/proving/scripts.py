@@ -93,7 +93,7 @@ class Prover:
         path = self.folder / file_of(red)
         if path.exists():
             kept = path.read_text(encoding="utf-8")
-            output, failed = fails(path, _exception(red))
+            output, failed = fails(path, _exception(red), self.worker.python(plugin.name))
             if failed and kept.startswith(_title(plugin, red)):
                 return _proof(plugin, red, kept, output, failed)
         ends = red.cell.verdict in ("crashes", "raises")
@@ -103,7 +103,7 @@ class Prover:
         self.folder.mkdir(parents=True, exist_ok=True)
         script = text(plugin, small, _thread(red))
         path.write_text(script, encoding="utf-8")
-        output, failed = fails(path, _exception(red))
+        output, failed = fails(path, _exception(red), self.worker.python(plugin.name))
         return _proof(plugin, red, script, output, failed)
 
     def shrunk(self, plugin: EnginePlugin, red: Judged) -> Judged:
@@ -248,15 +248,16 @@ def _exception(red: Judged) -> str:
     return red.cell.words.partition(":")[0] if red.cell.verdict == "raises" else ""
 
 
-def fails(path: Path, exception: str = "") -> tuple[str, bool]:
+def fails(path: Path, exception: str = "", python: str = sys.executable) -> tuple[str, bool]:
     """Run a script in a fresh process: what it says, and whether it fails as it must.
 
     Args:
         path: The script.
         exception: Type of the exception that it must end in; "" for its assertion or a crash.
+        python: The interpreter that runs it.
     """
     try:
-        done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=_TIME)
+        done = subprocess.run([python, str(path)], capture_output=True, text=True, timeout=_TIME)
     except subprocess.TimeoutExpired:
         return f"no end in {_TIME:g} s, which proves nothing", False
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from ..interface import IDENTITY, ORIGIN, Joint, Link, Rows, Tree, Vector
+from ..interface import IDENTITY, ORIGIN, End, Joint, Link, Rows, Tree, Vector
 from ..models.formats import texts
 from .pieces import Piece, Pieces
 
@@ -150,6 +150,8 @@ def _without_links(case: Case) -> Iterator[Case]:
     links = case.tree.links
     followed = {joint.mimics for link in links for joint in link.joints} | {case.tree.attached}
     followed |= {end.link for one in case.tree.constraints for end in one.ends}
+    followed |= {end.link for one in case.tree.tendons for end in one.ends}
+    followed |= {end.link for end in case.tree.sensors} | {one.link for one in case.tree.actuators}
     for gone in reversed(range(len(links))):
         if len(links) == 1 or links[gone].name in followed:
             continue
@@ -179,17 +181,35 @@ def _without_joints(case: Case) -> Iterator[Case]:
 def _plainer_trees(tree: Tree) -> Iterator[Tree]:
     for gravity in (_DOWN, ORIGIN):
         yield replace(tree, gravity=gravity)
-    for number, one in enumerate(tree.constraints):
-        if len(tree.constraints) > 1:
-            yield replace(tree, constraints=tree.constraints[:number] + tree.constraints[number + 1 :])
-        for place, end in enumerate(one.ends):
-            plainer = [end._replace(R=IDENTITY, p=ORIGIN), end._replace(R=IDENTITY)]
-            for plain in (*plainer, *(end._replace(p=p) for p in (ORIGIN, *_UNITS))):
-                changed = replace(one, ends=_with(one.ends, place, plain))
-                yield replace(tree, constraints=_with(tree.constraints, number, changed))
+    for lines in ("constraints", "tendons"):
+        yield from _plainer_lines(tree, lines)
+    for number in range(len(tree.actuators)):
+        yield replace(tree, actuators=tree.actuators[:number] + tree.actuators[number + 1 :])
+    for number, end in enumerate(tree.sensors):
+        if len(tree.sensors) > 1:
+            yield replace(tree, sensors=tree.sensors[:number] + tree.sensors[number + 1 :])
+        for plain in _plainer_ends(end):
+            yield replace(tree, sensors=_with(tree.sensors, number, plain))
+    yield replace(tree, changed="", away=ORIGIN)
     for k, link in enumerate(tree.links):
         for simpler in _plainer_links(link):
             yield replace(tree, links=_with(tree.links, k, simpler))
+
+
+def _plainer_lines(tree: Tree, lines: str) -> Iterator[Tree]:
+    """Trees with plainer constraints or tendons, or one less; the tendons that actuators pull stay."""
+    stated = getattr(tree, lines)
+    for number, one in enumerate(stated):
+        if len(stated) > 1 and not (lines == "tendons" and tree.actuators):
+            yield replace(tree, **{lines: stated[:number] + stated[number + 1 :]})
+        for place, end in enumerate(one.ends):
+            for plain in _plainer_ends(end):
+                yield replace(tree, **{lines: _with(stated, number, replace(one, ends=_with(one.ends, place, plain)))})
+
+
+def _plainer_ends(end: End) -> Iterator[End]:
+    yield from (end._replace(R=IDENTITY, p=ORIGIN), end._replace(R=IDENTITY))
+    yield from (end._replace(p=p) for p in (ORIGIN, *_UNITS))
 
 
 def _plainer_links(link: Link) -> Iterator[Link]:
@@ -203,6 +223,7 @@ def _plainer_links(link: Link) -> Iterator[Link]:
         yield replace(link, inertia=inertia)
     yield replace(link, mass=1.0)
     yield replace(link, mass=_rounded(link.mass))
+    yield replace(link, compensation=0.0)
 
 
 def _plainer_joints(joint: Joint) -> Iterator[Joint]:
@@ -222,6 +243,7 @@ def _plainer_joints(joint: Joint) -> Iterator[Joint]:
         yield replace(joint, radii=(1.0, 2.0, 3.0))
     if joint.armature:
         yield replace(joint, armature=(1.0,) * len(joint.armature))
+    yield from (replace(joint, damping=0.0), replace(joint, stiffness=0.0), replace(joint, rest=0.0))
 
 
 def _plainer_pieces(piece: Piece, *, bound: bool = False) -> Iterator[Piece]:

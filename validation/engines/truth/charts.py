@@ -55,6 +55,18 @@ class Chart:
     rates: Callable[[Joint, Exact], Exact]
     sample: Callable[[Joint, Draw], Array]
 
+    @property
+    def position(self) -> tuple[int, ...]:
+        """Places of a free joint's position among its coordinates; () for other joints."""
+        if self.nv < 6:
+            return ()
+        return (0, 1, 2) if self.text.startswith("position") else tuple(range(self.nq - 3, self.nq))
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether speeds are the rates of the coordinates."""
+        return self.rates is _same
+
 
 def _turn(axis: Exact, q: Any) -> Exact:
     return rotation(axis, *cos_sin(q))

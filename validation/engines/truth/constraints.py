@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Constraint, End, HasLayout, State, Tree, Unsupported
-from .arithmetic import Exact, exact, eye, many_digits, orthonormal, root, skew, solve, zeros
+from ..interface import Array, Constraint, HasLayout, State, Tree, Unsupported
+from .arithmetic import Exact, exact, eye, many_digits, skew, solve, zeros
 from .dynamics import Point, Truth, digits, random_state
 from .kinematics import Kinematics
 
@@ -22,14 +22,6 @@ from .kinematics import Kinematics
 _REDUNDANT = Decimal(10) ** -20
 _STEPS = 40
 _CLOSED = 1e-14
-
-
-class Held(NamedTuple):
-    """A frame in the world, with the Jacobian (6, nv) of its origin along world axes."""
-
-    R: Exact
-    p: Exact
-    J: Exact
 
 
 class Rows(NamedTuple):
@@ -46,24 +38,11 @@ class Rows(NamedTuple):
     J: Exact
 
 
-def _held(kinematics: Kinematics, q: Exact, end: End) -> Held:
-    names = [link.name for link in kinematics.tree.links]
-    if not end.link:
-        return Held(orthonormal(end.R), exact(end.p), zeros(6, kinematics.nv))
-    index = names.index(end.link)
-    R, p = kinematics.poses(q)[index]
-    J = kinematics.jacobians(q)[index]
-    offset = R @ exact(end.p)
-    return Held(R @ orthonormal(end.R), p + offset, np.concatenate([J[:3] - skew(offset) @ J[3:], J[3:]]))
-
-
 def _rows(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
-    if constraint.kind == "coupling":
-        return _coupling(kinematics, q, constraint)
-    ends = [_held(kinematics, q, end) for end in constraint.ends]
-    if constraint.kind == "path":
-        return _path(ends)
-    first, second = ends
+    if constraint.kind in ("coupling", "path"):
+        length, derivative = kinematics.line(q, constraint)
+        return Rows(np.array([length], dtype=object), None, derivative[np.newaxis])
+    first, second = (kinematics.held(q, end) for end in constraint.ends)
     apart = first.p - second.p
     if constraint.kind == "point":
         return Rows(apart, first.R, first.J[:3] - second.J[:3])
@@ -73,26 +52,6 @@ def _rows(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
     # spatial vector, which the frames' distance has no part in.
     moved = np.concatenate([second.J[:3] - skew(apart) @ second.J[3:], second.J[3:]])
     return Rows(np.concatenate([apart, first.R @ angle / 2]), first.R, first.J - moved)
-
-
-def _coupling(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
-    names = [link.name for link in kinematics.tree.links]
-    J, residual = zeros(1, kinematics.nv), zeros(1)
-    for end, coefficient in zip(constraint.ends, exact(constraint.coefficients), strict=True):
-        (slot,) = kinematics.slots[names.index(end.link)]
-        J[0, slot.v[0]] += coefficient
-        residual[0] += coefficient * q[slot.q[0]]
-    return Rows(residual, None, J)
-
-
-def _path(points: list[Held]) -> Rows:
-    length, J = Decimal(0), zeros(1, points[0].J.shape[1])
-    for before, after in zip(points, points[1:], strict=False):
-        step = after.p - before.p
-        distance = root(step @ step)
-        length += distance
-        J[0] = J[0] + (step / distance) @ (after.J[:3] - before.J[:3])
-    return Rows(np.array([length], dtype=object), None, J)
 
 
 def _along(R: Exact | None, rows: Exact) -> Exact:

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arithmetic import Exact, eye, skew, solve, stack, zeros
+from .arithmetic import Exact, exact, eye, orthonormal, skew, solve, stack, zeros
 from .dynamics import Point, Truth
 from .kinematics import Inertia
 
@@ -71,6 +71,59 @@ def joint_wrenches(truth: Truth, s: Point) -> Exact:
             about = moment + skew(poses[k][1] - poses[link.parent][1]) @ force
             held[link.parent] = held[link.parent] + np.concatenate([force, about])
     return np.array([np.concatenate([R.T @ held[k][:3], R.T @ held[k][3:]]) for k, (R, _) in enumerate(poses)])
+
+
+def twists(truth: Truth, s: Point) -> Exact:
+    """Velocities of the sensors' frames, along their axes (n, 6)."""
+    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
+    return np.array([np.concatenate([R.T @ (J @ s.v)[:3], R.T @ (J @ s.v)[3:]]) for R, _, J in frames])
+
+
+def _sensed_accelerations(truth: Truth, s: Point) -> Exact:
+    """Accelerations of the sensors' points and angular accelerations, along world axes (n, 6)."""
+
+    def jacobians_there(q: Exact) -> Exact:
+        return np.array([truth.kinematics.held(q, end).J for end in truth.tree.sensors])
+
+    return jacobians_there(s.q) @ s.a + truth.kinematics.along(jacobians_there, s.q, s.v) @ s.v
+
+
+def accelerometers(truth: Truth, s: Point) -> Exact:
+    """Accelerations of the sensors' points less gravity's, along the sensors' axes (n, 3)."""
+    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
+    accelerations = _sensed_accelerations(truth, s)
+    return np.array([R.T @ (a[:3] - truth.gravity_vector) for (R, _, _), a in zip(frames, accelerations, strict=True)])
+
+
+def angular_accelerations(truth: Truth, s: Point) -> Exact:
+    """Angular accelerations of the sensors, along world axes (n, 3)."""
+    return _sensed_accelerations(truth, s)[:, 3:]
+
+
+def wrench_sensors(truth: Truth, s: Point) -> Exact:
+    """Wrench (force; moment) of each sensor's link's joint on its subtree, at the sensor, along its axes (n, 6)."""
+    held, places = joint_wrenches(truth, s), [link.name for link in truth.tree.links]
+    rows = []
+    for end in truth.tree.sensors:
+        wrench, R = held[places.index(end.link)], orthonormal(end.R)
+        moment = wrench[3:] - skew(exact(end.p)) @ wrench[:3]
+        rows.append(np.concatenate([R.T @ wrench[:3], R.T @ moment]))
+    return np.array(rows)
+
+
+def subtree_momenta(truth: Truth, s: Point) -> Exact:
+    """Momentum (linear; angular, about its mass centre) of each link with all it carries, along world axes (L, 6)."""
+    poses, velocity = truth.kinematics.poses(s.q), truth.kinematics.jacobians(s.q) @ s.v
+    # Of each subtree: mass, first moment about the world's origin, momentum about it.
+    sums = []
+    for inertia, (R, p), twist in zip(truth.inertias, poses, velocity, strict=True):
+        momentum = inertia.turned(R).matrix() @ twist
+        about = np.concatenate([momentum[:3], momentum[3:] + skew(p) @ momentum[:3]])
+        sums.append(np.concatenate([[inertia.mass], inertia.mass * p + R @ inertia.first, about]))
+    for k, link in reversed(list(enumerate(truth.tree.links))):
+        if link.parent >= 0:
+            sums[link.parent] = sums[link.parent] + sums[k]
+    return np.array([np.concatenate([x[4:7], x[7:] - skew(x[1:4]) @ x[4:7] / (x[0] or 1)]) for x in sums])
 
 
 def turned(truth: Truth, q: Exact, local: Exact) -> Exact:
@@ -144,8 +197,10 @@ def com(truth: Truth, q: Exact) -> Exact:
 
 
 def com_jacobian(truth: Truth, q: Exact) -> Exact:
-    """Jacobian of the mass centre (3, nv)."""
-    return truth.kinematics.tangent(lambda point: com(truth, point), q)
+    """Jacobian of the mass centre (3, nv): the momentum's, for a unit of mass."""
+    poses, jacobians_ = truth.kinematics.poses(q), truth.kinematics.jacobians(q)
+    momentum = sum(i.turned(R).matrix()[:3] @ J for i, (R, _), J in zip(truth.inertias, poses, jacobians_, strict=True))
+    return momentum / sum(i.mass for i in truth.inertias)
 
 
 def centroidal_matrix(truth: Truth, q: Exact) -> Exact:
@@ -234,14 +289,23 @@ def mass_matrix_rate(truth: Truth, s: Point) -> Exact:
     return truth.kinematics.along(truth.M, s.q, s.v)
 
 
-_STEPS = 13
+ROWS = 13
 
 
-def integrated(truth: Truth, q: Exact, v: Exact) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits."""
+def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
+    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits.
+
+    Args:
+        truth: The truth.
+        q: Coordinates.
+        v: Speeds.
+        rows: Rows of the table: what v of order one takes, unless other is said.
+    """
     rates = truth.kinematics.rates
+    if not truth.kinematics.curved:
+        return q + rates(q) @ v
     table: list[Exact] = []
-    for row in range(_STEPS):
+    for row in range(rows):
         n = 2 * (row + 1)
         before, point = q, q + (rates(q) @ v) / n
         for _ in range(n - 1):
@@ -255,7 +319,7 @@ def integrated(truth: Truth, q: Exact, v: Exact) -> Exact:
     return table[-1]
 
 
-def _to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
+def to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
     """Speeds (nv, n) whose rates are nearest to columns (nq, n)."""
     N = truth.kinematics.rates(q)
     return solve(N.T @ N, N.T @ columns)
@@ -266,7 +330,7 @@ def integrated_dq(truth: Truth, s: Point) -> Exact:
 
     def compute() -> Exact:
         columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
-        return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
 
     return truth.once(("integrated_dq", *s.q, *s.v2), compute)
 
@@ -276,7 +340,7 @@ def integrated_dv(truth: Truth, s: Point) -> Exact:
 
     def compute() -> Exact:
         columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
-        return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
 
     return truth.once(("integrated_dv", *s.q, *s.v2), compute)
 

@@ -14,6 +14,7 @@ import numpy as np
 from ..interface import Array, HasLayout, State, Tree
 from .arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
 from .charts import CHARTS, Pose
+from .forces import Forces
 from .kinematics import Inertia, Kinematics
 
 _REMEMBERED = 1000
@@ -42,22 +43,24 @@ class Truth:
     Args:
         tree: The tree.
         model: Says how an engine keeps its joints.
-        roundings: Seed of a rounding that each component of each link's force, moment and momentum suffers, as it does
-            in the steadiest of recursions; None for none.
+        roundings: Seed of a rounding that each component of each link's force, moment and momentum suffers, and of its
+            position in the world, as in the steadiest of recursions; None for none.
     """
 
     def __init__(self, tree: Tree, model: HasLayout, roundings: int | None = None) -> None:
-        self.tree, self.kinematics = tree, Kinematics(tree, model)
-        self.nv = model.nv
+        self.tree, self.nv = tree, model.nv
+        self._rounded, stored = exact(np.ones((len(tree.links), 6))), None
+        if roundings is not None:
+            # All different: the effects of equal ones would cancel where the terms cancel.
+            draw = np.random.default_rng(roundings)
+            self._rounded = self._rounded + exact(draw.uniform(-1.0, 1.0, (len(tree.links), 6)) * ROUNDING)
+            stored = exact(draw.uniform(-1.0, 1.0, (len(tree.links), 3)) * ROUNDING)
+        self.kinematics = Kinematics(tree, model, stored)
+        self.own = Forces(tree, self.kinematics)
         # Differences of several functions ask for the same again and again.
         self.remembered: dict[tuple[object, ...], Exact] = {}
         self.gravity_vector = exact(tree.gravity)
         self.inertias = [Inertia.of(link) for link in tree.links]
-        self._rounded = exact(np.ones((len(tree.links), 6)))
-        if roundings is not None:
-            # All different: the effects of equal ones would cancel where the terms cancel.
-            parts = np.random.default_rng(roundings).uniform(-1.0, 1.0, (len(tree.links), 6))
-            self._rounded = self._rounded + exact(parts * ROUNDING)
         self.armature = zeros(self.nv)
         for index in range(len(tree.links)):
             for joint, slot in self.kinematics.joints(index):
@@ -128,8 +131,8 @@ class Truth:
         return self.ID(q, zeros(self.nv), zeros(self.nv))
 
     def FD(self, q: Exact, v: Exact, tau: Exact) -> Exact:
-        """M^-1 (tau - h) (nv)."""
-        return solve(self.M(q), tau - self.h(q, v))
+        """M^-1 (tau + Q - h) (nv), Q what the tree states to act on itself."""
+        return solve(self.M(q), tau + self.own.applied(q, v) - self.h(q, v))
 
     def inverse(self, q: Exact) -> Exact:
         """M^-1 (nv, nv)."""
@@ -165,8 +168,10 @@ def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
     for index in range(len(tree.links)):
         for joint, slot in kinematics.joints(index):
             if slot is not None and not joint.mimics:
+                chart = CHARTS[slot.chart]
                 for coordinates in (q, q2):
-                    coordinates[list(slot.q)] = CHARTS[slot.chart].sample(joint, draw)
+                    coordinates[list(slot.q)] = chart.sample(joint, draw)
+                    coordinates[[slot.q[k] for k in chart.position]] += tree.away[: len(chart.position)]
     v, a, tau, v2 = (draw.uniform(-1.0, 1.0, model.nv) for _ in range(4))
     return State(q, v, a, tau, v2, q2)
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from decimal import Decimal
+from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import HasLayout, Joint, Link, Slot, Tree
+from ..interface import Constraint, End, HasLayout, Joint, Link, Slot, Tendon, Tree
 from .arithmetic import (
     Exact,
     exact,
@@ -14,6 +16,7 @@ from .arithmetic import (
     many_digits,
     orthonormal,
     rate,
+    root,
     skew,
     stack,
     vee,
@@ -24,17 +27,31 @@ from .charts import CHARTS, GEOMETRIES, Pose
 _REMEMBERED = 1000
 
 
+class Held(NamedTuple):
+    """A frame in the world, with the Jacobian (6, nv) of its origin along world axes."""
+
+    R: Exact
+    p: Exact
+    J: Exact
+
+
 class Kinematics:
     """Kinematics of a tree in an engine's coordinates and speeds.
 
     Args:
         tree: The tree.
         model: Says how the engine keeps its joints.
+        roundings: Of each link, parts (L, 3) of its position in the world that it is off by; None for none.
     """
 
-    def __init__(self, tree: Tree, model: HasLayout) -> None:
-        self.tree, self.slots = tree, model.slots
+    def __init__(self, tree: Tree, model: HasLayout, roundings: Exact | None = None) -> None:
+        self.tree, self.slots, self._roundings = tree, model.slots, roundings
         self.nq, self.nv = model.nq, model.nv
+        # Speeds that are no rates of coordinates.
+        self.curved = sorted(
+            {v for own in model.slots for slot in own if not CHARTS[slot.chart].is_flat for v in slot.v}
+        )
+        self._places = {link.name: k for k, link in enumerate(tree.links)}
         with many_digits():
             self._placements = [
                 [(orthonormal(joint.R), exact(joint.p)) for joint in link.joints] for link in tree.links
@@ -80,6 +97,30 @@ class Kinematics:
         """Jacobians of the links' origins, along world axes: linear, then angular (L, 6, nv)."""
         return np.array([J for _, _, J in self._links(q)], dtype=object)
 
+    def held(self, q: Exact, end: End) -> Held:
+        """A frame of a link, or of the world."""
+        if not end.link:
+            return Held(orthonormal(end.R), exact(end.p), zeros(6, self.nv))
+        index = self._places[end.link]
+        R, p, J = self._links(q)[index]
+        offset = R @ exact(end.p)
+        return Held(R @ orthonormal(end.R), p + offset, np.concatenate([J[:3] - skew(offset) @ J[3:], J[3:]]))
+
+    def line(self, q: Exact, line: Tendon | Constraint) -> tuple[Exact, Exact]:
+        """Length of a "coupling" or a "path", and its derivative (nv) along the speeds."""
+        length, J = Decimal(0), zeros(self.nv)
+        if line.kind == "coupling":
+            for end, coefficient in zip(line.ends, exact(line.coefficients), strict=True):
+                (slot,) = self.slots[self._places[end.link]]
+                length, J[slot.v[0]] = length + coefficient * q[slot.q[0]], J[slot.v[0]] + coefficient
+            return length, J
+        points = [self.held(q, end) for end in line.ends]
+        for before, after in zip(points, points[1:], strict=False):
+            step = after.p - before.p
+            distance = root(step @ step)
+            length, J = length + distance, J + (step / distance) @ (after.J[:3] - before.J[:3])
+        return length, J
+
     def _links(self, q: Exact, with_jacobians: bool = True) -> list[tuple[Exact, Exact, Exact]]:
         """R, p and Jacobian of each link; what depends on them must not be changed in place."""
         key = (tuple(q), with_jacobians)
@@ -106,6 +147,8 @@ class Kinematics:
                         for place, (linear, spin) in zip(slot.v, columns, strict=True):
                             J[:3, place] = J[:3, place] + R_before @ linear
                             J[3:, place] = J[3:, place] + R_before @ spin
+            if self._roundings is not None:
+                R, p, J = _moved(R, p, J, eye(3), R.T @ (self._roundings[index] * p))
             frames.append((R, p, J))
         return frames
 

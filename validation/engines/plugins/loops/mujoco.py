@@ -1,4 +1,4 @@
-"""MuJoCo's equality constraints: connect, weld, joint, and tendons, fixed and spatial."""
+"""MuJoCo's elements beyond bodies: equality constraints, tendons, actuators, sensors."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...interface import Constraint, End, Tree
+from ...interface import Actuator, Constraint, End, Joint, Tendon, Tree
 from ..writing.source import Way
 
 KINDS = {
@@ -29,10 +29,13 @@ def _site(name: str, end: End) -> str:
 
 
 def sites(tree: Tree, link: str) -> str:
-    """The sites of a link, "" for the world, that constraints hold."""
-    return "".join(
-        _site(f"s{number}_{place}", end)
-        for number, one in enumerate(tree.constraints)
+    """The sites of a link, "" for the world, that constraints hold, tendons run over and sensors stand on."""
+    lines: list[tuple[str, Constraint | Tendon]] = [(f"s{number}", one) for number, one in enumerate(tree.constraints)]
+    lines += [(f"n{number}", one) for number, one in enumerate(tree.tendons)]
+    sensors = "".join(_site(f"o{k}", end) for k, end in enumerate(tree.sensors) if end.link == link)
+    return sensors + "".join(
+        _site(f"{name}_{place}", end)
+        for name, one in lines
         if one.kind != "coupling"
         for place, end in enumerate(one.ends)
         if end.link == link
@@ -40,11 +43,54 @@ def sites(tree: Tree, link: str) -> str:
 
 
 def elements(tree: Tree) -> str:
-    """The elements of MJCF that state a tree's constraints, with links' joints named as the links."""
+    """The elements of MJCF beyond bodies, with links' joints named as the links."""
     equalities = [_equality(number, one) for number, one in enumerate(tree.constraints)]
     tendons = [_tendon(number, one) for number, one in enumerate(tree.constraints)]
-    stated = f"<tendon>{''.join(tendons)}</tendon>" if any(tendons) else ""
-    return f"{stated}<equality>{''.join(equalities)}</equality>" if equalities else ""
+    tendons += [_line(f"n{number}", f"n{number}", one, _spring(one)) for number, one in enumerate(tree.tendons)]
+    parts = {"tendon": tendons, "equality": equalities, "actuator": [_actuator(one) for one in tree.actuators]}
+    parts["sensor"] = [_sensor(kind, k) for k in range(len(tree.sensors)) for kind in _SENSORS]
+    return "".join(f"<{name}>{''.join(part)}</{name}>" for name, part in parts.items() if any(part))
+
+
+_SENSORS = ("accelerometer", "gyro", "velocimeter", "force", "torque", "frameangacc")
+
+
+def _sensor(kind: str, k: int) -> str:
+    at = f'objtype="site" objname="o{k}"' if kind.startswith("frame") else f'site="o{k}"'
+    return f'<{kind} name="{kind}{k}" {at}/>'
+
+
+def _spring(one: Tendon) -> str:
+    return f' stiffness="{one.stiffness!r}" damping="{one.damping!r}" springlength="{one.rest!r}"'
+
+
+def _actuator(one: Actuator) -> str:
+    """A motor, a servo of position or velocity, or the general one."""
+    at = f'joint="{one.link}"' if one.tendon is None else f'tendon="n{one.tendon}"'
+    b0, b1, b2 = one.bias
+    match one:
+        case Actuator(gain=1.0, bias=(0.0, 0.0, 0.0)):
+            element = "motor"
+        case Actuator(bias=(0.0, _, 0.0)) if one.gain == -b1:
+            element = f'position kp="{one.gain!r}"'
+        case Actuator(bias=(0.0, 0.0, _)) if one.gain == -b2:
+            element = f'velocity kv="{one.gain!r}"'
+        case _:
+            element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
+    limits = f' ctrllimited="true" ctrlrange="{_text(one.control_limits)}"' if one.control_limits else ""
+    limits += f' forcelimited="true" forcerange="{_text(one.force_limits)}"' if one.force_limits else ""
+    return f'<{element} {at} gear="{one.gear!r}"{limits}/>'
+
+
+def forces(joint: Joint) -> str:
+    """The attributes that state a joint's damper and spring."""
+    stated = {"damping": joint.damping, "stiffness": joint.stiffness, "springref": joint.rest}
+    return "".join(f' {name}="{value!r}"' for name, value in stated.items() if value)
+
+
+def controls(tree: Tree) -> list[str]:
+    """Statements that set the actuators' controls."""
+    return [f"d.ctrl[:] = {[one.control for one in tree.actuators]}"] if tree.actuators else []
 
 
 def _equality(number: int, one: Constraint) -> str:
@@ -64,14 +110,17 @@ def _is_joint(one: Constraint) -> bool:
 
 
 def _tendon(number: int, one: Constraint) -> str:
+    return "" if one.kind in ("point", "weld") or _is_joint(one) else _line(f"t{number}", f"s{number}", one)
+
+
+def _line(name: str, sites: str, one: Constraint | Tendon, more: str = "") -> str:
+    """A tendon, spatial over sites or fixed."""
     if one.kind == "path":
-        via = "".join(f'<site site="s{number}_{place}"/>' for place in range(len(one.ends)))
-        return f'<spatial name="t{number}">{via}</spatial>'
-    if one.kind == "coupling" and not _is_joint(one):
-        parts = zip(one.ends, one.coefficients, strict=True)
-        inside = "".join(f'<joint joint="{end.link}" coef="{coefficient!r}"/>' for end, coefficient in parts)
-        return f'<fixed name="t{number}">{inside}</fixed>'
-    return ""
+        via = "".join(f'<site site="{sites}_{place}"/>' for place in range(len(one.ends)))
+        return f'<spatial name="{name}"{more}>{via}</spatial>'
+    parts = zip(one.ends, one.coefficients, strict=True)
+    inside = "".join(f'<joint joint="{end.link}" coef="{coefficient!r}"/>' for end, coefficient in parts)
+    return f'<fixed name="{name}"{more}>{inside}</fixed>'
 
 
 def spelling(tree: Tree) -> dict[str, str]:

@@ -23,6 +23,7 @@ OPTIONAL = {
     "loops_generic": "not for constraints of this kind",
     "cm": "not for constraints of this kind",
     "axes": "not for trees without constraints",
+    "sensed": "not for trees without sensors",
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
@@ -36,11 +37,13 @@ class Way(NamedTuple):
         code: Statements that leave the result in `value`; they may use what the source defines, and the parts of the
             state by their names (`interface.State`).
         slack: Error that the engine documents, as part of the largest entry, or the steps of its differences.
+        built: Text of the source -> what it is in the model that this way has of its own; () for none.
     """
 
     native: str
     code: str
     slack: float | Steps = 0.0
+    built: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,14 +77,21 @@ class Source:
             code = code.replace(general, own)
         return code
 
-    def script(self, *calls: tuple[str, State]) -> str:
-        """The statements that build the tree and, for each code and state, state what it needs, and run it."""
-        lines = [*self.text()]
-        for code, state in calls:
-            code = self.spelled(code)
+    def script(self, *calls: tuple[Way, State]) -> str:
+        """The statements that build the tree and, for each way and state, state what it needs, and run it."""
+        lines = [*self.built(calls[-1][0])]
+        for way, state in calls:
+            code = self.spelled(way.code)
             used = [name for name in _INPUTS if name in identifiers(code)]
             lines += [*(f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used), code]
         return "\n".join(lines)
+
+    def built(self, way: Way) -> tuple[str, ...]:
+        """The statements that build the tree as a way needs it."""
+        lines = self.text()
+        for general, own in way.built:
+            lines = tuple(line.replace(general, own) for line in lines)
+        return lines
 
     def text(self) -> tuple[str, ...]:
         """The statements that build the tree, with all that functions need."""
@@ -132,7 +142,8 @@ class SourceModel:
         for name in (OPTIONAL.keys() & identifiers(text)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
         code, names = compile(text, TEXT, "exec"), dict(self.names)
-        _run("\n".join(self._source.closing), names)
+        way = self._ways[function]
+        _run("\n".join(self._source.built(way) if way.built else self._source.closing), names)
 
         def ask(state: State) -> Array:
             names.update({name: getattr(state, name).copy() for name in _INPUTS})
@@ -143,7 +154,7 @@ class SourceModel:
 
     def script(self, function: str, state: State, before: Sequence[tuple[str, State]] = ()) -> str:
         """The text that a call runs, with the state that it needs (`EngineModel`), after other calls."""
-        return self._source.script(*((self._ways[name].code, at) for name, at in (*before, (function, state))))
+        return self._source.script(*((self._ways[name], at) for name, at in (*before, (function, state))))
 
 
 def _run(text: str, names: dict[str, Any]) -> None:
@@ -178,7 +189,7 @@ class SourcePlugin:
         write_reading: Tree, format, file's text -> text that has the engine read the file.
         find: Version of an engine that is no Python distribution.
         constraints: Kinds of constraints that it has of its own -> what it calls them.
-        transformations: What it does to trees that are built (`Tree.transformations`) -> what it calls that.
+        demands: What it knows of `Tree.demands` -> what it calls that.
         refusals: Patterns of exceptions ("Type: message") by which the engine refuses, where it is not seen by where
             they are raised.
         statements: See `interface.Statement`.
@@ -198,7 +209,7 @@ class SourcePlugin:
     write_reading: Callable[[Tree, str, str], Source | Unsupported] | None = None
     find: Callable[[], str] | None = None
     constraints: Mapping[str, str] = field(default_factory=dict)
-    transformations: Mapping[str, str] = field(default_factory=dict)
+    demands: Mapping[str, str] = field(default_factory=dict)
     refusals: tuple[str, ...] = ()
     statements: tuple[Statement, ...] = ()
     roundoff: float = DOUBLE
@@ -225,8 +236,8 @@ class SourcePlugin:
 
     def build(self, tree: Tree) -> EngineModel | Unsupported:
         """The tree by the engine's API."""
-        for name in tree.transformations - set(self.transformations):
-            return Unsupported(f"no model is {name}", offered=False)
+        for name in sorted(tree.demands - set(self.demands)):
+            return Unsupported(f"no trees with {name}", offered=False)
         for one in tree.constraints:
             if one.kind not in self.constraints:
                 return Unsupported(f"no constraint of kind {one.kind}", offered=False)

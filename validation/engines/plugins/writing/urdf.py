@@ -185,6 +185,8 @@ def _joint(name: str, joint: Joint, parent: str, child: str) -> list[str]:
     ]
     if kind != "fixed":
         lines.append(f'<axis xyz="{numbers(joint.axis)}"/>')
+    if joint.damping:
+        lines.append(f'<dynamics damping="{joint.damping!r}"/>')
     if kind == "prismatic":
         lines.append('<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>')
     return [*lines, "</joint>"]

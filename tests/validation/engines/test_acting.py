@@ -1,0 +1,119 @@
+"""Steps, forces of a tree's own, sensors: the truth against what defines it, and engines by it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation.engines.functions import STEPS
+from validation.engines.interface import ORIGIN, STEP, Tree
+from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
+from validation.engines.models import acting, sensed
+from validation.engines.models.kinds import tree_of
+from validation.engines.plugins import OWN
+from validation.engines.proving.pieces import taken
+from validation.engines.proving.shrink import Case, smallest
+from validation.engines.truth.arithmetic import Exact
+from validation.engines.truth.dynamics import Point, Truth, digits
+from validation.engines.verdicts import judge
+from validation.engines.workers import Job, answered
+
+TREES = acting.trees()
+SENSED = sensed.trees()
+# (engine, tree, a step that is asked for, one that leaves out what the tree is about).
+FAULTS = [
+    ("mujoco", "dampers on hinges", "step_dampers_implicit", "step_semi_implicit"),
+    ("mujoco", "springs on hinges", "step_stiffness_implicit_lone", "step_forces_implicit"),
+    ("mujoco", "servos of position and velocity", "step_forces_implicit", "step_dampers_implicit"),
+    ("mujoco", "a damped free body", "step_velocities_implicit", "step_dampers_implicit"),
+    ("exudyn", "dampers on hinges", "step_rk4", "step_midpoint"),
+]
+
+
+def _judged(engine: str, tree: Tree, *functions: str) -> dict[str, Judged]:
+    job = Job(engine, tree, tuple(functions), SEED)
+    return {one.cell.function: one for one in judged(OWN[engine], job, Truths())}
+
+
+def _truth(tree: Tree) -> tuple[Truth, Point]:
+    (answer,) = answered(Job("mujoco", tree, ("sizes",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    return Truth(tree, answer.layout), Point.of(answer.state)
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "exudyn"])
+@pytest.mark.parametrize("name", TREES)
+def test_engines_are_right_about_trees_that_forces_act_on(engine: str, name: str) -> None:
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], TREES[name])}
+    assert set(verdicts.values()) <= {"right", "not offered"}
+    assert engine == "exudyn" or set(verdicts.values()) == {"right"}
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pinocchio"])
+@pytest.mark.parametrize("name", SENSED)
+def test_sensors_read_what_they_document(engine: str, name: str) -> None:
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], SENSED[name])}
+    assert "accelerometers" in verdicts and "gyroscopes" in verdicts
+    assert set(verdicts.values()) <= {"right", "not offered"}
+
+
+def test_a_sensor_that_forgets_where_it_stands_is_a_red_cell() -> None:
+    names = ("accelerometers", "velocimeters", "wrench_sensors", "gyroscopes")
+    tree = SENSED["sensors on hinges"]
+    at_origins = replace(tree, sensors=tuple(end._replace(p=ORIGIN) for end in tree.sensors))
+    want, given = (_judged("mujoco", one, *names) for one in (tree, at_origins))
+    verdicts = []
+    for name in names:
+        expected = want[name].want
+        assert expected is not None
+        verdicts.append(judge("planted", tree, name, np.asarray(given[name].answer.value), expected).verdict)
+    assert verdicts == ["wrong", "wrong", "wrong", "right"]
+
+
+@pytest.mark.parametrize("kind", ["revolute oblique", "ball", "free", "three hinges"])
+def test_mujoco_steps_as_it_documents(kind: str) -> None:
+    names = [name for name in OWN["mujoco"].functions if name in STEPS]
+    assert {cell.verdict for cell in cells(OWN["mujoco"], tree_of(kind), names)} == {"right"}
+
+
+@pytest.mark.parametrize(("engine", "name", "asked_for", "given"), FAULTS)
+def test_a_step_that_leaves_a_part_out_is_a_red_cell(engine: str, name: str, asked_for: str, given: str) -> None:
+    steps = _judged(engine, TREES[name], asked_for, given)
+    want = steps[asked_for].want
+    assert want is not None
+    cell = judge("planted", TREES[name], asked_for, np.asarray(steps[given].answer.value), want)
+    assert cell.verdict == "wrong"
+
+
+@pytest.mark.parametrize("name", ["actuators on tendons", "tendon over points"])
+def test_moment_arms_are_the_derivatives_of_lengths(name: str) -> None:
+    truth, s = _truth(TREES[name])
+
+    def excess(t: Truth, s: Point) -> Exact:
+        lengths = t.kinematics.tangent(lambda q: np.array([length for length, _ in t.own.lines(q)]), s.q)
+        return lengths - np.array([arms for _, arms in t.own.lines(s.q)])
+
+    assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
+
+
+def test_methods_of_order_four_agree_to_that_order_in_coordinates_and_on_their_manifold() -> None:
+    truth, s = _truth(tree_of("ball"))
+    one, other = (truth.value(STEPS[name].truth, s) for name in ("step_rk4", "step_rk4_manifold"))
+    assert 0.0 < np.max(np.abs(digits(one - other))) < 10 * STEP**5
+
+
+def test_an_engine_is_asked_for_no_forces_that_it_does_not_know() -> None:
+    assert asked(OWN["pinocchio"], TREES["motors"]) == ()
+    assert "tendon_arms" not in asked(OWN["mujoco"], TREES["motors"])
+    assert not {"passive_forces", "actuator_forces"} & set(asked(OWN["mujoco"], tree_of("ball")))
+
+
+def test_a_fault_of_forces_is_shrunk_to_the_part_that_shows_it() -> None:
+    tree = TREES["springs and dampers on branches"]
+    (answer,) = answered(Job("mujoco", tree, ("sizes",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    case = Case(tree, taken(answer.layout, answer.state))
+    least = smallest(case, lambda one: any(joint.damping for link in one.tree.links for joint in link.joints))
+    assert len(least.tree.links) == 1 and least.tree.forces == {"dampers"}

@@ -1,0 +1,124 @@
+"""Scores of faults, of synthetic cells; and what other test suites print."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from validation.engines.verdicts import Cell, Verdict
+from validation.faults.entry import KINDS, Fault, faults
+from validation.faults.environment import NotAskedError
+from validation.recall import suites
+from validation.recall.report import TOPIC
+from validation.recall.scoring import FAMILIES, LOST, Names, Scored, has, scored
+
+FAULT = replace(
+    faults()["dart_inverse_mass_of_weld"],
+    name="some",
+    engine="toy",
+    wrong="1.0",
+    right="2.0",
+    kind="dynamics",
+    fault="getInvMassMatrix loses what zebras transmit.",
+    script="import toy\nprint(toy.getInvMassMatrix())",
+)
+NAMES = Names({"mass_matrix_inverse": "getInvMassMatrix", "bias": "h"}, {"mjcf: plain": "mjcf", "urdf: plain": "urdf"})
+
+
+def cells(**verdicts: Verdict) -> list[Cell]:
+    """Cells on one tree; "__" in a name of a function is a tree's name after it."""
+    named = {name.partition("__"): verdict for name, verdict in verdicts.items()}
+    return [Cell("toy", model or "chain", function, verdict) for (function, _, model), verdict in named.items()]
+
+
+def score(wrong: list[Cell], right: list[Cell] | None, fault: Fault = FAULT, explained: str = "") -> Scored:
+    return scored(fault, wrong, right, NAMES, lambda group: explained)
+
+
+@pytest.mark.parametrize(
+    "wrong, right, wanted, names",
+    [
+        ({"mass_matrix_inverse": "wrong"}, {"mass_matrix_inverse": "right"}, "hit", "function"),
+        ({"bias": "wrong"}, {"bias": "right"}, "hit", "family"),
+        ({"link_poses": "wrong"}, {"link_poses": "right"}, "miss", ""),
+        ({"sizes__a zebra": "crashes"}, {}, "hit", "words"),
+        ({"sizes__getInv zebra_like": "crashes"}, {}, "miss", ""),
+        ({"mass_matrix_inverse": "wrong"}, {"mass_matrix_inverse": "wrong"}, "miss", ""),
+        ({"mass_matrix_inverse": "wrong"}, {"mass_matrix_inverse": "imprecise"}, "hit", "function"),
+        ({"mass_matrix_inverse": "imprecise"}, {"mass_matrix_inverse": "right"}, "half a hit", "function"),
+        ({"mass_matrix_inverse": "plug-in"}, {"mass_matrix_inverse": "right"}, "miss", ""),
+        ({"bias": "refuses"}, {"bias": "right"}, "miss", ""),
+        ({"bias": "wrong"}, None, "miss", "family"),
+        ({"mass_matrix_inverse": "raises"}, None, "hit", "function"),
+    ],
+)
+def test_a_score_follows_from_what_is_new_at_the_wrong_release(
+    wrong: dict[str, Verdict], right: dict[str, Verdict] | None, wanted: str, names: str
+) -> None:
+    fault = FAULT if right is not None else replace(FAULT, right=None)
+    found = score(cells(**wrong), None if right is None else cells(**right), fault)
+    assert (found.score, [one.names for one in found.groups]) == (wanted, [names] if names or found.groups else [])
+
+
+def test_a_hit_among_twenty_groups_is_half_a_hit() -> None:
+    many = [Cell("toy", f"tree {k}", f"link_poses:{k}", "wrong") for k in range(LOST)]
+    found = score([*many, *cells(mass_matrix_inverse="wrong")], [])
+    assert found.score == "half a hit" and "lost among" in found.why and found.groups[0].names == "function"
+
+
+def test_a_reader_is_seen_in_files_of_its_format() -> None:
+    reader = replace(FAULT, kind="reader", fault="It reads zebras.", script='import toy\ntoy.read("<mujoco/>")')
+    for model, wanted in (("mjcf: plain", "hit"), ("urdf: plain", "miss"), ("chain", "miss")):
+        assert score([Cell("toy", model, "bias", "wrong")], [], reader).score == wanted
+
+
+def test_what_is_red_at_the_right_release_alone_is_a_false_alarm_unless_it_is_explained() -> None:
+    seen, alarm = cells(mass_matrix_inverse="wrong", bias="right"), cells(mass_matrix_inverse="right", bias="wrong")
+    assert len(score(seen, alarm).alarms) == 1 and not score(seen, alarm, explained="known").alarms
+    assert not score(cells(bias="refuses"), alarm).alarms, "the wrong release gave no answer to compare with"
+
+
+def test_a_release_has_a_fault_until_the_first_that_is_right() -> None:
+    assert has(FAULT, "1.9.12") and not has(FAULT, "2.0") and not has(FAULT, "10.0")
+    assert has(replace(FAULT, right=None), "99")
+
+
+def test_every_class_has_a_family() -> None:
+    assert set(FAMILIES) == set(KINDS)
+
+
+def test_a_suite_says_what_is_red_line_by_line() -> None:
+    text = "1..3\nok 1 - masses\nnot ok 2 - test_getInvMassMatrix\nPASSED test_a.py::test_b\nFAILED a.py::c - no\nx ok"
+    found = {cell.function: cell.verdict for cell in suites.read(text, "toy")}
+    wanted = {"masses": "right", "test_getInvMassMatrix": "wrong", "test_a.py::test_b": "right", "a.py::c": "wrong"}
+    assert found == wanted
+
+
+def test_a_suite_is_run_with_the_release_s_python() -> None:
+    python = Path(sys.executable)
+    command = "{python} -c \"print('not ok {engine} {version} getInvMassMatrix')\""
+    wrong = suites.asked(command, python, "toy", "1.0")
+    assert [cell.function for cell in wrong] == ["toy 1.0 getInvMassMatrix"]
+    found = scored(FAULT, wrong, [], Names(), lambda group: "", suites.apart)
+    assert (found.score, found.groups[0].names) == ("hit", "function")
+    for silent in ("{python} -c pass", "no-such-program"):
+        with pytest.raises(NotAskedError, match="prints 'ok NAME'"):
+            suites.asked(silent, python, "toy", "1.0")
+
+
+def test_the_report_counts_each_half() -> None:
+    stated = {name: getattr(FAULT, name) for name in ("name", "engine", "wrong", "right", "kind", "thread")}
+    spent = {"what": FAULT.fault, "minutes": 0.5, "memory": 90, "disk": 300, "cells": 5}
+    hit = score(cells(bias="wrong"), cells(bias="right"))
+    rows = [
+        stated | spent | hit.row() | {"frozen": True},
+        stated | spent | Scored("miss", "nothing new is red").row() | {"name": "other", "frozen": True},
+        stated | spent | Scored("not asked", "no wheels").row() | {"name": "third", "frozen": False, "right": None},
+    ]
+    data = {"faults": rows, "failures": {}, "unfinished": [], "suite": "", "smoke": False, "half": "all"}
+    report = TOPIC.compose(data)
+    assert report.ok is False and "1 of 2 of the frozen half; 0 of 1 of the working half" in report.summary
+    assert TOPIC.compose(data | {"faults": rows[:1]}).ok is True

@@ -1,0 +1,77 @@
+"""MuJoCo's steps, forces of a model's own, and sensors: what is asked of trees that move by themselves or measure."""
+
+from __future__ import annotations
+
+from ...interface import STEP, Steps
+from ..writing.source import Way
+
+Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
+QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
+QVA = f"{QV}d.qacc[:] = a\n"
+_MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
+SQUARE = "value = np.zeros((m.nv, m.nv))\n"
+# Options of a model of its own: what others are asked stays as it was.
+COPY = "from copy import copy\nn = copy(m)\n"
+EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
+
+
+def transition(step: float, settings: str = "") -> str:
+    """Derivatives of Euler's step, with options of a model of its own."""
+    return (
+        f"{COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
+        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\n"
+    )
+
+
+def _step(integrator: str, settings: str = "") -> Way:
+    """A step of mj_step, with options of a model of its own."""
+    code = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
+    state = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau"
+    return Way(f"mj_step, {integrator}", f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]")
+
+
+WAYS = {
+    "step_dampers_implicit": _step("mjINT_EULER"),
+    "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
+    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
+    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+    "step_dampers_implicit_derivative": Way(
+        "mjd_transitionFD", f"{transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
+    ),
+    # Tendons and actuators that couple joints are solved for by iterations.
+    "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
+    "step_rk4_manifold": _step("mjINT_RK4"),
+    # About the mass centre of the whole mechanism that the body is in.
+    "joint_wrenches": Way(
+        "mj_rnePostConstraint: cfrc_int",
+        f"""{QVA}mj.mj_rnePostConstraint(m, d)
+value = []
+for b in bs:
+    moment, force = d.cfrc_int[b].reshape(2, 3)
+    R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
+    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
+    ),
+    "subtree_momenta": Way(
+        "mj_subtreeVel",
+        f"{QV}mj.mj_subtreeVel(m, d)\n"
+        "value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]",
+    ),
+    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in sensed]"),
+    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in sensed]"),
+    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in sensed]"),
+    "wrench_sensors": Way(
+        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
+    ),
+    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),
+    "passive_forces": Way("qfrc_passive", f"{QV}value = d.qfrc_passive"),
+    "tendon_lengths": Way("ten_length", f"{QV}value = d.ten_length"),
+    "tendon_arms": Way("ten_J", f"{QV}value = d.ten_J.reshape(-1, m.nv)"),
+    "actuator_lengths": Way("actuator_length", f"{QV}value = d.actuator_length"),
+    "actuator_arms": Way(
+        "actuator_moment",
+        f"{QV}value = np.zeros((m.nu, m.nv))\n"
+        "mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
+    ),
+    "actuator_forces": Way("actuator_force", f"{QV}value = d.actuator_force"),
+    "actuated_forces": Way("qfrc_actuator", f"{QV}value = d.qfrc_actuator"),
+}

@@ -1,0 +1,174 @@
+"""Every fault's wrong and right release, asked by the unchanged harness or by another suite, and scored."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..engines.causes.cause import stated as causes
+from ..engines.causes.grouping import Group
+from ..engines.models.readers import Reading
+from ..engines.releases import Release, opened, plugins_of
+from ..engines.study import SMOKE, about, in_turn, questions
+from ..engines.verdicts import Cell
+from ..faults.entry import Fault, faults, frozen
+from ..faults.environment import NotAskedError, default_folder, kept, size_of
+from ..reporting.command import Run, known
+from ..reporting.record import Data
+from . import suites
+from .scoring import Names, Scored, grouped, has, named, scored
+
+NO_PLUGIN = "the harness has no plug-in for it"
+
+
+@dataclass
+class Asked:
+    """What one release answered.
+
+    Attributes:
+        cells: Cells, under the names of plug-ins.
+        natives: Name of a function -> what the engine calls it.
+        seconds: What it took, with the truths that it was held to.
+        memory: The most that its process held [MB].
+        disk: Size of its environment [MB].
+        words: Why it was not asked; "" where it was.
+    """
+
+    cells: list[Cell] = field(default_factory=list)
+    natives: dict[str, str] = field(default_factory=dict)
+    seconds: float = 0.0
+    memory: float = 0.0
+    disk: float = 0.0
+    words: str = ""
+
+
+def measure(
+    run: Run,
+    names: Annotated[list[str] | None, typer.Argument(metavar="[NAMES]...", help="Only these faults.")] = None,
+    half: Annotated[
+        bool | None, typer.Option("--frozen/--working", help="The half that judges the harness, or the other.")
+    ] = None,
+    smoke: Annotated[bool, typer.Option("--smoke", help="At most a minute for each release.")] = False,
+    suite: Annotated[
+        str, typer.Option(metavar="COMMAND", help="Score this test suite in place of ours: {python} is the release's.")
+    ] = "",
+    environments: Annotated[Path | None, typer.Option(help="Folder of releases' environments.")] = None,
+) -> Data:
+    """Score the harness, or another test suite, by real faults of engines' releases: which does it see?
+
+    Each release is installed in an environment of its own, which is kept. The harness is the same for all: what it says
+    of a fault's wrong release is held against what it says of the right one.
+    """
+    held = frozen()
+    of_half = [name for name in faults() if half is None or (name in held) is half]
+    chosen = [faults()[name] for name in known(names, of_half, "NAMES", "fault here")]
+    by_engine: dict[str, list[Fault]] = {}
+    for fault in chosen:
+        by_engine.setdefault(fault.engine, []).append(fault)
+    folder = environments or default_folder()
+    run.writes = run.asked or not (names or suite or smoke)
+
+    def data(done: Any) -> Data:
+        rows = [row for engine in done.results.values() for row in engine]
+        asked = {"suite": suite, "smoke": smoke, "half": {None: "all", True: "frozen", False: "working"}[half]}
+        return {"faults": rows, "failures": done.failures, "unfinished": list(done.unfinished), **asked}
+
+    run.expect(len(chosen), "asking releases")
+
+    def of_engine(engine: str) -> list[dict[str, Any]]:
+        own = by_engine[engine]
+        pairs = ((fault, version) for fault in own for _, version in _releases(fault))
+        wanted = list(dict.fromkeys(Release(engine, version, tuple(fault.requires)) for fault, version in pairs))
+        said = _by_suite(suite, wanted, folder) if suite else _by_harness(wanted, folder, smoke)
+        rows = [_row(fault, said, bool(suite)) | {"frozen": fault.name in held} for fault in own]
+        run.advance(engine, len(own))
+        return rows
+
+    return data(run.each(list(by_engine), of_engine, lambda done: run.save(data(done)) if run.writes else None))
+
+
+def _by_suite(command: str, wanted: Sequence[Release], folder: Path) -> dict[Release, Asked]:
+    """What another suite says of releases."""
+    said = {}
+    for release in wanted:
+        begun, one = time.monotonic(), Asked()
+        try:
+            python = kept(folder, release.requirements)
+            one.disk, begun = size_of(python), time.monotonic()
+            one.cells = suites.asked(command, python, release.package, release.version)
+        except NotAskedError as error:
+            one.words = str(error)
+        one.seconds = time.monotonic() - begun
+        said[release] = one
+    return said
+
+
+def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Release, Asked]:
+    """What the matrix says of releases of one engine, all asked together: they share the truths."""
+    plugins = plugins_of(wanted[0].package)
+    if not plugins:
+        return {release: Asked(words=NO_PLUGIN) for release in wanted}
+    said = {release: Asked() for release in wanted}
+    with opened([(plugin, release) for release in wanted for plugin in plugins], folder) as reach:
+        for release, words in reach.failures.items():
+            said[release].words = words
+        every = questions()
+        asked = {name: every[name] for name in in_turn()} if smoke else every
+        cells, _ = about(
+            reach.plugins,
+            asked,
+            reach.worker,
+            str,
+            lambda: not smoke or max(reach.alone().values(), default=0.0) < SMOKE,
+        )
+        seconds = reach.alone()
+        for label, release in reach.release.items():
+            one, (name, process) = said[release], reach.processes[label]
+            one.cells += [replace(cell.cell, engine=name) for cell in cells if cell.cell.engine == label]
+            one.natives |= reach.plugins[label].functions
+            one.seconds += seconds[label]
+            one.memory = max(one.memory, process.memory())
+            one.disk = size_of(Path(process.python(label)))
+    return said
+
+
+def _row(fault: Fault, said: Mapping[Release, Asked], by_suite: bool) -> dict[str, Any]:
+    """A fault's row of the report."""
+    sides = {side: said[Release(fault.engine, version, tuple(fault.requires))] for side, version in _releases(fault)}
+    words = "; ".join(dict.fromkeys(one.words for one in sides.values() if one.words))
+    result = Scored("not asked", words) if words else _score(fault, sides["wrong"], sides.get("right"), by_suite)
+    if words == NO_PLUGIN:
+        result = Scored("miss", NO_PLUGIN)
+    spent = {
+        "minutes": round(sum(one.seconds for one in sides.values()) / 60.0, 2),
+        "memory": round(max(one.memory for one in sides.values())),
+        "disk": round(sum(one.disk for one in sides.values())),
+        "cells": sum(len(one.cells) for one in sides.values()),
+    }
+    stated = {name: getattr(fault, name) for name in ("name", "engine", "wrong", "right", "kind", "thread")}
+    return stated | {"what": fault.fault} | result.row() | spent
+
+
+def _releases(fault: Fault) -> list[tuple[str, str]]:
+    return [(side, version) for side, version in (("wrong", fault.wrong), ("right", fault.right)) if version]
+
+
+def _score(fault: Fault, wrong: Asked, right: Asked | None, by_suite: bool) -> Scored:
+    """The score of a fault whose releases were asked."""
+    forms = {} if by_suite else {name: one.form for name, one in questions().items() if isinstance(one, Reading)}
+    names, version = Names(wrong.natives, forms), fault.right or fault.wrong
+
+    def explained(group: Group) -> str:
+        """The cause of a group that is new at the right release: stated of the engine, or another fault of the set."""
+        cause = next((cause for cause in causes() if all(map(cause.explains, group.cells))), None)
+        others = (one for one in faults().values() if one.engine == fault.engine and one is not fault)
+        other = next((one for one in others if has(one, version) and named(one, group, names)), None)
+        return cause.what if cause else other.name if other else ""
+
+    cells = None if right is None else right.cells
+    return scored(fault, wrong.cells, cells, names, explained, suites.apart if by_suite else grouped)
