@@ -267,15 +267,62 @@ def test_what_is_refused() -> None:
         sf.simulate(moment, q, v, events={"grab": sf.Event("t", action={"grasp.x.held": 3, "grip": 1})})
     idle = sf.simulate(model, q, v, 0.01, events={"idle": sf.Event("t - 1e-3", action={"grip": 0}, restitution=0.5)})
     assert idle.outcome.kind == "input failed" and "no constraint engages" in idle.outcome.reason
-    event = {"dock": sf.Event("t - 1e-3", action={"grip": 1})}
-    with pytest.raises(sf.SymofrosError, match="'dock' has an action"):
-        sf.Stepper(model, events=event, dt=1e-3)
     with pytest.raises(sf.SymofrosError, match="engaged = 2"):
         model.with_parameters(grip=2.0)
     edge = slide(constraints=(sf.KnifeEdge("edge", ("body", None), "x"),))
     for switch, said in ((sf.Switch("egde", 1), "did you mean 'edge'"), (sf.Switch("edge", 1, "moment"), "no pose")):
         with pytest.raises(sf.DescriptionError, match=said):
             sf.compile(sf.System("s", edge.bodies, constraints=edge.constraints, switches=(switch,)))
+
+
+_PLAN = {
+    "grab": sf.Event("t - 0.0203", action={"grip": 1}, once=True),
+    "drop": sf.Event("t - 0.04", action={"grip": "1 - grip", "dq1": 0.1}),
+}
+
+
+@pytest.mark.parametrize("method", ["rk4", "generalized_alpha", "dopri5"])
+def test_a_stepper_acts_as_a_run_does(method: str) -> None:
+    """To the last bit by fixed steps, with the same events; states are kept and put back with the modes in them."""
+    model = model_of(pose="moment")
+    q, v = tumbling(model)
+    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": _PLAN, "rtol": 1e-10, "atol": 1e-12}
+    run = sf.simulate(model, q, v, 0.06, **options)
+    stepper = sf.Stepper(model, **options)
+    stepper.reset(q, v)
+    stepper.step(steps=30)
+    held, par = stepper.save(), stepper.par.copy()
+    assert par[model.names.par.index("grip")] == 1.0 and len(stepper.events) == 1
+    for other in (stepper, stepper.copy()):
+        while other.t < 0.06 - 1e-9:
+            assert other.step()
+        assert other.outcome.ok and [found.name for found in other.events] == ["grab", "drop"]
+        if method == "dopri5":
+            assert np.abs(other.q - run.q[-1]).max() < 1e-8
+        else:
+            assert np.array_equal(other.q, run.q[-1]) and np.array_equal(other.v, run.v[-1])
+            pairs = zip(other.events, run.events, strict=True)
+            assert all(np.array_equal(a.v_after, b.v_after) and a.energy_lost == b.energy_lost for a, b in pairs)
+    end = stepper.q.copy()
+    stepper.restore(held)
+    assert np.array_equal(stepper.par, par) and len(stepper.events) == 1
+    for _ in range(30):
+        stepper.step()
+    assert np.array_equal(stepper.q, end)
+    stepper.reset(q, v)
+    assert stepper.par[model.names.par.index("grip")] == 0.0 and stepper.step(steps=60)
+    assert [found.name for found in stepper.events] == ["grab", "drop"]
+
+
+def test_what_a_stepper_cannot_do_ends_its_motion() -> None:
+    """As it ends a run, in the same words."""
+    model, q, v = docking()
+    for action in ({"grip": 1}, {"grip": 0.5}, {"dq1": "1/grip"}):
+        events = {"dock": sf.Event("t - 1e-3", action=action)}
+        stepper = sf.Stepper(model, dt=1e-4, events=events)
+        stepper.reset(q, v)
+        assert not stepper.step(steps=50)
+        assert stepper.outcome == sf.simulate(model, q, v, 0.01, dt=1e-4, events=events).outcome
 
 
 def test_switches_are_kept_by_files(tmp_path: Any) -> None:

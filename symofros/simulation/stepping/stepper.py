@@ -81,6 +81,10 @@ class Stepper(BoundRun):
         if self.actions is not None:
             self.run.actions.at_once = _AT_ONCE * span
 
+    def ignore_event(self, which: int) -> None:
+        """An event is not looked for any more."""
+        self.system.event_terminal[which] = -1
+
     def act(self) -> tuple[int, list[Met]]:
         """Do the actions of the events at which the run has been cut: a Status, 0 where it goes on, and the events."""
         status = int(self.native.sym_run_act(self.run))
