@@ -130,7 +130,7 @@ class HandRun:
         self.run = run = Stepper(model, settings.method, inputs, events, par)
         settings.apply(run)
         run.set_span(settings.dt)
-        run.run.acts = 1
+        run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
         self._given = par
         self.held = held_by_hand(model, inputs, fixed)
