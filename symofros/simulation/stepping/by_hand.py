@@ -129,7 +129,7 @@ class HandRun:
         self.settings = settings
         self.run = run = Stepper(model, settings.method, inputs, events, par)
         settings.apply(run)
-        run.set_span(settings.dt)
+        run.set_span(settings.span)
         run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
         self._given = par
@@ -317,7 +317,7 @@ class HandRun:
             settings = replace(settings, dt=0.0)
         again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par)
         settings.apply(again)
-        again.set_span(self.settings.dt)
+        again.set_span(self.settings.span)
         for which in self.start.spent:
             again.ignore_event(which)
         return again, settings
