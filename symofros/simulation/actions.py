@@ -42,7 +42,8 @@ class Actions:
 
     Attributes:
         assignments: In the order in which they are stated.
-        kernel: Formulas, compiled: of what says whether constraints hold, then of the assignments.
+        formulas: Of what says whether constraints hold, then of the assignments.
+        kernel: The same, compiled.
 
     Raises:
         UnknownNameError: An action names no run-time parameter or speed, or a formula no name of the model.
@@ -58,10 +59,10 @@ class Actions:
                 what, rule = f"event '{events[i].name}': its action sets '{name}' twice", "one value for each"
                 raise SymofrosError(Problem(what, ", ".join(events[i].action or {}), rule, "leave one of them out"))
             self.assignments.append(place)
-        formulas: list[Any] = [switch.engaged for switch in model.record.switches]
-        formulas += [(events[i].action or {})[name] for i, name in stated]
+        self.formulas: list[Any] = [switch.engaged for switch in model.record.switches]
+        self.formulas += [(events[i].action or {})[name] for i, name in stated]
         try:
-            self.kernel: Kernel = model.formulas(formulas, derivatives=False)
+            self.kernel: Kernel = model.formulas(self.formulas, derivatives=False)
         except SymofrosError as error:
             raise next(_wrong_formulas(model, events, stated), error) from None
 
