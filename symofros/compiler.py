@@ -203,8 +203,7 @@ class Compilation:
 
     def formulas_source(self, formulas: Sequence[Any], c_name: str) -> str:
         """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
-        program = self.programs.of_stated(self.programs.stated(formulas), derivatives=False)
-        return model_source(program, self.record, GENERATOR, None, c_name)
+        return self._units(None).formulas_source(formulas, c_name)
 
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""

@@ -19,8 +19,10 @@ from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
+from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
+from symofros.mechanics.dynamics.formulas import Value, formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
@@ -29,7 +31,7 @@ from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.cuda.device_code import DeviceCode
-from symofros.runtime.functions import Key
+from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
 
 
@@ -87,10 +89,21 @@ class UnitCompiler:
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
-        values = self._programs.stated(formulas)
-        return self._unit(
-            (values, derivatives), "formulas", lambda: self._programs.of_stated(values, derivatives)
-        )
+        values = self._stated(formulas)
+        return self._unit((values, derivatives), "formulas", lambda: self._of_stated(values, derivatives))
+
+    def formulas_source(self, formulas: Sequence[Any], c_name: str) -> str:
+        """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
+        return model_source(self._of_stated(self._stated(formulas), False), self._record, GENERATOR, None, c_name)
+
+    def _stated(self, formulas: Sequence[Any]) -> list[tuple[Value, int]]:
+        """Values of formulas, and how often each is differentiated by t."""
+        rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
+        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates])
+        return [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
+
+    def _of_stated(self, values: Sequence[tuple[Value, int]], derivatives: bool) -> Program:
+        return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.
