@@ -53,9 +53,9 @@ class Event(metaclass=CheckedCalls):
 
     @property
     def cut(self) -> int:
-        """1: a crossing ends the run; 2: the integration, until the action is done; 0, -2: neither, -2 if it counts once.
+        """What a crossing does, as sym_system's event_terminal has it at first.
 
-        As sym_system's event_terminal has it at first.
+        1: it ends the run; 2: the integration, until the action is done; 0: neither; -2: neither, and counts once.
         """
         return 1 if self.terminal else 2 if self.action else -2 * self.once
 

@@ -326,9 +326,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     listed = ", ".join(names[:8]) or ("all inputs are laws and numbers" if model.nu else "there are no inputs")
     listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
-    raise ShapeError(
-        Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy)
-    )
+    raise ShapeError(Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy))
 
 
 def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:

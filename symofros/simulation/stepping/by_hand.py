@@ -316,7 +316,8 @@ class HandRun:
         settings = replace(self.settings, t0=self.start.t, t_end=t_end, every=1)
         if self.settings.adaptive:
             settings = replace(settings, dt=0.0)
-        again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par)
+        plan = replace(plan, signals=[*plan.signals, *signals])
+        again = Stepper(run.model, run.method, plan, run.events, self.start.par)
         settings.apply(again)
         again.set_span(self.settings.span)
         for which in self.start.spent:

@@ -127,8 +127,6 @@ def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show:
             t, q_now, v_now = stepper.state
             if met is not None:
                 recorded.events.append(Met(met, t, q_now, v_now))
-                if stepper.events[met].once:
-                    stepper.ignore_event(met)
             final = met is not None and stepper.events[met].terminal
             if final:
                 recorded.status, run.terminal_event = Status.TERMINAL_EVENT, met
