@@ -23,7 +23,7 @@ from symofros.generator.codegen.tape import machine_text, tape_functions
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
-from symofros.mechanics.dynamics.formulas import Value, formula_program, stated_formulas
+from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.background import BackgroundCompilation
@@ -115,13 +115,13 @@ class UnitCompiler:
         """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
         return model_source(self._of_stated(self._stated(formulas), False), self._record, GENERATOR, None, c_name)
 
-    def _stated(self, formulas: Sequence[Any]) -> list[tuple[Value, int]]:
+    def _stated(self, formulas: Sequence[Any]) -> list[tuple[Any, int]]:
         """Values of formulas, and how often each is differentiated by t."""
         rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates])
         return [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
 
-    def _of_stated(self, values: Sequence[tuple[Value, int]], derivatives: bool) -> Program:
+    def _of_stated(self, values: Sequence[tuple[Any, int]], derivatives: bool) -> Program:
         return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:

@@ -80,7 +80,7 @@ def _lines(
     turning = [switch for switch in switches if switch.rotation]
     assignments = actions.assignments if actions else []
     places = [
-        f"{{{a.event}, {int(a.group == 'v')}, {a.index}, {len(switches) + k}}}" for k, a in enumerate(assignments)
+        f"{{{a.event}, {int(a.group == 'v')}, {a.entry}, {len(switches) + k}}}" for k, a in enumerate(assignments)
     ]
     arrays = {
         "direction": [event.sign for event in events],
