@@ -171,7 +171,7 @@ def plant_text(material: Moving) -> str:
         f"    &{name}_tableau, {step.dt!r}, {step.rtol!r}, {step.atol!r},",
         f"    {_beam_fields(name, material.beams)}, {_limit(step.beam_limit)},",
         f"    {name}_violated, {name}_conditions, {len(record.quaternion_inputs)}, {name}_quaternion_inputs"
-        + (f", &{name}_event_plan" if material.events else ""),
+        + f", {f'&{name}_event_plan' if material.events else 'NULL'}",
         "};",
         "",
         f"SYM_EXPORT const sym_plant *{name}_plant(void);",
