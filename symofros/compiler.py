@@ -21,6 +21,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache, cached_property, partial
 from pathlib import Path
+from typing import Any
 
 from symofros.base.arguments import check_argument
 from symofros.base.options import Options
@@ -205,6 +206,10 @@ class Compilation:
             lanes: Options of batches by vectors; None: batches are loops over states.
         """
         return model_source(self.program, self.record, GENERATOR, lanes, c_name)
+
+    def formulas_source(self, formulas: Sequence[Any], c_name: str) -> str:
+        """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
+        return self._units(None).formulas_source(formulas, c_name)
 
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""

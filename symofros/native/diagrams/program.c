@@ -56,7 +56,9 @@ static void sym_program_allocate_part(sym_program_instance *instance, sym_arena 
     s->n_events = sym_bind_function(arena, &s->events, sym_find(model, "formulas", NULL), part->pre, part->work, &point)
                       ? p->n_crossings
                       : 0;
-    s->event_direction = p->directions, s->event_terminal = p->terminal;
+    s->event_direction = p->directions;
+    s->event_terminal = sym_allocate_bytes(arena, n * sizeof *s->event_terminal);
+    if (arena->base != NULL) memcpy(s->event_terminal, p->terminal, n * sizeof *s->event_terminal);
     r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n), r->event_capacity = p->n_crossings;
     r->event_t = sym_allocate(arena, n), r->event_q = sym_allocate(arena, n * (size_t)model->nq);
     r->event_v = sym_allocate(arena, n * (size_t)model->nv);

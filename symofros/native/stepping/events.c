@@ -6,7 +6,7 @@ static int32_t sym_event_values(sym_run *r, double *values) {
     int32_t i;
     if (!s->events_free_of_inputs && sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->events);
-    for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] < 0 ? 1.0 : s->events.out[0][i];
+    for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] == -1 ? 1.0 : s->events.out[0][i];
     return 0;
 }
 
@@ -24,10 +24,13 @@ static int32_t sym_event_values_within_step(void *data, double x, double *values
     return status != 0 ? status : sym_event_values(step->run, values);
 }
 
-/* Record the evaluation point as an event. */
+/* Record the evaluation point as an event, if it is still looked for. */
 static void sym_record_event(sym_run *r, int32_t which) {
     const sym_system *s = r->system;
-    const int64_t row = r->n_event_records++;
+    const int64_t row = r->n_event_records;
+    if (s->event_terminal[which] == -1) return;
+    if (s->event_terminal[which] == -2) s->event_terminal[which] = -1;
+    ++r->n_event_records;
     r->event_t[row] = *s->t;
     r->event_index[row] = which;
     memcpy(r->event_q + row * s->nq, s->q, (size_t)s->nq * sizeof(double));
@@ -123,9 +126,9 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     sym_event_search search;
     double last_x = 2.0;
     int32_t status;
-    *stop_x = 2.0, r->terminal_event = -1;
+    *stop_x = 2.0, r->terminal_event = -1, r->first_met = r->n_event_records;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
-    sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h), r->steps);
+    sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h), r->steps < r->n_from ? 0 : r->steps - r->n_from);
     search.evaluate = sym_event_values_within_step, search.data = &step;
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
     status = sym_event_search_begin(&search);
