@@ -87,14 +87,14 @@ class UnitCompiler:
         names, lanes = f"{', '.join(chosen)} by vectors", SHARED_PARAMETERS
         return self._compile((requests, lanes, chosen), names, program, self._toolchain, lanes)
 
-    def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
+    def formulas(self, formulas: Sequence[Any], derivatives: bool, reactions: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
         rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
-        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates])
+        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates], reactions)
         values = [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
 
         def program() -> Program:
-            return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
+            return run_passes(formula_program(self._programs.equations(), values, derivatives))
 
         return self._unit((values, derivatives), "formulas", program)
 

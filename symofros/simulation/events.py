@@ -17,7 +17,10 @@ class Event(metaclass=CheckedCalls):
     """A zero crossing.
 
     Attributes:
-        formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
+        formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression. Also of the
+            multipliers of constraints ("lam.grasp.x"), their wrenches on the second frame in world axes
+            ("wrench.grasp.fx" to ".mz") and the wrenches that joints transmit to their bodies in body axes
+            ("reaction.q1.fx").
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
         name: ArrayLike by the mapping it stands in.

@@ -132,6 +132,7 @@ typedef struct sym_system {
     int32_t held_anew; /* 1: the caller has changed u_constant at the present state; a step's end clears it */
     double step_end, first_stage, last_stage;
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
+    int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
 
 typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 19 } sym_event_sizes;

@@ -143,11 +143,14 @@ class BoundRun:
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
         system.event_terminal = memory.own("int32_t[]", [int(event.cuts) for event in events])
+        if events:
+            formulas = [event.formula for event in events]
+            self._bind("events", self.model.formulas(formulas, derivatives=False, reactions=True))
+            system.events_of_reactions = int("lam" in dict(self.kernels["events"].signature.inputs))
         if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
             written, names = " ".join(str(event.formula) for event in events), self.model.names
-            system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))
-        if events:
-            self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
+            needs_inputs = system.events_of_reactions or any(name in written for name in {*names.u} - {*names.q})
+            system.events_free_of_inputs = int(not needs_inputs)
 
     def _bind_functions(self) -> None:
         """The model's functions, each in the slot of its name."""
