@@ -132,6 +132,8 @@ typedef struct sym_system {
     int32_t held_anew; /* 1: the caller has changed u_constant at the present state; a step's end clears it */
     double step_end, first_stage, last_stage;
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
+    int32_t n_held;                /* coordinates that friction holds: they stay as they are, and at rest, exactly */
+    const int32_t *held_q, *held_v; /* (n_held) their indices in q and of their rates in v */
     int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
 

@@ -265,9 +265,12 @@ static void sym_load_start(sym_run *r) {
 
 /* Evaluation point <- y = (theta, v) in the chart about r->q, at time t. */
 static void sym_load_chart_state(sym_run *r, double t, const double *y) {
-    sym_retract(r->system, r->q, y, r->system->q);
-    memcpy(r->system->v, y + r->system->nv, (size_t)r->system->nv * sizeof *y);
-    *r->system->t = t;
+    sym_system *s = r->system;
+    int32_t i;
+    sym_retract(s, r->q, y, s->q);
+    memcpy(s->v, y + s->nv, (size_t)s->nv * sizeof *y);
+    for (i = 0; i < s->n_held; ++i) s->v[s->held_v[i]] = 0.0;
+    *s->t = t;
 }
 
 /* dy = f(t, y), the accelerations at the evaluation point being those of y. */
@@ -291,10 +294,12 @@ static int32_t sym_evaluate_slope(sym_run *r, double t, const double *y, double 
 /* Project the evaluation point onto the constraints. Returns 0 or a status. */
 static int32_t sym_project_point(sym_system *s) {
     const sym_call *project = &s->project; /* q, v, |phi|, rank */
+    int32_t i;
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(project);
     if (!(project->out[3][0] >= 0.0)) return SYM_SINGULAR;
     if (!(project->out[2][0] < SYM_CLOSURE_TOLERANCE)) return SYM_PROJECTION_FAILED;
+    for (i = 0; i < s->n_held; ++i) project->out[0][s->held_q[i]] = s->q[s->held_q[i]], project->out[1][s->held_v[i]] = 0.0;
     memcpy(s->q, project->out[0], (size_t)s->nq * sizeof *s->q);
     memcpy(s->v, project->out[1], (size_t)s->nv * sizeof *s->v);
     return 0;

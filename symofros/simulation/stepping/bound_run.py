@@ -12,6 +12,7 @@ from symofros.base.arrays import Array
 from symofros.errors import CompileError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
+from symofros.runtime.record import HELD
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
@@ -64,6 +65,7 @@ class BoundRun:
         self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
         self._fill_system()
         self._fill_beams()
+        self._hold()
         self._fill_inputs(inputs)
         self._fill_events()
         self._bind_functions()
@@ -85,6 +87,15 @@ class BoundRun:
         sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
         for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
             setattr(system, name, memory.zeros(size))
+
+    def _hold(self) -> None:
+        """Tell which coordinates friction holds, by their modes (docs/theory/constraints.md, section 14)."""
+        held = [one for one in self.model.record.sticking if self.par[one.mode] == HELD]
+        system, memory = self.system, self.memory
+        system.n_held = len(held)
+        system.held_q, system.held_v = (
+            memory.own("int32_t[]", [getattr(one, of) for one in held]) for of in ("q", "v")
+        )
 
     def _fill_beams(self) -> None:
         """What judges the bending of the beams, and memory for the largest of each."""

@@ -58,6 +58,7 @@ class Stepper(BoundRun):
         """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
         run, system, view = self.run, self.system, self.memory.view
         self.par, self.beams = par, self.model.beams(par)
+        self._hold()
         for slot, kernel in self.kernels.items():
             prepared = kernel.prepare(par.reshape(1, -1))
             view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
