@@ -177,13 +177,17 @@ class Functions(Arguments):
         """
         return np.zeros(0) if self._instants_of is None else self._instants_of(formulas, par, t0, t_end)
 
-    def kernel(self, name: str) -> Kernel:
-        """A function of the whole model as the thing that is called, made on demand; for loops of one's own.
+    def kernel(self, name: str, frame: str = "") -> Kernel:
+        """A function as the thing that is called, made on demand; for loops of one's own.
+
+        Args:
+            name: The function.
+            frame: Frame of a frame function.
 
         Raises:
-            UnknownNameError: There is no such function.
+            UnknownNameError: There is no such function or frame.
         """
-        return self._kernel(name, "", "a kernel is a function of the whole model; those of frames are bound")
+        return self._kernel(name, self._frame_or_none(frame), "a kernel of a function of frames is asked for with one")
 
     def has(self, name: str) -> bool:
         """Whether a function of the whole model can be called: `Options.functions` may have left it out."""

@@ -54,9 +54,9 @@ class Event(metaclass=CheckedCalls):
         return _SIGNS[self.direction]
 
     @property
-    def cuts(self) -> bool:
-        """Whether a crossing ends the integration, for good or until the action is done."""
-        return self.terminal or bool(self.action)
+    def cut(self) -> int:
+        """1: a crossing ends the run; 2: the integration, until the action is done; 0: neither."""
+        return 1 if self.terminal else 2 * bool(self.action)
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:

@@ -27,7 +27,7 @@ LOSS_LIMIT = 0.01
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
 LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
 # Share of a step within which the end of one is another's.
-_AT_MARK = 1e-9
+_AT_MARK = native_number("stepping/actions.c", "SYM_AT_MARK")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 

@@ -16,17 +16,20 @@ from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.actions import Actions, plan_actions, refuse_actions
+from symofros.simulation.actions import refuse_actions
 from symofros.simulation.events import event_notes, named_events
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
+from symofros.simulation.results.acted import failure_of, found_of, notes_of
 from symofros.simulation.results.examination.diagnosis import diagnose
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
+from symofros.simulation.stepping.met import Met
+from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 
@@ -87,13 +90,13 @@ def simulate(
         refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
-    actions = plan_actions(model, looked_for, settings.t_end - settings.t0)
+    stepper.set_span(settings.t_end - settings.t0)
     settings.apply(stepper)
     span = settings.t0, settings.t_end
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     with bar(progress, settings.t0, t_end) as show:
-        return run_to_its_end(stepper, settings, q, v, show, actions)
+        return run_to_its_end(stepper, settings, q, v, show)
 
 
 def run_to_its_end(
@@ -102,9 +105,10 @@ def run_to_its_end(
     q: Array,
     v: Array,
     show: Callable[[float], None] = lambda t: None,
-    actions: Actions | None = None,
 ) -> Trajectory:
     """Run a prepared stepper to its end; returns the trajectory with its outcome.
+
+    At actions of events the motion begins anew (docs/theory/simulation.md, section 2).
 
     Args:
         stepper: Stepper to which the settings were applied.
@@ -112,7 +116,6 @@ def run_to_its_end(
         q: First configuration (nq).
         v: First speeds (nv).
         show: Called with the time reached [s], now and then.
-        actions: Actions of the events, at which the motion begins anew (docs/theory/simulation.md, section 2).
     """
     phases, whole, ended = list[_Phase](), settings, False
     while not ended:
@@ -121,8 +124,8 @@ def run_to_its_end(
         phases.append(phase.without_first() if repeats else phase)
         phase = phases[-1]
         acts = phase.outcome.kind == "event" and any(stepper.events[i].action for i in which)
-        if actions is not None and acts:
-            ended = _act(actions, stepper, which, phases)
+        if acts:
+            ended = _act(stepper, phases)
         elif phase.outcome.kind != "finished" or stepper.t >= whole.t_end:
             break
         t, q, v = stepper.state
@@ -132,19 +135,18 @@ def run_to_its_end(
     return _joined(stepper, phases)
 
 
-def _act(actions: Actions, stepper: Stepper, which: list[int], phases: list[_Phase]) -> bool:
+def _act(stepper: Stepper, phases: list[_Phase]) -> bool:
     """Do the actions that the last phase has come to; whether the run ends with them."""
-    phase, acted = phases[-1], actions.act(stepper, which)
-    phase.met[len(phase.met) - len(which) :] = acted.found
-    phase.notes += acted.notes
-    if acted.failure is not None:
-        phase.outcome = acted.failure
+    phase, (status, met) = phases[-1], stepper.act()
+    phase.met[len(phase.met) - len(met) :] = [found_of(stepper, one) for one in met]
+    phase.notes += tuple(note for one in met for note in notes_of(one))
+    if status < 0:
+        phase.outcome = next(failure for one in met if (failure := failure_of(stepper, one)) is not None)
         return True
     phase.acted = True
-    ended = any(stepper.events[i].terminal for i in which)
-    if ended:
+    if status == Status.TERMINAL_EVENT:
         phases.append(_after(phase, stepper))
-    return ended
+    return status == Status.TERMINAL_EVENT
 
 
 @dataclass
@@ -195,7 +197,7 @@ def _phase(
     if stepper.inputs.callback is not None:
         notes = recorded_notes(stepper.model.record, states[0], states[3])
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
-    met = [Found(stepper.events[which].name, when, q_at, v_at) for which, when, q_at, v_at in recorded.events]
+    met = [found_of(stepper, Met(*event)) for event in recorded.events]
     phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings)
     return phase, [which for which, when, *_ in recorded.events if when == stepper.t]
 

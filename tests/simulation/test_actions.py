@@ -258,6 +258,13 @@ def test_what_is_refused() -> None:
         outcome(girp=1)
     with pytest.raises(sf.UnknownNameError, match="sets the coordinate 'q1'(?s:.)*its speed, 'dq1'"):
         outcome(q1=0.7)
+    with pytest.raises(sf.UnknownNameError, match="event 'dock', what its action sets 'grip' to: (?s:.)*'gripp'"):
+        outcome(grip="gripp")
+    with pytest.raises(sf.SymofrosError, match="event 'dock': its action sets 'd`q1`' twice"):
+        outcome(**{"dq1": 0, "d`q1`": 1})
+    moment = model_of(pose="moment")
+    with pytest.raises(sf.SymofrosError, match="'grasp' holds the pose of the moment"):
+        sf.simulate(moment, q, v, events={"grab": sf.Event("t", action={"grasp.x.held": 3, "grip": 1})})
     idle = sf.simulate(model, q, v, 0.01, events={"idle": sf.Event("t - 1e-3", action={"grip": 0}, restitution=0.5)})
     assert idle.outcome.kind == "input failed" and "no constraint engages" in idle.outcome.reason
     event = {"dock": sf.Event("t - 1e-3", action={"grip": 1})}

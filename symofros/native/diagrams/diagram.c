@@ -146,7 +146,7 @@ static int32_t sym_advance_part(sym_run *r, double t) {
     int64_t steps = 0;
     int32_t status = SYM_FINISHED;
     while (status == SYM_FINISHED && r->t < t) {
-        r->steps = 0, r->t0 = r->t, r->t_end = r->adaptive ? t : sym_next_stop(r->system, r->t, t);
+        r->steps = r->n_from = 0, r->t0 = r->t_from = r->t, r->t_end = r->adaptive ? t : sym_next_stop(r->system, r->t, t);
         do {
             status = sym_run_advance(r, (int64_t)1 << 40);
         } while (status == SYM_RUNNING);

@@ -24,5 +24,6 @@
 #include "events.c"
 #include "quiet_steps.c"
 #include "diagnostic.c"
+#include "actions.c"
 #include "run.c"
 #include "external_rhs.c"

@@ -38,7 +38,7 @@ static int32_t sym_unseen_acceleration(sym_run *r, sym_workspace *w, double h, i
  * whether nothing does, or a status below 0. */
 static int32_t sym_look_within_step(sym_run *r, sym_workspace *w, double h, double error) {
     const int32_t n = r->look_every > 0.0 && error <= SYM_QUIET ? (int32_t)(h / r->look_every) : 0;
-    const double offset = fmod(0.6180339887498949 * (double)(r->steps + 1), 1.0);
+    const double offset = fmod(0.6180339887498949 * (double)(r->steps + 1 - r->n_from), 1.0);
     int32_t i, status, dense_ready = 0;
     if (n > 0) { /* where the dense output takes its last slope */
         if (sym_load_projected_state(r, r->system->step_end, w->y1) != 0) return 1; /* accepting the step says so */

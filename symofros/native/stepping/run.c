@@ -68,37 +68,54 @@ SYM_EXPORT void sym_run_set_defaults(sym_run *r) {
     r->newton_tolerance = SYM_NEWTON_TOLERANCE;
 }
 
-SYM_EXPORT int32_t sym_run_start(sym_run *r) {
-    sym_workspace w = sym_workspace_of(r);
-    sym_system *s = r->system;
+/* A motion begins at the present state: its first slope, and the size of an adaptive method's first step. Returns 0 or a
+ * status. */
+static int32_t sym_begin_motion(sym_run *r, sym_workspace *w) {
     int32_t status;
-    r->slope_valid = 0;
-    r->steps = r->rejected = r->evaluations = r->jacobians = 0;
-    r->n_records = r->n_event_records = r->next_grid = 0;
-    r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
-    r->rank = 0, r->rank_max = -1, r->rank_min = s->nc + 1;
     r->previous_error = 1.0, r->met_at = -HUGE_VAL;
     r->lost_energy = r->kinetic_energy = 0.0;
-    r->terminal_event = r->touched_event = r->unresolved_event = -1;
-    r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
-    sym_load_state(r);
-    if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
-        status = sym_record(r);
-        if (status != 0) return status;
-        if (r->record_every == 0) ++r->next_grid;
-    }
     status = sym_run_judge_beams(r);
     if (status != 0) return status;
-    status = sym_first_slope(r, w.k);
+    status = sym_first_slope(r, w->k);
     if (status != 0) return status;
     sym_keep_diagnostic_state(r, 0);
     status = sym_restart_events(r);
     if (status != 0) return status;
     r->next_step = r->h;
     if (!r->adaptive || r->h > 0.0) return 0;
-    status = sym_initial_step_size(r, &w);
+    status = sym_initial_step_size(r, w);
     if (r->method == SYM_METHOD_ROSENBROCK) r->slope_valid = 0; /* the Jacobian is evaluated at the present state */
     return status;
+}
+
+SYM_EXPORT int32_t sym_run_start(sym_run *r) {
+    sym_workspace w = sym_workspace_of(r);
+    sym_system *s = r->system;
+    r->slope_valid = 0;
+    r->steps = r->rejected = r->evaluations = r->jacobians = 0;
+    r->n_records = r->n_event_records = r->next_grid = 0;
+    r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
+    r->rank = 0, r->rank_max = -1, r->rank_min = s->nc + 1;
+    r->terminal_event = r->touched_event = r->unresolved_event = -1;
+    r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
+    r->t_from = r->t0, r->n_from = 0;
+    sym_load_state(r);
+    if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
+        const int32_t status = sym_record(r);
+        if (status != 0) return status;
+        if (r->record_every == 0) ++r->next_grid;
+    }
+    return sym_begin_motion(r, &w);
+}
+
+/* After a step that ended at events: do their actions, where the run does, and begin the motion anew. Returns
+ * SYM_RECORDS_FULL, so that the caller sees it, or a status. */
+static int32_t sym_go_on_from_events(sym_run *r, sym_workspace *w) {
+    int32_t status = sym_run_act(r);
+    if (status != 0) return status;
+    if (r->look_every > 0.0 && r->look_every < HUGE_VAL) r->look_every = (r->t_end - r->t) / SYM_LOOKS;
+    status = sym_begin_motion(r, w);
+    return status != 0 ? status : SYM_RECORDS_FULL;
 }
 
 /* The present state <- the end of the step, at time t1. */
@@ -167,6 +184,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (!cut || ended) sym_keep_diagnostic_state(r, r->t >= r->t_end || ended);
     if (beyond == 0) beyond = sym_judge_axial_loads(r);
     if (r->realtime_scale > 0.0) sym_wait_for_clock(r);
+    if (ended) r->met_end = r->n_event_records;
     return beyond != 0 ? beyond : ended ? SYM_TERMINAL_EVENT : 0;
 }
 
@@ -213,6 +231,7 @@ SYM_EXPORT int32_t sym_run_advance(sym_run *r, int64_t max_steps) {
         status = sym_try_step(r, &w, h, &error);
         status = sym_accept_or_reject(r, &w, h, t1, status, error);
         r->system->in_step = 0;
+        if (status == SYM_TERMINAL_EVENT && r->acts) status = sym_go_on_from_events(r, &w);
         if (status != 0) return status;
     }
     return r->t >= r->t_end ? SYM_FINISHED : SYM_RUNNING;

@@ -176,7 +176,7 @@ static int32_t sym_generalized_alpha_step(sym_run *r, sym_workspace *memory, dou
     int32_t i, status;
     e.n = nv + nc, e.h = h, e.residual = sym_alpha_residual, e.factor = sym_alpha_factor;
     e.size = sym_alpha_size, e.rounding = sym_alpha_rounding;
-    if (r->steps == 0 || sym_changes_at(s, r->t)) memcpy(w.history, s->a, (size_t)nv * sizeof *w.history);
+    if (r->steps <= r->n_from || sym_changes_at(s, r->t)) memcpy(w.history, s->a, (size_t)nv * sizeof *w.history);
     /* s->a, s->lam: those of the present state, and the initial guess of those at the end of the step. */
     memcpy(w.history + nv, s->a, (size_t)nv * sizeof *w.history);
     memcpy(guess, s->a, (size_t)nv * sizeof *x), memcpy(guess + nv, s->lam, (size_t)nc * sizeof *x);

@@ -111,7 +111,7 @@ static int32_t sym_too_short(const sym_run *r) {
 /* The step to try next: its length h and the time t1 at its end. Returns 0 or a status. */
 static int32_t sym_propose_step(sym_run *r, sym_workspace *w, double *h, double *t1) {
     *h = r->adaptive ? r->next_step : r->h;
-    *t1 = r->adaptive ? r->t + *h : sym_multiple(r->t0 + (double)(r->steps + 1) * r->h, r->h);
+    *t1 = r->adaptive ? r->t + *h : sym_multiple(r->t_from + (double)(r->steps + 1 - r->n_from) * r->h, r->h);
     /* Of states too large for their squares not even the first step is a number. */
     if (r->adaptive && !(*h >= 16.0 * 2.2e-16 * fabs(r->t) + 1e-300)) return sym_too_short(r);
     if (*t1 >= r->t_end - 1e-9 * *h) *t1 = r->t_end; /* no sliver of a last step */

@@ -26,7 +26,9 @@ typedef enum sym_status {
     SYM_ENERGY_LOST = -8,        /* projection onto the constraints has taken the motion's energy */
     SYM_PARAMETERS_REFUSED = -9, /* parameters violate a condition of the description; of instances only */
     SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
-    SYM_ENGAGED_APART = -11      /* conditions that engage are not fulfilled */
+    SYM_ENGAGED_APART = -11,     /* conditions that engage are not fulfilled */
+    SYM_ACTION_REFUSED = -12,    /* an event's action sets what is not allowed, or its restitution lets nothing strike */
+    SYM_ACTS_WITHOUT_END = -13   /* an event's action brings the event about again, at the same instant */
 } sym_status;
 
 typedef enum sym_method {
@@ -85,7 +87,47 @@ typedef struct sym_call { /* a model function with the arrays it reads and write
     double *work;
     const double *in[SYM_MAX_INPUTS];
     double *out[SYM_MAX_OUTPUTS];
+    void (*init)(const double *par, double *pre); /* of the function's model, where parameters change in a run; or NULL */
 } sym_call;
+
+typedef struct sym_assignment { /* what one action sets */
+    int32_t event;
+    int32_t is_speed, index; /* of a speed, else of a parameter */
+    int32_t value;           /* number of the formula that gives it */
+} sym_assignment;
+
+typedef struct sym_switch { /* a constraint that engages and releases; the formula of the same number says whether it holds */
+    int32_t moment;            /* whether it holds the pose of the moment, by parameters: */
+    int32_t n_offsets;
+    const int32_t *row, *place; /* (n_offsets) row of phi, and its offset */
+    const int32_t *rotation;   /* (4) x, y, z, w; NULL: it holds none */
+    int32_t pose;              /* number of the first of the calls of its two frames */
+} sym_switch;
+
+/* What the events of a run do. Functions are bound to its evaluation point, and have parameters' parts of their own. */
+typedef struct sym_actions {
+    int32_t npar, n_assignments, n_switches;
+    const sym_assignment *assignments; /* in the order in which they are stated */
+    const sym_switch *switches;
+    const int32_t *acts, *once;      /* (n_events) whether one has an action; whether it has it once only */
+    const double *restitution;       /* (n_events) Newton's coefficient; below 0: none */
+    int32_t (*refuses)(void *data, const double *par); /* whether parameters are not allowed */
+    void *data;
+    double at_once;                  /* an event that acts twice within this time acts without end [s] */
+    sym_call values, constraint;     /* formulas: of switches, then of assignments; phi */
+    sym_call *poses;                 /* p, R of frames */
+    double *engaged;                 /* (n_switches) scratch */
+} sym_actions;
+
+/* What the action at a row of events has done. */
+typedef struct sym_done {
+    double *acted;                   /* 1; 0: nothing; a status: failed */
+    double *gap;                     /* as of sym_run_engage */
+    double *u;                       /* (nu) inputs by which it acted */
+    double *v_set, *v_after;         /* (nv) speeds that it set; those that the impact left */
+    double *q_after;                 /* (nq) */
+    double *par, *par_set;           /* (npar) parameters before, and those that it set */
+} sym_done;
 
 typedef struct sym_tableau { /* coefficients of a Runge-Kutta or Rosenbrock method */
     int32_t stages;          /* of a step and its error estimate */
@@ -115,7 +157,7 @@ typedef struct sym_system {
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
-    const int32_t *event_terminal;  /* (n_events) 1: the event ends the run; -1: it is not looked for any more */
+    int32_t *event_terminal;        /* (n_events) 1: the event ends the run, 2: acts; -1: it is not looked for any more */
     const double *u_constant;       /* (nu) inputs that nothing else gives */
     /* Inputs by a function of the caller's; not 0 stops the run. NULL: none. */
     int32_t (*callback)(void *data, double t, const double *q, const double *v, double *u);
@@ -240,6 +282,14 @@ typedef struct sym_run {
     double *event_t, *event_q, *event_v;
     int32_t *event_index;
     int32_t terminal_event; /* index of the event that ended the run */
+    /* Actions of events; NULL: none. Where `acts` they are done on the way, else the run ends before them: sym_run_act. */
+    const sym_actions *actions;
+    int32_t acts;
+    double *par, *acted_at;        /* (npar) present parameters; (n_events) when each event has acted last */
+    double *event_done;            /* (event_capacity, sym_done_size) */
+    int64_t first_met, met_end;    /* rows of the events at which the run has been cut last: first, behind the last */
+    double t_from;                 /* fixed steps end at multiples of h from there on, */
+    int64_t n_from;                /* after so many steps */
     int32_t touched_event, unresolved_event; /* what sym_event_search noted first, and when; -1: nothing */
     double touched_t, unresolved_t;
 } sym_run;
@@ -258,6 +308,14 @@ int32_t sym_run_advance(sym_run *run, int64_t max_steps);
 /* Take the present state onto constraints that have just changed, a plastic impact (docs/theory/constraints.md, (31)); *gap: |phi|
  * by weight that this closes. Returns 0 or a status. */
 int32_t sym_run_engage(sym_run *run, double *gap);
+/* At the events at which the run has been cut: do their actions, one after the other. Returns 0, SYM_TERMINAL_EVENT where one
+ * of them ends the run, or a status below 0, the state then being that before the action that failed. */
+int32_t sym_run_act(sym_run *run);
+/* Parameters (npar) from now on, of a run with actions. */
+void sym_run_set_parameters(sym_run *run, const double *par);
+/* Doubles of a row of run->event_done, and where one's numbers are. */
+size_t sym_done_size(const sym_run *run);
+sym_done sym_run_done(const sym_run *run, int64_t row);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);
 /* Judge beams in the present state that wait for the next step: the largest errors are complete then. */

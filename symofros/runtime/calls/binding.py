@@ -136,7 +136,7 @@ class NativeMemory:
             SymofrosError: The function is interpreted.
         """
         compiled = callable_from_c(kernel)
-        call.function = compiled.function
+        call.function, call.init = compiled.function, compiled.model.init
         call.pre = self.doubles(compiled.prepare(par.reshape(1, -1)))
         call.work = self.zeros(compiled.work)
         for i, (name, shape) in enumerate(compiled.signature.outputs):

@@ -72,6 +72,17 @@ ENDS: dict[int, End] = {
         "what engages is apart; closing it would move bodies within an instant, which no force does",
         "engage where the frames meet, bring them there first, or state the closure between the frames that will meet",
     ),
+    Status.ACTION_REFUSED: End(
+        "input failed",
+        "what an event sets is refused",
+        "speeds that are finite and parameters that the description allows; restitution where something strikes",
+    ),
+    Status.ACTS_WITHOUT_END: End(
+        "interrupted",
+        "an event acts again at the same instant: actions follow each other without end",
+        "once=True, or a formula that is not zero after the action, such as 'gap + grip'; bodies that come to rest on"
+        " each other need a constraint that engages there",
+    ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."
     ),

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import CompileError
+from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
 from symofros.runtime.record import HELD
+from symofros.simulation.actions import plan_actions
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
@@ -46,9 +47,10 @@ class BoundRun:
         beams: Elastic beams at the parameters.
         beam_record: Largest error of each beam, when that was, and the elastic coordinates of all, each then.
         failure: Exception that an input function raised; it ended the run.
+        actions: Actions of the events; None where they have none.
 
     Raises:
-        SymofrosError: The model is interpreted.
+        SymofrosError: The model is interpreted, or an action can't be done.
     """
 
     def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
@@ -71,6 +73,7 @@ class BoundRun:
         self._bind_functions()
         self._fill_method()
         self.run.system = self.system
+        self._fill_actions()
 
     def _fill_system(self) -> None:
         """Sizes, segments, and the evaluation point."""
@@ -153,7 +156,7 @@ class BoundRun:
         system, memory, events = self.system, self.memory, self.events
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
-        system.event_terminal = memory.own("int32_t[]", [int(event.cuts) for event in events])
+        system.event_terminal = memory.own("int32_t[]", [event.cut for event in events])
         if events:
             formulas = [event.formula for event in events]
             self._bind("events", self.model.formulas(formulas, derivatives=False, reactions=True))
@@ -162,6 +165,67 @@ class BoundRun:
             written, names = " ".join(str(event.formula) for event in events), self.model.names
             needs_inputs = system.events_of_reactions or any(name in written for name in {*names.u} - {*names.q})
             system.events_free_of_inputs = int(not needs_inputs)
+
+    def _fill_actions(self) -> None:
+        """What events do: native/stepping/actions.c."""
+        self.actions = actions = plan_actions(self.model, self.events)
+        if actions is None:
+            return
+        run, memory, model, events = self.run, self.memory, self.model, self.events
+        switches = model.record.switches
+        plan = self._actions = self.ffi.new("sym_actions *")
+        places = [(of.event, int(of.group == "v"), of.index, len(switches) + k) for k, of in enumerate(actions.assignments)]
+        plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
+        plan.assignments = memory.own("sym_assignment[]", places)
+        plan.acts = memory.own("int32_t[]", [int(bool(event.action)) for event in events])
+        plan.once = memory.own("int32_t[]", [int(event.once) for event in events])
+        plan.restitution = memory.doubles([-1.0 if e.restitution is None else e.restitution for e in events])
+        plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
+        plan.engaged = memory.zeros(len(switches))
+        self._bind_call(plan, "values", actions.kernel)
+        if model.nc:
+            self._bind_call(plan, "constraint", model.kernel("constraint"))
+        self._fill_switches(plan)
+        run.actions, run.par, run.acted_at = plan, memory.doubles(self.par), memory.doubles([-math.inf] * len(events))
+
+    def _fill_switches(self, plan: Any) -> None:
+        """The constraints that engage and release, and the poses of the frames that hold their relative rotation."""
+        memory, kind, switches = self.memory, "int32_t[]", self.model.record.switches
+        turning = [switch for switch in switches if switch.rotation]
+        plan.poses = memory.own("sym_call[]", 2 * len(turning))
+        for i, frame in enumerate(frame for switch in turning for frame in switch.frames):
+            self._bind_call(plan.poses, i, self.model.kernel("frame_pose", frame))
+        plan.switches = memory.own("sym_switch[]", len(switches))
+        for i, switch in enumerate(switches):
+            of = plan.switches[i]
+            of.moment, of.n_offsets = int(switch.moment), len(switch.offsets)
+            of.row, of.place = (memory.own(kind, [pair[k] for pair in switch.offsets]) for k in (0, 1))
+            if switch.rotation:
+                of.rotation, of.pose = memory.own(kind, list(switch.rotation)), 2 * turning.index(switch)
+
+    def _refuses(self, _data: Any, par: Any) -> int:
+        """Whether parameters that an action sets are not allowed; their words are asked for later."""
+        try:
+            self.check_changed(self.memory.view(par, self.model.npar).copy())
+        except SymofrosError:
+            return 1
+        except BaseException as error:  # It may not pass through C.
+            self.failure = error
+            return 1
+        return 0
+
+    def check_changed(self, par: Array) -> None:
+        """Check run-time parameters (npar) that change in a run.
+
+        Raises:
+            SymofrosError: They violate a condition, or change beams, whose bending is judged over the whole run.
+        """
+        self.model.checked_parameters(par)
+        for before, after in zip(self.beams, self.model.beams(par), strict=True):
+            if (before.EI_z, before.EI_y, *before.scale) != (after.EI_z, after.EI_y, *after.scale):
+                found = f"EI_z, EI_y = {before.EI_z:g}, {before.EI_y:g} before"
+                rule = "the length and stiffness of an elastic beam stay the same in a run"
+                raise SymofrosError(Problem("an action changes an elastic beam", found, rule, "make two runs"))
 
     def _bind_functions(self) -> None:
         """The model's functions, each in the slot of its name."""
@@ -174,9 +238,17 @@ class BoundRun:
             self._bind("project", self.model.kernel("project"))
 
     def _bind(self, slot: str, kernel: Kernel, outputs: dict[str, Any] | None = None) -> None:
-        self.kernels[slot] = self.memory.bind(getattr(self.system, slot), kernel, self.par, outputs)
-        if not self.native.sym_system_bind(self.system, self.ffi.addressof(self.system, slot)):
+        self.kernels[slot] = self._bind_call(self.system, slot, kernel, outputs)
+
+    def _bind_call(
+        self, owner: Any, place: str | int, kernel: Kernel, outputs: dict[str, Any] | None = None
+    ) -> CompiledKernel:
+        """A function in a field of a struct, or in an entry of an array, as a call at the evaluation point."""
+        call = self.ffi.addressof(owner, place) if isinstance(place, str) else self.ffi.addressof(owner[place])
+        bound = self.memory.bind(call, kernel, self.par, outputs)
+        if not self.native.sym_system_bind(self.system, call):
             raise CompileError(f"the integrator does not know every input of '{kernel.signature.name}'")
+        return bound
 
     def _input_callback(self, function: Callable[[float, Array, Array], Any]) -> Callable[..., int]:
         """A Python function as the inputs; what it raises is kept and ends the run."""

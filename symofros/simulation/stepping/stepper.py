@@ -12,10 +12,13 @@ from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls import constants
 from symofros.simulation.stepping.bound_run import BoundRun
+from symofros.simulation.stepping.met import Done, Met
 from symofros.simulation.stepping.status import Status
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
+# An event that acts twice within this share of a run acts without end: smaller spans are not resolved within steps.
+_AT_ONCE = 1e-9
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
 
@@ -45,6 +48,9 @@ class Stepper(BoundRun):
         self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
         self._event_index = np.zeros(run.event_capacity, dtype=np.int32)
         run.event_index = memory.shared(self._event_index)
+        if self.actions is not None:
+            width = int(self.native.sym_done_size(run))
+            (self._event_done,) = memory.table(run, "event_", run.event_capacity, done=width)
         run.diagnostic_capacity = diagnostic_rows
         sizes = {"t": 1, "q": model.nq, "v": model.nv, "u": model.nu}
         self._diagnostic_states = memory.table(run, "diagnostic_", diagnostic_rows, **sizes)
@@ -62,6 +68,8 @@ class Stepper(BoundRun):
         for slot, kernel in self.kernels.items():
             prepared = kernel.prepare(par.reshape(1, -1))
             view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
+        if self.actions is not None:
+            view(run.par, len(par))[:] = par
         for i, beam in enumerate(self.beams):
             of = system.beams[i]
             of.EI_z, of.EI_y, of.contrast = beam.EI_z, beam.EI_y, beam.contrast
@@ -69,14 +77,15 @@ class Stepper(BoundRun):
             view(run.beam_reach + of.first, beam.size)[:] = beam.reach
         run.slope_valid = run.jacobian_valid = 0
 
-    def ignore_event(self, which: int) -> None:
-        """An event is not looked for any more."""
-        self.system.event_terminal[which] = -1
+    def set_span(self, span: float) -> None:
+        """Time of the motion [s], of which a small share is an instant to actions that bring about each other."""
+        if self.actions is not None:
+            self.run.actions.at_once = _AT_ONCE * span
 
-    def engage(self) -> tuple[int, float]:
-        """Take the present state onto the constraints, a plastic impact: a Status, and the |phi| that this closes."""
-        gap = self.ffi.new("double *")
-        return int(self.native.sym_run_engage(self.run, gap)), float(gap[0])
+    def act(self) -> tuple[int, list[Met]]:
+        """Do the actions of the events at which the run has been cut: a Status, 0 where it goes on, and the events."""
+        status = int(self.native.sym_run_act(self.run))
+        return status, self._met(int(self.run.first_met), int(self.run.met_end))
 
     def advance(self, steps: int) -> int:
         """Make at most `steps` steps. The interpreter lock is released meanwhile.
@@ -99,12 +108,23 @@ class Stepper(BoundRun):
         t, q, v, u = (array[:n] for array in self._diagnostic_states)
         return [t[:, 0], q, v, u]
 
-    def take_events(self) -> list[tuple[int, float, Array, Array]]:
-        """The events located since the last call: index, t, q, v; their rows are free again."""
+    def take_events(self) -> list[Met]:
+        """The events located since the last call; their rows are free again."""
         n = int(self.run.n_event_records)
         self.run.n_event_records = 0
-        t, q, v = self._event_records
-        return [(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy()) for i in range(n)]
+        return self._met(0, n)
+
+    def _met(self, first: int, end: int) -> list[Met]:
+        """Events of rows of the records; their actions, where they have been done."""
+        (t, q, v), model, rows = self._event_records, self.model, range(first, end)
+        done: dict[int, Done | None] = {}
+        if self.actions is not None:
+            sizes = model.nq, model.nv, model.nu, model.npar
+            done = {i: Done.of(self._event_done[i], sizes) for i in rows}
+            self._event_done[first:end, 0] = 0.0
+            present = self.memory.view(self.run.par, model.npar)
+            self.par = self.par if np.array_equal(self.par, present) else present.copy()
+        return [Met(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy(), done.get(i)) for i in rows]
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:

@@ -1,0 +1,185 @@
+/* Actions of events: what they set, the constraints that engage, the impact (docs/theory/constraints.md, section 13). */
+
+/* The part of a function's work that depends on parameters alone, at other parameters. */
+static void sym_prepare_call(const sym_call *call, const double *par) {
+    if (call->function != NULL && call->init != NULL) call->init(par, (double *)call->pre);
+}
+
+SYM_EXPORT void sym_run_set_parameters(sym_run *r, const double *par) {
+    const sym_system *s = r->system;
+    const sym_call *calls[] = {&s->forward_dynamics, &s->law,      &s->events,      &s->project,
+                               &s->implicit_terms,   &s->residual, &s->momentum,    &s->mass_matrix,
+                               &s->constraint_jacobian};
+    size_t i;
+    memcpy(r->par, par, (size_t)r->actions->npar * sizeof *par);
+    for (i = 0; i < sizeof calls / sizeof *calls; ++i) sym_prepare_call(calls[i], par);
+    r->slope_valid = r->jacobian_valid = 0;
+}
+
+/* Values of all formulas at the evaluation point: what says whether constraints hold, then what is assigned. */
+static const double *sym_action_values(const sym_actions *a, const double *par) {
+    sym_prepare_call(&a->values, par);
+    sym_evaluate(&a->values);
+    return a->values.out[0];
+}
+
+/* Quaternion (x, y, z, w) of the rotation R_B^T R_A, by its largest entry, which loses no digits. */
+static void sym_relative_rotation(const double *R_B, const double *R_A, double *quaternion) {
+    double R[9], outer[16], largest = -HUGE_VAL;
+    int32_t i, j, row = 0;
+    for (i = 0; i < 3; ++i)
+        for (j = 0; j < 3; ++j) R[3 * i + j] = R_B[i] * R_A[j] + R_B[3 + i] * R_A[3 + j] + R_B[6 + i] * R_A[6 + j];
+    for (i = 0; i < 3; ++i) { /* 4 q q^T */
+        const int32_t k = (i + 1) % 3, l = (i + 2) % 3;
+        outer[5 * i] = R[4 * i] - R[4 * k] - R[4 * l] + 1.0;
+        outer[4 * i + k] = outer[4 * k + i] = R[3 * i + k] + R[3 * k + i];
+        outer[4 * i + 3] = outer[12 + i] = R[3 * l + k] - R[3 * k + l];
+    }
+    outer[15] = R[0] + R[4] + R[8] + 1.0;
+    for (i = 0; i < 4; ++i)
+        if (outer[5 * i] > largest) largest = outer[5 * i], row = i;
+    for (i = 0, largest = 0.0; i < 4; ++i) largest += outer[4 * row + i] * outer[4 * row + i];
+    for (i = 0; i < 4; ++i) quaternion[i] = outer[4 * row + i] / sqrt(largest);
+}
+
+/* Parameters with which a constraint is fulfilled at the evaluation point, (29) and (30). */
+static void sym_hold_pose(const sym_actions *a, const sym_switch *of, double *par) {
+    const sym_call *poses = a->poses + of->pose;
+    int32_t i;
+    for (i = 0; i < of->n_offsets; ++i) par[of->place[i]] = 0.0;
+    if (of->rotation != NULL) {
+        double quaternion[4];
+        for (i = 0; i < 2; ++i) sym_prepare_call(poses + i, par), sym_evaluate(poses + i); /* p, R of A and of B */
+        sym_relative_rotation(poses[1].out[1], poses[0].out[1], quaternion);
+        for (i = 0; i < 4; ++i) par[of->rotation[i]] = quaternion[i];
+    }
+    sym_prepare_call(&a->constraint, par);
+    sym_evaluate(&a->constraint);
+    for (i = 0; i < of->n_offsets; ++i) par[of->place[i]] = a->constraint.out[0][of->row[i]];
+}
+
+/* Parameters and speeds as the action of an event sets them by the state at the evaluation point, poses that engage now
+ * held. Returns how many constraints engage. */
+static int32_t sym_assign(const sym_run *r, int32_t event, double *par, double *speeds) {
+    const sym_actions *a = r->actions;
+    const double *values = sym_action_values(a, r->par);
+    double *before = a->engaged;
+    int32_t i, rises = 0;
+    for (i = 0; i < a->n_switches; ++i) before[i] = values[i];
+    for (i = 0; i < a->n_assignments; ++i) {
+        const sym_assignment *of = a->assignments + i;
+        if (of->event == event) (of->is_speed ? speeds : par)[of->index] = values[of->value];
+    }
+    values = sym_action_values(a, par);
+    for (i = 0; i < a->n_switches; ++i) before[i] = values[i] - before[i];
+    for (i = 0; i < a->n_switches; ++i) {
+        if (!(before[i] > 0.0)) continue;
+        ++rises;
+        if (a->switches[i].moment) sym_hold_pose(a, a->switches + i, par);
+    }
+    return rises;
+}
+
+SYM_EXPORT sym_done sym_run_done(const sym_run *r, int64_t row) {
+    const sym_system *s = r->system;
+    const size_t npar = (size_t)r->actions->npar, nv = (size_t)s->nv;
+    sym_done done;
+    done.acted = r->event_done + (size_t)row * sym_done_size(r), done.gap = done.acted + 1, done.u = done.acted + 2;
+    done.v_set = done.u + s->nu, done.v_after = done.v_set + nv, done.q_after = done.v_after + nv;
+    done.par = done.q_after + s->nq, done.par_set = done.par + npar;
+    return done;
+}
+
+SYM_EXPORT size_t sym_done_size(const sym_run *r) {
+    const sym_system *s = r->system;
+    return 2 + (size_t)s->nu + 2 * (size_t)s->nv + (size_t)s->nq + 2 * (size_t)r->actions->npar;
+}
+
+/* Parameters and speeds that an action has set take effect: the constraints that hold now take the speeds onto them.
+ * Returns 0 or a status, with nothing changed then. */
+static int32_t sym_impact(sym_run *r, double e, const sym_done *done) {
+    const size_t nv = (size_t)r->system->nv;
+    int32_t status = 0;
+    size_t i;
+    sym_run_set_parameters(r, done->par_set);
+    memcpy(done->v_after, r->v, nv * sizeof *r->v);
+    memcpy(r->v, done->v_set, nv * sizeof *r->v);
+    if (r->system->nc > 0) status = sym_run_engage(r, done->gap);
+    if (status != 0) memcpy(r->v, done->v_after, nv * sizeof *r->v);
+    for (i = 0; status == 0 && e >= 0.0 && i < nv; ++i) r->v[i] += e * (r->v[i] - done->v_set[i]); /* (32) */
+    if (status != 0 || e >= 0.0) sym_run_set_parameters(r, done->par);
+    if (status != 0) return status;
+    memcpy(done->q_after, r->q, (size_t)r->system->nq * sizeof *r->q);
+    memcpy(done->v_after, r->v, nv * sizeof *r->v);
+    *done->acted = 1.0;
+    return 0;
+}
+
+/* Do the action of one event at the present state. Returns 0 or a status, with nothing changed then. */
+static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
+    const sym_actions *a = r->actions;
+    sym_system *s = r->system;
+    const double e = a->restitution[event];
+    const size_t par_size = (size_t)a->npar * sizeof(double), v_size = (size_t)s->nv * sizeof(double);
+    int32_t engaging, refused;
+    memcpy(done->par, r->par, par_size), memcpy(done->par_set, r->par, par_size), memcpy(done->v_set, r->v, v_size);
+    if (r->t - r->acted_at[event] <= a->at_once) return SYM_ACTS_WITHOUT_END;
+    r->acted_at[event] = r->t;
+    sym_load_state(r);
+    if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
+    memcpy(done->u, s->u, (size_t)s->nu * sizeof *s->u);
+    engaging = sym_assign(r, event, done->par_set, done->v_set);
+    refused = !sym_all_finite(s->nv, done->v_set) || (e >= 0.0 && engaging == 0);
+    if (refused || a->refuses(a->data, done->par_set) != 0) return SYM_ACTION_REFUSED;
+    return sym_impact(r, e, done);
+}
+
+/* The rows of events from the first on at which a run has been cut, in the order in which the events are stated. */
+static void sym_sort_met(sym_run *r) {
+    int64_t i, k;
+    r->first_met = r->met_end;
+    while (r->first_met > 0 && r->event_t[r->first_met - 1] == r->t) --r->first_met;
+    for (i = r->first_met + 1; i < r->met_end; ++i) {
+        const int32_t which = r->event_index[i];
+        for (k = i; k > r->first_met && r->event_index[k - 1] > which; --k) r->event_index[k] = r->event_index[k - 1];
+        r->event_index[k] = which;
+    }
+}
+
+/* Share of a step within which the end of one is another's. */
+#define SYM_AT_MARK 1e-9
+
+/* Steps of fixed length stay where they were: the next one ends where the one that was cut would have. */
+static void sym_move_marks(sym_run *r) {
+    const double mark = r->t0 + r->h * ceil((r->t - r->t0) / r->h), left = mark - r->t;
+    if (r->adaptive || left <= SYM_AT_MARK * r->h) {
+        r->t_from = r->t, r->n_from = r->steps;
+        return;
+    }
+    --r->steps; /* counts when it ends */
+    r->n_from = r->steps;
+    if (r->h - left <= SYM_AT_MARK * r->h) r->t_from = r->t;
+    else r->t_from = mark, ++r->n_from;
+}
+
+SYM_EXPORT int32_t sym_run_act(sym_run *r) {
+    const sym_system *s = r->system;
+    int32_t ended = 0, status = 0;
+    int64_t row;
+    sym_sort_met(r);
+    for (row = r->first_met; row < r->met_end; ++row) {
+        const int32_t which = r->event_index[row];
+        const sym_done done = sym_run_done(r, row);
+        *done.acted = *done.gap = 0.0;
+        memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
+        memcpy(r->event_v + row * s->nv, r->v, (size_t)s->nv * sizeof *r->v);
+        ended |= s->event_terminal[which] == 1;
+        if (status != 0 || !r->actions->acts[which]) continue;
+        status = sym_act(r, which, &done);
+        if (status == 0 && r->actions->once[which]) s->event_terminal[which] = -1;
+        if (status != 0) *done.acted = status;
+    }
+    if (status != 0) return status;
+    sym_move_marks(r);
+    return ended ? SYM_TERMINAL_EVENT : 0;
+}

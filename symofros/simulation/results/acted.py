@@ -1,0 +1,93 @@
+"""What the actions of events have done, in numbers and words (docs/theory/constraints.md, 13)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from symofros.base.arrays import Array
+from symofros.errors import Problem, SymofrosError
+from symofros.runtime.model import Model
+from symofros.simulation.events import Event
+from symofros.simulation.results.ends import ENDS
+from symofros.simulation.results.engaging import engaged_apart, engaging_notes
+from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.trajectory import Found
+from symofros.simulation.stepping.bound_run import BoundRun
+from symofros.simulation.stepping.met import Done, Met
+from symofros.simulation.stepping.status import Status
+
+# Combinations of rows of G of a smaller share of the largest one are rounding: their impulse is none.
+_RANK = 1e-12
+
+
+def found_of(run: BoundRun, met: Met) -> Found:
+    """An event that was met, with what its action did."""
+    found, done = Found(run.events[met.which].name, met.t, met.q, met.v), met.done
+    if done is None or done.status != Status.FINISHED:
+        return found
+    return found._replace(v_after=done.v_after, **_effects(run.model, met, done))
+
+
+def notes_of(met: Met) -> tuple[str, ...]:
+    """A remark on the gap that constraints have closed as they engaged, where it is more than rounding."""
+    return engaging_notes(met.t, met.done.gap) if met.done is not None and met.done.status > 0 else ()
+
+
+def failure_of(run: BoundRun, met: Met) -> Outcome | None:
+    """Why a run ends at an event, where its action has failed."""
+    event, done, t = run.events[met.which], met.done, met.t
+    if done is None or done.status >= 0:
+        return None
+    if done.status == Status.ENGAGED_APART and run.actions is not None:
+        engaging = run.actions.engaging(done.par, done.par_set, (t, met.q, met.v, done.u))
+        return engaged_apart(t, done.gap, ", ".join(engaging) or event.name)
+    if done.status == Status.ACTS_WITHOUT_END:
+        reason = f"event '{event.name}' acts again at the same instant: actions follow each other without end"
+        return ENDS[done.status].outcome(t, reason=reason)
+    if done.status != Status.ACTION_REFUSED:
+        return ENDS[done.status].outcome(t)
+    problem = _refused(run, event, met, done)
+    reason = f"what event '{event.name}' sets is refused: {problem.what}; {problem.rule}"
+    return Outcome(ENDS[done.status].kind, t, reason, problem.remedy)
+
+
+def _refused(run: BoundRun, event: Event, met: Met, done: Done) -> Problem:
+    """What is wrong with what an action sets."""
+    finite = np.isfinite(done.v_set)
+    if not finite.all():
+        i = int(np.argmin(finite))
+        what, found = f"action sets speed '{run.model.names.v[i]}'", f"{done.v_set[i]} at t = {met.t:.6g} s"
+        return Problem(what, found, "speeds are finite", "mend its formula")
+    try:
+        run.check_changed(done.par_set)
+    except SymofrosError as error:
+        return error.problem
+    if event.restitution is not None:
+        rule = "restitution is that of constraints which the action engages"
+        return Problem("no constraint engages", "restitution", rule, "a Switch by what the action sets")
+    i = int(np.argmax(np.abs(done.v_set)))
+    what, found = f"action sets speed '{run.model.names.v[i]}'", f"{done.v_set[i]:.3g}"
+    return Problem(what, found, "no motion is as fast", "mend its formula")
+
+
+def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:
+    """Impulse and energies of speeds as they were, as they were set, and as the impact left them."""
+    u, before, set_to, after = done.u, met.v, done.v_set, done.v_after
+    given: dict[str, Any] = {"u": u, "par": done.par_set}
+
+    def energy(speeds: Array, par: Array) -> float:
+        potential = model.potential_energy(met.q, u=u, par=par, t=met.t)
+        return float(model.kinetic_energy(met.q, speeds, u=u, par=par) + potential)
+
+    try:
+        lost = float(model.kinetic_energy(met.q, set_to, **given) - model.kinetic_energy(done.q_after, after, **given))
+        added = energy(set_to, done.par_set) - energy(before, done.par)
+        M, G = model.mass_matrix(done.q_after, **given), np.zeros((0, model.nv))
+        if model.nc:
+            G = model.constraint_jacobian(done.q_after, t=met.t, **given)
+        impulse = np.linalg.lstsq(G.T, M @ (after - set_to), rcond=_RANK)[0]
+    except SymofrosError:  # Options.functions left them out.
+        return {}
+    return {"impulse": impulse, "energy_lost": lost, "energy_added": added}
