@@ -16,7 +16,7 @@ from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, Switch, section_order
 from symofros.description.contacts import Contact
-from symofros.description.entries import refuses_unknown_entries
+from symofros.description.entries import refuses_unknown_entries, shown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint

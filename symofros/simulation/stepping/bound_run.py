@@ -67,7 +67,7 @@ class BoundRun:
         self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
         self._fill_system()
         self._fill_beams()
-        self._hold()
+        self._fill_sticking()
         self._fill_inputs(inputs)
         self._fill_events()
         self._bind_functions()
@@ -91,14 +91,17 @@ class BoundRun:
         for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
             setattr(system, name, memory.zeros(size))
 
+    def _fill_sticking(self) -> None:
+        """Coordinates with friction that sticks (docs/theory/constraints.md, section 14)."""
+        system, memory, sticking = self.system, self.memory, self.model.record.sticking
+        system.n_sticking, system.held = len(sticking), memory.own("int32_t[]", len(sticking))
+        system.sticking = memory.own("sym_sticking[]", [(one.q, one.v, one.mode, one.row) for one in sticking])
+        self._hold()
+
     def _hold(self) -> None:
-        """Tell which coordinates friction holds, by their modes (docs/theory/constraints.md, section 14)."""
-        held = [one for one in self.model.record.sticking if self.par[one.mode] == HELD]
-        system, memory = self.system, self.memory
-        system.n_held = len(held)
-        system.held_q, system.held_v = (
-            memory.own("int32_t[]", [getattr(one, of) for one in held]) for of in ("q", "v")
-        )
+        """Tell which coordinates friction holds, by their modes."""
+        for i, one in enumerate(self.model.record.sticking):
+            self.system.held[i] = self.par[one.mode] == HELD
 
     def _fill_beams(self) -> None:
         """What judges the bending of the beams, and memory for the largest of each."""
@@ -177,11 +180,13 @@ class BoundRun:
         places = [(of.event, int(of.group == "v"), of.index, len(switches) + k) for k, of in enumerate(actions.assignments)]
         plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
         plan.assignments = memory.own("sym_assignment[]", places)
-        plan.acts = memory.own("int32_t[]", [int(bool(event.action)) for event in events])
+        plan.acts = memory.own("int32_t[]", [int(event.acts) for event in events])
         plan.once = memory.own("int32_t[]", [int(event.once) for event in events])
         plan.restitution = memory.doubles([-1.0 if e.restitution is None else e.restitution for e in events])
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
-        plan.engaged = memory.zeros(len(switches))
+        plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
+        plan.first_mode, plan.modes = actions.first_mode, memory.zeros(model.npar + 2 * sticking)
+        plan.repeats = memory.own("int32_t[]", sticking)
         self._bind_call(plan, "values", actions.kernel)
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))
