@@ -61,13 +61,17 @@ static int32_t sym_evaluate_modes(sym_run *r, const double *par) {
 }
 
 /* Modes of the coordinates at rest, those with a size of 0 or more: from all held on, they change until all agree with the
- * motion that they bring about; then one at a time, the first that does not. Returns 0 or a status. */
-static int32_t sym_agree_on_modes(sym_run *r, double *par, const double *breakaway, double *size) {
+ * motion that they bring about; then one at a time, the first that does not. free_rank: of G where none is held. Returns 0
+ * or a status. */
+static int32_t sym_agree_on_modes(sym_run *r, double *par, const double *breakaway, double *size, int32_t free_rank) {
     const sym_system *s = r->system;
-    int32_t i, round, changed = 1;
-    for (round = 0; changed > 0 && round < SYM_MOST_ROUNDS; ++round) {
+    int32_t i, round, changed, twice = 0;
+    for (round = 0; round < SYM_MOST_ROUNDS; ++round) {
         const int32_t status = sym_evaluate_modes(r, par);
+        int32_t spare = (int32_t)*s->rank - free_rank;
         if (status != 0) return status;
+        for (i = 0; i < s->n_sticking; ++i) spare -= par[s->sticking[i].mode] == SYM_HELD;
+        twice |= spare < 0;
         for (i = 0, changed = 0; i < s->n_sticking; ++i) {
             const sym_sticking *of = s->sticking + i;
             double *mode = par + of->mode, next;
@@ -78,8 +82,9 @@ static int32_t sym_agree_on_modes(sym_run *r, double *par, const double *breakaw
             *mode = next, ++changed;
             if (round >= s->n_sticking + SYM_ALL_AT_ONCE) break;
         }
+        if (changed == 0) return spare < 0 ? SYM_HELD_TWICE : 0;
     }
-    return changed > 0 ? SYM_MODES_UNDECIDED : 0;
+    return twice ? SYM_HELD_TWICE : SYM_MODES_UNDECIDED;
 }
 
 /* Choose the modes at the present state, whose speeds that are rounding of rest become zero. Returns 0 or a status, with the
@@ -89,7 +94,7 @@ static int32_t sym_choose_modes(sym_run *r) {
     const sym_system *s = r->system;
     const int32_t n = s->n_sticking;
     double *par = a->modes, *breakaway = par + a->npar, *size = breakaway + n, fastest = 1.0, gap;
-    int32_t i, free_rank, held = 0, status;
+    int32_t i, free_rank, status;
     memcpy(par, r->par, (size_t)a->npar * sizeof *par);
     sym_load_state(r);
     memcpy(breakaway, sym_action_values(a, par) + a->n_switches + a->n_assignments, (size_t)n * sizeof *breakaway);
@@ -106,9 +111,7 @@ static int32_t sym_choose_modes(sym_run *r) {
     free_rank = (int32_t)*s->rank;
     for (i = 0; i < n; ++i)
         if (size[i] == 0.0) size[i] = fabs(s->a[s->sticking[i].v]), par[s->sticking[i].mode] = SYM_HELD;
-    if (status == 0) status = sym_agree_on_modes(r, par, breakaway, size);
-    for (i = 0; i < n; ++i) held += par[s->sticking[i].mode] == SYM_HELD;
-    if (status == 0 && (int32_t)*s->rank - free_rank < held) status = SYM_HELD_TWICE;
+    if (status == 0) status = sym_agree_on_modes(r, par, breakaway, size, free_rank);
     if (status != 0) {
         sym_prepare_call(&s->forward_dynamics, r->par);
         return status;
