@@ -108,7 +108,7 @@ class DiagramStepper(Stepped):
         self._status = int(Status.FINISHED)
 
     @checked
-    def step(self, *, steps: int = 1) -> bool:
+    def step(self, steps: int = 1) -> bool:
         """Go on by so many periods.
 
         Returns:

@@ -90,7 +90,7 @@ def simulate(
         refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
-    stepper.set_span(settings.t_end - settings.t0)
+    stepper.set_span(settings.span)
     settings.apply(stepper)
     span = settings.t0, settings.t_end
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))

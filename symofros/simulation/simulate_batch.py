@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -18,6 +19,7 @@ from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
+from symofros.simulation.events import named_events
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import (
@@ -43,6 +45,7 @@ def simulate_batch(
     *,
     u: Inputs | None = None,
     par: ArrayLike | None = None,
+    events: Mapping[str, Any] | None = None,
     threads: int | None = None,
     options: SimulationOptions | None = None,
     **changes: Any,
@@ -64,6 +67,8 @@ def simulate_batch(
         u: Inputs: an array (..., nu); a Signal of all, whose values are (n, nu), or (..., n, nu) where they differ; or
             a mapping from names to numbers, arrays (...), formulas, and Signals of values (n) or (..., n, 1).
         par: Run-time parameters (..., npar); the model's own by default.
+        events: Name -> formula or Event, as of `simulate`, looked for in each trajectory; `Trajectories.events` has
+            what was met. Actions change the parameters of their own trajectory.
         threads: Number of threads; by default that of the model (`Model.with_threads`).
         options: Options as of `simulate`; methods are explicit: "rk4", "semi_implicit_euler", "euler", "dopri5",
             "dop853".
@@ -101,7 +106,7 @@ def simulate_batch(
     count = min(count, max(n, 1))
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
-    initial = InitialStates(q, v, values, inputs, n, settings.t0)
+    initial = InitialStates(q, v, values, inputs, n, settings.t0, named_events(events))
     results = BatchResults.empty(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
     steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(count if n else 0)]
@@ -123,6 +128,7 @@ def simulate_batch(
         method=settings.method.name,
         seconds=seconds[0],
         processor_seconds=seconds[1],
+        met=tuple(met for stepper in steppers for met in stepper.met),
         examination=BatchExamination(model, settings, kept),
     )
 

@@ -25,7 +25,6 @@ _ELSEWHERE = {
     "t_end": ("the loop that makes the steps decides when the motion ends", "leave it out"),
     "q0": ("a motion begins at a reset", "reset(q, v, t)"),
     "v0": ("a motion begins at a reset", "reset(q, v, t)"),
-    "events": ("motions that are stepped together have no events", "an sf.Stepper for each motion has them"),
 }
 
 

@@ -16,11 +16,11 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.actions import refuse_actions
 from symofros.simulation.events import named_events
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import recorded_notes
+from symofros.simulation.results.acted import found_of
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
@@ -36,6 +36,7 @@ from symofros.simulation.stepped import (
 )
 from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
 from symofros.simulation.stepping.fast_step import fast_step
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 
 
@@ -57,7 +58,8 @@ class Stepper(SteppedModel):
         model: Compiled with backend "c".
         u: Inputs that are not given by hand, as `simulate` takes them by name: numbers, formulas, Signals.
         par: Run-time parameters (npar), or values by name; the model's own by default.
-        events: Name -> formula or Event. A terminal one ends the motion within a step; `reset` begins anew behind it.
+        events: Name -> formula or Event, with actions as of `simulate`. A terminal one ends the motion within a step;
+            `reset` begins anew behind it, with all events and modes as at first.
         options: Options of stepping and stabilisation; those of `SimulationOptions()` by default.
         changes: Fields of SimulationOptions by name, which replace those of `options`: method="rk4", dt=1e-3, ...
             `dt` is the time of one step, of adaptive methods too, 1e-3 s by default. What concerns recording, the end
@@ -96,12 +98,10 @@ class Stepper(SteppedModel):
         values = np.array(model.parameter_values) if par is None else _parameters(model, par)
         inputs = plan_inputs(model, u)
         check_fit(model, settings, inputs)
-        refuse_actions(
-            named_events(events), "Stepper", "between two steps set parameters and states by reset(), or use simulate"
-        )
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
         self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
+        self._told: list[tuple[Met, Found]] = []
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
@@ -127,7 +127,8 @@ class Stepper(SteppedModel):
             q: Configuration (nq), or values by name, on the constraints (see `assemble`); the neutral one by default.
             v: Speeds (nv), or values by name; rest by default.
             t: Time [s]; that of the options, `t0`, by default.
-            par: Other run-time parameters (npar), or values by name; those before by default.
+            par: Other run-time parameters (npar), or values by name; by default those that the motion before began
+                with, whatever actions have made of them.
 
         Raises:
             ShapeError: An array does not fit, or a quaternion is no rotation.
@@ -224,9 +225,13 @@ class Stepper(SteppedModel):
 
     @property
     def events(self) -> tuple[Found, ...]:
-        """Events met since the reset, in the order of time."""
-        known = self._hand.run.events
-        return tuple(Found(known[which].name, t, q, v) for which, t, q, v in self._hand.events)
+        """Events met since the reset, in the order of time, with what their actions did."""
+        met, told, run = self._hand.events, self._told, self._hand.run
+        known = 0  # Those that were asked for before are not worked out again.
+        while known < min(len(met), len(told)) and told[known][0] is met[known]:
+            known += 1
+        told[known:] = [(one, found_of(run, one)) for one in met[known:]]
+        return tuple(found for _, found in told)
 
     def trajectory(self) -> Trajectory:
         """The motion since the reset as `simulate` gives it: it is made once more, with the inputs of its steps.
@@ -309,7 +314,9 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
     if array is not None and fits and np.isfinite(array).all():
         return np.ascontiguousarray(array)
-    found = f"{type(u).__name__} {u!r:.60}"
+    found, remedy = f"{type(u).__name__} {u!r:.60}", "one number for each of `inputs`"
+    if isinstance(u, (int, np.integer)):
+        remedy = f"u comes first: step(steps={u}) makes {u} steps; {remedy}"
     if array is not None:
         found = str(array.shape)
         if fits:
@@ -320,7 +327,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
     raise ShapeError(
-        Problem(f"model '{model.record.name}': u does not fit", found, rule, "one number for each of `inputs`")
+        Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy)
     )
 
 

@@ -15,10 +15,13 @@ from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.events import named_events
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
+from symofros.simulation.results.acted import failure_of, found_of
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectories import Trajectories
+from symofros.simulation.results.trajectory import Found
 from symofros.simulation.settings import check_fit
 from symofros.simulation.simulate import prepare_run
 from symofros.simulation.simulate_batch import starts_off
@@ -55,6 +58,8 @@ class Steppers(SteppedModel):
         n: Number of motions.
         u: Inputs that are not given by hand, as `simulate` takes them by name: numbers, formulas, Signals.
         par: Run-time parameters (npar), or of each motion (n, npar); the model's own by default.
+        events: Name -> formula or Event, with actions as of `simulate`, of each motion. A terminal one ends its motion
+            within a step; `reset` begins it anew, with all events and modes as at first.
         threads: Number of threads; by default that of the model (`Model.with_threads`).
         options: Options of stepping and stabilisation; those of `SimulationOptions()` by default.
         changes: Fields of SimulationOptions by name, which replace those of `options`; methods are explicit, their
@@ -62,7 +67,8 @@ class Steppers(SteppedModel):
 
     Attributes:
         model: Model that is stepped.
-        par: Run-time parameters (npar) of all, or of each motion (n, npar), a view that can't be written.
+        par: Run-time parameters (npar) of all, or of each motion (n, npar), as where actions change them; a view that
+            can't be written.
         dt: Length of a step [s].
         inputs: Names of the inputs that `step` takes, in order.
         t: Present times (n) [s], a view that steps change: copy it to keep it.
@@ -83,18 +89,19 @@ class Steppers(SteppedModel):
         *,
         u: Mapping[str, Any] | None = None,
         par: ArrayLike | None = None,
+        events: Mapping[str, Any] | None = None,
         threads: int | None = None,
         options: SimulationOptions | None = None,
         **changes: Any,
     ) -> None:
-        chosen = options_by_hand(options, changes, ("n", "u", "par", "threads"))
+        chosen = options_by_hand(options, changes, ("n", "u", "par", "events", "threads"))
         settings = settings_by_hand(model, chosen)
         if not settings.method.family.batched or settings.adaptive:
             explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
             what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
             raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
         n, threads = int(n), int(model.threads if threads is None else threads)
-        self._given: dict[str, Any] = {"u": u, "threads": threads, "options": chosen}
+        self._given: dict[str, Any] = {"u": u, "events": events, "threads": threads, "options": chosen}
         for name, number in (("n", n), ("threads", threads)):
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
@@ -108,8 +115,12 @@ class Steppers(SteppedModel):
         check_fit(model, settings, plan)
         prepare_run(model, settings)
         self._settings, self._kind = settings, owner_of("steppers", model.record.name)
+        looked_for = named_events(events)
+        if any(event.action for event in looked_for):
+            self._par = np.array(np.broadcast_to(self._par, (n, model.npar)), order="C")
+        self._begun_with = self._par.copy()
         rows = np.atleast_2d(self._par.copy())
-        self._hand = HandBatch(model, settings, plan, fixed_inputs(u), rows, n, threads)
+        self._hand = HandBatch(model, settings, plan, fixed_inputs(u), rows, n, threads, looked_for)
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         results = self._hand.results
         self.t, self.q, self.v, self._status = (
@@ -133,7 +144,8 @@ class Steppers(SteppedModel):
             q: Configurations (n, nq), or (nq) for all, on the constraints; the neutral one by default.
             v: Speeds (n, nv), or (nv) for all; rest by default.
             t: Time [s]; that of the options, `t0`, by default.
-            par: Other run-time parameters (n, npar), of steppers that were made with one set each.
+            par: Other run-time parameters (n, npar), of steppers that were made with one set each; by default those that
+                the motions before began with, whatever actions have made of them.
             which: Motions that begin anew, of bool (n); all by default. The rows of the others count for nothing.
 
         Raises:
@@ -150,6 +162,10 @@ class Steppers(SteppedModel):
                 rule = "steppers have one set of parameters for all, or one each"
                 raise refusal("reset: parameters", "one set for all", rule, "make them with par of shape (n, npar)")
             values = np.asarray(model.checked_parameters(self._rows("par", par, model.npar)[chosen]))
+            self._begun_with[chosen] = values
+        elif self._hand.single.actions is not None:
+            values = self._begun_with[chosen]
+        if values is not None:
             self._par[chosen] = values
         time = np.full(len(chosen), self._settings.t0 if t is None else float(t))
         self._hand.reset(chosen, time, first, speeds, values)
@@ -181,6 +197,8 @@ class Steppers(SteppedModel):
             if self.model.nc and hand.begins.any():
                 self._check_starts(values)
             hand.step(values, steps)
+            if hand.single.actions is not None:
+                self._par[...] = hand.present_parameters()
             return self.running
         finally:
             self._stepping.release()
@@ -238,13 +256,20 @@ class Steppers(SteppedModel):
             seconds=0.0,
             processor_seconds=0.0,
         )
-        ended = ends.outcome(i)
+        met, ended = self._hand.met.get(i, ()), ends.outcome(i)
+        if met and results.status[i] < 0:
+            ended = failure_of(self._hand.single, met[-1]) or ended
         note = "the steps of motions that are stepped together are not examined: an sf.Stepper says more of one"
         return replace(ended, notes=(*ended.notes, note))
 
+    @checked
+    def events(self, i: int) -> tuple[Found, ...]:
+        """Events that motion i has met since it began, in the order of time, with what their actions did."""
+        return tuple(found_of(self._hand.single, met) for met in self._hand.met.get(i, ()))
+
     def save(self) -> BatchState:
         """The present states, with all that later steps depend on."""
-        return self._hand.save(self._kind, self._par)
+        return self._hand.save(self._kind, self._par, self._begun_with)
 
     def copy(self) -> Steppers:
         """Others in the same states, which share nothing that steps change."""
@@ -267,7 +292,7 @@ class Steppers(SteppedModel):
         refused = ("restore: no state of these steppers", rule, remedy)
         check_owner(state, BatchState, self._kind, refused)
         self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
-        self._par[...] = state.par
+        self._par[...], self._begun_with[...] = state.par, state.given
 
     def _rows(self, name: str, values: ArrayLike, size: int) -> Array:
         array = real_array(self.model.by_name(name, values))

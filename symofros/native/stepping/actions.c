@@ -123,11 +123,10 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
     return sym_impact(r, e, done);
 }
 
-/* The rows of events from the first on at which a run has been cut, in the order in which the events are stated. */
+/* Rows of a step's events -> those at which it has been cut, in the order in which the events are stated. */
 static void sym_sort_met(sym_run *r) {
     int64_t i, k;
-    r->first_met = r->met_end;
-    while (r->first_met > 0 && r->event_t[r->first_met - 1] == r->t) --r->first_met;
+    while (r->first_met < r->met_end && r->event_t[r->first_met] < r->t) ++r->first_met;
     for (i = r->first_met + 1; i < r->met_end; ++i) {
         const int32_t which = r->event_index[i];
         for (k = i; k > r->first_met && r->event_index[k - 1] > which; --k) r->event_index[k] = r->event_index[k - 1];

@@ -12,7 +12,7 @@ static int32_t sym_batch_has_columns(const sym_batch *b) {
     int32_t i, scalar = 1;
     for (i = 0; i < s->n_segments; ++i) scalar &= s->segments[i].kind == SYM_SEGMENT_LINEAR && s->segments[i].q == s->segments[i].v;
     return b->forward_dynamics.lanes != NULL && scalar && r->method <= SYM_METHOD_SEMI_IMPLICIT && !r->adaptive && !r->project &&
-           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_stops == 0 &&
+           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_stops + s->n_events == 0 &&
            s->n_quaternion_inputs == 0 && s->callback == NULL && (b->law.function == NULL || b->law.lanes != NULL);
 }
 

@@ -25,10 +25,10 @@ static int32_t sym_batch_bind(sym_batch *b, sym_arena *own, sym_arena *scratch, 
 }
 
 /* Lay out every array of the slots: what is kept between steps, and what a step under way needs. Where the last slope of a
- * step is the first of the next, all is kept. Returns 0 where a function asks for an unknown input. */
+ * step is the first of the next, as events make it as well, all is kept. Returns 0 where a function asks for an unknown input. */
 static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *shared) {
-    sym_arena *scratch = b->prototype->tableau.fsal_stage > 0 ? own : shared;
     const sym_system *s = b->prototype->system;
+    sym_arena *scratch = b->prototype->tableau.fsal_stage > 0 || s->n_events > 0 ? own : shared;
     const size_t slots = (size_t)b->slots, nq = (size_t)s->nq, nv = (size_t)s->nv, m = 2 * nv;
     const size_t slopes = b->prototype->tableau.dense_stages > 1 ? (size_t)b->prototype->tableau.dense_stages : 1;
     b->systems = sym_allocate_bytes(scratch, slots * sizeof *b->systems);
@@ -39,6 +39,7 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *share
     b->q = sym_allocate(scratch, slots * nq), b->v = sym_allocate(scratch, slots * nv);
     b->t = sym_allocate(scratch, slots);
     b->states = sym_allocate(own, slots * (nq + nv));
+    b->event_values = sym_allocate(own, slots * SYM_EVENT_ROWS * (size_t)s->n_events);
     b->y1 = sym_allocate(scratch, slots * m), b->stage = sym_allocate(scratch, slots * m);
     b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
     b->k = sym_allocate(scratch, slopes * slots * m);
@@ -79,6 +80,8 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         s->forward_dynamics.out[0] = s->a, s->forward_dynamics.out[1] = s->lam, s->forward_dynamics.out[2] = s->rank;
         if (s->law.function != NULL) sym_system_bind(s, &s->law);
         if (s->project.function != NULL) sym_system_bind(s, &s->project);
+        if (s->events.function != NULL) sym_system_bind(s, &s->events);
+        r->event_values = b->event_values + SYM_INDEX(i, SYM_EVENT_ROWS, 0) * (size_t)s->n_events;
         sym_system_bind(s, &s->forward_dynamics);
         s->signals = b->signals + (size_t)i * (size_t)s->n_signals;
         memcpy(b->signals + (size_t)i * (size_t)s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
@@ -129,6 +132,16 @@ static void sym_batch_place(const sym_batch *b, sym_run *r, int64_t trajectory) 
     r->beam_error = b->beam_error + trajectory * n, r->beam_t = b->beam_t + trajectory * n;
     r->beam_q = b->beam_q + trajectory * coordinates, r->beam_reference = b->beam_reference + 2 * trajectory * coordinates;
     r->beam_guard = b->beam_guard + trajectory * n, r->beam_weight = b->beam_weight + trajectory * s->nv;
+    if (r->actions == NULL) return;
+    r->par = b->par + trajectory * r->actions->npar, r->acted_at = b->acted_at + trajectory * s->n_events;
+}
+
+/* All functions of a slot take the parameters of a trajectory. */
+static void sym_batch_set_all_parameters(sym_batch *b, sym_system *s, int32_t slot, int64_t trajectory) {
+    sym_batch_set_parameters(&b->forward_dynamics, &s->forward_dynamics, slot, trajectory);
+    sym_batch_set_parameters(&b->law, &s->law, slot, trajectory);
+    sym_batch_set_parameters(&b->project, &s->project, slot, trajectory);
+    sym_batch_set_parameters(&b->events, &s->events, slot, trajectory);
 }
 
 /* A slot takes the inputs, parameters and memory of a trajectory. */
@@ -142,9 +155,8 @@ static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
     for (k = 0; k < prototype->n_signals; ++k)
         signals[k].value = prototype->signals[k].value + trajectory * b->signal_stride[k];
-    sym_batch_set_parameters(&b->forward_dynamics, &s->forward_dynamics, slot, trajectory);
-    sym_batch_set_parameters(&b->law, &s->law, slot, trajectory);
-    sym_batch_set_parameters(&b->project, &s->project, slot, trajectory);
+    if (s->n_events > 0) s->event_terminal = b->event_terminal + trajectory * s->n_events;
+    sym_batch_set_all_parameters(b, s, slot, trajectory);
 }
 
 static void sym_batch_store_result(sym_batch *b, int64_t trajectory, int32_t status, double t, const double *q,
@@ -164,7 +176,8 @@ static void sym_batch_move_last(sym_batch *b, int32_t to) {
     const sym_system *s = slot.system, *last_system = last->system;
     const sym_workspace w = sym_batch_workspace(b, to), last_w = sym_batch_workspace(b, from);
     *r = *last;
-    r->system = slot.system, r->q = slot.q, r->v = slot.v;
+    r->system = slot.system, r->q = slot.q, r->v = slot.v, r->event_values = slot.event_values;
+    memcpy(r->event_values, last->event_values, SYM_EVENT_ROWS * (size_t)s->n_events * sizeof *r->q);
     memcpy(r->q, last->q, ((size_t)s->nq + (size_t)s->nv) * sizeof *r->q);
     memcpy(w.magnitude, last_w.magnitude, 2 * (size_t)s->nv * sizeof *w.magnitude);
     memcpy(w.k, last_w.k, 2 * (size_t)s->nv * sizeof *w.k);
@@ -300,6 +313,69 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     }
 }
 
+/* Rows of events that one slot may fill in a step. */
+static int64_t sym_batch_share(const sym_batch *b) { return 4 * (int64_t)b->prototype->system->n_events; }
+
+/* Do the actions of the events at which a slot's step has been cut, in the place of the prototype, whose functions are bound to
+ * its own memory. Returns 0 or a status. */
+static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
+    sym_run *p = b->prototype, *r = b->runs + slot;
+    sym_system *s = r->system;
+    const sym_run own = *p;
+    const sym_system own_system = *p->system;
+    const int64_t trajectory = b->trajectory_of_slot[slot];
+    const size_t npar = (size_t)r->actions->npar;
+    int32_t status;
+    p->t = r->t, p->t0 = r->t0, p->steps = r->steps, p->acted_at = r->acted_at;
+    p->first_met = r->first_met, p->met_end = r->met_end;
+    memcpy(p->q, r->q, (size_t)s->nq * sizeof *p->q), memcpy(p->v, r->v, (size_t)s->nv * sizeof *p->v);
+    p->system->u_constant = s->u_constant, p->system->signals = s->signals, p->system->event_terminal = s->event_terminal;
+    sym_run_set_parameters(p, r->par);
+    status = sym_run_act(p);
+    memcpy(r->q, p->q, (size_t)s->nq * sizeof *p->q), memcpy(r->v, p->v, (size_t)s->nv * sizeof *p->v);
+    r->steps = p->steps, r->t_from = p->t_from, r->n_from = p->n_from;
+    memcpy(r->par, p->par, npar * sizeof *r->par);
+    p->t = own.t, p->t0 = own.t0, p->steps = own.steps, p->acted_at = own.acted_at;
+    *p->system = own_system;
+    if (status < 0) return status;
+    sym_prepare_call(&s->forward_dynamics, r->par), sym_prepare_call(&s->law, r->par);
+    sym_prepare_call(&s->project, r->par), sym_prepare_call(&s->events, r->par);
+    sym_batch_set_all_parameters(b, s, slot, trajectory);
+    return status;
+}
+
+/* After a step of a slot that was cut, with that status: actions are done, and what is left of a step of fixed length is made
+ * alone, in the prototype's memory. Returns 0 or a status. */
+static int32_t sym_batch_finish_step(sym_batch *b, int32_t slot, int32_t status, int64_t steps) {
+    sym_run *r = b->runs + slot;
+    sym_workspace w = sym_workspace_of(r);
+    do {
+        if (status == SYM_TERMINAL_EVENT) {
+            status = r->actions != NULL ? sym_batch_act(b, slot) : status;
+            if (status != 0) return status;
+            status = sym_begin_motion_anew(r, &w);
+        }
+        while (status == 0 && !r->adaptive && r->steps < steps) status = sym_run_advance(r, 1);
+    } while (status == SYM_TERMINAL_EVENT);
+    memcpy(sym_batch_workspace(b, slot).k, w.k, 2 * (size_t)r->system->nv * sizeof(double));
+    return status == SYM_RECORDS_FULL ? SYM_ACTS_WITHOUT_END : status;
+}
+
+/* Accept or reject the step of a slot: sym_accept_or_reject, its events beside those of the others. */
+static int32_t sym_batch_accept_or_reject(sym_batch *b, int32_t slot, sym_workspace *w, int32_t status, double error) {
+    sym_run *r = b->runs + slot, *p = b->prototype;
+    const int64_t steps = r->steps + 1;
+    int64_t row = p->n_event_records;
+    r->n_event_records = row, r->event_capacity = p->event_capacity - slot * sym_batch_share(b);
+    status = sym_accept_or_reject(r, w, b->h[slot], b->t1[slot], status, error);
+    if (r->system->n_events == 0) return status;
+    if (status == SYM_TERMINAL_EVENT || (status == 0 && !r->adaptive && r->steps < steps))
+        status = sym_batch_finish_step(b, slot, status, steps);
+    for (; row < r->n_event_records; ++row) b->event_trajectory[row] = b->trajectory_of_slot[slot];
+    p->n_event_records = row;
+    return status;
+}
+
 /* One step of all active trajectories: proposed, tried, accepted or rejected. Those that end are retired, from the last
  * slot to the first, so that the trajectory that moves into a slot has been treated. */
 static void sym_batch_step(sym_batch *b) {
@@ -322,7 +398,7 @@ static void sym_batch_step(sym_batch *b) {
         double error = 0.0;
         if (r->method == SYM_METHOD_SEMI_IMPLICIT) sym_semi_implicit_step(r, b->h[i], w.k, w.y1);
         if (status == 0) status = sym_estimate_error(r, &w, b->h[i], &error);
-        status = sym_accept_or_reject(r, &w, b->h[i], b->t1[i], status, error);
+        status = sym_batch_accept_or_reject(b, i, &w, status, error);
         r->system->in_step = 0;
         if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
         if (status != 0 || (b->max_steps > 0 && r->steps >= b->max_steps)) sym_batch_retire(b, i, status);
@@ -330,8 +406,9 @@ static void sym_batch_step(sym_batch *b) {
 }
 
 SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
-    int64_t done;
-    for (done = 0; done < max_steps; ++done) {
+    const sym_run *p = b->prototype;
+    for (b->left = max_steps; b->left > 0; --b->left) {
+        if (p->event_capacity - p->n_event_records < b->slots * sym_batch_share(b)) return SYM_RECORDS_FULL;
         if (b->n_active < b->slots && b->next < b->n) sym_columns_leave(b);
         while (b->n_active < b->slots && b->next < b->n) sym_batch_activate_next(b);
         if (b->n_active == 0) return 0;
@@ -342,7 +419,7 @@ SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
         }
         sym_batch_step(b);
     }
-    return b->n_active > 0 || b->next < b->n;
+    return b->n_active > 0 || b->next < b->n ? 1 : 0;
 }
 
 SYM_EXPORT void sym_batch_stop(sym_batch *b) {

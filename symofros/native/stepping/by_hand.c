@@ -110,22 +110,39 @@ static void sym_hand_batch_store(sym_batch *b) {
     }
 }
 
-SYM_EXPORT void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
-    int64_t first = hand->first, k;
-    int32_t g, begins;
-    for (g = 0; g < hand->n_groups; ++g) {
-        sym_batch *b = hand->groups + g;
-        for (begins = 0, k = first; k < b->n; ++k) begins |= hand->begins[k];
-        if (begins) sym_columns_leave(b);
-        if (b->in_columns) sym_hand_columns_hold(hand, b, u);
-        else sym_hand_batch_hold(hand, b, u);
-        for (k = first; begins && k < b->n; ++k) {
-            if (!hand->begins[k]) continue;
-            hand->begins[k] = 0;
-            sym_hand_batch_begin(hand, b, k, u);
-        }
-        first = b->next = b->n;
-        sym_batch_advance(b, steps);
-        sym_hand_batch_store(b);
+/* A group takes inputs, and those of its trajectories begin that are to. */
+static void sym_hand_begin_group(const sym_hand_batch *hand, sym_batch *b, int64_t first, const double *u) {
+    int32_t begins = 0;
+    int64_t k;
+    for (k = first; k < b->n; ++k) begins |= hand->begins[k];
+    if (begins) sym_columns_leave(b);
+    if (b->in_columns) sym_hand_columns_hold(hand, b, u);
+    else sym_hand_batch_hold(hand, b, u);
+    for (k = first; begins && k < b->n; ++k) {
+        if (!hand->begins[k]) continue;
+        hand->begins[k] = 0;
+        sym_hand_batch_begin(hand, b, k, u);
     }
+    b->next = b->n;
+}
+
+SYM_EXPORT int32_t sym_hand_batch_go_on(sym_hand_batch *hand, const double *u) {
+    while (hand->group < hand->n_groups) {
+        sym_batch *b = hand->groups + hand->group;
+        if (sym_batch_advance(b, b->left) == SYM_RECORDS_FULL) return SYM_RECORDS_FULL;
+        sym_hand_batch_store(b);
+        hand->first_of_group = b->n;
+        if (++hand->group == hand->n_groups) break;
+        b = hand->groups + hand->group;
+        sym_hand_begin_group(hand, b, hand->first_of_group, u);
+        b->left = hand->steps;
+    }
+    return 0;
+}
+
+SYM_EXPORT int32_t sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
+    hand->group = 0, hand->first_of_group = hand->first, hand->steps = steps;
+    sym_hand_begin_group(hand, hand->groups, hand->first, u);
+    hand->groups->left = steps;
+    return sym_hand_batch_go_on(hand, u);
 }

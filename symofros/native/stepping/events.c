@@ -128,7 +128,7 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     sym_event_search search;
     double last_x = 2.0;
     int32_t status;
-    *stop_x = 2.0, r->terminal_event = -1;
+    *stop_x = 2.0, r->terminal_event = -1, r->first_met = r->n_event_records;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
     sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h), r->steps < r->n_from ? 0 : r->steps - r->n_from);
     search.evaluate = sym_event_values_within_step, search.data = &step;

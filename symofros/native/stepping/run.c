@@ -112,13 +112,19 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     return sym_begin_motion(r, &w);
 }
 
-/* After a step that ended at events: do their actions, where the run does, and begin the motion anew. Returns
- * SYM_RECORDS_FULL, so that the caller sees it, or a status. */
+/* After actions the motion begins anew. Returns 0 or a status. */
+static int32_t sym_begin_motion_anew(sym_run *r, sym_workspace *w) {
+    r->slope_valid = r->jacobian_valid = 0;
+    if (r->look_every > 0.0 && r->look_every < HUGE_VAL) r->look_every = (r->t_end - r->t) / SYM_LOOKS;
+    return sym_begin_motion(r, w);
+}
+
+/* After a step that ended at events: do their actions, where the run does, and go on. Returns SYM_RECORDS_FULL, so that the
+ * caller sees it, or a status. */
 static int32_t sym_go_on_from_events(sym_run *r, sym_workspace *w) {
     int32_t status = sym_run_act(r);
     if (status != 0) return status;
-    if (r->look_every > 0.0 && r->look_every < HUGE_VAL) r->look_every = (r->t_end - r->t) / SYM_LOOKS;
-    status = sym_begin_motion(r, w);
+    status = sym_begin_motion_anew(r, w);
     return status != 0 ? status : SYM_RECORDS_FULL;
 }
 

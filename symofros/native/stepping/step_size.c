@@ -60,7 +60,7 @@ static int32_t sym_initial_step_size(sym_run *r, sym_workspace *w) {
     }
     d0 = sqrt(d0 / n), d1 = sqrt(d1 / n);
     h0 = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01 * d0 / d1;
-    if (h0 > r->t_end - r->t) h0 = r->t_end - r->t;
+    if (h0 > r->t_end - r->t && r->t_end > r->t) h0 = r->t_end - r->t;
     for (l = 0; l < nv; ++l) w->stage[l] = h0 * w->k[l], w->stage[nv + l] = r->v[l] + h0 * w->k[nv + l];
     status = sym_evaluate_slope(r, r->t + h0, w->stage, w->end_slope);
     if (status == SYM_CALLBACK_FAILED) return status;

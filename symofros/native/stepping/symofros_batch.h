@@ -33,8 +33,12 @@ typedef struct sym_batch_function { /* a model function that is evaluated for al
 
 typedef struct sym_batch {
     /* By the caller. */
-    const sym_run *prototype; /* settings, and the system of a single run, which only this batch uses */
-    sym_batch_function forward_dynamics, law, project;
+    /* Settings, and the system of a single run, which only this batch uses; its table of events holds those that were met. */
+    sym_run *prototype;
+    sym_batch_function forward_dynamics, law, project, events;
+    int64_t *event_trajectory; /* (event_capacity of the prototype) whose event each row is */
+    double *par, *acted_at;    /* (n, npar), (n, n_events) of trajectories whose events have actions */
+    int32_t *event_terminal;   /* (n, n_events) */
     int32_t slots;            /* most trajectories active at once; 2 at least */
     sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
     const double *t0;         /* (n) first times; NULL: that of the prototype for all */
@@ -52,6 +56,8 @@ typedef struct sym_batch {
     int64_t n_beam_coordinates; /* of all beams */
     /* By sym_batch_start: the slots. The active trajectories occupy the first ones. */
     int32_t n_active;
+    int64_t left;                 /* steps that are left of those asked for */
+    double *event_values;         /* (slots, SYM_EVENT_ROWS, n_events) */
     sym_system *systems;          /* (slots) */
     sym_run *runs;                /* (slots) */
     sym_signal *signals;          /* (slots, n_signals) */
@@ -77,7 +83,8 @@ typedef struct sym_batch {
 size_t sym_batch_size(const sym_batch *batch, size_t *shared);
 /* Lay the slots out in memory, none of them active. Returns 0 where a function asks for an unknown input. */
 int32_t sym_batch_start(sym_batch *batch, double *memory, double *shared);
-/* At most max_steps further steps of each active trajectory. Returns 0 when all trajectories have ended. */
+/* At most max_steps further steps of each active trajectory. Returns 0 when all trajectories have ended, SYM_RECORDS_FULL
+ * where events have to be taken, batch->left steps before the end. */
 int32_t sym_batch_advance(sym_batch *batch, int64_t max_steps);
 /* End all active trajectories where they are, and the others at their initial states. */
 void sym_batch_stop(sym_batch *batch);

@@ -37,11 +37,16 @@ typedef struct sym_hand_batch { /* trajectories that go on together, one thread'
     int64_t first, n;      /* trajectories: first, first + 1, ... below n */
     double *u;             /* (all trajectories, nu) u_constant of the groups */
     int32_t *begins;       /* (all trajectories) whether it begins at the next step, at q0, v0, t0 of the groups */
+    int32_t group;         /* the one that steps; n_groups: none */
+    int64_t first_of_group, steps;
 } sym_hand_batch;
 
 /* Hold inputs u (all trajectories, n_held) from now on, those before if NULL, and make so many steps of each trajectory that
- * can go on; then its t, q, v, status are where the groups have their results. */
-void sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps);
+ * can go on; then its t, q, v, status are where the groups have their results. Returns 0, or SYM_RECORDS_FULL where events
+ * have to be taken before sym_hand_batch_go_on. */
+int32_t sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps);
+/* The steps that are left. */
+int32_t sym_hand_batch_go_on(sym_hand_batch *hand, const double *u);
 /* cdef end */
 
 #endif

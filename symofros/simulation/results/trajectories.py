@@ -14,11 +14,13 @@ from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, larg
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.analysis.kinematics.postures import limit_notes
+from symofros.simulation.results.acted import found_of
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.outcome import Outcome
-from symofros.simulation.results.trajectory import Statistics, Trajectory
+from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.stepping.batch_stepper import BatchResults
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 
 Index = int | tuple[int, ...]
@@ -45,6 +47,7 @@ class Trajectories(BatchResults):
         seconds: Wall time of all runs together [s].
         processor_seconds: Processor time of all threads together [s]; other programs do not lengthen it.
         examination: What looks at the steps and inputs of a run when its outcome is asked for.
+        met: Events met: number of the run, and the event; `events` has those of one.
     """
 
     model: Model
@@ -54,6 +57,7 @@ class Trajectories(BatchResults):
     seconds: float
     processor_seconds: float
     examination: BatchExamination | None = None
+    met: tuple[tuple[int, Met], ...] = ()
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -75,12 +79,32 @@ class Trajectories(BatchResults):
         status, states, steps = int(self.status[index]), self._states(index), int(self.steps[index])
         bendings = self.bendings(index)
         if self.examination is not None:
+            if self.examination.initial.events:
+                return self.examination.outcome_with_events(status, states, self._met(index))
             return self.examination.outcome(self._number(index), status, states, steps, bendings)
         record, t, worst = self.model.record, float(self.t_last[index]), largest_bending(bendings)
         if status == Status.BEYOND_THEORY and worst is not None:
             return ENDS[status].outcome(t, reason=str(worst))
         left = limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
         return ENDS[status].outcome(t, (*left, *bending_notes(bendings)))
+
+    def events(self, index: Index) -> tuple[Found, ...]:
+        """Events that one run met, in the order of time, with what their actions did."""
+        if self.examination is None:
+            return ()
+        return tuple(found_of(self.examination.single, met) for met in self._met(index))
+
+    def _met(self, index: Index) -> list[Met]:
+        number = self._number(index)
+        return [met for k, met in self.met if k == number]
+
+    def _changes(self, index: Index) -> tuple[tuple[int, Array], ...]:
+        """Samples from which on one run has other parameters: as of `Trajectory`."""
+        events = () if self.examination is None else self.examination.initial.events
+        acted = [(met, met.done) for met in self._met(index) if met.done is not None and met.done.status > 0]
+        lasting = [(met, done) for met, done in acted if events[met.which].restitution is None]
+        times = self.t[self._reached(index)]
+        return tuple((int(np.searchsorted(times, met.t, side="right")), done.par_set) for met, done in lasting)
 
     def _number(self, index: Index) -> int:
         """Number of a run among all."""
@@ -125,9 +149,10 @@ class Trajectories(BatchResults):
             self.u[index][reached],
             par,
             self.outcome(index),
-            (),
+            self.events(index),
             statistics,
             self.bendings(index),
+            self._changes(index),
         )
 
     def __len__(self) -> int:
@@ -162,7 +187,7 @@ class Trajectories(BatchResults):
         good = np.argwhere(self.ok)
         for row in good[:: max(1, -(-len(good) // _EXAMINED))]:
             index = tuple(map(int, row))
-            if self.examination is None or not self.steps[index]:
+            if self.examination is None or not self.steps[index] or self.examination.initial.events:
                 break
             states, steps = self._states(index), int(self.steps[index])
             notes = self.examination.notes_on_steps(self._number(index), states, steps)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import Any
@@ -14,10 +14,12 @@ from symofros.base.arrays import Array
 from symofros.runtime.calls import together
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
+from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates, lines
 from symofros.simulation.stepping.by_hand import Numbers, held_by_hand
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -31,12 +33,16 @@ class BatchState:
         par: Run-time parameters (npar), or (n, npar).
         arrays: The arrays that C writes, first times, configurations and speeds.
         groups: What C keeps of each group of slots: numbers of it and of its runs, and its memory.
+        given: Parameters that motions begin with, as par.
+        met: Events that each motion has met.
     """
 
     owner: object
     par: Array = field(repr=False)
     arrays: tuple[npt.NDArray[Any], ...] = field(repr=False)
     groups: tuple[tuple[npt.NDArray[Any], ...], ...] = field(repr=False)
+    given: Array = field(repr=False)
+    met: Mapping[int, tuple[Met, ...]] = field(repr=False)
 
     @property
     def t(self) -> Array:
@@ -63,7 +69,7 @@ class _Group:
         self._group = Numbers(single, "sym_batch", single.ffi.addressof(group))
         raw = single.memory.raw
         self._pointing = [raw(group.runs, "sym_run", group.slots)]
-        if single.run.tableau.fsal_stage:  # The memory has all of the slots; their numbers are set at each call.
+        if single.run.tableau.fsal_stage or single.events:  # The memory has all of the slots; their numbers are set at each call.
             self._pointing.append(raw(group.systems, "sym_system", group.slots))
             self._pointing.append(raw(group.signals, "sym_signal", group.slots * single.system.n_signals))
 
@@ -113,7 +119,28 @@ class _Part(BatchStepper):
 
     def step(self, u: Any, steps: int) -> None:
         """Make steps of each motion that can go on."""
-        self._native.sym_hand_batch_step(self.hand, u, steps)
+        status = self._native.sym_hand_batch_step(self.hand, u, steps)
+        self.take_events()
+        while status == Status.RECORDS_FULL:
+            status = self._native.sym_hand_batch_go_on(self.hand, u)
+            self.take_events()
+
+    @property
+    def rows(self) -> slice:
+        """Its motions among all."""
+        return slice(self._first, self._end)
+
+    @property
+    def changed(self) -> list[npt.NDArray[Any]]:
+        """What events change besides the states, of its motions."""
+        if self.single.actions is None:
+            return [self._event_terminal[self.rows]] if self.single.events else []
+        return [array[self.rows] for array in (self._event_terminal, self._acted_at)]
+
+    @property
+    def par(self) -> Array:
+        """Present run-time parameters (m, npar) of its motions, where actions change them."""
+        return self._par[self.rows]
 
 
 class HandBatch:
@@ -127,6 +154,7 @@ class HandBatch:
         par: Run-time parameters (n, npar), or (1, npar) for all.
         n: Number of motions.
         threads: Number of threads that share them.
+        events: Zero crossings to locate in each.
 
     Attributes:
         results: Where C writes times, states and statuses.
@@ -134,10 +162,19 @@ class HandBatch:
         t0: First times (n) [s].
         q0: First configurations (n, nq), v0 speeds (n, nv), of those that begin at the next step.
         begins: Which motions (n) do.
+        met: Events that each motion has met since it began, by its number.
     """
 
     def __init__(
-        self, model: Model, settings: Settings, plan: InputPlan, fixed: Container[str], par: Array, n: int, threads: int
+        self,
+        model: Model,
+        settings: Settings,
+        plan: InputPlan,
+        fixed: Container[str],
+        par: Array,
+        n: int,
+        threads: int,
+        events: Sequence[Event] = (),
     ) -> None:
         self.held = held_by_hand(model, plan, fixed)
         self.results = BatchResults.empty(model, n, 0)
@@ -145,7 +182,7 @@ class HandBatch:
         self.default, self.constant = plan.constant.copy(), np.tile(plan.constant, (n, 1))
         self.begins = np.zeros(n, dtype=np.int32)
         inputs = BatchInputs(plan, self.constant, (0,) * len(plan.signals))
-        initial = InitialStates(self.q0, self.v0, par, inputs, n, settings.t0)
+        initial = InitialStates(self.q0, self.v0, par, inputs, n, settings.t0, tuple(events))
         groups = -(-n // SLOTS)
         count = max(1, min(threads, groups))
         bounds = [min(n, SLOTS * (groups * i // count)) for i in range(count)] + [n]
@@ -153,7 +190,9 @@ class HandBatch:
         arrays = {field.name: getattr(self.results, field.name) for field in fields(self.results)}
         self._written = [arrays.pop(name) for name in ("t_last", "q_last", "v_last")] + [*arrays.values()]
         self._written += [self.constant, self.t0, self.q0, self.v0, self.begins]
+        self._written += [array for part in self._parts for array in part.changed]
         self._groups = [group for part in self._parts for group in part.kept]
+        self.single, self.met = self._parts[0].single, dict[int, tuple[Met, ...]]()
 
     def reset(self, chosen: npt.NDArray[np.intp], t: Array, q: Array, v: Array, par: Array | None) -> None:
         """Motions of these numbers begin anew at the next step, their inputs those of the description."""
@@ -162,9 +201,16 @@ class HandBatch:
         results.t_last[chosen], results.q_last[chosen], results.v_last[chosen] = t, q, v
         results.status[chosen], results.steps[chosen], self.begins[chosen] = Status.RUNNING, 0, 1
         self.constant[chosen] = self.default
-        if par is not None:
-            for part in self._parts:
+        for k in chosen if self.met else ():
+            self.met.pop(int(k), None)
+        for part in self._parts:
+            part.forget_events(chosen)
+            if par is not None:
                 part.set_parameters(chosen, par)
+
+    def present_parameters(self) -> Array:
+        """Run-time parameters (n, npar), where actions change them."""
+        return np.concatenate([part.par for part in self._parts])
 
     def inputs_at_start(self, chosen: npt.NDArray[np.intp], u: Array | None) -> Array:
         """All inputs (m, nu) of motions of these numbers at their first states, given those that are held (n, ...)."""
@@ -184,11 +230,15 @@ class HandBatch:
         ffi = self._parts[0].single.ffi
         pointer = ffi.NULL if u is None else ffi.from_buffer("double[]", u)
         together([partial(part.step, pointer, steps) for part in self._parts])
+        for part in self._parts:
+            for k, met in part.met:
+                self.met[k] = (*self.met.get(k, ()), met)
+            part.met.clear()
 
-    def save(self, owner: object, par: Array) -> BatchState:
+    def save(self, owner: object, par: Array, given: Array) -> BatchState:
         """All that C has written, and the parameters."""
         arrays, groups = (array.copy() for array in self._written), (group.read() for group in self._groups)
-        return BatchState(owner, par.copy(), tuple(arrays), tuple(groups))
+        return BatchState(owner, par.copy(), tuple(arrays), tuple(groups), given.copy(), dict(self.met))
 
     def restore(self, state: BatchState, par: Array | None) -> None:
         """Go on from a state that `save` gave, bit by bit as from there.
@@ -204,3 +254,4 @@ class HandBatch:
             to[...] = array
         for group, kept in zip(self._groups, state.groups, strict=True):
             group.write(*kept)
+        self.met = dict(state.met)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from threading import Event
+from threading import Event as Signal
 from typing import Any
 
 import numpy as np
@@ -16,11 +16,15 @@ from symofros.errors import CompileError
 from symofros.runtime.calls import CompiledKernel, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
+from symofros.simulation.events import Event
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.stepper import Stepper
 
 # Trajectories that are active at once: eight vectors of eight lanes; few enough for the first two levels of cache.
 SLOTS = 64
+# Events of one trajectory within a step that there is room for beyond a few.
+_EVENT_ROWS = 1024
 # Doubles of a line of cache.
 _LINE = 8
 # Steps of each trajectory in one call of C, between looks at Ctrl-C.
@@ -38,6 +42,7 @@ class InitialStates:
         inputs: Inputs of all trajectories.
         n: Number of trajectories.
         t: Initial time [s].
+        events: Zero crossings to locate, of each trajectory; with actions, these have parameters of their own.
     """
 
     q: Array
@@ -46,6 +51,7 @@ class InitialStates:
     inputs: BatchInputs
     n: int
     t: float
+    events: tuple[Event, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -106,6 +112,10 @@ class BatchStepper:
         results: Arrays for the results of all trajectories.
         first: Index of the first trajectory.
         stride: Number of threads that share the trajectories.
+
+    Attributes:
+        single: The single run whose settings every slot copies.
+        met: Events met: number of the trajectory, and the event.
     """
 
     def __init__(
@@ -117,15 +127,21 @@ class BatchStepper:
         first: int,
         stride: int,
     ) -> None:
-        self.single = Stepper(model, settings.method, initial.inputs.plan, (), initial.par[0])
+        self.single = Stepper(model, settings.method, initial.inputs.plan, initial.events, initial.par[0])
         settings.apply(self.single)
+        self.single.set_span(settings.span)
+        self.met: list[tuple[int, Met]] = []
         self._native, self._memory = self.single.native, self.single.memory
         self._batch = batch = self.single.ffi.new("sym_batch *")
         batch.slots = min(SLOTS, max(2, -(-initial.n // stride)))
         batch.next, batch.stride, batch.n, batch.max_steps = first, stride, initial.n, settings.max_steps or 0
         self._prepared: list[tuple[CompiledKernel, npt.NDArray[np.float64]]] = []
         self._fill_prototype()
-        self._fill_functions(initial.par)
+        par = initial.par
+        if self.single.actions is not None:
+            par = np.array(np.broadcast_to(par, (initial.n, model.npar)), order="C")
+        self._fill_functions(par)
+        self._fill_events(par, initial.n)
         self._fill_rows(initial, results)
         self._fill_beams(initial.par, results)
         self._lay_out()
@@ -152,16 +168,42 @@ class BatchStepper:
         run.work = memory.zeros(self._native.sym_run_work_size(run))
         self._batch.prototype = run
 
+    def _fill_events(self, par: Array, n: int) -> None:
+        """Memory for the events that are met, and of what actions change of each trajectory."""
+        batch, memory, single = self._batch, self._memory, self.single
+        count = len(single.events)
+        if not count:
+            return
+        single.reserve_events(batch.slots * 8 * count + _EVENT_ROWS)
+        self._event_trajectory = np.zeros(single.run.event_capacity, dtype=np.int64)
+        batch.event_trajectory = memory.shared(self._event_trajectory)
+        self._par, self._acted_at = par, np.full((n, count), -np.inf)
+        self._event_terminal = np.zeros((n, count), dtype=np.int32)
+        self.forget_events(np.arange(n))
+        batch.event_terminal = memory.shared(self._event_terminal)
+        batch.par, batch.acted_at = memory.shared(par), memory.shared(self._acted_at)
+
+    def forget_events(self, rows: npt.NDArray[np.intp]) -> None:
+        """No event of some trajectories has been met yet."""
+        if self.single.events:
+            self._event_terminal[rows], self._acted_at[rows] = [event.cut for event in self.single.events], -np.inf
+
+    def take_events(self) -> None:
+        """Take the events that C has noted; their rows are free again."""
+        n = int(self.single.run.n_event_records)
+        numbers = self._event_trajectory[:n].tolist() if n else []
+        self.met += zip(numbers, self.single.take_events() if n else (), strict=True)
+
     def _fill_functions(self, par: Array) -> None:
-        """Functions that all active trajectories call at once; `project` is called one by one."""
-        for name in ("forward_dynamics", "law", "project"):
+        """Functions that all active trajectories call at once; `project` and `events` are called one by one."""
+        for name in ("forward_dynamics", "law", "project", "events"):
             kernel = self.single.kernels.get(name)
             if kernel is None:
                 continue
             function, prepared = getattr(self._batch, name), kernel.prepare(par)
             self._prepared.append((kernel, prepared))
             self._fill_shared_rows(function.pre, prepared)
-            if name == "project":
+            if name in ("project", "events"):
                 continue
             # Laws are few operations on what users gave: in double precision.
             precision = self.single.model.precision if name == "forward_dynamics" else "double"
@@ -220,17 +262,21 @@ class BatchStepper:
         """Set the parameters (m, npar) of some trajectories (m), in effect from their next start."""
         for kernel, prepared in self._prepared:
             prepared[rows] = kernel.prepare(par)
+        if self.single.actions is not None:
+            self._par[rows] = par
         for name, numbers in self._beam_numbers(par).items():
             self._beam_rows[name][rows] = numbers
 
-    def run(self, stop: Event) -> None:
+    def run(self, stop: Signal) -> None:
         """Step every trajectory to its end, or until `stop` is set. The interpreter lock is released meanwhile."""
         try:
             while self._native.sym_batch_advance(self._batch, _STEPS_PER_CALL):
+                self.take_events()
                 if stop.is_set():
                     break
         finally:  # Ctrl-C in the main thread comes between two calls: active trajectories end where they are.
             self._native.sym_batch_stop(self._batch)
+            self.take_events()
 
 
 def lines(count: int) -> Array:
@@ -241,7 +287,7 @@ def lines(count: int) -> Array:
 
 def run_batch_steppers(steppers: Sequence[BatchStepper]) -> None:
     """Run each in a thread of its own; Ctrl-C ends all, and keeps the results so far."""
-    stop = Event()
+    stop = Signal()
     try:
         if len(steppers) == 1:
             steppers[0].run(stop)

@@ -17,6 +17,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.time_slice import TimeSlice
@@ -53,16 +54,17 @@ class Start:
         t: Time [s].
         q: Configuration (nq).
         v: Speeds (nv).
+        par: Run-time parameters (npar).
+        spent: Indices of the events that have acted for good.
         forgotten: Whether the run began before, and its inputs until then are not kept any more.
     """
 
     t: float
     q: Array
     v: Array
+    par: Array
+    spent: tuple[int, ...] = ()
     forgotten: bool = False
-
-
-Events = tuple[tuple[int, float, Array, Array], ...]
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,7 @@ class HandState:
         noted: Inputs since then.
         events: Events met since then.
         par: Run-time parameters (npar).
+        given: Those that a motion begins with.
     """
 
     owner: object
@@ -90,8 +93,9 @@ class HandState:
     arrays: tuple[npt.NDArray[Any], ...] = field(repr=False)
     start: Start = field(repr=False)
     noted: Noted | None = field(repr=False)
-    events: Events = field(repr=False)
+    events: tuple[Met, ...] = field(repr=False)
     par: Array = field(repr=False)
+    given: Array = field(repr=False)
 
 
 class HandRun:
@@ -110,7 +114,7 @@ class HandRun:
         hand: The sym_hand.
         held: Indices of the inputs that are given by hand.
         start: First state.
-        events: Events met: index, t, q, v.
+        events: Events met.
     """
 
     def __init__(
@@ -125,7 +129,10 @@ class HandRun:
         self.settings = settings
         self.run = run = Stepper(model, settings.method, inputs, events, par)
         settings.apply(run)
+        run.set_span(settings.span)
+        run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
+        self._given = par
         self.held = held_by_hand(model, inputs, fixed)
         memory = run.memory
         self.hand = hand = run.ffi.new("sym_hand *")
@@ -139,7 +146,7 @@ class HandRun:
         self._arrays = list(self._written())
         self.q, self.v = (memory.view(*of) for of in ((run.run.q, model.nq), (run.run.v, model.nv)))
         self.q.flags.writeable = self.v.flags.writeable = False
-        self.events: list[tuple[int, float, Array, Array]] = []
+        self.events: list[Met] = []
         self._known = self.settings.t_end
         self.reset(0.0, model.neutral(), np.zeros(model.nv))
 
@@ -155,8 +162,16 @@ class HandRun:
         for name, size in sizes.items():
             yield memory.view(getattr(run, name), size)
         yield memory.raw(run.beam_guard, "sym_beam_guard", len(beams))
+        if self.run.actions is not None:
+            yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events), self._looked_for)
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
             yield memory.view(getattr(system, name), size)
+
+    @property
+    def _looked_for(self) -> npt.NDArray[np.int32]:
+        """What each event does, as C has it; -1: it is not looked for any more."""
+        events = self.run.memory.raw(self.run.system.event_terminal, "int32_t", len(self.run.events))
+        return events.view(np.int32)
 
     @property
     def t(self) -> float:
@@ -175,8 +190,12 @@ class HandRun:
 
     def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
         """Begin anew at a state, the inputs those of the description until a step gives others."""
-        if par is not None:
-            self.run.set_parameters(par)
+        self._given = self._given if par is None else par
+        if self._given is not self.run.par:
+            self.run.set_parameters(self._given)
+        if self.run.actions is not None:
+            self._looked_for[:] = [event.cut for event in self.run.events]
+            self.run.memory.view(self.run.run.acted_at, len(self.run.events))[:] = -np.inf
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
         run.run.t = run.run.t0 = t
@@ -187,7 +206,7 @@ class HandRun:
         run.system.in_step = run.system.held_anew = 0
         # The first step is not made by the fast call: what comes before it is in Python.
         hand.started, hand.status, hand.mark, hand.target, hand.n = 0, Status.RECORDS_FULL, 0, 0, 0
-        self.start, self.events = Start(t, q.copy(), v.copy()), []
+        self.start, self.events = Start(t, q.copy(), v.copy(), self._given), []
         self._noted: Noted | None = None
         self._known = -np.inf
 
@@ -236,12 +255,20 @@ class HandRun:
         """After steps with that status: events and notes are taken, what is left is made; returns a Status."""
         while True:
             if self.run.run.n_event_records:
-                self.events += self.run.take_events()
+                self._take_events()
             if self.hand.n >= _NOTED:
                 self._seal()
             if status != Status.RECORDS_FULL:
                 return status
             status = int(self.run.native.sym_hand_go_on(self.hand))
+
+    def _take_events(self) -> None:
+        """Events that were met; where they act, formulas of time may have other instants from then on."""
+        met = self.run.take_events()
+        self.events += met
+        if any(one.done is not None for one in met):
+            self._known = -np.inf
+            self._look_ahead(int(self.hand.target - self.hand.mark))
 
     def _look_ahead(self, steps: int) -> None:
         """Find the instants of formulas of time at which adaptive steps have to end."""
@@ -261,7 +288,8 @@ class HandRun:
         before, self.hand.n = self._noted, 0
         self._noted = Noted(before, t[:, 0], u, n + (before.total if before else 0))
         if self._noted.total > MOST_NOTED:
-            self.start = Start(self.t, self.q.copy(), self.v.copy(), forgotten=True)
+            spent = tuple(np.flatnonzero(self._looked_for < 0).tolist())
+            self.start = Start(self.t, self.q.copy(), self.v.copy(), self.run.par, spent, forgotten=True)
             self._noted = Noted(None, np.array([self.t]), u[-1:], 1)
 
     def noted(self) -> tuple[Array, Array]:
@@ -287,8 +315,11 @@ class HandRun:
         settings = replace(self.settings, t0=self.start.t, t_end=t_end, every=1)
         if self.settings.adaptive:
             settings = replace(settings, dt=0.0)
-        again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, run.par)
+        again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par)
         settings.apply(again)
+        again.set_span(self.settings.span)
+        for which in self.start.spent:
+            again.ignore_event(which)
         return again, settings
 
     def save(self, owner: object) -> HandState:
@@ -298,7 +329,17 @@ class HandRun:
         arrays = tuple(array.copy() for array in self._arrays)
         q, v = arrays[0], arrays[1]
         return HandState(
-            owner, self.t, q, v, numbers, arrays, self.start, self._noted, tuple(self.events), self.run.par
+            owner,
+            self.t,
+            q,
+            v,
+            numbers,
+            arrays,
+            self.start,
+            self._noted,
+            tuple(self.events),
+            self.run.par,
+            self._given,
         )
 
     def restore(self, state: HandState) -> None:
@@ -310,6 +351,7 @@ class HandRun:
         for to, array in zip(self._arrays, state.arrays, strict=True):
             to[...] = array
         self.start, self._noted, self.events = state.start, state.noted, list(state.events)
+        self._given = state.given
         self._known = -np.inf
 
 

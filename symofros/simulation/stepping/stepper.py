@@ -45,17 +45,22 @@ class Stepper(BoundRun):
         run.work = memory.zeros(self.native.sym_run_work_size(run))
         run.pivots = memory.own("int32_t[]", 2 * (model.nv + model.nc))
         run.event_values = memory.zeros(constants()["SYM_EVENT_ROWS"] * len(self.events))
-        run.capacity, run.event_capacity = capacity, max(_EVENT_ROWS, 2 * len(self.events))
+        run.capacity = capacity
         self._records = memory.table(run, "record_", capacity, t=1, q=model.nq, v=model.nv, u=model.nu)
-        self._event_records = memory.table(run, "event_", run.event_capacity, t=1, q=model.nq, v=model.nv)
-        self._event_index = np.zeros(run.event_capacity, dtype=np.int32)
-        run.event_index = memory.shared(self._event_index)
-        if self.actions is not None:
-            width = int(self.native.sym_done_size(run))
-            (self._event_done,) = memory.table(run, "event_", run.event_capacity, done=width)
+        self.reserve_events(max(_EVENT_ROWS, 2 * len(self.events)))
         run.diagnostic_capacity = diagnostic_rows
         sizes = {"t": 1, "q": model.nq, "v": model.nv, "u": model.nu}
         self._diagnostic_states = memory.table(run, "diagnostic_", diagnostic_rows, **sizes)
+
+    def reserve_events(self, capacity: int) -> None:
+        """Allocate memory for `capacity` events."""
+        run, model, memory = self.run, self.model, self.memory
+        run.event_capacity = capacity
+        self._event_records = memory.table(run, "event_", capacity, t=1, q=model.nq, v=model.nv)
+        self._event_index = np.zeros(capacity, dtype=np.int32)
+        run.event_index = memory.shared(self._event_index)
+        if self.actions is not None:
+            (self._event_done,) = memory.table(run, "event_", capacity, done=int(self.native.sym_done_size(run)))
 
     def set_state(self, q: Array, v: Array) -> None:
         """Write q (nq) and v (nv) into the run's memory as its present state."""
@@ -83,6 +88,10 @@ class Stepper(BoundRun):
         """Time of the motion [s], of which a small share is an instant to actions that bring about each other."""
         if self.actions is not None:
             self.run.actions.at_once = _AT_ONCE * span
+
+    def ignore_event(self, which: int) -> None:
+        """An event is not looked for any more."""
+        self.system.event_terminal[which] = -1
 
     def act(self) -> tuple[int, list[Met]]:
         """Do the actions of the events at which the run has been cut: a Status, 0 where it goes on, and the events."""

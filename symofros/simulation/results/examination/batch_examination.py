@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,6 +13,8 @@ from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
+from symofros.simulation.results.acted import failure_of, notes_of
+from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
 from symofros.simulation.results.examination.run import ExaminedRun
@@ -19,11 +22,13 @@ from symofros.simulation.results.examination.step_size import examine_run
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import InitialStates
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 # Share of the span after the last state in which an input is looked at, where steps have no length of their own.
 _NEXT = 1e-3
+_NOT_EXAMINED = "the steps of motions with events are not examined in a batch: sf.simulate says more of one"
 # Steps of the longest run that is made once more for its ends of steps, and how many of these are kept.
 _MADE_AGAIN, _KEPT = 100_000, 4096
 
@@ -62,6 +67,22 @@ class BatchExamination:
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
         return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
+
+    def outcome_with_events(self, status: int, states: tuple[Array, ...], met: Sequence[Met]) -> Outcome:
+        """Outcome of a run of a batch with events; its steps are not examined.
+
+        Args:
+            status: Its last Status.
+            states: Samples of the run and its last state: t (n), q, v, u.
+            met: Events that it met.
+        """
+        t, end = float(states[0][-1]), ENDS[status]
+        failure = failure_of(self.single, met[-1]) if met and status < 0 else None
+        ended = [one for one in met if self.initial.events[one.which].terminal]
+        reason = f"event '{self.initial.events[ended[-1].which].name}'" if ended else ""
+        outcome = failure or end.outcome(t, reason=reason if status == Status.TERMINAL_EVENT else "")
+        remarks = (*(note for one in met for note in notes_of(one)), _NOT_EXAMINED)
+        return replace(outcome, notes=(*outcome.notes, *remarks))
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
@@ -105,10 +126,11 @@ class BatchExamination:
         """A single run in the place of run i."""
         inputs = self.initial.inputs
         one_serves_all = len(self.initial.par) == len(inputs.constant) == 1 and not any(inputs.strides)
-        return self._first if one_serves_all else self._single(i)
+        return self.single if one_serves_all else self._single(i)
 
     @cached_property
-    def _first(self) -> Stepper:
+    def single(self) -> Stepper:
+        """A single run in the place of the first one."""
         return self._single(0)
 
     def _single(self, i: int) -> Stepper:
@@ -119,14 +141,14 @@ class BatchExamination:
         ]
         plan = replace(inputs.plan, constant=_row(inputs.constant, i), signals=signals)
         model, par = self.model.with_precision("double"), _row(self.initial.par, i)
-        stepper = Stepper(model, self.settings.method, plan, (), par)
+        stepper = Stepper(model, self.settings.method, plan, self.initial.events, par)
         self.settings.apply(stepper)
         stepper.start(_row(self.initial.q, i), _row(self.initial.v, i), max(1, len(self.settings.grid)))
         return stepper
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the stepper, whose memory is that of C."""
-        return {name: value for name, value in vars(self).items() if name != "_first"}
+        return {name: value for name, value in vars(self).items() if name != "single"}
 
 
 def _row(rows: Array, i: int) -> Array:
