@@ -142,6 +142,8 @@ def export(
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
+    if target not in ("urdf", "mjcf"):
+        Compilation(system).record.refuse_sticking(f"export: '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
+from symofros.errors import Problem, SymofrosError
 
 
 class Segment(NamedTuple):
@@ -215,6 +216,18 @@ class ModelRecord:
     def nc(self) -> int:
         """Number of constraints."""
         return len(self.constraint_names)
+
+    def refuse_sticking(self, what: str) -> None:
+        """Refuse friction that sticks where nothing chooses its modes.
+
+        Raises:
+            SymofrosError: There is some.
+        """
+        if self.sticking:
+            found = f"friction of '{self.sticking[0].name}' sticks"
+            rule = "friction that sticks has modes, which `simulate` and a `Stepper` choose as the motion goes on"
+            remedy = "sticks=False: friction that is smooth, and creeps"
+            raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
 
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""

@@ -88,6 +88,7 @@ def simulate(
     check_fit(model, settings, inputs)
     if settings.method.family.multistep:
         refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
+        model.record.refuse_sticking(f"simulation by '{settings.method.name}'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     stepper.set_span(settings.span)

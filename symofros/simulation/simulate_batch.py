@@ -93,6 +93,7 @@ def simulate_batch(
         raise SymofrosError(
             Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
         )
+    model.record.refuse_sticking("simulate_batch")
     given = sort_inputs(model, u)
     parameters = model.parameter_values if par is None else model.checked_parameters(par)
     rows = {

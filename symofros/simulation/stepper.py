@@ -16,7 +16,7 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.events import named_events
+from symofros.simulation.events import events_of
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import recorded_notes
@@ -100,7 +100,7 @@ class Stepper(SteppedModel):
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
-        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
+        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), events_of(model, events), values)
         self._told: list[tuple[Met, Found]] = []
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
@@ -191,6 +191,7 @@ class Stepper(SteppedModel):
     @property
     def par(self) -> Array:
         """Run-time parameters (npar), a view that can't be written."""
+        self._hand.run.take_parameters()
         return read_only(self._hand.run.par)
 
     @property
@@ -326,9 +327,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     listed = ", ".join(names[:8]) or ("all inputs are laws and numbers" if model.nu else "there are no inputs")
     listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
-    raise ShapeError(
-        Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy)
-    )
+    raise ShapeError(Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy))
 
 
 def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:

@@ -111,6 +111,7 @@ class Steppers(SteppedModel):
         self._par = np.array(model.parameter_values if par is None else model.checked_parameters(par))
         if self._par.shape not in ((model.npar,), (n, model.npar)):
             raise self._misfit("par", self._par, model.npar, "parameters of each motion, or one set for all")
+        model.record.refuse_sticking("Steppers")
         plan = plan_inputs(model, u)
         check_fit(model, settings, plan)
         prepare_run(model, settings)

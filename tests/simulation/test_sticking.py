@@ -277,3 +277,43 @@ def test_a_loop_with_a_joint_that_sticks() -> None:
     assert np.ptp(run.q[end][:, 0]) == 0.0
     both = sf.simulate(four_bar("a", "c"), start, t_end=10.0, **_ACCURATE)
     assert both.outcome.kind == "singular" and "is not determined" in both.outcome.reason
+
+
+def test_a_stepper_holds_as_a_run_does(tmp_path: Any) -> None:
+    """Bit by bit, from a saved state too; what chooses no modes refuses friction that sticks, in words."""
+    model = on_slide(
+        sf.Spring(40.0),
+        sf.Friction(3.0, 5.0, sticks=True),
+        inputs=(sf.Input("pull"),),
+        virtual_power=(sf.VirtualPower("pull", {"ds": "pull"}),),
+    )
+    pull = "9*sin(3*t)"
+    run = sf.simulate(model, [0.3], t_end=4.0, u={"pull": pull}, dt=0.01)
+    stepper = sf.Stepper(model, u={"pull": pull}, dt=0.01)
+    stepper.reset([0.3])
+    stepper.step(steps=150)
+    state, mode = stepper.save(), float(stepper.par[0])
+    stepper.step(steps=250)
+    assert np.array_equal(stepper.q, run.q[-1]) and stepper.par[0] == run.par_over_time[-1, 0]
+    assert [found.name for found in stepper.events] == names_of(run) and len(run.events) > 4
+    stepper.restore(state)
+    assert stepper.par[0] == mode
+    stepper.step(steps=250)
+    assert np.array_equal(stepper.q, run.q[-1])
+    system = sf.System(
+        "held",
+        (sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Brake(1.0),)), sf.Inertia(1.0)),),
+    )
+    held = sf.compile(system)
+    refused = (
+        lambda: sf.simulate_batch(held, np.zeros((2, 1)), t_end=1.0),
+        lambda: sf.Steppers(held, 2, dt=0.1),
+        lambda: sf.simulate(held, t_end=1.0, method="cvode", stabilisation="baumgarte"),
+        lambda: sf.export(system, "c", tmp_path),
+    )
+    for attempt in refused:
+        with pytest.raises(sf.SymofrosError, match="friction of 'x' sticks(?s:.)*sticks=False"):
+            attempt()
+    ball = sf.RigidBody("ball", sf.Joint("b", "ball", elements=(sf.Brake(1.0),)), sf.Inertia(1.0, moments=(1, 1, 1)))
+    with pytest.raises(sf.DescriptionError, match="friction that sticks on a ball joint"):
+        sf.compile(sf.System("ball", (ball,)))

@@ -90,7 +90,7 @@ ENDS: dict[int, End] = {
     ),
     Status.HELD_TWICE: End(
         "singular",
-        "friction holds joints that others or constraints hold already, so that what each of them takes is not determined",
+        "friction holds joints that others or constraints hold already, so that what each takes is not determined",
         "in a closed loop friction that sticks at no more joints than the loop has degrees of freedom; sticks=False at"
         " the others",
     ),

@@ -177,7 +177,9 @@ class BoundRun:
         run, memory, model, events = self.run, self.memory, self.model, self.events
         switches = model.record.switches
         plan = self._actions = self.ffi.new("sym_actions *")
-        places = [(of.event, int(of.group == "v"), of.index, len(switches) + k) for k, of in enumerate(actions.assignments)]
+        places = [
+            (of.event, int(of.group == "v"), of.index, len(switches) + k) for k, of in enumerate(actions.assignments)
+        ]
         plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
         plan.assignments = memory.own("sym_assignment[]", places)
         plan.acts = memory.own("int32_t[]", [int(event.acts) for event in events])

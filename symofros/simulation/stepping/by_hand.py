@@ -164,6 +164,8 @@ class HandRun:
         yield memory.raw(run.beam_guard, "sym_beam_guard", len(beams))
         if self.run.actions is not None:
             yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events), self._looked_for)
+            sticking = len(model.record.sticking)
+            yield from (memory.raw(at, "int32_t", sticking) for at in (system.held, run.actions.repeats))
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
             yield memory.view(getattr(system, name), size)
 
@@ -315,7 +317,9 @@ class HandRun:
         settings = replace(self.settings, t0=self.start.t, t_end=t_end, every=1)
         if self.settings.adaptive:
             settings = replace(settings, dt=0.0)
-        again = Stepper(run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par)
+        again = Stepper(
+            run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par
+        )
         settings.apply(again)
         again.set_span(self.settings.span)
         for which in self.start.spent:

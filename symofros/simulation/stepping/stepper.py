@@ -36,7 +36,7 @@ class Stepper(BoundRun):
             self.reserve(capacity, _DIAGNOSTIC_ROWS)
         self.set_state(q, v)
         status = int(self.native.sym_run_start(self.run))
-        self._take_parameters()
+        self.take_parameters()
         return status
 
     def reserve(self, capacity: int, diagnostic_rows: int) -> None:
@@ -133,10 +133,10 @@ class Stepper(BoundRun):
             sizes = model.nq, model.nv, model.nu, model.npar
             done = {i: Done.of(self._event_done[i], sizes) for i in rows}
             self._event_done[first:end, 0] = 0.0
-            self._take_parameters()
+            self.take_parameters()
         return [Met(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy(), done.get(i)) for i in rows]
 
-    def _take_parameters(self) -> None:
+    def take_parameters(self) -> None:
         """Parameters as the run has changed them."""
         if self.actions is not None:
             present = self.memory.view(self.run.par, self.model.npar)
