@@ -317,3 +317,22 @@ def test_a_stepper_holds_as_a_run_does(tmp_path: Any) -> None:
     ball = sf.RigidBody("ball", sf.Joint("b", "ball", elements=(sf.Brake(1.0),)), sf.Inertia(1.0, moments=(1, 1, 1)))
     with pytest.raises(sf.DescriptionError, match="friction that sticks on a ball joint"):
         sf.compile(sf.System("ball", (ball,)))
+
+
+def test_beside_mujoco() -> None:
+    """Its `frictionloss` is a soft constraint: it slides alike, and creeps where friction holds."""
+    mujoco = pytest.importorskip("mujoco")
+    slope, moved, ours = 0.3, {}, {}
+    weight = 2.0 * _G * math.sin(slope)
+    for share in (0.5, 1.001):
+        axis = f"{math.cos(slope)} 0 {-math.sin(slope)}"
+        joint = f'<joint type="slide" axis="{axis}" frictionloss="{share * weight}"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
+        option = f'<option timestep="1e-3" gravity="0 0 -{_G}" integrator="RK4"/>'
+        scene = mujoco.MjModel.from_xml_string(f"<mujoco>{option}<worldbody><body>{joint}</body></worldbody></mujoco>")
+        data = mujoco.MjData(scene)
+        for _ in range(2000):
+            mujoco.mj_step(scene, data)
+        moved[share] = float(data.qpos[0])
+        ours[share] = float(sf.simulate(incline(share), t_end=2.0, dt=1e-3).q[-1, 0])
+    assert ours[0.5] == pytest.approx(moved[0.5], rel=1e-2) and ours[1.001] == 0.0
+    assert 1e-4 < moved[1.001] < 0.1 * moved[0.5], moved

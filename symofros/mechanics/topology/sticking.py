@@ -1,4 +1,4 @@
-"""Friction that sticks: modes of coordinates, and the constraints that hold them (docs/theory/constraints.md, section 14).
+"""Friction that sticks: modes of coordinates, and what holds them (docs/theory/constraints.md, section 14).
 
 A mode is a run-time parameter, "q1.mode": 1 and -1 are sliding forwards and backwards, 2 is held, and 0, what it is
 unless a run sets it, the smooth friction of rigid.md, (58). The condition "q1.stuck" binds the rate of the coordinate
