@@ -22,7 +22,6 @@ from symofros.description.constraints import Rod as Rod
 from symofros.description.constraints import Rolling as Rolling
 from symofros.description.contacts import Contact as Contact
 from symofros.description.forces import Anchor as Anchor
-from symofros.description.forces import Brake as Brake
 from symofros.description.forces import Connection as Connection
 from symofros.description.forces import Damper as Damper
 from symofros.description.forces import Friction as Friction
