@@ -20,6 +20,7 @@ import warnings
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cache, cached_property, partial
 from pathlib import Path
+from typing import Any
 
 from symofros.base.arguments import check_argument
 from symofros.base.options import Options
@@ -199,6 +200,14 @@ class Compilation:
             lanes: Options of batches by vectors; None: batches are loops over states.
         """
         return model_source(self.program, self.record, GENERATOR, lanes, c_name)
+
+    def formulas_source(self, formulas: Sequence[Any], c_name: str, reactions: bool = False) -> str:
+        """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names.
+
+        Those that use multipliers, wrenches of constraints or reactions of joints, where they may, are of a and lam, too.
+        """
+        program = self.programs.of_stated(self.programs.stated(formulas, reactions), derivatives=False)
+        return model_source(program, self.record, GENERATOR, None, c_name)
 
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""

@@ -27,6 +27,7 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c.parameter_check import Judged
+from symofros.exports.c.event_plan import EventPlan
 from symofros.exports.c.plant import plant_text
 from symofros.exports.diagram_interface import Interface, default_outputs, entry_names, entry_units, table
 from symofros.exports.diagram_start import FirstMotion, first_motion
@@ -58,6 +59,7 @@ class PartMaterial:
     beams: tuple[ElasticBeam, ...]
     judged: tuple[Judged, ...]
     generator: str
+    events: EventPlan | None = None
 
 
 def write_diagram(

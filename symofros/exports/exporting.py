@@ -20,6 +20,7 @@ from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
+from symofros.exports.c.event_plan import event_plan
 from symofros.exports.c.mex import write_mex
 from symofros.exports.c.reference import POINTS, checks
 from symofros.exports.c.sfunction import write_sfunction
@@ -92,6 +93,7 @@ def export(
     rtol: float | None = None,
     atol: float | None = None,
     beam_limit: float | None = None,
+    events: Mapping[str, Any] | None = None,
 ) -> Exported:
     """Write a model for another environment; all targets wrap the same C, whose interface is symofros_model.h.
 
@@ -121,6 +123,8 @@ def export(
         atol: Absolute bound of the local error of adaptive methods. 1e-8 by default.
         beam_limit: Estimated error of the beams' theory beyond which stepping fails, by default as in `simulate`; from
             0.01 on FMUs log a warning.
+        events: Name -> formula or Event, with actions as of `simulate`, which the steps of "c", "fmu2" and "fmu3" look
+            for and do; such an FMU has no Model Exchange, and none of its events is terminal. Of a model.
 
     Returns:
         What was written, and notes on what the format lacks.
@@ -135,7 +139,7 @@ def export(
     """
     given = {"method": method, "dt": dt, "rtol": rtol, "atol": atol, "beam_limit": beam_limit}
     if isinstance(model, Diagram):
-        _refuse_of_models(model, frames=frames, functions=functions, start=start)
+        _refuse_of_models(model, frames=frames, functions=functions, start=start, events=events)
         stepping = _stepping(given, model.simulation.keywords())
         named = model if name is None else replace(model, name=name)
         return _export_diagram(named, target, Path(folder), outputs, stepping)
@@ -154,12 +158,13 @@ def export(
             )
         )
     if target in _DESCRIBED:
+        event_plan(Compilation(system), compile_system(system, Options(backend="interpreter")), events, "", target)
         Compilation(system).tree  # noqa: B018 - refuses what is no mechanism
         return _DESCRIBED[target](system, name, place, GENERATOR)
     with _with_stepping():
-        if target == "cuda":
+        if target == "cuda" and not events:
             return write_cuda_package(system, name, frames, place)
-        material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target)
+        material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target, events)
     return _COMPILED[target](material, place)
 
 
@@ -233,6 +238,7 @@ def _material(
     start: Mapping[str, float],
     stepping: Stepping,
     target: Target,
+    events: Mapping[str, Any] | None,
 ) -> Material:
     """Material of an export: C packages have reactions, FMUs derivatives of outputs by prescribed motions."""
     _refuse_variational(system, stepping)
@@ -241,6 +247,8 @@ def _material(
     needs = (*stepping.method.family.functions, *reactions)
     if any(body.modes for body in system.beams):
         needs = (*needs, "beam_stiffness", "mass_matrix")
+    if events and system.switches:
+        needs = (*needs, "constraint", "frame_pose")
     instants = Compilation(system).has_instants
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
@@ -282,6 +290,7 @@ def _material(
             *singular_start(interpreted, first.q),
             *((_UNKNOWN_INSTANTS,) if instants and target not in _STEPPED else ()),
         ),
+        event_plan(compilation, interpreted, events, c_name, target),
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from symofros.description import System
+from symofros.exports.c.event_plan import EventPlan
 from symofros.exports.c.parameter_check import Judged
 from symofros.runtime.beams import BEAM_LIMIT, ElasticBeam
 from symofros.runtime.calls import Signature
@@ -65,6 +66,7 @@ class Material:
         generator: Name and version of what wrote it.
         reactions: Whether the package has reactions and efforts of actuators.
         notes: Remarks for the user.
+        events: Events that its steps look for, and what they do; None where there are none.
     """
 
     system: System
@@ -83,6 +85,7 @@ class Material:
     generator: str
     reactions: bool
     notes: tuple[str, ...] = field(default=())
+    events: EventPlan | None = None
 
     @property
     def judged(self) -> tuple[Judged, ...]:

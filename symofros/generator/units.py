@@ -19,10 +19,8 @@ from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
-from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
-from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
 from symofros.runtime.build.build import build_library, recall_library
@@ -31,7 +29,7 @@ from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
 from symofros.runtime.cuda.device_code import DeviceCode
-from symofros.runtime.functions import Key, Rate
+from symofros.runtime.functions import Key
 from symofros.runtime.record import ModelRecord
 
 
@@ -89,14 +87,10 @@ class UnitCompiler:
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool, reactions: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
-        rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
-        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates], reactions)
-        values = [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
-
-        def program() -> Program:
-            return run_passes(formula_program(self._programs.equations(), values, derivatives))
-
-        return self._unit((values, derivatives), "formulas", program)
+        values = self._programs.stated(formulas, reactions)
+        return self._unit(
+            (values, derivatives), "formulas", lambda: self._programs.of_stated(values, derivatives)
+        )
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.

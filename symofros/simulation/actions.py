@@ -42,8 +42,8 @@ class Actions:
 
     Attributes:
         assignments: In the order in which they are stated.
-        kernel: Formulas, compiled: of what says whether constraints hold, of the assignments, then of the most that
-            friction takes at rest.
+        formulas: Of what says whether constraints hold, of the assignments, then of the most that friction takes at rest.
+        kernel: The same, compiled.
         first_mode: The event at which the first mode of friction that sticks ends; those after it are of others.
 
     Raises:
@@ -61,11 +61,11 @@ class Actions:
                 what, rule = f"event '{events[i].name}': its action sets '{name}' twice", "one value for each"
                 raise SymofrosError(Problem(what, ", ".join(events[i].action or {}), rule, "leave one of them out"))
             self.assignments.append(place)
-        formulas: list[Any] = [switch.engaged for switch in model.record.switches]
-        formulas += [(events[i].action or {})[name] for i, name in stated]
-        formulas += [one.breakaway for one in model.record.sticking]
+        self.formulas: list[Any] = [switch.engaged for switch in model.record.switches]
+        self.formulas += [(events[i].action or {})[name] for i, name in stated]
+        self.formulas += [one.breakaway for one in model.record.sticking]
         try:
-            self.kernel: Kernel = model.formulas(formulas, derivatives=False)
+            self.kernel: Kernel = model.formulas(self.formulas, derivatives=False)
         except SymofrosError as error:
             raise next(_wrong_formulas(model, events, stated), error) from None
 

@@ -133,7 +133,7 @@ def test_a_class_of_the_callers_has_its_own_step() -> None:
 MESSAGES: dict[str, tuple[Callable[[], object], str]] = {
     "end": (lambda: one(t_end=2.0), "t_end[\\s\\S]*loop that makes the steps[\\s\\S]*remedy: leave it out"),
     "first": (lambda: one(q0=[0.0, 0.0]), r"q0[\s\S]*remedy: reset\(q, v, t\)"),
-    "events": (lambda: many(events={"up": "q"}), r"events[\s\S]*an sf.Stepper for each"),
+    "steps": (lambda: one().step(2), r"u does not fit[\s\S]*step\(steps=2\) makes 2 steps"),
     "option": (lambda: one(timestep=1e-3), r"arguments u, par, events[\s\S]*did you mean 'dt'"),
     "law": (lambda: one(u={"F": "t"}).step([1.0]), "all inputs are laws and numbers"),
     "row": (lambda: many().step([[0.0], [np.nan], [0.0]]), "nan for 'F' of motion 1"),

@@ -30,6 +30,7 @@ def model_files(material: Material) -> dict[str, str]:
         f"{name}.c": material.source,
         f"{name}.h": header_text(material),
         f"{name}_plant.c": plant_text(material),
+        **(material.events.files if material.events else {}),
         **header_files(*INTEGRATOR_HEADERS),
         "symofros_stepper.c": amalgamated("stepping/symofros_stepper.c"),
     }

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from symofros.base.c_text import c_string, comment, doubles, integers, strings
+from symofros.exports.c.event_plan import EventPlan
 from symofros.exports.c.parameter_check import Judged, parameter_check_text
 from symofros.exports.material import Material, Stepping
 from symofros.runtime.beams import ElasticBeam
@@ -127,6 +128,11 @@ class Moving(Protocol):
         ...
 
     @property
+    def events(self) -> EventPlan | None:
+        """Events that its steps look for; None where there are none."""
+        ...
+
+    @property
     def generator(self) -> str:
         """Name and version of the generator."""
         ...
@@ -156,6 +162,7 @@ def plant_text(material: Moving) -> str:
         *_tableau(name, step.method.tableau),
         *_beams(name, material.beams),
         *parameter_check_text(name, material.judged),
+        *(material.events.lines if material.events else ()),
         f"static const sym_plant {name}_plant_struct = {{",
         f"    {name}_model, {len(record.segments)}, {name}_segments, {name}_on_speeds, {name}_group,",
         f"    {name}_constraint_names,",
@@ -163,7 +170,8 @@ def plant_text(material: Moving) -> str:
         f"    {c_string(step.method.name)}, {step.method.constant}, {int(step.method.adaptive)},",
         f"    &{name}_tableau, {step.dt!r}, {step.rtol!r}, {step.atol!r},",
         f"    {_beam_fields(name, material.beams)}, {_limit(step.beam_limit)},",
-        f"    {name}_violated, {name}_conditions, {len(record.quaternion_inputs)}, {name}_quaternion_inputs",
+        f"    {name}_violated, {name}_conditions, {len(record.quaternion_inputs)}, {name}_quaternion_inputs"
+        + (f", &{name}_event_plan" if material.events else ""),
         "};",
         "",
         f"SYM_EXPORT const sym_plant *{name}_plant(void);",

@@ -78,6 +78,7 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
         stepping,
         max(10 * stepping.dt, 1e-3),
         (f"{name}_fmi{version}.c",),
+        exchanged=material.events is None,
         judged=bool(material.beams),
     )
     return _packed(

@@ -6,7 +6,7 @@
  */
 #include "symofros_fmu_codes.h"
 
-typedef struct fmu_snapshot { /* followed by q, v, u, par */
+typedef struct fmu_snapshot { /* followed by q, v, u, par, and when each event has acted last */
     char hash[24];
     double t, h, stop;
     int32_t phase, has_stop, cosim, reserved;
@@ -82,6 +82,9 @@ static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, size_t 
     f->name = sym_allocate_bytes(arena, name_length + 1);
 }
 
+/* Why there is no unit: steps of an importer's look for no events. */
+static int fmu_absent(int cosim) { return !cosim && SYM_FMU_PLANT()->events != NULL ? FMU_NOT_ALLOWED : FMU_NO_MEMORY; }
+
 static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_t), void (*release)(void *)) {
     const sym_plant *plant = SYM_FMU_PLANT();
     const sym_model *m = plant->model();
@@ -90,6 +93,7 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     double *memory;
     fmu draft, *f;
     int i;
+    if (fmu_absent(cosim) == FMU_NOT_ALLOWED) return NULL;
     fmu_layout(&draft, &arena, plant, length);
     memory = allocate(sym_doubles(sizeof *f) + arena.used, sizeof *memory);
     if (memory == NULL) return NULL;
@@ -112,9 +116,6 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     }
     return f;
 }
-
-/* Why there is no unit. */
-static int fmu_absent(int cosim) { return (void)cosim, FMU_NO_MEMORY; }
 
 static double *fmu_time(const fmu *f) { return &f->instance->t; }
 
@@ -268,6 +269,10 @@ static int fmu_step(fmu *f, double t) {
     case SYM_FINISHED: return FMU_OK;
     case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
     case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;
+    case SYM_ENGAGED_APART: return strcpy(f->message, "constraints engage while they are apart"), FMU_BEYOND_THEORY;
+    case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
+    case SYM_ACTS_WITHOUT_END:
+        return strcpy(f->message, "an event acts again and again at the same instant"), FMU_BEYOND_THEORY;
     default: return FMU_SINGULAR;
     }
 }
@@ -376,16 +381,20 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
     return fmu_add_by_parameters(f, n_unknown, unknown, derivative);
 }
 
+/* Number of events, where some act. */
+static int32_t fmu_acting(const fmu *f) { return f->instance->run.actions != NULL ? f->instance->system.n_events : 0; }
+
 static size_t fmu_snapshot_size(const fmu *f) {
     const sym_model *m = f->instance->model;
-    return sizeof(fmu_snapshot) + ((size_t)m->nq + (size_t)m->nv + (size_t)m->nu + (size_t)m->npar) * sizeof(double);
+    const size_t sizes = (size_t)m->nq + (size_t)m->nv + (size_t)m->nu + (size_t)m->npar + (size_t)fmu_acting(f);
+    return sizeof(fmu_snapshot) + sizes * sizeof(double);
 }
 
 static void fmu_save(const fmu *f, void *into) {
     const sym_instance *instance = f->instance;
     const sym_model *m = instance->model;
-    const double *const parts[4] = {instance->q, instance->v, instance->u, instance->par};
-    const int32_t sizes[4] = {m->nq, m->nv, m->nu, m->npar};
+    const double *const parts[5] = {instance->q, instance->v, instance->u, instance->par, instance->run.acted_at};
+    const int32_t sizes[5] = {m->nq, m->nv, m->nu, m->npar, fmu_acting(f)};
     char *at = (char *)into + sizeof(fmu_snapshot);
     fmu_snapshot head;
     int i;
@@ -394,7 +403,8 @@ static void fmu_save(const fmu *f, void *into) {
     head.t = instance->t, head.h = instance->run.h, head.stop = f->stop;
     head.phase = (int32_t)f->phase, head.has_stop = f->has_stop, head.cosim = f->cosim;
     memcpy(into, &head, sizeof head);
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 5; ++i) {
+        if (sizes[i] == 0) continue;
         memcpy(at, parts[i], (size_t)sizes[i] * sizeof(double));
         at += (size_t)sizes[i] * sizeof(double);
     }
@@ -411,8 +421,8 @@ static int fmu_owns(const fmu *f, const void *snapshot) {
 static int fmu_load(fmu *f, const void *from) {
     sym_instance *instance = f->instance;
     const sym_model *m = instance->model;
-    double *const parts[4] = {instance->q, instance->v, instance->u, instance->par};
-    const int32_t sizes[4] = {m->nq, m->nv, m->nu, m->npar};
+    double *const parts[5] = {instance->q, instance->v, instance->u, instance->par, instance->run.acted_at};
+    const int32_t sizes[5] = {m->nq, m->nv, m->nu, m->npar, fmu_acting(f)};
     const char *at = (const char *)from + sizeof(fmu_snapshot);
     fmu_snapshot head;
     int i;
@@ -421,9 +431,15 @@ static int fmu_load(fmu *f, const void *from) {
     if (head.phase < 0 || head.phase > (int32_t)FMU_TERMINATED) return 0;
     instance->t = head.t, instance->run.h = head.h, f->stop = head.stop;
     f->phase = (fmu_phase)head.phase, f->has_stop = head.has_stop;
-    for (i = 0; i < 4; ++i) {
+    for (i = 0; i < 5; ++i) {
+        if (sizes[i] == 0) continue;
         memcpy(parts[i], at, (size_t)sizes[i] * sizeof(double));
         at += (size_t)sizes[i] * sizeof(double);
+    }
+    for (i = 0; i < fmu_acting(f); ++i) {
+        const sym_event_plan *plan = instance->plant->events;
+        const int32_t spent = plan->once[i] && instance->run.acted_at[i] > -HUGE_VAL;
+        instance->event_terminal[i] = spent ? -1 : plan->cut[i];
     }
     f->parameters_valid = 0, f->rates_valid = 0;
     return 1;

@@ -118,7 +118,10 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
     memcpy(done->u, s->u, (size_t)s->nu * sizeof *s->u);
     engaging = sym_assign(r, event, done->par_set, done->v_set);
     refused = !sym_all_finite(s->nv, done->v_set) || (e >= 0.0 && engaging == 0);
-    if (refused || a->refuses(a->data, done->par_set) != 0) return SYM_ACTION_REFUSED;
+    if (refused || a->refuses(a->data, done->par_set) != 0) {
+        sym_run_set_parameters(r, done->par); /* functions may share the part that poses were prepared in */
+        return SYM_ACTION_REFUSED;
+    }
     sym_let_go(s, done->par_set);
     return sym_impact(r, e, done);
 }

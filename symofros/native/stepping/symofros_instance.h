@@ -20,6 +20,20 @@
 extern "C" {
 #endif
 
+typedef struct sym_event_plan { /* events of a package, and what they do: symofros_stepper.h */
+    int32_t n;
+    const char *const *names;             /* (n) */
+    const int32_t *direction, *cut;       /* (n) as sym_system's event_direction, event_terminal at first */
+    const int32_t *acts, *once;           /* (n) as in sym_actions, as what follows */
+    const double *restitution;
+    int32_t n_assignments, n_switches, n_poses;
+    const sym_assignment *assignments;
+    const sym_switch *switches;
+    const char *const *pose_frames;       /* (n_poses) frames whose relative rotation is held */
+    const sym_model *(*formulas)(void);   /* a function of the values of the events, of parameters' parts of its own */
+    const sym_model *(*actions)(void);    /* the same of switches and assignments; NULL: no event acts */
+} sym_event_plan;
+
 typedef struct sym_plant { /* constants that a package generates besides the model's functions */
     const sym_model *(*model)(void);
     int32_t n_segments;
@@ -45,6 +59,7 @@ typedef struct sym_plant { /* constants that a package generates besides the mod
     const char *const *conditions;
     int32_t n_quaternion_inputs;
     const int32_t *quaternion_inputs;     /* (n_quaternion_inputs) first indices in u, as in sym_system */
+    const sym_event_plan *events;         /* NULL: none */
 } sym_plant;
 
 typedef struct sym_instance {
@@ -66,6 +81,8 @@ typedef struct sym_instance {
     sym_instant_search instants;
     double *stops;      /* (instants.capacity) instants that are known, from one time up to another */
     double stops_begin, stops_end;
+    sym_actions actions; /* where events act; `par` and its parts are then those that they have left */
+    int32_t *event_terminal; /* (events) */
     sym_system system;
     sym_run run;
 } sym_instance;
@@ -89,8 +106,10 @@ double sym_instance_beam_error(sym_instance *instance, int32_t beam);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
 /* Integrate to t_end by steps of at most h (0: the plant's), from quaternions that are near unit length (1e-3), which
- * have it then. Steps end where the model's formulas of time bend, jump or change fast. Returns SYM_FINISHED or a status
- * below zero. */
+ * have it then. Steps end where the model's formulas of time bend, jump or change fast. Events act on the way: parameters,
+ * speeds, constraints that engage. Those that were met are rows 0 to run.n_event_records - 1 of run.event_index (of
+ * plant->events->names), event_t, event_q, event_v, the first ones gone where there were more than run.event_capacity.
+ * Returns SYM_FINISHED, SYM_TERMINAL_EVENT where an event ends the motion at instance->t, or a status below zero. */
 int32_t sym_instance_advance(sym_instance *instance, double t_end, double h);
 /* For integrators of others: the first instant after the present time, up to t_end, at which a step has to end because a
  * formula of time bends, jumps or changes fast; t_end where there is none. The functions of a step between two such instants

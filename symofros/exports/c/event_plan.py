@@ -1,0 +1,122 @@
+"""C that says which events a package looks for, and what they do: sym_event_plan of symofros_instance.h."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from symofros.base.c_text import doubles, integers, strings
+from symofros.compiler import Compilation
+from symofros.errors import ExportError, Problem
+from symofros.runtime.model import Model
+from symofros.runtime.record import SwitchRecord
+from symofros.simulation.actions import Actions, plan_actions
+from symofros.simulation.events import Event, named_events
+
+# Targets whose steps look for events.
+_TARGETS = ("c", "fmu2", "fmu3")
+
+
+@dataclass(frozen=True)
+class EventPlan:
+    """The events of a package.
+
+    Attributes:
+        lines: C of the plan, NAME_event_plan.
+        files: File name -> C text of the formulas, which the lines include.
+    """
+
+    lines: tuple[str, ...]
+    files: Mapping[str, str] = field(repr=False)
+
+
+def event_plan(
+    compilation: Compilation, model: Model, given: Mapping[str, Any] | None, c_name: str, target: str
+) -> EventPlan | None:
+    """The events of a package; None where there are none.
+
+    Args:
+        compilation: Compilation of the system, which writes formulas as C.
+        model: The same as a model.
+        given: Name -> formula or Event.
+        c_name: Prefix of names in C.
+        target: Target of the export.
+
+    Raises:
+        ExportError: The target has no steps of its own, or can't end where an event does.
+        SymofrosError: An action can't be done.
+    """
+    events = named_events(given)
+    if not events:
+        return None
+    _refuse(events, target)
+    actions = plan_actions(model, events)
+    model.formulas([event.formula for event in events], derivatives=False, reactions=True)  # Refuses what is none.
+    sources = {"events": [event.formula for event in events], "actions": actions.formulas if actions else []}
+    files = {
+        f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}", reactions=kind == "events")
+        for kind, formulas in sources.items()
+        if formulas
+    }
+    return EventPlan(tuple(_lines(c_name, events, actions, model.record.switches, tuple(files))), files)
+
+
+def _refuse(events: Sequence[Event], target: str) -> None:
+    if target not in _TARGETS:
+        what, rule = f"export: '{target}' looks for no events", f"events are of {', '.join(_TARGETS)}"
+        remedy = "leave `events` out, and look for them in the host; or take one of these targets"
+        raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
+    ending = [event.name for event in events if event.terminal]
+    if ending and target != "c":
+        what, rule = f"export: event '{ending[0]}' ends the motion", "the importer decides when the motion of an FMU ends"
+        raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
+
+
+def _lines(
+    name: str, events: Sequence[Event], actions: Actions | None, switches: Sequence[SwitchRecord], files: Sequence[str]
+) -> list[str]:
+    """C of the plan."""
+    turning = [switch for switch in switches if switch.rotation]
+    assignments = actions.assignments if actions else []
+    places = [f"{{{a.event}, {int(a.group == 'v')}, {a.index}, {len(switches) + k}}}" for k, a in enumerate(assignments)]
+    arrays = {
+        "direction": [event.sign for event in events],
+        "cut": [event.cut for event in events],
+        "acts": [int(bool(event.action)) for event in events],
+        "once": [int(event.once) for event in events],
+    }
+    restitution = [-1.0 if event.restitution is None else event.restitution for event in events]
+    frames = [frame for switch in turning for frame in switch.frames]
+    held = [
+        f"static const int32_t {name}_switch{i}[] = {{{integers([*(o[0] for o in s.offsets), *(o[1] for o in s.offsets), *s.rotation])}}};"
+        for i, s in enumerate(switches)
+    ]
+    counts = f"{len(assignments)}, {len(switches)}, {len(frames)}"
+    pointers = ", ".join(f"{name}_event_{key}" for key in (*arrays, "restitution"))
+    models = f"{name}_events_model, {f'{name}_actions_model' if actions else 'NULL'}"
+    return [
+        *(f'#include "{file}"' for file in files),
+        f"static const char *const {name}_event_names[] = {{{strings([event.name for event in events])}}};",
+        *(f"static const int32_t {name}_event_{key}[] = {{{integers(of)}}};" for key, of in arrays.items()),
+        f"static const double {name}_event_restitution[] = {{{doubles(restitution)}}};",
+        f"static const sym_assignment {name}_assignments[] = {{{', '.join(places) or '{0, 0, 0, 0}'}}};",
+        *held,
+        f"static const sym_switch {name}_switches[] = {{{_switches(name, switches) or '{0, 0, NULL, NULL, NULL, 0}'}}};",
+        f"static const char *const {name}_pose_frames[] = {{{strings(frames)}}};",
+        f"static const sym_event_plan {name}_event_plan = {{",
+        f"    {len(events)}, {name}_event_names, {pointers},",
+        f"    {counts}, {name}_assignments, {name}_switches, {name}_pose_frames, {models}",
+        "};",
+    ]
+
+
+def _switches(name: str, switches: Sequence[SwitchRecord]) -> str:
+    """Initialisers of the switches, whose rows, places and rotation lie in one array each."""
+    structs, pose = [], 0
+    for i, switch in enumerate(switches):
+        n, at = len(switch.offsets), f"{name}_switch{i}"
+        rotation = f"{at} + {2 * n}" if switch.rotation else "NULL"
+        structs.append(f"{{{int(switch.moment)}, {n}, {at}, {at} + {n}, {rotation}, {pose}}}")
+        pose += 2 * bool(switch.rotation)
+    return ", ".join(structs)

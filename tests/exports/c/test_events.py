@@ -1,0 +1,75 @@
+"""Packages look for events and do what they do, as sf.simulate."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.simulation.stepping.status import Status
+from tests.exports.cases import build, run, sources
+from tests.simulation.mechanisms import slide
+from tests.simulation.test_actions import grabbing
+
+MAIN = Path(__file__).with_name("events.c").read_text()
+# A ball that bounces as a body that strikes a constraint does, and is caught at its third contact.
+_FLOOR = sf.Closure("floor", ("world", None), ("body", None), ("z",))
+_BALL = slide(
+    name="z",
+    axis=(0, 0, 1),
+    gravity=(0, 0, -10),
+    parameters=(sf.Parameter("contact", 0.0),),
+    constraints=(_FLOOR,),
+)
+BALL = sf.System(
+    "ball", _BALL.bodies, _BALL.parameters, _BALL.inputs, _BALL.gravity, constraints=_BALL.constraints,
+    switches=(sf.Switch("floor", "contact"),),
+)  # fmt: skip
+STRIKE = {"strike": sf.Event("z", "falling", action={"contact": 1}, restitution=0.5)}
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("span", [1e-3, 0.06])
+def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span: float) -> None:
+    """In calls of any length, and again after a reset."""
+    plan: dict[str, Any] = {
+        "grab": sf.Event("t - 0.0203", action={"grip": 1}, once=True),
+        "drop": sf.Event("t - 0.04", action={"grip": "1 - grip", "dq1": 0.1}),
+        "light": sf.Event("t - 0.05", action={"m": "m/2"}),
+    }
+    start = {"q1": 0.3, "q2": -0.4, "dq1": 0.5, "f.px": 1.2, "f.py": 0.2, "f.wz": 1.0}
+    options: dict[str, Any] = {"method": method, "rtol": 1e-9, "atol": 1e-11}
+    sf.export(grabbing("moment"), "c", tmp_path / "c", name="plan", events=plan, start=start, dt=1e-3, **options)
+    (tmp_path / "c" / "main.c").write_text(MAIN)
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    *met, status, state = run(program, repr(span), "0.06", cwd=tmp_path).splitlines()
+    model = sf.compile(grabbing("moment"))
+    q0 = model.neutral()
+    q0[[model.names.q.index(name) for name in ("q1", "q2", "f.px", "f.py")]] = 0.3, -0.4, 1.2, 0.2
+    again = sf.simulate(model, q0, {"q1": 0.5, "f.wz": 1.0}, 0.06, events=plan, dt=1e-3, **options)
+    assert status == f"status {Status.FINISHED}" and [line.split()[0] for line in met] == ["grab", "drop", "light"]
+    assert [float(line.split()[1]) for line in met] == pytest.approx([found.t for found in again.events], abs=1e-12)
+    numbers = np.array(state.split()[1:], dtype=float)
+    assert numbers == pytest.approx(np.concatenate([again.q[-1], again.v[-1]]), abs=1e-8 if method == "dopri5" else 1e-12)
+
+
+def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -> None:
+    """With the state that is there; targets that look for none refuse them."""
+    ends = {**STRIKE, "rest": sf.Event("t - 0.9", terminal=True)}
+    for t_end, expected in ((0.95, Status.TERMINAL_EVENT), (3.0, Status.ACTS_WITHOUT_END)):
+        folder = tmp_path / str(t_end) / "c"
+        events = ends if t_end < 1.0 else STRIKE
+        sf.export(BALL, "c", folder, name="plan", events=events, start={"z": 0.8})
+        (folder / "main.c").write_text(MAIN)
+        program = build(folder, "../plan", *sources(folder))
+        *met, status, state = run(program, "0.01", repr(t_end), cwd=tmp_path).splitlines()
+        assert status == f"status {expected}" and met[0].startswith("strike 0.4")
+        assert abs(float(state.split()[1])) < 0.2
+    for target in ("mex", "sfunction", "wasm", "cuda"):
+        with pytest.raises(sf.ExportError, match=f"'{target}' looks for no events"):
+            sf.export(BALL, target, tmp_path / target, events=STRIKE)  # type: ignore[arg-type]
+    with pytest.raises(sf.ExportError, match="'rest' ends the motion"):
+        sf.export(BALL, "fmu2", tmp_path / "fmu", events=ends)

@@ -1,0 +1,26 @@
+"""Events of FMUs: Co-Simulation looks for them and does what they do; Model Exchange is not offered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import fmpy
+import pytest
+
+import symofros as sf
+from tests.exports.c.test_events import BALL, STRIKE
+from tests.exports.fmi.test_fmu import quickly
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_ball_bounces_in_co_simulation(tmp_path: Path, version: int) -> None:
+    """As in sf.simulate, whatever the communication step; kept states know which events have acted for good."""
+    events = {**STRIKE, "heavy": sf.Event("t - 0.1", action={"dz": "dz - 1"}, once=True)}
+    with quickly():
+        sf.export(BALL, f"fmu{version}", tmp_path, events=events, start={"z": 0.8})  # type: ignore[arg-type]
+    unit = str(tmp_path / "ball.fmu")
+    assert fmpy.read_model_description(unit).modelExchange is None
+    done = fmpy.simulate_fmu(unit, stop_time=0.9, output_interval=0.01, output=["q.z", "v.z"])
+    run = sf.simulate(sf.compile(BALL), [0.8], t_end=0.9, events=events, dt=1e-3)
+    assert len(run.events) >= 3 and done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-9)
+    assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-8)
