@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from tests.exports.cases import build, sources
+from tests.exports.cases import run as run_program
 
 _G, _MASS, _RATE = 9.81, 2.0, 10.0
 
@@ -96,3 +99,36 @@ def test_what_changes_the_motion_may_not_ask_for_forces() -> None:
         sf.simulate(model, events={"set": event})
     with pytest.raises(sf.UnknownNameError, match="unknown symbol 'wrench.level.fx'"):
         sf.simulate(model, events={"none": sf.Event("wrench.level.fx - 1")})
+
+
+def pulled_by_time() -> sf.System:
+    """A weight on a latch, pulled at by 10 t."""
+    weight = sf.RigidBody("weight", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(_MASS))
+    return sf.System(
+        "pulled_by_time",
+        (weight,),
+        (sf.Parameter("shut", 1.0), sf.Parameter("strength", 40.0)),
+        constraints=(sf.Coupling("latch", "z"),),
+        switches=(sf.Switch("latch", "shut"),),
+        virtual_power=(sf.VirtualPower("pull", {"dz": f"-{_RATE}*t"}),),
+    )
+
+
+_BREAKS = {"breaks": sf.Event("lam.latch - strength", "rising", action={"shut": 0.0})}
+
+
+def test_batches_and_packages_ask_for_forces_as_runs_do(tmp_path: Any) -> None:
+    """Each motion of a batch at its own strength; a package of C at the instant of the run."""
+    model, strengths = sf.compile(pulled_by_time()), np.array([30.0, 35.0, 40.0, 45.0])
+    par = np.stack([np.ones(4), strengths], axis=-1)
+    many = sf.simulate_batch(model, np.zeros((4, 1)), t_end=3.0, par=par, events=_BREAKS, dt=1e-2)
+    at = (strengths - _MASS * _G) / _RATE
+    for i in range(4):
+        assert [found.t for found in many.events(i)] == pytest.approx([at[i]], abs=1e-12)
+    sf.export(pulled_by_time(), "c", tmp_path / "c", name="plan", events=_BREAKS, dt=1e-2)
+    (tmp_path / "c" / "main.c").write_text(Path("tests/exports/c/events.c").read_text())
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    met, status, state = run_program(program, "0.1", "3.0", cwd=tmp_path).splitlines()
+    assert met.split()[0] == "breaks" and float(met.split()[1]) == pytest.approx(at[2], abs=1e-12)
+    run = sf.simulate(model, t_end=3.0, events=_BREAKS, dt=1e-2)
+    assert status == "status 1" and float(state.split()[1]) == pytest.approx(run.q[-1, 0], abs=1e-12)
