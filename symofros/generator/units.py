@@ -88,9 +88,7 @@ class UnitCompiler:
     def formulas(self, formulas: Sequence[Any], derivatives: bool, reactions: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
         values = self._programs.stated(formulas, reactions)
-        return self._unit(
-            (values, derivatives), "formulas", lambda: self._programs.of_stated(values, derivatives)
-        )
+        return self._unit((values, derivatives), "formulas", lambda: self._programs.of_stated(values, derivatives))
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.

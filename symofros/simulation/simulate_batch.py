@@ -19,7 +19,7 @@ from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
-from symofros.simulation.events import named_events
+from symofros.simulation.events import events_of
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import (
@@ -93,7 +93,6 @@ def simulate_batch(
         raise SymofrosError(
             Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
         )
-    model.record.refuse_sticking("simulate_batch")
     given = sort_inputs(model, u)
     parameters = model.parameter_values if par is None else model.checked_parameters(par)
     rows = {
@@ -107,7 +106,7 @@ def simulate_batch(
     count = min(count, max(n, 1))
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
-    initial = InitialStates(q, v, values, inputs, n, settings.t0, named_events(events))
+    initial = InitialStates(q, v, values, inputs, n, settings.t0, events_of(model, events))
     results = BatchResults.empty(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
     steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(count if n else 0)]

@@ -306,8 +306,6 @@ def test_a_stepper_holds_as_a_run_does(tmp_path: Any) -> None:
     )
     held = sf.compile(system)
     refused = (
-        lambda: sf.simulate_batch(held, np.zeros((2, 1)), t_end=1.0),
-        lambda: sf.Steppers(held, 2, dt=0.1),
         lambda: sf.simulate(held, t_end=1.0, method="cvode", stabilisation="baumgarte"),
         lambda: sf.export(system, "c", tmp_path),
     )
@@ -336,3 +334,25 @@ def test_beside_mujoco() -> None:
         ours[share] = float(sf.simulate(incline(share), t_end=2.0, dt=1e-3).q[-1, 0])
     assert ours[0.5] == pytest.approx(moved[0.5], rel=1e-2) and ours[1.001] == 0.0
     assert 1e-4 < moved[1.001] < 0.1 * moved[0.5], moved
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.01}, {"method": "dopri5", "rtol": 1e-10}])
+def test_batches_hold_as_single_runs_do(options: dict[str, Any]) -> None:
+    """More motions than slots, each with modes of its own, some held from the start; and steppers of many."""
+    parameters = (sf.Parameter("level", 3.0),)
+    model = on_slide(sf.Spring(40.0), sf.Friction("level", sticks=True), parameters=parameters)
+    rng, n = np.random.default_rng(2), 70
+    starts = rng.uniform(-0.6, 0.6, (n, 1))
+    par = np.stack([rng.uniform(1.0, 9.0, n), np.zeros(n)], axis=-1)
+    many = sf.simulate_batch(model, starts, t_end=3.0, par=par, **options)
+    singles = [sf.simulate(model, starts[i], t_end=3.0, par=par[i], **options) for i in range(n)]
+    assert all(many.outcome(i).kind == "finished" for i in range(n))
+    for i, run in enumerate(singles):
+        assert [found.name for found in many.events(i)] == names_of(run)
+        assert many.q[i, -1] == pytest.approx(run.q[-1], abs=1e-9) and (many.v[i, -1] == 0.0) == (run.v[-1] == 0.0)
+    assert 10 < sum(run.events == () for run in singles) < 60
+    if "dt" in options:
+        steppers = sf.Steppers(model, n, par=par, dt=0.01)
+        steppers.reset(starts)
+        steppers.step(steps=300)
+        assert steppers.q == pytest.approx(many.q[:, -1], abs=1e-12)

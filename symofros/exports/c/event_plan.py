@@ -69,7 +69,10 @@ def _refuse(events: Sequence[Event], target: str) -> None:
         raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
     ending = [event.name for event in events if event.terminal]
     if ending and target != "c":
-        what, rule = f"export: event '{ending[0]}' ends the motion", "the importer decides when the motion of an FMU ends"
+        what, rule = (
+            f"export: event '{ending[0]}' ends the motion",
+            "the importer decides when the motion of an FMU ends",
+        )
         raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
 
 
@@ -79,7 +82,9 @@ def _lines(
     """C of the plan."""
     turning = [switch for switch in switches if switch.rotation]
     assignments = actions.assignments if actions else []
-    places = [f"{{{a.event}, {int(a.group == 'v')}, {a.index}, {len(switches) + k}}}" for k, a in enumerate(assignments)]
+    places = [
+        f"{{{a.event}, {int(a.group == 'v')}, {a.index}, {len(switches) + k}}}" for k, a in enumerate(assignments)
+    ]
     arrays = {
         "direction": [event.sign for event in events],
         "cut": [event.cut for event in events],

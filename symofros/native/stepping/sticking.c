@@ -34,12 +34,13 @@ enum { SYM_ALL_AT_ONCE = 3, SYM_MOST_ROUNDS = 1000 };
 /* How often a mode may end at one instant. */
 enum { SYM_MOST_REPEATS = 20 };
 
-/* Count that a mode ends once more. Returns 0 or a status. */
+/* Count that a mode ends once more: acted_at runs ahead of time by a share of what counts as an instant each time. Returns 0
+ * or a status. */
 static int32_t sym_count_repeats(sym_run *r, int32_t event) {
-    int32_t *repeats = r->actions->repeats + (event - r->actions->first_mode);
-    *repeats = r->t - r->acted_at[event] <= r->actions->at_once ? *repeats + 1 : 0;
-    if (*repeats == 0) r->acted_at[event] = r->t;
-    return *repeats > SYM_MOST_REPEATS ? SYM_ACTS_WITHOUT_END : 0;
+    const double instant = r->actions->at_once;
+    double *at = r->acted_at + event;
+    *at = (*at > r->t ? *at : r->t) + instant / SYM_MOST_REPEATS;
+    return *at > r->t + instant ? SYM_ACTS_WITHOUT_END : 0;
 }
 
 /* The mode that a coordinate at rest has to have instead of its present one, by the accelerations and multipliers at the

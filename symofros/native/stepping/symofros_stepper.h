@@ -127,7 +127,6 @@ typedef struct sym_actions {
     sym_call *poses;                 /* p, R of frames */
     double *engaged;                 /* (n_switches) scratch */
     double *modes;                   /* (npar + 2 n_sticking) scratch */
-    int32_t *repeats;                /* (n_sticking) how often each mode has ended at one instant */
 } sym_actions;
 
 /* What the action at a row of events has done. */

@@ -188,7 +188,6 @@ class BoundRun:
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
         plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
         plan.first_mode, plan.modes = actions.first_mode, memory.zeros(model.npar + 2 * sticking)
-        plan.repeats = memory.own("int32_t[]", sticking)
         self._bind_call(plan, "values", actions.kernel)
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))

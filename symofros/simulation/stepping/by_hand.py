@@ -165,7 +165,7 @@ class HandRun:
         if self.run.actions is not None:
             yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events), self._looked_for)
             sticking = len(model.record.sticking)
-            yield from (memory.raw(at, "int32_t", sticking) for at in (system.held, run.actions.repeats))
+            yield memory.raw(system.held, "int32_t", sticking)
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
             yield memory.view(getattr(system, name), size)
 
