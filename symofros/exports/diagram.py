@@ -26,8 +26,8 @@ from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.lowered_block import watched
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
-from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.event_plan import EventPlan
+from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
 from symofros.exports.diagram_interface import Interface, default_outputs, entry_names, entry_units, table
 from symofros.exports.diagram_start import FirstMotion, first_motion

@@ -6,12 +6,10 @@ import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import Any
 
 from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
 from symofros.base.routes import ROUTES, Choice, choose, taken
-from symofros.description.values import Value
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program
@@ -19,11 +17,9 @@ from symofros.generator.codegen.effort import effort
 from symofros.generator.passes import run_passes
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree, coupled_speeds
-from symofros.runtime.functions import Rate
 
 # What a C text or a library holds where the options name no functions.
 _DEFAULT = (Request("dynamics"),)
@@ -88,16 +84,6 @@ class ProgramBuilder:
         equations = self._taken_over
         methods = Methods(self.trees) if function == _FORWARD.name else Methods()
         return form_program(equations, [Request(function, frame)], methods)
-
-    def stated(self, formulas: Sequence[Any], reactions: bool = False) -> list[tuple[Value, int]]:
-        """Numbers, texts, SymPy expressions or Rates over the model's names: values, and how often each is derived."""
-        rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
-        values = stated_formulas(self.tree, [rate.formula for rate in rates], reactions)
-        return [(value, rate.order) for value, rate in zip(values, rates, strict=True)]
-
-    def of_stated(self, values: Sequence[tuple[Value, int]], derivatives: bool) -> Program:
-        """The function "formulas" of such values, optimised."""
-        return run_passes(formula_program(self.equations(), values, derivatives))
 
     @cached_property
     def _taken_over(self) -> Equations:

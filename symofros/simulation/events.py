@@ -28,7 +28,8 @@ class Event(metaclass=CheckedCalls):
         name: ArrayLike by the mapping it stands in.
         action: What happens at each crossing that counts: run-time parameter or speed ("grip", "dq1") -> number, or
             formula of the state before. Then the speeds meet the constraints that hold, by a plastic impact
-            (docs/theory/constraints.md, section 13). `simulate` has actions.
+            (docs/theory/constraints.md, section 13). `simulate`, `simulate_batch`, steppers, packages of C and FMUs do
+            them.
         once: Whether only the first crossing counts.
         restitution: Newton's coefficient e, 0 to 1, of an action that lets constraints strike: they hold for the
             instant alone, and what they take of the speeds comes back e times; parameters are then as before.
@@ -57,8 +58,11 @@ class Event(metaclass=CheckedCalls):
 
     @property
     def cut(self) -> int:
-        """1: a crossing ends the run; 2: the integration, until the action is done; 0: neither."""
-        return 1 if self.terminal else 2 * self.acts
+        """What a crossing does, as sym_system's event_terminal has it at first.
+
+        1: it ends the run; 2: the integration, until the action is done; 0: neither; -2: neither, and counts once.
+        """
+        return 1 if self.terminal else 2 if self.acts else -2 * self.once
 
     @property
     def acts(self) -> bool:

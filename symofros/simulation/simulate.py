@@ -28,7 +28,6 @@ from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
-from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -198,7 +197,7 @@ def _phase(
     if stepper.inputs.callback is not None:
         notes = recorded_notes(stepper.model.record, states[0], states[3])
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
-    met = [found_of(stepper, Met(*event)) for event in recorded.events]
+    met = [found_of(stepper, event) for event in recorded.events]
     phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings)
     return phase, [which for which, when, *_ in recorded.events if when == stepper.t]
 

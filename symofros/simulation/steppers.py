@@ -144,8 +144,8 @@ class Steppers(SteppedModel):
             q: Configurations (n, nq), or (nq) for all, on the constraints; the neutral one by default.
             v: Speeds (n, nv), or (nv) for all; rest by default.
             t: Time [s]; that of the options, `t0`, by default.
-            par: Other run-time parameters (n, npar), of steppers that were made with one set each; by default those that
-                the motions before began with, whatever actions have made of them.
+            par: Other run-time parameters (n, npar), of steppers that were made with one set each; by default those
+                that the motions before began with, whatever actions have made of them.
             which: Motions that begin anew, of bool (n); all by default. The rows of the others count for nothing.
 
         Raises:

@@ -375,6 +375,27 @@ def test_what_a_stepper_cannot_do_ends_its_motion() -> None:
         assert stepper.outcome == sf.simulate(model, q, v, 0.01, dt=1e-4, events=events).outcome
 
 
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])
+def test_an_event_that_counts_once_is_met_once(method: str) -> None:
+    """With an action or none, whoever makes the steps."""
+    model, events = sf.compile(slide()), {"beat": sf.Event("sin(20*t)", once=True), "each": sf.Event("sin(20*t)")}
+    if method == "cvode":
+        pytest.importorskip("sksundae")
+    runs = [sf.simulate(model, t_end=1.0, events=events, method=method).events]
+    if method == "rk4":
+        stepper, steppers = sf.Stepper(model, events=events, dt=1e-2), sf.Steppers(model, 3, events=events, dt=1e-2)
+        stepper.step(steps=50)
+        kept = stepper.save()
+        stepper.restore(kept)
+        stepper.step(steps=50)
+        steppers.step(steps=100)
+        runs += [stepper.events, steppers.events(1)]
+    if method != "cvode":
+        runs.append(sf.simulate_batch(model, t_end=1.0, events=events, method=method).events(()))
+    for found in runs:
+        assert sorted(one.name for one in found) == ["beat", *["each"] * 6]
+
+
 def test_switches_are_kept_by_files(tmp_path: Any) -> None:
     """As stated, with the line."""
     system = grabbing("moment")

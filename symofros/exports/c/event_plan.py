@@ -69,10 +69,7 @@ def _refuse(events: Sequence[Event], target: str) -> None:
         raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
     ending = [event.name for event in events if event.terminal]
     if ending and target != "c":
-        what, rule = (
-            f"export: event '{ending[0]}' ends the motion",
-            "the importer decides when the motion of an FMU ends",
-        )
+        what, rule = f"export: event '{ending[0]}' ends the motion", "importers decide when the motion of an FMU ends"
         raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
 
 
@@ -94,8 +91,9 @@ def _lines(
     restitution = [-1.0 if event.restitution is None else event.restitution for event in events]
     frames = [frame for switch in turning for frame in switch.frames]
     held = [
-        f"static const int32_t {name}_switch{i}[] = {{{integers([*(o[0] for o in s.offsets), *(o[1] for o in s.offsets), *s.rotation])}}};"
-        for i, s in enumerate(switches)
+        f"static const int32_t {name}_switch{i}[] = {{{integers((*rows, *places_of, *switch.rotation))}}};"
+        for i, switch in enumerate(switches)
+        for rows, places_of in (tuple(zip(*switch.offsets, strict=True)) or ((), ()),)
     ]
     counts = f"{len(assignments)}, {len(switches)}, {len(frames)}"
     pointers = ", ".join(f"{name}_event_{key}" for key in (*arrays, "restitution"))
@@ -107,7 +105,7 @@ def _lines(
         f"static const double {name}_event_restitution[] = {{{doubles(restitution)}}};",
         f"static const sym_assignment {name}_assignments[] = {{{', '.join(places) or '{0, 0, 0, 0}'}}};",
         *held,
-        f"static const sym_switch {name}_switches[] = {{{_switches(name, switches) or '{0, 0, NULL, NULL, NULL, 0}'}}};",
+        f"static const sym_switch {name}_switches[] = {{{_switches(name, switches)}}};",
         f"static const char *const {name}_pose_frames[] = {{{strings(frames)}}};",
         f"static const sym_event_plan {name}_event_plan = {{",
         f"    {len(events)}, {name}_event_names, {pointers},",
@@ -124,4 +122,4 @@ def _switches(name: str, switches: Sequence[SwitchRecord]) -> str:
         rotation = f"{at} + {2 * n}" if switch.rotation else "NULL"
         structs.append(f"{{{int(switch.moment)}, {n}, {at}, {at} + {n}, {rotation}, {pose}}}")
         pose += 2 * bool(switch.rotation)
-    return ", ".join(structs)
+    return ", ".join(structs) or "{0, 0, NULL, NULL, NULL, 0}"

@@ -11,7 +11,7 @@ static int32_t sym_event_values(sym_run *r, double *values) {
         return SYM_CALLBACK_FAILED;
     }
     sym_evaluate(&s->events);
-    for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] < 0 ? 1.0 : s->events.out[0][i];
+    for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] == -1 ? 1.0 : s->events.out[0][i];
     return 0;
 }
 
@@ -29,10 +29,13 @@ static int32_t sym_event_values_within_step(void *data, double x, double *values
     return status != 0 ? status : sym_event_values(step->run, values);
 }
 
-/* Record the evaluation point as an event. */
+/* Record the evaluation point as an event, if it is still looked for. */
 static void sym_record_event(sym_run *r, int32_t which) {
     const sym_system *s = r->system;
-    const int64_t row = r->n_event_records++;
+    const int64_t row = r->n_event_records;
+    if (s->event_terminal[which] == -1) return;
+    if (s->event_terminal[which] == -2) s->event_terminal[which] = -1;
+    ++r->n_event_records;
     r->event_t[row] = *s->t;
     r->event_index[row] = which;
     memcpy(r->event_q + row * s->nq, s->q, (size_t)s->nq * sizeof(double));

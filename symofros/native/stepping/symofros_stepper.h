@@ -167,7 +167,7 @@ typedef struct sym_system {
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
-    int32_t *event_terminal;        /* (n_events) 1: the event ends the run, 2: acts; -1: it is not looked for any more */
+    int32_t *event_terminal;        /* (n_events) 1: the event ends the run; 2: acts; -2: counts once; -1: is not looked for any more */
     const double *u_constant;       /* (nu) inputs that nothing else gives */
     /* Inputs by a function of the caller's; not 0 stops the run. NULL: none. */
     int32_t (*callback)(void *data, double t, const double *q, const double *v, double *u);

@@ -69,9 +69,8 @@ class _Group:
         self._group = Numbers(single, "sym_batch", single.ffi.addressof(group))
         raw = single.memory.raw
         self._pointing = [raw(group.runs, "sym_run", group.slots)]
-        if (
-            single.run.tableau.fsal_stage or single.events
-        ):  # The memory has all of the slots; their numbers are set at each call.
+        # The memory has all of the slots then; their numbers are set at each call.
+        if single.run.tableau.fsal_stage or single.events:
             self._pointing.append(raw(group.systems, "sym_system", group.slots))
             self._pointing.append(raw(group.signals, "sym_signal", group.slots * single.system.n_signals))
 

@@ -162,8 +162,9 @@ class HandRun:
         for name, size in sizes.items():
             yield memory.view(getattr(run, name), size)
         yield memory.raw(run.beam_guard, "sym_beam_guard", len(beams))
+        yield self._looked_for
         if self.run.actions is not None:
-            yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events), self._looked_for)
+            yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events))
             sticking = len(model.record.sticking)
             yield memory.raw(system.held, "int32_t", sticking)
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
@@ -195,8 +196,8 @@ class HandRun:
         self._given = self._given if par is None else par
         if self._given is not self.run.par:
             self.run.set_parameters(self._given)
+        self._looked_for[:] = [event.cut for event in self.run.events]
         if self.run.actions is not None:
-            self._looked_for[:] = [event.cut for event in self.run.events]
             self.run.memory.view(self.run.run.acted_at, len(self.run.events))[:] = -np.inf
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
@@ -290,7 +291,7 @@ class HandRun:
         before, self.hand.n = self._noted, 0
         self._noted = Noted(before, t[:, 0], u, n + (before.total if before else 0))
         if self._noted.total > MOST_NOTED:
-            spent = tuple(np.flatnonzero(self._looked_for < 0).tolist())
+            spent = tuple(np.flatnonzero(self._looked_for == -1).tolist())
             self.start = Start(self.t, self.q.copy(), self.v.copy(), self.run.par, spent, forgotten=True)
             self._noted = Noted(None, np.array([self.t]), u[-1:], 1)
 
@@ -317,9 +318,8 @@ class HandRun:
         settings = replace(self.settings, t0=self.start.t, t_end=t_end, every=1)
         if self.settings.adaptive:
             settings = replace(settings, dt=0.0)
-        again = Stepper(
-            run.model, run.method, replace(plan, signals=[*plan.signals, *signals]), run.events, self.start.par
-        )
+        plan = replace(plan, signals=[*plan.signals, *signals])
+        again = Stepper(run.model, run.method, plan, run.events, self.start.par)
         settings.apply(again)
         again.set_span(self.settings.span)
         for which in self.start.spent:

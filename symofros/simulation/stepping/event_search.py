@@ -70,8 +70,13 @@ class EventSearch:
             status = native.sym_event_search_next(search, which, x)
             if status != Status.RUNNING or which[0] < 0:
                 break
+            event = stepper.events[which[0]]
+            if event.once and stepper.system.event_terminal[which[0]] == -1:
+                continue  # In this step, too, the first one alone counts.
             met.append(MetEvent(which[0], self._time(x[0]), state(self._time(x[0])).copy()))
-            if stepper.events[which[0]].terminal:
+            if event.once:
+                stepper.ignore_event(which[0])
+            if event.terminal:
                 break
         self._values[0] = self._values[self._last]
         if self._failure is not None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.sundials import Cvode, Ida
@@ -125,7 +126,7 @@ def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show:
                 break
             t, q_now, v_now = stepper.state
             if met is not None:
-                recorded.events.append((met, t, q_now, v_now))
+                recorded.events.append(Met(met, t, q_now, v_now))
             final = met is not None and stepper.events[met].terminal
             if final:
                 recorded.status, run.terminal_event = Status.TERMINAL_EVENT, met

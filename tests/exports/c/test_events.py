@@ -53,7 +53,9 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
     assert status == f"status {Status.FINISHED}" and [line.split()[0] for line in met] == ["grab", "drop", "light"]
     assert [float(line.split()[1]) for line in met] == pytest.approx([found.t for found in again.events], abs=1e-12)
     numbers = np.array(state.split()[1:], dtype=float)
-    assert numbers == pytest.approx(np.concatenate([again.q[-1], again.v[-1]]), abs=1e-8 if method == "dopri5" else 1e-12)
+    assert numbers == pytest.approx(
+        np.concatenate([again.q[-1], again.v[-1]]), abs=1e-8 if method == "dopri5" else 1e-12
+    )
 
 
 def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -> None:
