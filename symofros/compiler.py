@@ -210,7 +210,7 @@ class Compilation:
     def formulas_source(self, formulas: Sequence[Any], c_name: str, reactions: bool = False) -> str:
         """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names.
 
-        Those that use multipliers, wrenches of constraints or reactions of joints, where they may, are of a and lam, too.
+        Those that use multipliers, wrenches of constraints or reactions of joints, where they may, are of a and lam.
         """
         return self._units(None).formulas_source(formulas, c_name, reactions)
 

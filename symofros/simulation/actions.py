@@ -42,7 +42,8 @@ class Actions:
 
     Attributes:
         assignments: In the order in which they are stated.
-        formulas: Of what says whether constraints hold, of the assignments, then of the most that friction takes at rest.
+        formulas: Of what says whether constraints hold, of the assignments, then of the most that friction takes at
+            rest.
         kernel: The same, compiled.
         first_mode: The event at which the first mode of friction that sticks ends; those after it are of others.
 

@@ -6,12 +6,15 @@ import itertools
 import math
 from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from tests.exports.cases import build, sources
+from tests.exports.cases import run as run_program
 
 _G = 9.81
 _ACCURATE: dict[str, Any] = {"method": "dopri5", "rtol": 1e-11, "atol": 1e-13}
@@ -307,7 +310,7 @@ def test_a_stepper_holds_as_a_run_does(tmp_path: Any) -> None:
     held = sf.compile(system)
     refused = (
         lambda: sf.simulate(held, t_end=1.0, method="cvode", stabilisation="baumgarte"),
-        lambda: sf.export(system, "c", tmp_path),
+        lambda: sf.export(system, "mex", tmp_path),
     )
     for attempt in refused:
         with pytest.raises(sf.SymofrosError, match="friction of 'x' sticks(?s:.)*sticks=False"):
@@ -324,7 +327,8 @@ def test_beside_mujoco() -> None:
     weight = 2.0 * _G * math.sin(slope)
     for share in (0.5, 1.001):
         axis = f"{math.cos(slope)} 0 {-math.sin(slope)}"
-        joint = f'<joint type="slide" axis="{axis}" frictionloss="{share * weight}"/><inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
+        joint = f'<joint type="slide" axis="{axis}" frictionloss="{share * weight}"/>'
+        joint += '<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
         option = f'<option timestep="1e-3" gravity="0 0 -{_G}" integrator="RK4"/>'
         scene = mujoco.MjModel.from_xml_string(f"<mujoco>{option}<worldbody><body>{joint}</body></worldbody></mujoco>")
         data = mujoco.MjData(scene)
@@ -356,3 +360,20 @@ def test_batches_hold_as_single_runs_do(options: dict[str, Any]) -> None:
         steppers.reset(starts)
         steppers.step(steps=300)
         assert steppers.q == pytest.approx(many.q[:, -1], abs=1e-12)
+
+
+def test_a_package_holds_as_a_run_does(tmp_path: Any) -> None:
+    """The same modes at the same instants in C, in calls of any length, and again after a reset."""
+    joint = sf.Joint("s", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(40.0), sf.Friction(3.0, 5.0, sticks=True)))
+    pull = sf.VirtualPower("pull", {"ds": "9*sin(3*t)"})
+    system = sf.System("pulled", (sf.RigidBody("b", joint, sf.Inertia(2.0)),), gravity=(0, 0, 0), virtual_power=(pull,))
+    sf.export(system, "c", tmp_path / "c", name="plan", start={"s": 0.3}, dt=1e-3)
+    (tmp_path / "c" / "main.c").write_text(Path("tests/exports/c/events.c").read_text())
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    run = sf.simulate(sf.compile(system), [0.3], t_end=4.0, dt=1e-3)
+    for span in ("0.01", "4.0"):
+        *met, status, state = run_program(program, span, "4.0", cwd=tmp_path).splitlines()
+        instants = [float(line.split()[1]) for line in met]
+        assert status == "status 1" and instants == pytest.approx([found.t for found in run.events], abs=1e-10)
+        assert [float(x) for x in state.split()[1:]] == pytest.approx([run.q[-1, 0], run.v[-1, 0]], abs=1e-10)
+    assert len(run.events) > 4
