@@ -102,9 +102,9 @@ class Friction(_Values):
     minimum_velocity P/static. A block that is loaded by half of `static` creeps by 53 mm in 100 s at the default
     1 mm/s, in proportion to `minimum_velocity`. A run that ends in creep bears a note; `equilibrium` finds none.
 
-    With `sticks`, `simulate` holds the joint exactly: at rest a constraint takes up to `static`, and lets go in the
-    direction of what it takes beyond that; then friction has one sign, that of the level at the speed, until the joint
-    comes to rest again (docs/theory/constraints.md, section 14). Elsewhere such friction is the smooth one.
+    With `sticks`, runs hold the joint exactly: at rest a constraint takes up to `static`, and lets go in the direction
+    of what it takes beyond that; then friction has one sign, and the level of the speed, until the joint comes to rest
+    again (docs/theory/constraints.md, section 14). To the model's functions such friction is the smooth one.
 
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
@@ -115,7 +115,7 @@ class Friction(_Values):
         stribeck_velocity: Speed over which static falls to dynamic; if not given ten times the minimum velocity, and no
             speed at all of friction that sticks [rad/s or m/s].
         coordinate: Index of the speed of the joint, from 0.
-        sticks: Whether `simulate` holds the joint at rest exactly.
+        sticks: Whether runs hold the joint at rest exactly.
     """
 
     dynamic: Value

@@ -123,8 +123,8 @@ def _sticking(tree: SpanningTree) -> tuple[StickingRecord, ...]:
     return tuple(
         StickingRecord(
             one.coordinate,
-            link.q[0] + one.index,
-            link.v[0] + one.index,
+            link.q[0] + one.number,
+            link.v[0] + one.number,
             tree.coordinates.par.index(one.mode),
             conditions.index(one.condition),
             _text(one.breakaway),

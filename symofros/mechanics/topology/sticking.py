@@ -28,14 +28,14 @@ class StickingCoordinate(NamedTuple):
     """A coordinate with friction that sticks.
 
     Attributes:
-        index: Index among the coordinates of its joint.
+        number: Number among the coordinates of its joint, from 0.
         coordinate: Name of the coordinate.
         speed: What conditions on speeds call its rate.
         key: Symbol of its rate that nothing else has.
         breakaway: Most that its friction takes at rest.
     """
 
-    index: int
+    number: int
     coordinate: str
     speed: str
     key: str
