@@ -25,12 +25,12 @@ class Assignment(NamedTuple):
     Attributes:
         event: Index of the event.
         group: "par" or "v".
-        index: Index of the parameter or speed.
+        entry: Index of the parameter or speed.
     """
 
     event: int
     group: str
-    index: int
+    entry: int
 
 
 class Actions:

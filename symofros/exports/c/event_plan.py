@@ -84,7 +84,7 @@ def _lines(
     sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
     assignments = actions.assignments if actions else []
     places = [
-        f"{{{a.event}, {int(a.group == 'v')}, {a.index}, {len(switches) + k}}}" for k, a in enumerate(assignments)
+        f"{{{a.event}, {int(a.group == 'v')}, {a.entry}, {len(switches) + k}}}" for k, a in enumerate(assignments)
     ]
     arrays = {
         "direction": [event.sign for event in events],

@@ -178,7 +178,7 @@ class BoundRun:
         switches = model.record.switches
         plan = self._actions = self.ffi.new("sym_actions *")
         places = [
-            (of.event, int(of.group == "v"), of.index, len(switches) + k) for k, of in enumerate(actions.assignments)
+            (of.event, int(of.group == "v"), of.entry, len(switches) + k) for k, of in enumerate(actions.assignments)
         ]
         plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
         plan.assignments = memory.own("sym_assignment[]", places)

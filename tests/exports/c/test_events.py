@@ -72,6 +72,6 @@ def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -
         assert abs(float(state.split()[1])) < 0.2
     for target in ("mex", "sfunction", "wasm", "cuda"):
         with pytest.raises(sf.ExportError, match=f"'{target}' looks for no events"):
-            sf.export(BALL, target, tmp_path / target, events=STRIKE)  # type: ignore[arg-type]
+            sf.export(BALL, target, tmp_path / target, events=STRIKE)
     with pytest.raises(sf.ExportError, match="'rest' ends the motion"):
         sf.export(BALL, "fmu2", tmp_path / "fmu", events=ends)
