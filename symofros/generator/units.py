@@ -116,14 +116,14 @@ class UnitCompiler:
         program = self._of_stated(self._stated(formulas, reactions), False)
         return model_source(program, self._record, GENERATOR, None, c_name)
 
-    def _stated(self, formulas: Sequence[Any]) -> list[tuple[Any, int]]:
+    def _stated(self, formulas: Sequence[Any], reactions: bool) -> list[tuple[Any, int]]:
         """Values of formulas, and how often each is differentiated by t."""
         rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
         stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates], reactions)
         return [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
 
     def _of_stated(self, values: Sequence[tuple[Any, int]], derivatives: bool) -> Program:
-        return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
+        return run_passes(formula_program(self._programs.equations(), values, derivatives))
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.
