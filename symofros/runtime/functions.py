@@ -265,14 +265,12 @@ class Functions(Arguments):
         return self._call(name, public, values, par, out)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True, reactions: bool = False) -> Kernel:
-        """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
-
-        Those that use multipliers, wrenches of constraints or reactions of joints are of a and lam, too.
+        """Formulas over the model's names, compiled: (q, v, u, t; a, lam) -> values, and derivatives by q and by v.
 
         Args:
             formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", SymPy expressions, or Rates of them.
             derivatives: Whether those are wanted, too.
-            reactions: Whether they may use multipliers, wrenches and reactions.
+            reactions: Whether they may use multipliers, wrenches and reactions, and are of a and lam then.
 
         Raises:
             UnknownNameError: A formula uses a name that the mechanism lacks, or that it may not use.
