@@ -377,3 +377,28 @@ def test_a_package_holds_as_a_run_does(tmp_path: Any) -> None:
         assert status == "status 1" and instants == pytest.approx([found.t for found in run.events], abs=1e-10)
         assert [float(x) for x in state.split()[1:]] == pytest.approx([run.q[-1, 0], run.v[-1, 0]], abs=1e-10)
     assert len(run.events) > 4
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_driven_arm_keeps_the_law_of_friction_at_every_record(seed: int) -> None:
+    """Held joints are at rest and carry no more than static friction, sliding ones move as their mode says."""
+    rng = np.random.default_rng(seed)
+    levels = rng.uniform(0.5, 3.0, 4)
+    model = arm(
+        4,
+        levels.tolist(),
+        gravity=(0, 0, -2.0),
+        inputs=(sf.Input("w"),),
+        virtual_power=tuple(
+            sf.VirtualPower(f"p{i}", {f"dq{i}": f"{x}*sin({2 + i}*t)*w"}) for i, x in enumerate((9, 6, 4, 2))
+        ),
+    )
+    run = sf.simulate(model, rng.uniform(-1, 1, 4), t_end=3.0, u={"w": 1.0}, method="dopri5", rtol=1e-8, atol=1e-10)
+    assert run.outcome.kind == "finished" and len(run.events) > 8, run.outcome
+    modes = run.par_over_time
+    held = modes == 2.0
+    assert (
+        not run.v[held].any()
+        and (np.abs(run.lam)[held] <= np.broadcast_to(levels, held.shape)[held] * (1 + 1e-9)).all()
+    )
+    assert (run.v * modes)[~held].min() > -1e-12 and set(np.unique(modes)) == {-1.0, 1.0, 2.0}
