@@ -15,6 +15,7 @@ import numpy as np
 import symofros as sf
 from symofros.runtime.calls import binding
 from symofros.simulation.stepping.methods import METHODS
+from tests.simulation.test_actions import PLAN, grabbing
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 FIXED = ("euler", "semi_implicit_euler", "rk4", "implicit_euler", "generalized_alpha", "variational")
@@ -65,8 +66,33 @@ def runs(options: sf.Options) -> Iterator[tuple[str, np.ndarray]]:
             yield f"{name} batch {method}", np.concatenate([batch.q[-1, -1], batch.v[-1, -1]])
 
 
+def acting(options: sf.Options) -> Iterator[tuple[str, np.ndarray]]:
+    """Ends of runs, of a batch, and of motions stepped by hand, whose events grasp, release, set, and strike."""
+    m = sf.compile(grabbing("moment"), options)
+    q, v = m.neutral(), np.linspace(0.5, 1.0, m.nv)
+    many = np.tile(q, (70, 1)), np.tile(v, (70, 1)) * np.linspace(0.9, 1.0, 70)[:, None]
+    events = PLAN | {"often": sf.Event("sin(3000*t)"), "light": sf.Event("t - 0.03", action={"m": "m/2"})}
+    for method in ("rk4", "generalized_alpha", "dopri5"):
+        run = sf.simulate(m, q, v, 0.05, method=method, events=events, dt=2e-3)
+        yield f"grasp {method}", np.concatenate([run.q[-1], run.v[-1]])
+    for method in ("rk4", "dopri5"):
+        batch = sf.simulate_batch(m, *many, 0.05, method=method, events=events, dt=2e-3, threads=2)
+        yield f"grasp batch {method}", np.concatenate([batch.q[-1, -1], batch.v[-1, -1]])
+    stepper, steppers = sf.Stepper(m, events=events, dt=2e-3), sf.Steppers(m, 70, events=events, dt=2e-3, threads=2)
+    stepper.reset(q, v)
+    steppers.reset(*many)
+    for _ in range(25):
+        stepper.step()
+        steppers.step()
+        stepper.restore(stepper.save())
+        steppers.restore(steppers.save())
+    yield "grasp hand rk4", np.concatenate([stepper.q, stepper.v])
+    yield "grasp hands rk4", np.concatenate([steppers.q[-1], steppers.v[-1]])
+
+
 if __name__ == "__main__":
     flags = tuple(sys.argv[1:])
     binding._FLAGS = (*binding._FLAGS, *flags)
-    for label, end in runs(sf.Options(flags=("-O1", "-g", "-fno-math-errno", *flags))):
+    sanitized = sf.Options(flags=("-O1", "-g", "-fno-math-errno", *flags))
+    for label, end in (*runs(sanitized), *acting(sanitized)):
         print(label.replace(" ", ":"), *map(repr, end.tolist()), flush=True)

@@ -12,7 +12,7 @@ import pytest
 
 import symofros as sf
 from tests.exports.cases import need, sanitizers
-from tests.native.sanitized_runs import ADAPTIVE, FIXED, models, runs
+from tests.native.sanitized_runs import ADAPTIVE, FIXED, acting, models, runs
 
 ROOT = Path(__file__).parents[2]
 # The same steps, compiled with other flags: fused products round differently. A step that is just accepted by one is
@@ -43,7 +43,7 @@ def test_all_methods_run_under_sanitizers(tmp_path: Path) -> None:
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[-4000:]
     ends = {label: np.array(values, dtype=np.float64) for label, *values in map(str.split, done.stdout.splitlines())}
-    expected = {label.replace(" ", ":"): end for label, end in runs(sf.Options())}
+    expected = {label.replace(" ", ":"): end for label, end in (*runs(sf.Options()), *acting(sf.Options()))}
     assert ends.keys() == expected.keys()
     # Of each model most methods take part, and of each method most models: nothing was refused altogether.
     assert all(sum(label.startswith(f"{name}:") for label in ends) >= 6 for name in models())

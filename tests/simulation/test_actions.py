@@ -275,7 +275,7 @@ def test_what_is_refused() -> None:
             sf.compile(sf.System("s", edge.bodies, constraints=edge.constraints, switches=(switch,)))
 
 
-_PLAN = {
+PLAN = {
     "grab": sf.Event("t - 0.0203", action={"grip": 1}, once=True),
     "drop": sf.Event("t - 0.04", action={"grip": "1 - grip", "dq1": 0.1}),
 }
@@ -286,7 +286,7 @@ def test_a_stepper_acts_as_a_run_does(method: str) -> None:
     """To the last bit by fixed steps, with the same events; states are kept and put back with the modes in them."""
     model = model_of(pose="moment")
     q, v = tumbling(model)
-    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": _PLAN, "rtol": 1e-10, "atol": 1e-12}
+    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": PLAN, "rtol": 1e-10, "atol": 1e-12}
     run = sf.simulate(model, q, v, 0.06, **options)
     stepper = sf.Stepper(model, **options)
     stepper.reset(q, v)
@@ -320,7 +320,7 @@ def test_each_of_many_acts_as_one_alone(method: str, threads: int) -> None:
     model, rng, n = model_of(pose="moment"), np.random.default_rng(5), 5
     q, v = (np.array(rows) for rows in zip(*(model.random_state(rng) for _ in range(n)), strict=True))
     options: dict[str, Any] = {"dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
-    mixed = _PLAN | {"late": sf.Event("q1 - 0.3", action={"m": "2*m"}, once=True)}
+    mixed = PLAN | {"late": sf.Event("q1 - 0.3", action={"m": "2*m"}, once=True)}
     many = sf.simulate_batch(model, q, v, 0.06, events=mixed, threads=threads, output=0.01, **options)
     for i in range(n):
         run, one = sf.simulate(model, q[i], v[i], 0.06, events=mixed, **options), many[i]
