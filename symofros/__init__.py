@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from symofros.description.constraints import Rolling as Rolling
     from symofros.description.constraints import Switch as Switch
     from symofros.description.contacts import Contact as Contact
+    from symofros.description.forces import Brake as Brake
     from symofros.description.forces import Connection as Connection
     from symofros.description.forces import Damper as Damper
     from symofros.description.forces import Friction as Friction

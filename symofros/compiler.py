@@ -207,9 +207,12 @@ class Compilation:
         """
         return model_source(self.program, self.record, GENERATOR, lanes, c_name)
 
-    def formulas_source(self, formulas: Sequence[Any], c_name: str) -> str:
-        """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
-        return self._units(None).formulas_source(formulas, c_name)
+    def formulas_source(self, formulas: Sequence[Any], c_name: str, reactions: bool = False) -> str:
+        """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names.
+
+        Those that use multipliers, wrenches of constraints or reactions of joints, where they may, are of a and lam.
+        """
+        return self._units(None).formulas_source(formulas, c_name, reactions)
 
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""

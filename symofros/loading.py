@@ -73,7 +73,8 @@ def load(
         packages: Name -> further folder that the description's files may be read from: packages of xacro and URDF by
             their names, models of SDFormat or folders that hold some; of MJCF under any name. Not for YAML and USD.
         dissipation: All but YAML: what of the file's passive losses is kept: "none"; "viscous", its dampers; "all", dry
-            friction too, as smoothed Coulomb friction. By default "none" of URDF, and "viscous" of the others.
+            friction too, as smoothed Coulomb friction; "stiction", dry friction that holds joints at rest in runs. By
+            default "none" of URDF, and "viscous" of the others.
         limits: All but YAML: "data", or "stops": limits of coordinates push back, as hard as the inertias suggest.
 
     Returns:

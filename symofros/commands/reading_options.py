@@ -66,7 +66,7 @@ class ReadingOptions:
         "",
         "dissipation",
         "What to keep of a file's passive losses: none (as of URDF by default), viscous (dampers, as of MJCF, "
-        "SDF and USD), or all (dry friction, too).",
+        "SDF and USD), all (dry friction, too), or stiction (dry friction that holds joints at rest).",
         "WHAT",
         _FOREIGN,
     )

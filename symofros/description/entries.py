@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import numbers
 import re
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Collection, Mapping, Set
 from dataclasses import fields
 from functools import cache, partial, wraps
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -35,6 +35,12 @@ def descriptions(noun: type) -> dict[str, str]:
     """Entry -> its line in the docstring of a dataclass."""
     text = inspect.cleandoc(noun.__doc__ or "").partition("Attributes:\n")[2]
     return {name: " ".join(line.split()) for name, line in _ATTRIBUTE.findall(text)}
+
+
+def shown_entries(noun: Any, without: Collection[str]) -> str:
+    """The text of a dataclass with each field that counts but some."""
+    names = [item.name for item in fields(noun) if item.repr and item.name not in without]
+    return f"{type(noun).__name__}({', '.join(f'{name}={getattr(noun, name)!r}' for name in names)})"
 
 
 class UnknownEntryError(DescriptionError, ArgumentError):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Literal
+from typing import Any, Literal
 
 from symofros.base.names import name_of
-from symofros.description.entries import pairs_of, refuses_unknown_entries
-from symofros.description.values import ORIGIN, Value, Vector, as_value, as_vector
+from symofros.description.entries import pairs_of, refuses_unknown_entries, shown_entries
+from symofros.description.values import ORIGIN, Term, Value, Vector, as_value, as_vector
 from symofros.errors import DescriptionError, Problem
 
 
@@ -15,10 +16,20 @@ class _Values:
     """Converts every numeric field of a dataclass at its construction."""
 
     def __post_init__(self) -> None:
-        for item in fields(self):  # type: ignore[arg-type]
-            value = getattr(self, item.name)
-            if item.name != "coordinate" and value is not None:
-                object.__setattr__(self, item.name, as_value(value, f"{type(self).__name__.lower()}: {item.name}"))
+        for name, value in numbers_of(self):
+            object.__setattr__(self, name, as_value(value, f"{type(self).__name__.lower()}: {name}"))
+
+
+# Entries of joint elements that are no numbers or formulas.
+_NO_NUMBERS = ("coordinate", "sticks")
+
+
+def numbers_of(element: Any) -> Iterator[tuple[str, Value]]:
+    """The stated numbers and formulas of an element of a joint, by their entries."""
+    for item in fields(element):
+        value = getattr(element, item.name)
+        if item.name not in _NO_NUMBERS and value is not None:
+            yield item.name, value
 
 
 @refuses_unknown_entries
@@ -91,15 +102,20 @@ class Friction(_Values):
     minimum_velocity P/static. A block that is loaded by half of `static` creeps by 53 mm in 100 s at the default
     1 mm/s, in proportion to `minimum_velocity`. A run that ends in creep bears a note; `equilibrium` finds none.
 
+    With `sticks`, runs hold the joint exactly: at rest a constraint takes up to `static`, and lets go in the direction
+    of what it takes beyond that; then friction has one sign, and the level of the speed, until the joint comes to rest
+    again (docs/theory/constraints.md, section 14). To the model's functions such friction is the smooth one.
+
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
         static: Friction at the onset of motion, its maximum unless it is below dynamic; dynamic if
             not given [N m or N].
         minimum_velocity: Speed over which the sign of the speed is smoothed [rad/s or m/s].
         viscous: Viscous coefficient [N m s/rad or N s/m].
-        stribeck_velocity: Speed over which static falls to dynamic; ten times the minimum velocity if not given
-            [rad/s or m/s].
+        stribeck_velocity: Speed over which static falls to dynamic; if not given ten times the minimum velocity, and no
+            speed at all of friction that sticks [rad/s or m/s].
         coordinate: Index of the speed of the joint, from 0.
+        sticks: Whether runs hold the joint at rest exactly.
     """
 
     dynamic: Value
@@ -108,6 +124,29 @@ class Friction(_Values):
     viscous: Value = 0.0
     stribeck_velocity: Value | None = None
     coordinate: int = 0
+    sticks: bool = False
+
+    def __repr__(self) -> str:
+        """Each field that counts, as hashes of descriptions are made of this text."""
+        return shown_entries(self, () if self.sticks else ("sticks",))
+
+    @property
+    def breakaway(self) -> Value:
+        """Most that friction takes at rest [N m or N]."""
+        return self.dynamic if self.static is None else self.static
+
+
+def Brake(torque: Value | str, engaged: Value | str = 1.0, coordinate: int = 0) -> Friction:
+    """A brake: friction that sticks, up to a torque at which it slips, while it is engaged.
+
+    Args:
+        torque: Torque or force at which it slips [N m or N]: number or formula of parameters.
+        engaged: Formula of parameters that is 1 where the brake is shut and 0 where it is open; what lies between is a
+            brake that is partly shut.
+        coordinate: Index of the speed of the joint, from 0.
+    """
+    level = Term(as_value(torque, "brake: torque")) * Term(as_value(engaged, "brake: engaged"))
+    return Friction(level.value, coordinate=coordinate, sticks=True)
 
 
 JointElement = Spring | Damper | Stop | Friction

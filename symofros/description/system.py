@@ -7,7 +7,7 @@ sense as a whole (names exist, the tree is connected, inertias are physical) is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
 
@@ -16,7 +16,7 @@ from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, Switch, section_order
 from symofros.description.contacts import Contact
-from symofros.description.entries import refuses_unknown_entries
+from symofros.description.entries import refuses_unknown_entries, shown_entries
 from symofros.description.forces import Connection, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
@@ -282,8 +282,7 @@ class System:
 
     def __repr__(self) -> str:
         """Each field that counts; no switches where there are none, as hashes of descriptions are made of this text."""
-        names = [item.name for item in fields(self) if item.repr and (item.name != "switches" or self.switches)]
-        return f"System({', '.join(f'{name}={getattr(self, name)!r}' for name in names)})"
+        return shown_entries(self, () if self.switches else ("switches",))
 
     def body(self, name: str) -> Body:
         """The body of that name.

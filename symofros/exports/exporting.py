@@ -146,6 +146,8 @@ def export(
     system = model if isinstance(model, System) else load(model)
     place = Path(folder)
     check_folder(place)  # Before the work, not only after it.
+    if target == "cuda":
+        Compilation(system).record.refuse_sticking(f"export: '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(
@@ -247,10 +249,12 @@ def _material(
         needs = (*needs, "beam_stiffness", "mass_matrix")
     if events and system.switches:
         needs = (*needs, "constraint", "frame_pose")
-    instants = Compilation(system).has_instants
+    described = Compilation(system)
+    instants, constrained = described.has_instants, described.record.nc > 0
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
-    constrained = bool(system.constraints)
+    if described.record.sticking:
+        needs = (*needs, "constraint")
     stepped = ("forward_dynamics", "project") if constrained else ("forward_dynamics",)
     offered = stepped if chosen else wasm.functions(constrained) if target == "wasm" else exported(constrained)
     functions = tuple(dict.fromkeys((*offered, *further, *needs)))

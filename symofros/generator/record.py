@@ -10,14 +10,15 @@ from symofros.base.options import Options
 from symofros.description.constraints import AXES, Closure
 from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
-from symofros.description.values import symbols
-from symofros.expr.expression import evaluate
+from symofros.description.values import Value, symbols
+from symofros.expr.expression import Expression, always_quoted, evaluate
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
+from symofros.mechanics.topology.sticking import sticking_coordinates
 from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
 from symofros.mechanics.topology.tree import (
     SpanningTree,
@@ -27,7 +28,7 @@ from symofros.mechanics.topology.tree import (
     prescribed_speeds,
     section_names,
 )
-from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, SwitchRecord
+from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, StickingRecord, SwitchRecord
 
 GENERATOR = "symofros 0.1.0"
 
@@ -92,6 +93,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         friction_speeds=_friction_speeds(tree),
         contact_names=ball_names(tree),
         switches=_switches(tree),
+        sticking=_sticking(tree),
     )
 
 
@@ -114,6 +116,28 @@ def _switches(tree: SpanningTree) -> tuple[SwitchRecord, ...]:
         frames = tuple(frame_of(tree, *anchor).name for anchor in anchors)
         records.append(SwitchRecord(item.name, str(switch.engaged), moment, offset_places, rotation, frames))
     return tuple(records)
+
+
+def _sticking(tree: SpanningTree) -> tuple[StickingRecord, ...]:
+    conditions = [name for item in tree.system.constraints for name in item.conditions]
+    return tuple(
+        StickingRecord(
+            one.coordinate,
+            link.q[0] + one.number,
+            link.v[0] + one.number,
+            tree.coordinates.par.index(one.mode),
+            conditions.index(one.condition),
+            _text(one.breakaway),
+            _text(one.watch),
+        )
+        for link in tree.links
+        for one in sticking_coordinates(link.joint)
+    )
+
+
+def _text(value: Value) -> str:
+    """A formula as text that nothing reads otherwise."""
+    return value.text(always_quoted) if isinstance(value, Expression) else repr(value)
 
 
 def joint_limits(tree: SpanningTree) -> tuple[JointLimit, ...]:
@@ -145,7 +169,7 @@ def _friction_speeds(tree: SpanningTree) -> tuple[int, ...]:
         for link in tree.links
         if not link.joint.prescribed and link.tip_of is None
         for element in link.joint.elements
-        if isinstance(element, Friction)
+        if isinstance(element, Friction) and not element.sticks
     )
 
 

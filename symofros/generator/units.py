@@ -106,23 +106,24 @@ class UnitCompiler:
         names, lanes = f"{', '.join(chosen)} by vectors", SHARED_PARAMETERS
         return self._compile((requests, lanes, chosen), names, program, self._toolchain, lanes)
 
-    def formulas(self, formulas: Sequence[Any], derivatives: bool) -> Unit:
+    def formulas(self, formulas: Sequence[Any], derivatives: bool, reactions: bool) -> Unit:
         """A unit of one function, "formulas": numbers, texts or SymPy expressions over the model's names."""
-        values = self._stated(formulas)
+        values = self._stated(formulas, reactions)
         return self._unit((values, derivatives), "formulas", lambda: self._of_stated(values, derivatives))
 
-    def formulas_source(self, formulas: Sequence[Any], c_name: str) -> str:
+    def formulas_source(self, formulas: Sequence[Any], c_name: str, reactions: bool) -> str:
         """C text of one function, "formulas", of (q, v, u, t): the values of formulas over the model's names."""
-        return model_source(self._of_stated(self._stated(formulas), False), self._record, GENERATOR, None, c_name)
+        program = self._of_stated(self._stated(formulas, reactions), False)
+        return model_source(program, self._record, GENERATOR, None, c_name)
 
-    def _stated(self, formulas: Sequence[Any]) -> list[tuple[Any, int]]:
+    def _stated(self, formulas: Sequence[Any], reactions: bool) -> list[tuple[Any, int]]:
         """Values of formulas, and how often each is differentiated by t."""
         rates = [item if isinstance(item, Rate) else Rate(item, 0) for item in formulas]
-        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates])
+        stated = stated_formulas(self._programs.tree, [rate.formula for rate in rates], reactions)
         return [(value, rate.order) for value, rate in zip(stated, rates, strict=True)]
 
     def _of_stated(self, values: Sequence[tuple[Any, int]], derivatives: bool) -> Program:
-        return run_passes(formula_program(self._programs.equations().kinematics, values, derivatives))
+        return run_passes(formula_program(self._programs.equations(), values, derivatives))
 
     def library(self, requests: Sequence[Request], lanes: LaneOptions | None) -> Path:
         """The shared library of some functions, each with code by vectors beside it if there are lanes.

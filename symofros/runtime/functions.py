@@ -75,7 +75,7 @@ class Functions(Arguments):
         build: Callable[[tuple[Key, ...], Callable[[], None] | None], Unit] | None,
         units: tuple[Unit, ...] = (),
         par: Array | None = None,
-        formulas: Callable[[tuple[Any, ...], bool], Unit] | None = None,
+        formulas: Callable[[tuple[Any, ...], bool, bool], Unit] | None = None,
         beams: Callable[[Array], tuple[ElasticBeam, ...]] | None = None,
         threads: int = 1,
         precision: Precision = "double",
@@ -264,20 +264,21 @@ class Functions(Arguments):
                 raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
         return self._call(name, public, values, par, out)
 
-    def formulas(self, formulas: Sequence[Any], derivatives: bool = True) -> Kernel:
-        """Formulas over the model's names, compiled: (q, v, u, t) -> values, and derivatives by q and by v.
+    def formulas(self, formulas: Sequence[Any], derivatives: bool = True, reactions: bool = False) -> Kernel:
+        """Formulas over the model's names, compiled: (q, v, u, t; a, lam) -> values, and derivatives by q and by v.
 
         Args:
             formulas: Numbers, texts such as "10*(sin(t) - q1) - dq1", SymPy expressions, or Rates of them.
             derivatives: Whether those are wanted, too.
+            reactions: Whether they may use multipliers, wrenches and reactions, and are of a and lam then.
 
         Raises:
-            UnknownNameError: A formula uses a name that the mechanism lacks.
+            UnknownNameError: A formula uses a name that the mechanism lacks, or that it may not use.
             DescriptionError: A text is not a formula.
         """
         if self._build_formulas is None:
             raise SymofrosError(f"model '{self.record.name}': a model without its description compiles no formulas")
-        return self._build_formulas(tuple(formulas), derivatives).kernels["formulas", ""]
+        return self._build_formulas(tuple(formulas), derivatives, reactions).kernels["formulas", ""]
 
     # How a call is made.
 

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
+from symofros.errors import Problem, SymofrosError
 
 
 class Segment(NamedTuple):
@@ -84,6 +85,32 @@ class SwitchRecord(NamedTuple):
     frames: tuple[str, ...]
 
 
+# Mode of a coordinate that friction holds; 1 and -1 are those in which it slides.
+HELD = 2.0
+
+
+class StickingRecord(NamedTuple):
+    """A coordinate with friction that sticks.
+
+    Attributes:
+        name: Name of the coordinate.
+        q: Its index in q.
+        v: Index of its rate in v.
+        mode: Run-time parameter that is its mode: 1, -1 slides forwards, backwards; 2 held; 0 smooth friction.
+        row: Row of G that holds it.
+        breakaway: Formula of parameters: most that friction takes at rest.
+        watch: Formula of speeds, parameters and multipliers that falls to zero where the mode ends.
+    """
+
+    name: str
+    q: int
+    v: int
+    mode: int
+    row: int
+    breakaway: str
+    watch: str
+
+
 class JointLimit(NamedTuple):
     """Limit of a joint, which no force keeps.
 
@@ -132,6 +159,7 @@ class ModelRecord:
         friction_speeds: Indices of the speeds that have friction.
         contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
         switches: Constraints that engage and release.
+        sticking: Coordinates with friction that sticks.
     """
 
     name: str
@@ -165,6 +193,7 @@ class ModelRecord:
     friction_speeds: tuple[int, ...] = ()
     contact_names: tuple[str, ...] = ()
     switches: tuple[SwitchRecord, ...] = ()
+    sticking: tuple[StickingRecord, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:
@@ -187,6 +216,18 @@ class ModelRecord:
     def nc(self) -> int:
         """Number of constraints."""
         return len(self.constraint_names)
+
+    def refuse_sticking(self, what: str) -> None:
+        """Refuse friction that sticks where nothing chooses its modes.
+
+        Raises:
+            SymofrosError: There is some.
+        """
+        if self.sticking:
+            found = f"friction of '{self.sticking[0].name}' sticks"
+            rule = "friction that sticks has modes: `simulate`, batches, steppers, C packages and FMUs choose them"
+            remedy = "sticks=False: friction that is smooth, and creeps"
+            raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
 
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""

@@ -16,7 +16,7 @@ from symofros.base.names import coordinate_of, speed_column, speed_of
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls import Kernel
 from symofros.runtime.model import Model
-from symofros.simulation.events import Event
+from symofros.simulation.events import Event, ModeEvent
 
 
 class Assignment(NamedTuple):
@@ -42,8 +42,10 @@ class Actions:
 
     Attributes:
         assignments: In the order in which they are stated.
-        formulas: Of what says whether constraints hold, then of the assignments.
+        formulas: Of what says whether constraints hold, of the assignments, then of the most that friction takes at
+            rest.
         kernel: The same, compiled.
+        first_mode: The event at which the first mode of friction that sticks ends; those after it are of others.
 
     Raises:
         UnknownNameError: An action names no run-time parameter or speed, or a formula no name of the model.
@@ -52,6 +54,7 @@ class Actions:
 
     def __init__(self, model: Model, events: Sequence[Event]) -> None:
         self.model, self.assignments = model, list[Assignment]()
+        self.first_mode = sum(not isinstance(event, ModeEvent) for event in events)
         stated = [(i, name) for i, event in enumerate(events) for name in event.action or {}]
         for i, name in stated:
             place = Assignment(i, *_target(model, events[i], name))
@@ -61,6 +64,7 @@ class Actions:
             self.assignments.append(place)
         self.formulas: list[Any] = [switch.engaged for switch in model.record.switches]
         self.formulas += [(events[i].action or {})[name] for i, name in stated]
+        self.formulas += [one.breakaway for one in model.record.sticking]
         try:
             self.kernel: Kernel = model.formulas(self.formulas, derivatives=False)
         except SymofrosError as error:
@@ -80,7 +84,7 @@ class Actions:
 
 def plan_actions(model: Model, events: Sequence[Event]) -> Actions | None:
     """The actions of a run's events; None where they have none."""
-    return Actions(model, events) if any(event.action for event in events) else None
+    return Actions(model, events) if any(event.acts for event in events) else None
 
 
 def _wrong_formulas(model: Model, events: Sequence[Event], stated: list[tuple[int, str]]) -> Iterator[SymofrosError]:

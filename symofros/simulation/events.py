@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.errors import Problem, SymofrosError
+from symofros.runtime.model import Model
+from symofros.runtime.record import HELD
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -17,7 +19,10 @@ class Event(metaclass=CheckedCalls):
     """A zero crossing.
 
     Attributes:
-        formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression.
+        formula: Formula of coordinates, speeds, inputs, parameters and t: text or SymPy expression. Also of the
+            multipliers of constraints ("lam.grasp.x"), their wrenches on the second frame in world axes
+            ("wrench.grasp.fx" to ".mz") and the wrenches that joints transmit to their bodies in body axes
+            ("reaction.q1.fx").
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
         name: ArrayLike by the mapping it stands in.
@@ -57,7 +62,32 @@ class Event(metaclass=CheckedCalls):
 
         1: it ends the run; 2: the integration, until the action is done; 0: neither; -2: neither, and counts once.
         """
-        return 1 if self.terminal else 2 if self.action else -2 * self.once
+        return 1 if self.terminal else 2 if self.acts else -2 * self.once
+
+    @property
+    def acts(self) -> bool:
+        """Whether something happens at a crossing."""
+        return bool(self.action)
+
+
+@dataclass(frozen=True)
+class ModeEvent(Event):
+    """The end of a mode of friction that sticks (docs/theory/constraints.md, section 14).
+
+    Attributes:
+        mode: Run-time parameter that is the mode.
+    """
+
+    mode: int = 0
+
+    @property
+    def acts(self) -> bool:
+        """It does: modes are chosen anew."""
+        return True
+
+    def said(self, par: Any) -> str:
+        """What it came to, by the parameters (npar) afterwards."""
+        return f"{self.name} {'sticks' if par[self.mode] == HELD else 'slides'}"
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
@@ -79,6 +109,12 @@ def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
             " s on to be followed: zeros may be missing; take shorter steps"
         )
     return tuple(notes)
+
+
+def events_of(model: Model, given: Mapping[str, Any] | None) -> tuple[Event, ...]:
+    """The events of a run: a user's by name, then the ends of modes of a model's friction that sticks."""
+    own = (ModeEvent(one.watch, "falling", name=one.name, mode=one.mode) for one in model.record.sticking)
+    return (*named_events(given), *own)
 
 
 def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:

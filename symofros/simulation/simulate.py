@@ -17,7 +17,7 @@ from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.actions import refuse_actions
-from symofros.simulation.events import event_notes, named_events
+from symofros.simulation.events import event_notes, events_of
 from symofros.simulation.inputs import Inputs, plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
@@ -82,11 +82,12 @@ def simulate(
         values = vector(model, "par", model.checked_parameters(par), model.npar)
     q = first_configuration(model, q0)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
-    looked_for = named_events(events)
+    looked_for = events_of(model, events)
     inputs = plan_inputs(model, u)
     check_fit(model, settings, inputs)
     if settings.method.family.multistep:
         refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
+        model.record.refuse_sticking(f"simulation by '{settings.method.name}'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
     stepper.set_span(settings.span)
@@ -122,7 +123,7 @@ def run_to_its_end(
         repeats = settings.every and phases and not phases[-1].acted
         phases.append(phase.without_first() if repeats else phase)
         phase = phases[-1]
-        acts = phase.outcome.kind == "event" and any(stepper.events[i].action for i in which)
+        acts = phase.outcome.kind == "event" and any(stepper.events[i].acts for i in which)
         if acts:
             ended = _act(stepper, phases)
         elif phase.outcome.kind != "finished" or stepper.t >= whole.t_end:

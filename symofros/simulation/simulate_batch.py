@@ -19,7 +19,7 @@ from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
-from symofros.simulation.events import named_events
+from symofros.simulation.events import events_of
 from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import (
@@ -106,7 +106,7 @@ def simulate_batch(
     count = min(count, max(n, 1))
     inputs = given.spread(model, shape)
     q, v, values = (flat(array, shape) for array in rows.values())
-    initial = InitialStates(q, v, values, inputs, n, settings.t0, named_events(events))
+    initial = InitialStates(q, v, values, inputs, n, settings.t0, events_of(model, events))
     results = BatchResults.empty(model, n, len(settings.grid))
     began = time.perf_counter(), time.process_time()
     steppers = [BatchStepper(model, settings, initial, results, i, count) for i in range(count if n else 0)]

@@ -16,7 +16,7 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.events import named_events
+from symofros.simulation.events import events_of
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import recorded_notes
@@ -100,7 +100,7 @@ class Stepper(SteppedModel):
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
-        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), named_events(events), values)
+        self._hand = HandRun(model, settings, inputs, fixed_inputs(u), events_of(model, events), values)
         self._told: list[tuple[Met, Found]] = []
         self._first = settings.t0
         self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
@@ -191,6 +191,7 @@ class Stepper(SteppedModel):
     @property
     def par(self) -> Array:
         """Run-time parameters (npar), a view that can't be written."""
+        self._hand.run.take_parameters()
         return read_only(self._hand.run.par)
 
     @property

@@ -15,7 +15,7 @@ from symofros.base.arrays import Array, real_array
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.events import named_events
+from symofros.simulation.events import events_of
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.acted import failure_of, found_of
@@ -115,8 +115,8 @@ class Steppers(SteppedModel):
         check_fit(model, settings, plan)
         prepare_run(model, settings)
         self._settings, self._kind = settings, owner_of("steppers", model.record.name)
-        looked_for = named_events(events)
-        if any(event.action for event in looked_for):
+        looked_for = events_of(model, events)
+        if any(event.acts for event in looked_for):
             self._par = np.array(np.broadcast_to(self._par, (n, model.npar)), order="C")
         self._begun_with = self._par.copy()
         rows = np.atleast_2d(self._par.copy())

@@ -62,7 +62,7 @@ def hinge(system: sf.System) -> sf.Joint:
     return next(b.joint for b in system.bodies if b.joint is not None and b.joint.name == "q")
 
 
-@pytest.mark.parametrize("dissipation", [None, "none", "viscous", "all"])
+@pytest.mark.parametrize("dissipation", [None, "none", "viscous", "all", "stiction"])
 @pytest.mark.parametrize("suffix", FILES)
 def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
     tmp_path: Path, suffix: str, dissipation: Any
@@ -70,13 +70,17 @@ def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
     system = sf.load(written(tmp_path, suffix), dissipation=dissipation)
     kept = dissipation or ("none" if suffix == ".urdf" else "viscous")
     elements = hinge(system).elements
-    assert tuple(map(type, elements)) == ELEMENTS[kept]
+    assert tuple(map(type, elements)) == ELEMENTS["all" if kept == "stiction" else kept]
+    assert [e.sticks for e in elements if isinstance(e, sf.Friction)] == {"all": [False], "stiction": [True]}.get(
+        kept, []
+    )
     stated = [element.coefficient if isinstance(element, sf.Damper) else element.dynamic for element in elements]  # type: ignore[union-attr]
     np.testing.assert_allclose(np.array(stated, dtype=float), [0.5, 0.2][: len(elements)], rtol=DIGITS)
     told = {
         '; damping of joints ignored (dissipation="viscous" of load, or --dissipation viscous, keeps it)': kept
         == "none",
-        'dry friction of joints ignored (dissipation="all" of load, or --dissipation all, keeps it)': kept != "all",
+        'dry friction of joints ignored (dissipation="all" of load, or --dissipation all, keeps it)': kept
+        not in ("all", "stiction"),
         "dry friction of joints smoothed below 0.001 rad/s or m/s, so that what it holds at rest creeps": kept == "all",
     }
     notes = "; ".join(["", *system.notes])

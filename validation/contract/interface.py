@@ -15,6 +15,7 @@ import numpy as np
 import symofros as sf
 
 from ..mechanics.assembly import Assembly, assemble
+from ..mechanics.friction import with_smooth_friction
 from ..mechanics.geometry import Array
 from .conventions import times
 
@@ -200,6 +201,10 @@ class Subject:
     frames: tuple[str, ...] = ()
     urdf: UrdfSource | None = None
     mjcf: MjcfSource | None = None
+
+    def __post_init__(self) -> None:
+        """Friction that sticks is compared as the smooth friction that functions have: its modes are of runs."""
+        object.__setattr__(self, "system", with_smooth_friction(self.system))
 
     @property
     def format(self) -> Format:

@@ -144,11 +144,13 @@ class _Builder:
                 remarks.add(_DAMPING, "joint", joint.name)
             elif damped and self.is_coefficient(resistance.damping, "damping", joint.name):
                 yield Damper(resistance.damping, resistance.quadratic, k)
-            if resistance.friction and keeps != "all":
+            if resistance.friction and keeps not in ("all", "stiction"):
                 remarks.add(_FRICTION, "joint", joint.name)
             elif resistance.friction and self.is_coefficient(resistance.friction, "friction", joint.name):
-                remarks.add(_SMOOTHED, "joint", joint.name)
-                yield Friction(resistance.friction, coordinate=k)
+                sticks = keeps == "stiction" and not joint.traits.quasi_velocities
+                if not sticks:
+                    remarks.add(_SMOOTHED, "joint", joint.name)
+                yield Friction(resistance.friction, coordinate=k, sticks=sticks)
 
     def is_coefficient(self, value: float, what: str, joint: str) -> bool:
         """Whether a number is a coefficient, negative ones only by the format's default; a problem is noted if not."""

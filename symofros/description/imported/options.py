@@ -7,7 +7,7 @@ from typing import Literal, get_args
 
 from symofros.errors import ArgumentError, Problem, did_you_mean
 
-Dissipation = Literal["none", "viscous", "all"]
+Dissipation = Literal["none", "viscous", "all", "stiction"]
 LimitsAs = Literal["data", "stops"]
 # Rounding of the last printed digit of a double: snapping by default must not change a model by more than that, because
 # imports are compared with other engines' at 1e-12. Who knows that a file's 1.5708 means pi/2 passes 1e-4.
@@ -24,7 +24,8 @@ class ImportOptions:
             0 and +-1, or angles to multiples of pi/2 [rad].
         mimic: Whether joints that mimic others are coupled to them; of URDF, other formats always couple them.
         dissipation: What of the file's passive losses is kept: "none"; "viscous", its dampers; "all", dry friction
-            too, as smoothed Coulomb friction. None: what the format keeps by default.
+            too, as smoothed Coulomb friction; "stiction", dry friction that holds joints at rest. None: what the
+            format keeps by default.
         limits: What limits of coordinates are: "data", or "stops" that push back.
     """
 

@@ -201,7 +201,7 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
     motion = run_passes(write.motion(part))
     unit, text = unit_of(motion, record, toolchain, options)
 
-    def formulas(_: tuple[object, ...], __: bool) -> Unit:
+    def formulas(*_: object) -> Unit:
         """The part's unit, which has the formulas whose zeros the stepper locates."""
         return unit
 

@@ -79,6 +79,7 @@ class Models:
         """A model's description, checked and numbered, and what can be formed of it."""
         if name not in self._compilations:
             self._compilations[name] = Compilation(self.system(name))
+            self._compilations[name].record.refuse_sticking(f"diagram '{self._diagram}': model '{name}'")
         return self._compilations[name]
 
     def record(self, name: str) -> ModelRecord:

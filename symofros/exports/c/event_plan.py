@@ -10,9 +10,9 @@ from symofros.base.c_text import doubles, integers, strings
 from symofros.compiler import Compilation
 from symofros.errors import ExportError, Problem
 from symofros.runtime.model import Model
-from symofros.runtime.record import SwitchRecord
+from symofros.runtime.record import ModelRecord, SwitchRecord
 from symofros.simulation.actions import Actions, plan_actions
-from symofros.simulation.events import Event, named_events
+from symofros.simulation.events import Event, events_of
 
 # Targets whose steps look for events.
 _TARGETS = ("c", "fmu2", "fmu3")
@@ -47,19 +47,21 @@ def event_plan(
         ExportError: The target has no steps of its own, or can't end where an event does.
         SymofrosError: An action can't be done.
     """
-    events = named_events(given)
+    if target not in _TARGETS:
+        model.record.refuse_sticking(f"export: '{target}'")
+    events = events_of(model, given)
     if not events:
         return None
     _refuse(events, target)
     actions = plan_actions(model, events)
-    model.formulas([event.formula for event in events], derivatives=False)  # Refuses what is no formula.
+    model.formulas([event.formula for event in events], derivatives=False, reactions=True)  # Refuses what is none.
     sources = {"events": [event.formula for event in events], "actions": actions.formulas if actions else []}
     files = {
-        f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}")
+        f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}", reactions=kind == "events")
         for kind, formulas in sources.items()
         if formulas
     }
-    return EventPlan(tuple(_lines(c_name, events, actions, model.record.switches, tuple(files))), files)
+    return EventPlan(tuple(_lines(c_name, events, actions, model.record, tuple(files))), files)
 
 
 def _refuse(events: Sequence[Event], target: str) -> None:
@@ -74,10 +76,12 @@ def _refuse(events: Sequence[Event], target: str) -> None:
 
 
 def _lines(
-    name: str, events: Sequence[Event], actions: Actions | None, switches: Sequence[SwitchRecord], files: Sequence[str]
+    name: str, events: Sequence[Event], actions: Actions | None, record: ModelRecord, files: Sequence[str]
 ) -> list[str]:
     """C of the plan."""
+    switches = record.switches
     turning = [switch for switch in switches if switch.rotation]
+    sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
     assignments = actions.assignments if actions else []
     places = [
         f"{{{a.event}, {int(a.group == 'v')}, {a.entry}, {len(switches) + k}}}" for k, a in enumerate(assignments)
@@ -85,7 +89,7 @@ def _lines(
     arrays = {
         "direction": [event.sign for event in events],
         "cut": [event.cut for event in events],
-        "acts": [int(bool(event.action)) for event in events],
+        "acts": [int(event.acts) for event in events],
         "once": [int(event.once) for event in events],
     }
     restitution = [-1.0 if event.restitution is None else event.restitution for event in events]
@@ -106,10 +110,12 @@ def _lines(
         f"static const sym_assignment {name}_assignments[] = {{{', '.join(places) or '{0, 0, 0, 0}'}}};",
         *held,
         f"static const sym_switch {name}_switches[] = {{{_switches(name, switches)}}};",
+        f"static const sym_sticking {name}_sticking[] = {{{', '.join(sticking) or '{0, 0, 0, 0}'}}};",
         f"static const char *const {name}_pose_frames[] = {{{strings(frames)}}};",
         f"static const sym_event_plan {name}_event_plan = {{",
         f"    {len(events)}, {name}_event_names, {pointers},",
-        f"    {counts}, {name}_assignments, {name}_switches, {name}_pose_frames, {models}",
+        f"    {counts}, {name}_assignments, {name}_switches, {name}_pose_frames,",
+        f"    {len(sticking)}, {actions.first_mode if actions else len(events)}, {name}_sticking, {models}",
         "};",
     ]
 

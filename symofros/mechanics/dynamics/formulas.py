@@ -15,17 +15,20 @@ from symofros.expr.edges import ONE, Edge
 from symofros.expr.expression import Expression
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.reactions import bind_reactions, reaction_symbols
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.formulas import meaning_problems
 from symofros.mechanics.topology.tree import SpanningTree
 
 
-def stated_formulas(tree: SpanningTree, formulas: Sequence[Any]) -> list[Value]:
+def stated_formulas(tree: SpanningTree, formulas: Sequence[Any], reactions: bool = False) -> list[Value]:
     """A user's formulas over the names of a mechanism: laws, events.
 
     Args:
         tree: Its names are what they may use.
         formulas: Numbers, texts, SymPy expressions.
+        reactions: Whether they may use multipliers, wrenches and reactions.
 
     Raises:
         UnknownNameError: A formula uses a name that the mechanism lacks.
@@ -34,7 +37,21 @@ def stated_formulas(tree: SpanningTree, formulas: Sequence[Any]) -> list[Value]:
     names = tree.coordinates
     what, known = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.keys, *names.constants})
     both = frozenset(map(symbol_of, names.q)) & frozenset(names.speed_symbols)
-    return [_stated(what, formula, known, both) for formula in formulas]
+    forces = reaction_symbols(tree) - known
+    stated = [_stated(what, formula, known | forces, both) for formula in formulas]
+    for value in () if reactions else stated:
+        for name in sorted(symbols(value) & forces):
+            raise UnknownNameError(_follows(what, name, value))
+    return stated
+
+
+def _follows(what: str, name: str, value: Value) -> Problem:
+    return Problem(
+        f"{what}: '{name}' may not be used here",
+        f"'{value}'",
+        "multipliers, wrenches and reactions follow from the motion, which this formula changes",
+        "use them in the condition of an event of `simulate`, whose action changes a parameter",
+    )
 
 
 def _stated(what: str, formula: Any, known: frozenset[str], both: frozenset[str]) -> Value:
@@ -60,28 +77,33 @@ def _stated(what: str, formula: Any, known: frozenset[str], both: frozenset[str]
     return value
 
 
-def formula_program(
-    kinematics: TreeKinematics, values: Sequence[tuple[Value, int]], derivatives: bool = True
-) -> Program:
+def formula_program(equations: Equations, values: Sequence[tuple[Value, int]], derivatives: bool = True) -> Program:
     """One function, "formulas", of q, v, u and t: the values, and their derivatives by q (along its manifold) and v.
 
+    Where one uses multipliers, wrenches or reactions, it is of a and lam, too.
+
     Args:
-        kinematics: Kinematics of the tree, in whose graph the formulas are formed.
+        equations: Equations of the tree, in whose graph the formulas are formed.
         values: Numbers and formulas over its names, and how often each is differentiated by t.
         derivatives: Whether to form those by q and v.
 
     Raises:
         DescriptionError: One that is differentiated depends on more than t and parameters.
     """
+    kinematics = equations.kinematics
     tree, names = kinematics.tree, kinematics.tree.coordinates
     g, nv, n = kinematics.g, len(names.v), len(values)
+    reactions = bind_reactions(equations, {name for value, _ in values for name in symbols(value)})
     edges = [_rate(kinematics, value, order) for value, order in values]
     outputs = [Output("value", (n,), tuple(edges))]
     if derivatives:
         slopes = {"by_q": by_configuration(kinematics, edges), "by_v": by_inputs(kinematics, edges, "v", nv)}
         outputs += [Output(name, (n, nv), tuple(edge for row in rows for edge in row)) for name, rows in slopes.items()]
     sizes = {"q": len(names.q), "v": nv, "u": len(names.u), "par": len(names.par), "t": 1}
-    return Program(tree.system.name, g, sizes, (Function("formulas", "", ("q", "v", "u", "t"), tuple(outputs)),))
+    inputs = ("q", "v", "u", "t", *(("a", "lam") if reactions else ()))
+    if reactions:
+        sizes |= {"a": nv, "lam": sum(len(item.conditions) for item in tree.system.constraints)}
+    return Program(tree.system.name, g, sizes, (Function("formulas", "", inputs, tuple(outputs)),))
 
 
 def _rate(kinematics: TreeKinematics, value: Value, order: int) -> Edge:

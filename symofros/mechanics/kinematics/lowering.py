@@ -41,6 +41,10 @@ class Lowering:
             self._bindings[name] = self.g.input(slot.group, slot.index)
         return self._bindings[name]
 
+    def bind(self, name: str, edge: Edge) -> None:
+        """Give a symbol an edge that is formed elsewhere."""
+        self._bindings[name] = edge
+
     def coordinates_of(self, joint: Joint) -> tuple[Edge, ...]:
         """The edges of a joint's coordinates."""
         return tuple(map(self.symbol, coordinate_symbols(joint)))

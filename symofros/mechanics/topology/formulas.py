@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
@@ -14,7 +14,7 @@ from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
 from symofros.description.contacts import Contact
 from symofros.description.entry_units import units_of
-from symofros.description.forces import Connection, Load, Rotor
+from symofros.description.forces import Connection, Friction, Load, Rotor, numbers_of
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.joints.joint_kinds import CONSTANT_ENTRIES
@@ -135,11 +135,9 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
             yield Stated(f"{what}: {entry}", value, key, units=units)
     for element in joint.elements:
         label = type(element).__name__.lower()
-        for item in fields(element):
-            value = getattr(element, item.name)
-            if item.name != "coordinate" and value is not None:
-                units = _of_coordinate(joint, element.coordinate, units_of(type(element), item.name))
-                yield Stated(f"{what}: {label} {item.name}", value, key, units=units)
+        for name, value in numbers_of(element):
+            units = _of_coordinate(joint, element.coordinate, units_of(type(element), name))
+            yield Stated(f"{what}: {label} {name}", value, key, units=units)
     for rotor in joint.rotors:
         yield Stated(f"{what}: rotor", rotor.inertia, key, units=units_of(Rotor, "inertia"))
         for value in (rotor.ratio, *(rotor.axis or ())):
@@ -375,5 +373,13 @@ def element_problems(joint: Joint, where: str) -> Iterator[Problem]:
                 "quaternion coordinates",
                 "springs and stops act on coordinates whose rates are the speeds",
                 "use a potential, or a general joint with angles",
+                where,
+            )
+        elif isinstance(thing, Friction) and thing.sticks and joint.traits.quasi_velocities:
+            yield Problem(
+                f"joint '{joint.name}': friction that sticks on a {joint.kind} joint",
+                "speeds that are no rates of coordinates",
+                "friction sticks to coordinates whose rates are the speeds",
+                "use a general joint with angles, or sticks=False",
                 where,
             )

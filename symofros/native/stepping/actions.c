@@ -1,10 +1,4 @@
 /* Actions of events: what they set, the constraints that engage, the impact (docs/theory/constraints.md, section 13). */
-
-/* The part of a function's work that depends on parameters alone, at other parameters. */
-static void sym_prepare_call(const sym_call *call, const double *par) {
-    if (call->function != NULL && call->init != NULL) call->init(par, (double *)call->pre);
-}
-
 SYM_EXPORT void sym_run_set_parameters(sym_run *r, const double *par) {
     const sym_system *s = r->system;
     const sym_call *calls[] = {&s->forward_dynamics, &s->law,      &s->events,      &s->project,
@@ -12,15 +6,9 @@ SYM_EXPORT void sym_run_set_parameters(sym_run *r, const double *par) {
                                &s->constraint_jacobian};
     size_t i;
     memcpy(r->par, par, (size_t)r->actions->npar * sizeof *par);
+    sym_hold_by_modes(r->system, par);
     for (i = 0; i < sizeof calls / sizeof *calls; ++i) sym_prepare_call(calls[i], par);
     r->slope_valid = r->jacobian_valid = 0;
-}
-
-/* Values of all formulas at the evaluation point: what says whether constraints hold, then what is assigned. */
-static const double *sym_action_values(const sym_actions *a, const double *par) {
-    sym_prepare_call(&a->values, par);
-    sym_evaluate(&a->values);
-    return a->values.out[0];
 }
 
 /* Quaternion (x, y, z, w) of the rotation R_B^T R_A, by its largest entry, which loses no digits. */
@@ -134,6 +122,7 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
         sym_run_set_parameters(r, done->par); /* functions may share the part that poses were prepared in */
         return SYM_ACTION_REFUSED;
     }
+    sym_let_go(s, done->par_set);
     return sym_impact(r, e, done);
 }
 
@@ -164,6 +153,36 @@ static void sym_move_marks(sym_run *r) {
     else r->t_from = mark, ++r->n_from;
 }
 
+/* What has become of a mode, or of the run, at a row of events. */
+static void sym_note_modes(const sym_run *r, const sym_done *done, int32_t status) {
+    const sym_system *s = r->system;
+    memcpy(done->par_set, r->par, (size_t)r->actions->npar * sizeof *r->par);
+    memcpy(done->u, s->u, (size_t)s->nu * sizeof *r->v), memcpy(done->v_after, r->v, (size_t)s->nv * sizeof *r->v);
+    memcpy(done->q_after, r->q, (size_t)s->nq * sizeof *r->q);
+    *done->acted = status == 0 ? 1.0 : status;
+}
+
+/* Choose the modes of friction that sticks anew after the events at which the run has been cut. Returns 0 or a status. */
+static int32_t sym_end_modes(sym_run *r) {
+    const int32_t first = r->actions->first_mode;
+    int32_t status = 0;
+    int64_t row;
+    for (row = r->first_met; row < r->met_end; ++row) {
+        const int32_t which = r->event_index[row];
+        const sym_done done = sym_run_done(r, row);
+        if (which < first) continue;
+        memcpy(done.par, r->par, (size_t)r->actions->npar * sizeof *r->par);
+        memcpy(done.v_set, r->v, (size_t)r->system->nv * sizeof *r->v);
+        if (status == 0) status = sym_count_repeats(r, which);
+    }
+    if (status == 0) status = sym_choose_modes(r);
+    for (row = r->first_met; row < r->met_end; ++row) {
+        const sym_done done = sym_run_done(r, row);
+        if (status != 0 ? row + 1 == r->met_end : r->event_index[row] >= first) sym_note_modes(r, &done, status);
+    }
+    return status;
+}
+
 SYM_EXPORT int32_t sym_run_act(sym_run *r) {
     const sym_system *s = r->system;
     int32_t ended = 0, status = 0;
@@ -176,11 +195,12 @@ SYM_EXPORT int32_t sym_run_act(sym_run *r) {
         memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
         memcpy(r->event_v + row * s->nv, r->v, (size_t)s->nv * sizeof *r->v);
         ended |= s->event_terminal[which] == 1;
-        if (status != 0 || !r->actions->acts[which]) continue;
+        if (status != 0 || !r->actions->acts[which] || which >= r->actions->first_mode) continue;
         status = sym_act(r, which, &done);
         if (status == 0 && r->actions->once[which]) s->event_terminal[which] = -1;
         if (status != 0) *done.acted = status;
     }
+    if (status == 0 && s->n_sticking > 0) status = sym_end_modes(r);
     if (status != 0) return status;
     sym_move_marks(r);
     return ended ? SYM_TERMINAL_EVENT : 0;

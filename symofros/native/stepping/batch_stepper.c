@@ -40,6 +40,7 @@ static int32_t sym_batch_allocate(sym_batch *b, sym_arena *own, sym_arena *share
     b->t = sym_allocate(scratch, slots);
     b->states = sym_allocate(own, slots * (nq + nv));
     b->event_values = sym_allocate(own, slots * SYM_EVENT_ROWS * (size_t)s->n_events);
+    b->held = sym_allocate_bytes(own, slots * (size_t)s->n_sticking * sizeof *b->held);
     b->y1 = sym_allocate(scratch, slots * m), b->stage = sym_allocate(scratch, slots * m);
     b->magnitude = sym_allocate(scratch, slots * m), b->end_slope = sym_allocate(scratch, slots * m);
     b->k = sym_allocate(scratch, slopes * slots * m);
@@ -82,6 +83,7 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         if (s->project.function != NULL) sym_system_bind(s, &s->project);
         if (s->events.function != NULL) sym_system_bind(s, &s->events);
         r->event_values = b->event_values + SYM_INDEX(i, SYM_EVENT_ROWS, 0) * (size_t)s->n_events;
+        s->held = b->held + (size_t)i * (size_t)s->n_sticking;
         sym_system_bind(s, &s->forward_dynamics);
         s->signals = b->signals + (size_t)i * (size_t)s->n_signals;
         memcpy(b->signals + (size_t)i * (size_t)s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
@@ -156,6 +158,7 @@ static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     for (k = 0; k < prototype->n_signals; ++k)
         signals[k].value = prototype->signals[k].value + trajectory * b->signal_stride[k];
     if (s->n_events > 0) s->event_terminal = b->event_terminal + trajectory * s->n_events;
+    if (s->n_sticking > 0) sym_hold_by_modes(s, b->runs[slot].par);
     sym_batch_set_all_parameters(b, s, slot, trajectory);
 }
 
@@ -226,6 +229,7 @@ static void sym_batch_activate_next(sym_batch *b) {
     sym_batch_forget_beams(b, r);
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     if (status == 0) status = sym_run_start(r);
+    if (s->n_sticking > 0) sym_batch_set_all_parameters(b, b->systems + slot, slot, trajectory); /* modes have been chosen */
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
     memcpy(sym_batch_workspace(b, slot).k, sym_workspace_of(r).k, 2 * (size_t)s->nv * sizeof(double));
     if (status != 0) sym_batch_retire(b, slot, status);
@@ -340,6 +344,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     if (status < 0) return status;
     sym_prepare_call(&s->forward_dynamics, r->par), sym_prepare_call(&s->law, r->par);
     sym_prepare_call(&s->project, r->par), sym_prepare_call(&s->events, r->par);
+    sym_hold_by_modes(s, r->par);
     sym_batch_set_all_parameters(b, s, slot, trajectory);
     return status;
 }

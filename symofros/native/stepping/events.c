@@ -4,7 +4,12 @@
 static int32_t sym_event_values(sym_run *r, double *values) {
     const sym_system *s = r->system;
     int32_t i;
-    if (!s->events_free_of_inputs && sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
+    if (s->events_of_reactions) {
+        const int32_t status = sym_evaluate_acceleration(r);
+        if (status != 0) return status;
+    } else if (!s->events_free_of_inputs && sym_evaluate_inputs(r->system) != 0) {
+        return SYM_CALLBACK_FAILED;
+    }
     sym_evaluate(&s->events);
     for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] == -1 ? 1.0 : s->events.out[0][i];
     return 0;

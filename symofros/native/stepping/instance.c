@@ -126,6 +126,8 @@ static int32_t sym_instance_allocate_actions(sym_instance *instance, sym_arena *
     int32_t i, found = instance->model->nc == 0;
     a->npar = instance->model->npar, a->n_assignments = plan->n_assignments, a->n_switches = plan->n_switches;
     a->assignments = plan->assignments, a->switches = plan->switches;
+    a->first_mode = plan->first_mode;
+    a->modes = sym_allocate(arena, (size_t)a->npar + 2 * (size_t)plan->n_sticking);
     a->acts = plan->acts, a->once = plan->once, a->restitution = plan->restitution;
     a->refuses = sym_instance_refuses, a->data = instance;
     a->engaged = sym_allocate(arena, (size_t)plan->n_switches);
@@ -148,10 +150,13 @@ static int32_t sym_instance_allocate_events(sym_instance *instance, sym_arena *a
     sym_system *s = &instance->system;
     sym_run *r = &instance->run;
     size_t n, rows;
+    int32_t i;
     memset(&instance->actions, 0, sizeof instance->actions);
     if (plan == NULL) return 1;
     n = (size_t)plan->n, rows = SYM_INSTANCE_EVENTS + 2 * n;
     s->n_events = plan->n, s->event_direction = plan->direction;
+    s->n_sticking = plan->n_sticking, s->sticking = plan->sticking;
+    s->held = sym_allocate_bytes(arena, (size_t)plan->n_sticking * sizeof *s->held);
     instance->event_terminal = sym_allocate_bytes(arena, n * sizeof *instance->event_terminal);
     s->event_terminal = instance->event_terminal;
     r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n);
@@ -159,6 +164,7 @@ static int32_t sym_instance_allocate_events(sym_instance *instance, sym_arena *a
     r->event_t = sym_allocate(arena, rows), r->event_index = sym_allocate_bytes(arena, rows * sizeof *r->event_index);
     r->event_q = sym_allocate(arena, rows * (size_t)s->nq), r->event_v = sym_allocate(arena, rows * (size_t)s->nv);
     if (!sym_instance_bind_formulas(instance, arena, &s->events, plan->formulas)) return 0;
+    for (i = 1; i < s->events.function->n_in; ++i) s->events_of_reactions |= strcmp(s->events.function->in[i].name, "lam") == 0;
     return plan->actions == NULL || sym_instance_allocate_actions(instance, arena);
 }
 
@@ -258,6 +264,7 @@ static void sym_instance_forget_stops(sym_instance *instance) {
 SYM_EXPORT int32_t sym_instance_prepare(sym_instance *instance) {
     instance->refused = instance->check_parameters ? instance->plant->violated(instance->par) : -1;
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
+    sym_hold_by_modes(&instance->system, instance->par);
     instance->model->init(instance->par, instance->pre);
     sym_prepare_call(&instance->system.events, instance->par);
     sym_instance_prepare_beams(instance);

@@ -24,6 +24,7 @@
 #include "events.c"
 #include "quiet_steps.c"
 #include "diagnostic.c"
+#include "sticking.c"
 #include "actions.c"
 #include "run.c"
 #include "external_rhs.c"

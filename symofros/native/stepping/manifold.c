@@ -15,6 +15,8 @@ static void sym_retract(const sym_system *system, const double *q0, const double
         else
             sym_retract_pose(a, x, b);
     }
+    for (i = 0; i < system->n_sticking; ++i)
+        if (system->held[i]) q[system->sticking[i].q] = q0[system->sticking[i].q];
 }
 
 #ifdef SYM_ANALYSIS /* of the library that Python loads */

@@ -58,6 +58,7 @@ typedef struct sym_batch {
     int32_t n_active;
     int64_t left;                 /* steps that are left of those asked for */
     double *event_values;         /* (slots, SYM_EVENT_ROWS, n_events) */
+    int32_t *held;                /* (slots, n_sticking) */
     sym_system *systems;          /* (slots) */
     sym_run *runs;                /* (slots) */
     sym_signal *signals;          /* (slots, n_signals) */

@@ -30,6 +30,8 @@ typedef struct sym_event_plan { /* events of a package, and what they do: symofr
     const sym_assignment *assignments;
     const sym_switch *switches;
     const char *const *pose_frames;       /* (n_poses) frames whose relative rotation is held */
+    int32_t n_sticking, first_mode;       /* friction that sticks; the event at which the first mode of it ends */
+    const sym_sticking *sticking;
     const sym_model *(*formulas)(void);   /* a function of the values of the events, of parameters' parts of its own */
     const sym_model *(*actions)(void);    /* the same of switches and assignments; NULL: no event acts */
 } sym_event_plan;

@@ -28,7 +28,9 @@ typedef enum sym_status {
     SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
     SYM_ENGAGED_APART = -11,     /* conditions that engage are not fulfilled */
     SYM_ACTION_REFUSED = -12,    /* an event's action sets what is not allowed, or its restitution lets nothing strike */
-    SYM_ACTS_WITHOUT_END = -13   /* an event's action brings the event about again, at the same instant */
+    SYM_ACTS_WITHOUT_END = -13,  /* an event's action brings the event about again, at the same instant */
+    SYM_MODES_UNDECIDED = -14,   /* no modes of friction that sticks agree with what they bring about */
+    SYM_HELD_TWICE = -15         /* friction holds what it or constraints hold already: what it takes is not determined */
 } sym_status;
 
 typedef enum sym_method {
@@ -90,6 +92,12 @@ typedef struct sym_call { /* a model function with the arrays it reads and write
     void (*init)(const double *par, double *pre); /* of the function's model, where parameters change in a run; or NULL */
 } sym_call;
 
+typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/theory/constraints.md, section 14) */
+    int32_t q, v;  /* its index in q, of its rate in v */
+    int32_t mode;  /* parameter: 1, -1: it slides forwards, backwards; SYM_HELD; 0: its friction is smooth */
+    int32_t row;   /* of G, which holds it */
+} sym_sticking;
+
 typedef struct sym_assignment { /* what one action sets */
     int32_t event;
     int32_t is_speed, index; /* of a speed, else of a parameter */
@@ -107,6 +115,7 @@ typedef struct sym_switch { /* a constraint that engages and releases; the formu
 /* What the events of a run do. Functions are bound to its evaluation point, and have parameters' parts of their own. */
 typedef struct sym_actions {
     int32_t npar, n_assignments, n_switches;
+    int32_t first_mode;              /* the event at which the first mode of friction that sticks ends; the others follow */
     const sym_assignment *assignments; /* in the order in which they are stated */
     const sym_switch *switches;
     const int32_t *acts, *once;      /* (n_events) whether one has an action; whether it has it once only */
@@ -114,9 +123,10 @@ typedef struct sym_actions {
     int32_t (*refuses)(void *data, const double *par); /* whether parameters are not allowed */
     void *data;
     double at_once;                  /* an event that acts twice within this time acts without end [s] */
-    sym_call values, constraint;     /* formulas: of switches, then of assignments; phi */
+    sym_call values, constraint;     /* formulas: of switches, assignments, the most that friction takes at rest; phi */
     sym_call *poses;                 /* p, R of frames */
     double *engaged;                 /* (n_switches) scratch */
+    double *modes;                   /* (npar + 2 n_sticking) scratch */
 } sym_actions;
 
 /* What the action at a row of events has done. */
@@ -174,6 +184,10 @@ typedef struct sym_system {
     int32_t held_anew; /* 1: the caller has changed u_constant at the present state; a step's end clears it */
     double step_end, first_stage, last_stage;
     int32_t events_free_of_inputs; /* 1: no event needs the inputs, which cost a call of the caller's */
+    int32_t n_sticking;
+    const sym_sticking *sticking; /* (n_sticking) coordinates with friction that sticks, and whether one is held now: */
+    int32_t *held;                /* it stays as it is, and at rest, exactly */
+    int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
 
 typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 19 } sym_event_sizes;

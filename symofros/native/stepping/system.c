@@ -56,6 +56,11 @@ static void sym_evaluate(const sym_call *call) {
     call->function->eval((const double *const *)call->in, (double *const *)call->out, call->work);
 }
 
+/* The part of a function's work that depends on parameters alone, at other parameters. */
+static void sym_prepare_call(const sym_call *call, const double *par) {
+    if (call->function != NULL && call->init != NULL) call->init(par, (double *)call->pre);
+}
+
 /* Instants that differ by less, relative to themselves, are one: multiples of a step and of a period of samples. */
 #define SYM_SAME_INSTANT 2e-15
 /* The same for zero, no share of which is above it [s]. */
@@ -265,9 +270,13 @@ static void sym_load_start(sym_run *r) {
 
 /* Evaluation point <- y = (theta, v) in the chart about r->q, at time t. */
 static void sym_load_chart_state(sym_run *r, double t, const double *y) {
-    sym_retract(r->system, r->q, y, r->system->q);
-    memcpy(r->system->v, y + r->system->nv, (size_t)r->system->nv * sizeof *y);
-    *r->system->t = t;
+    sym_system *s = r->system;
+    int32_t i;
+    sym_retract(s, r->q, y, s->q);
+    memcpy(s->v, y + s->nv, (size_t)s->nv * sizeof *y);
+    for (i = 0; i < s->n_sticking; ++i)
+        if (s->held[i]) s->v[s->sticking[i].v] = 0.0;
+    *s->t = t;
 }
 
 /* dy = f(t, y), the accelerations at the evaluation point being those of y. */
@@ -291,10 +300,13 @@ static int32_t sym_evaluate_slope(sym_run *r, double t, const double *y, double 
 /* Project the evaluation point onto the constraints. Returns 0 or a status. */
 static int32_t sym_project_point(sym_system *s) {
     const sym_call *project = &s->project; /* q, v, |phi|, rank */
+    int32_t i;
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(project);
     if (!(project->out[3][0] >= 0.0)) return SYM_SINGULAR;
     if (!(project->out[2][0] < SYM_CLOSURE_TOLERANCE)) return SYM_PROJECTION_FAILED;
+    for (i = 0; i < s->n_sticking; ++i)
+        if (s->held[i]) project->out[0][s->sticking[i].q] = s->q[s->sticking[i].q], project->out[1][s->sticking[i].v] = 0.0;
     memcpy(s->q, project->out[0], (size_t)s->nq * sizeof *s->q);
     memcpy(s->v, project->out[1], (size_t)s->nv * sizeof *s->v);
     return 0;

@@ -9,7 +9,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
-from symofros.simulation.events import Event
+from symofros.simulation.events import Event, ModeEvent
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
 from symofros.simulation.results.outcome import Outcome
@@ -24,9 +24,12 @@ _RANK = 1e-12
 
 def found_of(run: BoundRun, met: Met) -> Found:
     """An event that was met, with what its action did."""
-    found, done = Found(run.events[met.which].name, met.t, met.q, met.v), met.done
+    event, done = run.events[met.which], met.done
+    found = Found(event.name, met.t, met.q, met.v)
     if done is None or done.status != Status.FINISHED:
         return found
+    if isinstance(event, ModeEvent):
+        found = found._replace(name=event.said(done.par_set))
     return found._replace(v_after=done.v_after, **_effects(run.model, met, done))
 
 

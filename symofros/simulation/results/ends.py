@@ -83,6 +83,17 @@ ENDS: dict[int, End] = {
         "once=True, or a formula that is not zero after the action, such as 'gap + grip'; bodies that come to rest on"
         " each other need a constraint that engages there",
     ),
+    Status.MODES_UNDECIDED: End(
+        "not converged",
+        "no modes of friction that sticks, held or sliding, agree with the motion that they bring about",
+        "a static level nearer to the dynamic one, or sticks=False at one of the joints that are at rest here",
+    ),
+    Status.HELD_TWICE: End(
+        "singular",
+        "friction holds joints that others or constraints hold already, so that what each takes is not determined",
+        "in a closed loop friction that sticks at no more joints than the loop has degrees of freedom; sticks=False at"
+        " the others",
+    ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."
     ),

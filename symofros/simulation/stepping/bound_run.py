@@ -12,6 +12,7 @@ from symofros.base.arrays import Array
 from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
+from symofros.runtime.record import HELD
 from symofros.simulation.actions import plan_actions
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
@@ -66,6 +67,7 @@ class BoundRun:
         self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
         self._fill_system()
         self._fill_beams()
+        self._fill_sticking()
         self._fill_inputs(inputs)
         self._fill_events()
         self._bind_functions()
@@ -88,6 +90,18 @@ class BoundRun:
         sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
         for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
             setattr(system, name, memory.zeros(size))
+
+    def _fill_sticking(self) -> None:
+        """Coordinates with friction that sticks (docs/theory/constraints.md, section 14)."""
+        system, memory, sticking = self.system, self.memory, self.model.record.sticking
+        system.n_sticking, system.held = len(sticking), memory.own("int32_t[]", len(sticking))
+        system.sticking = memory.own("sym_sticking[]", [(one.q, one.v, one.mode, one.row) for one in sticking])
+        self._hold()
+
+    def _hold(self) -> None:
+        """Tell which coordinates friction holds, by their modes."""
+        for i, one in enumerate(self.model.record.sticking):
+            self.system.held[i] = self.par[one.mode] == HELD
 
     def _fill_beams(self) -> None:
         """What judges the bending of the beams, and memory for the largest of each."""
@@ -146,11 +160,14 @@ class BoundRun:
         system.n_events = len(events)
         system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
         system.event_terminal = memory.own("int32_t[]", [event.cut for event in events])
+        if events:
+            formulas = [event.formula for event in events]
+            self._bind("events", self.model.formulas(formulas, derivatives=False, reactions=True))
+            system.events_of_reactions = int("lam" in dict(self.kernels["events"].signature.inputs))
         if self.inputs.callback is not None:  # Each evaluation of the inputs is a call of it.
             written, names = " ".join(str(event.formula) for event in events), self.model.names
-            system.events_free_of_inputs = int(not any(name in written for name in {*names.u} - {*names.q}))
-        if events:
-            self._bind("events", self.model.formulas([event.formula for event in events], derivatives=False))
+            needs_inputs = system.events_of_reactions or any(name in written for name in {*names.u} - {*names.q})
+            system.events_free_of_inputs = int(not needs_inputs)
 
     def _fill_actions(self) -> None:
         """What events do: native/stepping/actions.c."""
@@ -165,11 +182,12 @@ class BoundRun:
         ]
         plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
         plan.assignments = memory.own("sym_assignment[]", places)
-        plan.acts = memory.own("int32_t[]", [int(bool(event.action)) for event in events])
+        plan.acts = memory.own("int32_t[]", [int(event.acts) for event in events])
         plan.once = memory.own("int32_t[]", [int(event.once) for event in events])
         plan.restitution = memory.doubles([-1.0 if e.restitution is None else e.restitution for e in events])
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
-        plan.engaged = memory.zeros(len(switches))
+        plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
+        plan.first_mode, plan.modes = actions.first_mode, memory.zeros(model.npar + 2 * sticking)
         self._bind_call(plan, "values", actions.kernel)
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))

@@ -165,6 +165,8 @@ class HandRun:
         yield self._looked_for
         if self.run.actions is not None:
             yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events))
+            sticking = len(model.record.sticking)
+            yield memory.raw(system.held, "int32_t", sticking)
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
             yield memory.view(getattr(system, name), size)
 

@@ -35,7 +35,9 @@ class Stepper(BoundRun):
         if capacity > self.run.capacity:
             self.reserve(capacity, _DIAGNOSTIC_ROWS)
         self.set_state(q, v)
-        return int(self.native.sym_run_start(self.run))
+        status = int(self.native.sym_run_start(self.run))
+        self.take_parameters()
+        return status
 
     def reserve(self, capacity: int, diagnostic_rows: int) -> None:
         """Allocate memory for `capacity` records, and for `diagnostic_rows` ends of steps for the diagnosis."""
@@ -69,6 +71,7 @@ class Stepper(BoundRun):
         """Run-time parameters (npar) from now on; nothing that was evaluated with others is valid any more."""
         run, system, view = self.run, self.system, self.memory.view
         self.par, self.beams = par, self.model.beams(par)
+        self._hold()
         for slot, kernel in self.kernels.items():
             prepared = kernel.prepare(par.reshape(1, -1))
             view(getattr(system, slot).pre, prepared.size)[:] = prepared[0]
@@ -130,9 +133,14 @@ class Stepper(BoundRun):
             sizes = model.nq, model.nv, model.nu, model.npar
             done = {i: Done.of(self._event_done[i], sizes) for i in rows}
             self._event_done[first:end, 0] = 0.0
-            present = self.memory.view(self.run.par, model.npar)
-            self.par = self.par if np.array_equal(self.par, present) else present.copy()
+            self.take_parameters()
         return [Met(int(self._event_index[i]), float(t[i, 0]), q[i].copy(), v[i].copy(), done.get(i)) for i in rows]
+
+    def take_parameters(self) -> None:
+        """Parameters as the run has changed them."""
+        if self.actions is not None:
+            present = self.memory.view(self.run.par, self.model.npar)
+            self.par = self.par if np.array_equal(self.par, present) else present.copy()
 
     @property
     def bendings(self) -> tuple[BeamBending, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -111,3 +112,20 @@ def test_numbers_that_make_no_friction_are_refused(entries: dict[str, float], wo
     with pytest.raises(sf.SymofrosError) as refused:
         stated_by_parameters().with_parameters(**{names[key]: value for key, value in entries.items()})
     assert all(word in str(refused.value) for word in words), refused.value
+
+
+def test_friction_that_sticks_is_smooth_in_functions_and_of_one_sign_in_its_modes() -> None:
+    """As without `sticks` at mode 0; else constant in sign, none where held, (constraints.md, 35)."""
+    stated: dict[str, Any] = dict(dynamic=0.7, static=1.1, minimum_velocity=0.02, viscous=0.3, stribeck_velocity=0.1)
+    smooth, sticks = slider(sf.Friction(**stated)), slider(sf.Friction(**stated, sticks=True))
+    v = np.concatenate([np.linspace(-0.5, 0.5, 101), [0.0]])
+    assert sticks.names.par == ("x.mode",) and sticks.names.constraints == ("x.stuck",)
+    zeros = np.zeros((len(v), 1))
+    a, lam, rank = sticks.constrained_dynamics(zeros, v[:, None], np.zeros((len(v), 0)))
+    assert np.array_equal(a, smooth.forward_dynamics(zeros, v[:, None], np.zeros((len(v), 0))))
+    assert not lam.any() and not rank.any()
+    for mode in (1.0, -1.0, 2.0):
+        F = sticks.generalized_force(zeros, v[:, None], np.zeros((len(v), 0)), par=[mode])[:, 0]
+        level = 0.7 + (1.1 - 0.7) * np.exp(-((v / 0.1) ** 2))
+        expected = np.zeros_like(v) if mode == 2.0 else -mode * level - 0.3 * v
+        assert np.abs(F - expected).max() < 1e-15

@@ -14,7 +14,7 @@ _STRIBECK = 10.0
 _LONGEST_RISE = 1.5
 
 
-def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -> Edge:
+def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge, mode: Edge | None = None) -> Edge:
     """The force of an element on its own speed.
 
     Args:
@@ -22,6 +22,7 @@ def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -
         element: The element as described.
         q: The coordinate it acts on; unused by dampers and friction.
         v: The speed.
+        mode: Mode of friction that sticks; None of others.
     """
     g = lowering.g
     if isinstance(element, Spring):
@@ -33,7 +34,7 @@ def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge) -
         return -g.mul(g.add(lowering.value(element.coefficient), quadratic), v)
     if isinstance(element, Stop):
         return _stop_force(lowering, element, q, v)
-    return _friction(lowering, element, v)
+    return _friction(lowering, element, v) if mode is None else _friction_by_mode(lowering, element, v, mode)
 
 
 def element_energy(lowering: Lowering, element: JointElement, q: Edge) -> Edge:
@@ -91,6 +92,20 @@ def _friction(lowering: Lowering, friction: Friction, v: Edge) -> Edge:
         fallen = g.sub(g.call("exp", -g.mul(y, y)), g.add(ONE, g.mul(flank, flank)))
         level = g.add(level, g.mul(g.sub(lowering.value(static), dynamic), g.add(rise, fallen)))
     return -g.add(g.mul(level, xi), g.mul(lowering.value(friction.viscous), v))
+
+
+def _friction_by_mode(lowering: Lowering, friction: Friction, v: Edge, mode: Edge) -> Edge:
+    """Friction of one sign while the joint slides, none while it is held, else the smooth one: constraints.md, (35)."""
+    g = lowering.g
+    square = g.mul(mode, mode)
+    smooth = g.mul(g.sub(ONE, square), g.sub(ONE, g.mul(g.constant(0.5), mode)))
+    sign = g.div(g.mul(mode, g.sub(g.constant(4.0), square)), g.constant(3.0))
+    level = lowering.value(friction.dynamic)
+    if friction.static is not None and friction.stribeck_velocity is not None:
+        y = g.div(v, lowering.value(friction.stribeck_velocity))
+        level = g.add(level, g.mul(g.sub(lowering.value(friction.static), level), g.call("exp", -g.mul(y, y))))
+    slides = g.add(level, g.mul(sign, g.mul(lowering.value(friction.viscous), v)))
+    return g.sub(g.mul(smooth, _friction(lowering, friction, v)), g.mul(sign, slides))
 
 
 def _peak_and_fall(lowering: Lowering, friction: Friction, slow: Edge) -> tuple[Edge, Edge]:

@@ -18,6 +18,7 @@ from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.coordinates import joint_sizes
+from symofros.mechanics.topology.sticking import mode_name, sticks
 from symofros.mechanics.topology.tree import Link
 
 
@@ -114,7 +115,8 @@ def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
             add(start + k, lowering.value(value))
         for element in link.joint.elements:
             k = element.coordinate
-            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k]))
+            mode = lowering.symbol(mode_name(link.joint, k)) if sticks(element) else None
+            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k], mode))
         if link.joint.actuated:
             for k in range(size):
                 add(start + k, g.input("u", actuator + k))

@@ -1,0 +1,61 @@
+"""Multipliers, wrenches of constraints and reactions of joints by the names that conditions of events use.
+
+`lam.CONDITION` is a multiplier; `wrench.CONSTRAINT.fx` to `.mz` the wrench of a constraint on its second frame, about
+that frame's origin in world axes; `reaction.JOINT.fx` to `.mz` the wrench that a joint transmits to its body, about the
+joint's point in body axes (docs/theory/constraints.md, section 13, (33)). A coordinate, parameter or input of such a
+name is meant first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from symofros.expr.edges import Edge
+from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
+from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.topology.tree import SpanningTree, joint_names
+
+COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+def reaction_symbols(tree: SpanningTree) -> frozenset[str]:
+    """All names of multipliers, wrenches and reactions of a mechanism."""
+    constraints = tree.system.constraints
+    multipliers = (f"lam.{condition}" for constraint in constraints for condition in constraint.conditions)
+    names = (*_six("wrench", acts_on_bodies(constraints)), *_six("reaction", joint_names(tree)))
+    return frozenset((*multipliers, *names))
+
+
+def bind_reactions(equations: Equations, used: Iterable[str]) -> bool:
+    """Give formulas of a mechanism the edges of the multipliers, wrenches and reactions that they use.
+
+    Args:
+        equations: Equations of the mechanism; their inputs "a" and "lam" are the accelerations and multipliers.
+        used: Symbols of the formulas; others than those of reactions are left alone.
+
+    Returns:
+        Whether there are any.
+    """
+    tree, lowering = equations.tree, equations.kinematics.lowering
+    own = tree.coordinates
+    names = reaction_symbols(tree).intersection(used) - {*own.symbols, *own.keys, *own.constants}
+    for name in sorted(names):
+        lowering.bind(name, _reaction(equations, name))
+    return bool(names)
+
+
+def _reaction(equations: Equations, name: str) -> Edge:
+    group, of = name.split(".", 1)
+    system = equations.tree.system
+    if group == "lam":
+        conditions = [condition for constraint in system.constraints for condition in constraint.conditions]
+        return equations.g.input("lam", conditions.index(of))
+    of, component = of.rsplit(".", 1)
+    column = COMPONENTS.index(component)
+    if group == "wrench":
+        return equations.wrenches_on_second[acts_on_bodies(system.constraints).index(of)][column]
+    return equations.joint_wrenches[joint_names(equations.tree).index(of)][column]
+
+
+def _six(group: str, names: Iterable[str]) -> Iterator[str]:
+    return (f"{group}.{name}.{component}" for name in names for component in COMPONENTS)
