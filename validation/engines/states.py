@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .interface import Array, HasLayout, State, Tree, Unsupported
+from .interface import Array, HasLayout, State, Tree
 from .truth.constraints import closed
 from .truth.dynamics import random_state
 
@@ -59,9 +59,8 @@ def visits(tree: Tree, layout: HasLayout, first: State, seed: int, many: int) ->
     yield Visit(ZERO, replace(first, q=q, q2=q, v=nothing, v2=nothing))
     yield Visit(SWIFT, replace(first, v=FAST * first.v))
     for number in range(1, (1 if tree.constraints else many) + 1):
-        state: State | Unsupported = random_state(tree, layout, seed + number)
-        if tree.constraints:
-            state = closed(tree, layout, state, _RESTARTS)
+        drawn = random_state(tree, layout, seed + number)
+        state = closed(tree, layout, drawn, _RESTARTS) if tree.constraints else drawn
         if isinstance(state, State):
             yield Visit(AMONG if number < many and not tree.constraints else SECOND, state)
     yield Visit(AGAIN, first)

@@ -27,6 +27,7 @@ from .truth.dynamics import random_state
 # machine.
 LIMIT = 300.0
 T = TypeVar("T")
+Ask = Callable[[State], Array | Unsupported | Raised]
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Job:
         text: The file.
         called: Whether functions are called; otherwise only their scripts are written.
         further: Whether each is asked at further states on the same model (`states.visits`).
-        before: States, likewise joint by joint, at which each is asked first on the same model.
+        before: Functions that are asked first on the same model, each at a state, likewise joint by joint.
     """
 
     engine: str
@@ -66,7 +67,7 @@ class Job:
     text: str = ""
     called: bool = True
     further: bool = False
-    before: tuple[Pieces, ...] = ()
+    before: tuple[tuple[str, Pieces], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -126,19 +127,21 @@ def answered(job: Job) -> Iterator[Answer]:
 
 
 def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: Visit) -> Answer:
-    """An answer with its script, of a model whose last call was of another function, or at the states before."""
-    before = [one for pieces in job.before if isinstance(one := assembled(layout, pieces), State)]
+    """An answer with its script, of a model whose last call was of another function, or those that are to be before."""
+    before = [(name, at) for name, pieces in job.before if isinstance(at := assembled(layout, pieces), State)]
     value: Array | Unsupported | Raised = Unsupported("not called")
     if job.called:
-        ask = _asker(job, model, function) if before else lambda state: model.call(function, state)
-        for state in (*before, visit.state):
-            value = _called(job, ask, state)
+        kept = {name: _asker(job, model, name) for name in dict.fromkeys((*(name for name, _ in before), function))}
+        for name, at in before:
+            _called(job, kept[name], at)
+        value = _called(job, kept[function] if before else lambda state: model.call(function, state), visit.state)
     is_told = isinstance(value, np.ndarray) or (isinstance(value, Raised) and value.kind == "raises")
     script: str | Raised = ""
     if is_told or not job.called:
-        # Whoever writes scripts of one state writes none of several.
-        writes = not before or isinstance(model, SourceModel)
-        script = attempted(model.script, function, *before, visit.state) if writes else ""
+        if isinstance(model, SourceModel):
+            script = attempted(model.script, function, visit.state, before)
+        elif not before:  # Whoever writes scripts of one call writes none of several.
+            script = attempted(model.script, function, visit.state)
     if isinstance(script, Raised):
         value, script = Raised(f"the script of {function}: {script.words}"), ""
     return Answer(function, value, layout, visit.state, script, visit.name)
@@ -153,15 +156,15 @@ def _at_all(job: Job, model: EngineModel, layout: Layout, function: str, further
             yield Answer(function, value, layout, visit.state, at=visit.name)
 
 
-def _asker(job: Job, model: EngineModel, function: str) -> Callable[[State], Array | Unsupported]:
+def _asker(job: Job, model: EngineModel, function: str) -> Ask:
     """Calls of a function that share the engine's data, as far as the plug-in can."""
     if not isinstance(model, SourceModel):
         return lambda state: model.call(function, state)
-    ask = model.kept(function)
-    return (lambda state: ask) if isinstance(ask, Unsupported) else ask
+    made = attempted(model.kept, function)
+    return (lambda state: made) if isinstance(made, Unsupported | Raised) else made
 
 
-def _called(job: Job, ask: Callable[[State], Array | Unsupported], state: State) -> Array | Unsupported | Raised:
+def _called(job: Job, ask: Ask, state: State) -> Array | Unsupported | Raised:
     """What a call returns; an array of numbers, if it is one."""
     given = State(*(np.array(part) for part in vars(state).values()))
     value = attempted(ask, given)

@@ -10,7 +10,7 @@ import pytest
 
 from tests.validation.engines.toys import FAULTS, Engine
 from validation.engines import workers
-from validation.engines.interface import SINGLE, Joint, Link, Registry, Slot, Statement, Tree, rows
+from validation.engines.interface import SINGLE, Joint, Link, Registry, Slot, State, Statement, Tree, Unsupported, rows
 from validation.engines.matrix import SEED, Judged, Truths, judged
 from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
@@ -73,7 +73,10 @@ def test_a_planted_fault_of_a_state_is_seen_and_its_state_is_named(
 
 @pytest.mark.parametrize(
     ("fault", "said"),
-    [("", "refuses 0 of 1 cells in its own words, within"), ("refuses", "refuses 1 of 1 cells in its own words, above")],
+    [
+        ("", "refuses 0 of 1 cells in its own words, within"),
+        ("refuses", "refuses 1 of 1 cells in its own words, above"),
+    ],
 )
 def test_how_much_an_engine_refuses_is_bounded(fault: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert refusals([asked(toy(fault), monkeypatch).cell]).startswith(said)
@@ -89,7 +92,7 @@ def test_the_script_of_a_state_is_a_proof(fault: str, monkeypatch: pytest.Monkey
     plugin = toy(fault)
     red = asked(plugin, monkeypatch)
     path = tmp_path / "script.py"
-    path.write_text(scripts.text(plugin, red, scripts.NONE))
+    path.write_text(scripts.text(plugin, red, "none found"))
     output, failed = scripts.fails(path, "IndexError" if fault == "breaks" else "")
     assert failed, output
 
@@ -130,7 +133,7 @@ def test_no_answer_is_judged_beside_numbers_that_its_tree_makes_nothing_of(scale
     )
     tree = Tree("hanging", (link,))
     model = OWN["pinocchio"].build(tree)
-    state = workers.State(*(np.full(1, 1e-17) for _ in range(6)))
+    state = State(*(np.full(1, 1e-17) for _ in range(6)))
     want = expected("bias", tree, model, state)  # type: ignore[arg-type]
     assert 0.0 < np.abs(want.value).max() < want.allowed < 1e-9 * size_of("bias", tree)
     assert judge("toy", tree, "bias", want.value + 1e-16 * scale**4, want).verdict == "right"
@@ -147,7 +150,7 @@ def test_neutral_coordinates_move_nothing() -> None:
         for engine in ("pinocchio", "mujoco", "drake", "dart"):
             tree, plugin = tree_of(kind), OWN[engine]
             model = plugin.build(tree)
-            if not hasattr(model, "slots"):
+            if isinstance(model, Unsupported):
                 continue
             with many_digits():
                 (R, p), *_ = Truth(tree, model).kinematics.poses(exact(neutral(model)))

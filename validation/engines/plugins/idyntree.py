@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, UNIT_AXIS, Described, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
 
 _SETUP = """import numpy as np
 import idyntree.bindings as iDynTree
@@ -16,7 +16,7 @@ assert loader.loadReducedModelFromString({text!r}, {joints})
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
-{base}"""
+assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}\""""
 _FLOATING_STATE = (
     "def state(q, v):",
     "    x, y, z, w = q[3:7]",
@@ -156,9 +156,8 @@ _BASE = "free xyzw, linear and angular before"
 def read(tree: Tree, described: Described) -> Source:
     """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
-    # The root link of a file is the base unless another is.
-    base = f"assert robot.setFloatingBase({described.links[0]!r})" if floating else ""
-    setup = _SETUP.format(text=described.text, joints=list(described.moving), base=base).rstrip()
+    root = described.links[0] if floating else base(described.text)
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
     optional = {

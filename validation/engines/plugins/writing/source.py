@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
@@ -77,12 +77,12 @@ class Source:
             code = code.replace(general, own)
         return code
 
-    def script(self, way: Way, *states: State) -> str:
-        """The statements that build the tree and, for each state, state what a way needs, and run it."""
-        code = self.spelled(way.code)
-        used = [name for name in _INPUTS if name in identifiers(code)]
-        lines = [*self.built(way)]
-        for state in states:
+    def script(self, *calls: tuple[Way, State]) -> str:
+        """The statements that build the tree as the last call needs it, and for each way and state run what it is."""
+        lines = [*self.built(calls[-1][0])]
+        for way, state in calls:
+            code = self.spelled(way.code)
+            used = [name for name in _INPUTS if name in identifiers(code)]
             lines += [*(f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used), code]
         return "\n".join(lines)
 
@@ -152,9 +152,9 @@ class SourceModel:
 
         return ask
 
-    def script(self, function: str, *states: State) -> str:
-        """The text that calls run at these states, one after the other, with what they need (`EngineModel`)."""
-        return self._source.script(self._ways[function], *states)
+    def script(self, function: str, state: State, before: Sequence[tuple[str, State]] = ()) -> str:
+        """The text that a call runs, with the state that it needs (`EngineModel`), after other calls."""
+        return self._source.script(*((self._ways[name], at) for name, at in (*before, (function, state))))
 
 
 def _run(text: str, names: dict[str, Any]) -> None:

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from xml.etree import ElementTree
 
 from ...interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Statement, Tree, Unsupported, Vector
 from ...truth.charts import CHARTS
@@ -112,6 +113,13 @@ def describe(tree: Tree, *, base: str = WORLD) -> Described | Unsupported:
         series.append(tuple(names))
     text = "\n".join(['<robot name="tree">', *lines, "</robot>"])
     return Described(text, floating, tuple(series), tuple(link.name for link in tree.links))
+
+
+def base(text: str) -> str:
+    """Name of the link that a file hangs all others on."""
+    robot = ElementTree.fromstring(text)
+    children = {one.get("link") for one in robot.iterfind("joint/child")}
+    return next(name for one in robot.iterfind("link") if (name := one.get("name", "")) not in children)
 
 
 # Text that has an engine read the file of a described tree.
