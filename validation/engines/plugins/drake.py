@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import STEP, Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
+from .loops import drake_forces as forces
+from .loops.drake_forces import FORCES, QV, Q
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS
 
@@ -49,9 +51,6 @@ _HELPERS = {
         "    return drake.SpatialInertia.MakeFromCentralInertia(mass, com, about)",
     ),
 }
-_QV = "p.SetPositions(c, q)\np.SetVelocities(c, v)\n"
-_Q = "p.SetPositions(c, q)\n"
-_FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
 _KV = "W, kV = p.world_frame(), drake.JacobianWrtVariable.kV\n"
 _FRAMES = f"{_KV}frames = [b.body_frame() for b in links]\n"
 # The angular part comes first.
@@ -60,131 +59,57 @@ _JACOBIANS = (
 )
 
 WAYS = {
-    "mass_matrix": Way("CalcMassMatrix", f"{_Q}value = p.CalcMassMatrix(c)"),
+    "mass_matrix": Way("CalcMassMatrix", f"{Q}value = p.CalcMassMatrix(c)"),
     "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
-        "CalcMassMatrixViaInverseDynamics", f"{_Q}value = p.CalcMassMatrixViaInverseDynamics(c)"
+        "CalcMassMatrixViaInverseDynamics", f"{Q}value = p.CalcMassMatrixViaInverseDynamics(c)"
     ),
-    "coriolis_forces": Way("CalcBiasTerm", f"{_QV}value = p.CalcBiasTerm(c)"),
-    "gravity": Way("CalcGravityGeneralizedForces", f"{_Q}value = -p.CalcGravityGeneralizedForces(c)"),
-    "inverse_dynamics": Way("CalcInverseDynamics", f"{_QV}{_FORCES}value = p.CalcInverseDynamics(c, a, forces)"),
-    "bias": Way("CalcInverseDynamics", f"{_QV}{_FORCES}value = p.CalcInverseDynamics(c, 0 * v, forces)"),
+    "coriolis_forces": Way("CalcBiasTerm", f"{QV}value = p.CalcBiasTerm(c)"),
+    "gravity": Way("CalcGravityGeneralizedForces", f"{Q}value = -p.CalcGravityGeneralizedForces(c)"),
+    "inverse_dynamics": Way("CalcInverseDynamics", f"{QV}{FORCES}value = p.CalcInverseDynamics(c, a, forces)"),
+    "bias": Way("CalcInverseDynamics", f"{QV}{FORCES}value = p.CalcInverseDynamics(c, 0 * v, forces)"),
     "forward_dynamics": Way(
         "EvalTimeDerivatives",
-        f"{_QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
         "value = p.EvalTimeDerivatives(c).CopyToVector()[len(q):]",
     ),
-    "kinetic_energy": Way("CalcKineticEnergy", f"{_QV}value = p.CalcKineticEnergy(c)"),
-    "potential_energy": Way("CalcPotentialEnergy", f"{_Q}value = p.CalcPotentialEnergy(c)"),
+    "kinetic_energy": Way("CalcKineticEnergy", f"{QV}value = p.CalcKineticEnergy(c)"),
+    "potential_energy": Way("CalcPotentialEnergy", f"{Q}value = p.CalcPotentialEnergy(c)"),
     "link_poses": Way(
         "EvalBodyPoseInWorld",
-        f"{_Q}poses = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
+        f"{Q}poses = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
         "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
     ),
     "link_velocities": Way(
         "EvalBodySpatialVelocityInWorld",
-        f"{_QV}twists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
+        f"{QV}twists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
         "value = [[*t.translational(), *t.rotational()] for t in twists]",
     ),
     "link_accelerations": Way(
         "CalcSpatialAccelerationsFromVdot",
-        f"{_QV}every = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
+        f"{QV}every = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
         "value = [[*every[b.index()].translational(), *every[b.index()].rotational()] for b in links]",
     ),
     "link_velocity_products": Way(
         "CalcBiasSpatialAcceleration",
-        f"{_QV}{_FRAMES}products = [p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W) for f in frames]\n"
+        f"{QV}{_FRAMES}products = [p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W) for f in frames]\n"
         "value = [[*x.translational(), *x.rotational()] for x in products]",
     ),
-    "link_jacobians": Way("CalcJacobianSpatialVelocity", f"{_Q}{_FRAMES}{_JACOBIANS.format(about='W')}"),
-    "jacobian_local": Way("CalcJacobianSpatialVelocity", f"{_Q}{_FRAMES}{_JACOBIANS.format(about='f')}"),
-    "mass_centre": Way("CalcCenterOfMassPositionInWorld", f"{_Q}value = p.CalcCenterOfMassPositionInWorld(c)"),
+    "link_jacobians": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='W')}"),
+    "jacobian_local": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='f')}"),
+    "mass_centre": Way("CalcCenterOfMassPositionInWorld", f"{Q}value = p.CalcCenterOfMassPositionInWorld(c)"),
     "mass_centre_jacobian": Way(
         "CalcJacobianCenterOfMassTranslationalVelocity",
-        f"{_Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)",
+        f"{Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)",
     ),
     "mass_centre_velocity_products": Way(
         "CalcBiasCenterOfMassTranslationalAcceleration",
-        f"{_QV}{_KV}value = p.CalcBiasCenterOfMassTranslationalAcceleration(c, kV, W, W)",
+        f"{QV}{_KV}value = p.CalcBiasCenterOfMassTranslationalAcceleration(c, kV, W, W)",
     ),
     "centroidal_momentum": Way(
         "CalcSpatialMomentumInWorldAboutPoint",
-        f"{_QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
+        f"{QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
         "value = [*L.translational(), *L.rotational()]",
     ),
-}
-
-
-_SIMULATION = f"""c.SetTime(0.0)
-sim = drake.Simulator(p, c)
-INTEGRATOR{_QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
-sim.AdvanceTo({STEP})
-value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
-_FIXED = f"""drake.ResetIntegratorFromFlags(sim, 'NAME', {STEP})
-sim.get_mutable_integrator().set_fixed_step_mode(True)
-"""
-
-
-def _integrated(name: str) -> Way:
-    """A step of an integrator that the simulator of a continuous plant has."""
-    return Way(name, _SIMULATION.replace("INTEGRATOR", _FIXED.replace("NAME", name)))
-
-
-WAYS |= {
-    "step_dampers_implicit_straight": Way(
-        "MultibodyPlant with a time step",
-        _SIMULATION.replace("INTEGRATOR", ""),
-        0.0,
-        (("Plant(0.0)", f"Plant({STEP})"),),
-    ),
-    "step_semi_implicit_straight": _integrated("semi_explicit_euler"),
-    "step_euler": _integrated("explicit_euler"),
-    "step_rk2": _integrated("runge_kutta2"),
-    "step_rk3": _integrated("runge_kutta3"),
-    "passive_forces": Way(
-        "CalcForceElementsContribution",
-        f"{_QV}{_FORCES}zero = 0 * v\nvalue = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p))"
-        " - p.CalcInverseDynamics(c, zero, forces) - p.CalcGravityGeneralizedForces(c)",
-    ),
-}
-
-# With the forces that make the accelerations a.
-_DRIVEN = (
-    f"{_QV}{_FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
-)
-# The diagram, built once, owns the plant.
-_SENSORS = """if "root" not in globals():
-    builder = drake.DiagramBuilder()
-    builder.AddSystem(p)
-    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in sensed]
-    for sensor in sensors:
-        for name in NAMES:
-            builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
-    whole = builder.Build()
-    root = whole.CreateDefaultContext()
-    c = p.GetMyMutableContextFromRoot(root)
-"""
-_READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
-
-
-def _sensors(kind: str, *names: str, more: str = "") -> Way:
-    """Readings of sensors in a diagram with the plant, which it then owns."""
-    text = _SENSORS.replace("KIND", kind).replace("MORE", more).replace("NAMES", repr(("body_poses", *names)))
-    return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
-
-
-WAYS |= {
-    "joint_wrenches": Way(
-        "reaction_forces",
-        f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []
-for j in js:
-    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
-    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
-    value.append([*force, *(moment + np.cross(x.translation(), force))])""",
-    ),
-    "accelerometers": _sensors(
-        "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
-    ),
-    "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
 }
 
 
@@ -194,7 +119,7 @@ def _gradient(result: str, seeds: str) -> str:
 ad = p.ToAutoDiffXd()
 d = ad.CreateDefaultContext()
 d.SetTimeStateAndParametersFrom(c)
-{_QV}N = p.MakeVelocityToQDotMap(c).toarray()
+{QV}N = p.MakeVelocityToQDotMap(c).toarray()
 {seeds}
 ad.SetPositions(d, q_)
 ad.SetVelocities(d, v_)
@@ -424,7 +349,7 @@ PLUGIN = SourcePlugin(
         "free between links": "QuaternionFloatingJoint",
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
-    ways=WAYS,
+    ways=WAYS | forces.WAYS,
     write=write,
     formats=tuple(_PARSERS),
     write_reading=write_reading,

@@ -78,7 +78,7 @@ class Source:
         return code
 
     def script(self, *calls: tuple[Way, State]) -> str:
-        """The statements that build the tree and, for each way and state, state what it needs, and run it."""
+        """The statements that build the tree as the last call needs it, and for each way and state run what it is."""
         lines = [*self.built(calls[-1][0])]
         for way, state in calls:
             code = self.spelled(way.code)

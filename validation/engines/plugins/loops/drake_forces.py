@@ -1,0 +1,80 @@
+"""Drake's steps, forces of a plant's own, reactions and sensors."""
+
+from __future__ import annotations
+
+from ...interface import STEP
+from ..writing.source import Way
+
+QV = "p.SetPositions(c, q)\np.SetVelocities(c, v)\n"
+Q = "p.SetPositions(c, q)\n"
+FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
+_SIMULATION = f"""c.SetTime(0.0)
+sim = drake.Simulator(p, c)
+INTEGRATOR{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+sim.AdvanceTo({STEP})
+value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
+_FIXED = f"""drake.ResetIntegratorFromFlags(sim, 'NAME', {STEP})
+sim.get_mutable_integrator().set_fixed_step_mode(True)
+"""
+
+
+def _integrated(name: str) -> Way:
+    """A step of an integrator that the simulator of a continuous plant has."""
+    return Way(name, _SIMULATION.replace("INTEGRATOR", _FIXED.replace("NAME", name)))
+
+
+WAYS: dict[str, Way] = {
+    "step_dampers_implicit_straight": Way(
+        "MultibodyPlant with a time step",
+        _SIMULATION.replace("INTEGRATOR", ""),
+        0.0,
+        (("Plant(0.0)", f"Plant({STEP})"),),
+    ),
+    "step_semi_implicit_straight": _integrated("semi_explicit_euler"),
+    "step_euler": _integrated("explicit_euler"),
+    "step_rk2": _integrated("runge_kutta2"),
+    "step_rk3": _integrated("runge_kutta3"),
+    "passive_forces": Way(
+        "CalcForceElementsContribution",
+        f"{QV}{FORCES}zero = 0 * v\nvalue = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p))"
+        " - p.CalcInverseDynamics(c, zero, forces) - p.CalcGravityGeneralizedForces(c)",
+    ),
+}
+
+# With the forces that make the accelerations a.
+_DRIVEN = f"{QV}{FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
+# The diagram, built once, owns the plant.
+_SENSORS = """if "root" not in globals():
+    builder = drake.DiagramBuilder()
+    builder.AddSystem(p)
+    sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in sensed]
+    for sensor in sensors:
+        for name in NAMES:
+            builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
+    whole = builder.Build()
+    root = whole.CreateDefaultContext()
+    c = p.GetMyMutableContextFromRoot(root)
+"""
+_READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
+
+
+def _sensors(kind: str, *names: str, more: str = "") -> Way:
+    """Readings of sensors in a diagram with the plant, which it then owns."""
+    text = _SENSORS.replace("KIND", kind).replace("MORE", more).replace("NAMES", repr(("body_poses", *names)))
+    return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
+
+
+WAYS |= {
+    "joint_wrenches": Way(
+        "reaction_forces",
+        f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []
+for j in js:
+    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
+    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
+    value.append([*force, *(moment + np.cross(x.translation(), force))])""",
+    ),
+    "accelerometers": _sensors(
+        "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
+    ),
+    "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
+}
