@@ -8,11 +8,13 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
+from typing import Literal, cast
 
 import symofros as sf
 
 from . import references
 from .adapters import ROUTES, compiled, has_beams, in_order, route_of
+from .adapters.charted import ChartedEngine
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
 from .comparison.loops import with_unique_multipliers
@@ -32,6 +34,7 @@ from .comparison.regular import (
     judge_undefined,
     regular_states,
 )
+from .comparison.relations import Related, judge_relations
 from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
 from .contract.interface import NotOffered, States, Subject
@@ -64,6 +67,7 @@ class Settings:
     seed: int = 0
     engines: tuple[str, ...] | None = None
     first: int = 0
+    full: bool = False
 
     def routes(self) -> list[str]:
         """The engines asked for, in the order of reports."""
@@ -216,22 +220,56 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         for one in bench.engines:
             rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
-        if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
-            yield from _procedures(bench)
+        if bench.settings.engines is None:
+            yield from _relations(bench)
+            if bench.subject.system is references.MODELS.get(bench.label):
+                yield from _by_formulas(bench, "procedures", bench.variants.states)
 
 
-def _procedures(bench: _Bench) -> Iterator[Comparison]:
-    """Comparisons of procedures, such as integrators, on a reference model's equations; none for other models."""
+def _relations(bench: _Bench) -> Iterator[Comparison]:
+    """What our program owes to those of other descriptions of the same mechanism, and its derivatives to it."""
+    start, variants = time.perf_counter(), bench.variants
+    named = {one.name: one.engine for one in bench.engines if not one.route.independent}
+    vectors = cast(compiled.SymofrosEngine | None, named.get("vectors"))
+    closed = variants.assembled if bench.subject.system.constraints else variants.states
+    yield from judge_relations(
+        Related(
+            bench.subject,
+            bench.assembly,
+            variants.as_described,
+            closed if len(closed) else variants.states,
+            bench.scales,
+            bench.condition,
+            variants.states,
+            vectors,
+        )
+    )
+    bench.seconds["relations"] = time.perf_counter() - start
+    if not len(closed):
+        note = "no random state leads to a posture that keeps the constraints"
+        yield Comparison(bench.label, "symofros", "derivatives", "unsupported", note=note)
+    elif bench.solvable:
+        yield from _by_formulas(bench, "derivatives", closed)
+
+
+def _by_formulas(bench: _Bench, what: Literal["derivatives", "procedures"], closed: States) -> Iterator[Comparison]:
+    """Comparisons with formulas: derivatives of every model; of reference models procedures, such as integrators."""
     start = time.perf_counter()
-    # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
+    label, system, assembly = bench.label, bench.subject.system, bench.assembly
+    # They need SciPy; its integrators take half a second to import, which other models do without.
     try:
-        judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
+        if what == "derivatives":
+            module = import_module(".procedures.derivatives", __package__)
+            asked = module.Asked(label, system, assembly, closed, bench.condition, bench.settings.full)
+            # What reads a file of its own states no derivatives that another route would not.
+            engines = [one.engine for one in bench.engines if not one.route.reads]
+            yield from module.judge_derivatives(asked, [one for one in engines if isinstance(one, ChartedEngine)])
+        else:
+            yield from import_module(".procedures.catalogue", __package__).judge_procedures(label, system, assembly)
     except ModuleNotFoundError as error:
         note = f"{error}; pip install 'symofros[validation]'"
-        yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
-    else:
-        yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
-    bench.seconds["procedures"] = time.perf_counter() - start
+        yield Comparison(label, "symofros", what, "unsupported", note=note)
+    bench.seconds[what] = time.perf_counter() - start
 
 
 def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
