@@ -12,9 +12,10 @@ from __future__ import annotations
 import tempfile
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
@@ -43,6 +44,8 @@ COMPARED = (
     "frame_pose",
     "frame_velocity",
 )
+# Of files of other formats, which hold no formulas and few forces.
+INERTIAL = ("mass_matrix", "bias", "kinetic_energy")
 # Entries whose bits differ: none may.
 BITS = 0.5
 # Vectors of doubles have 2, 4 or 8 lanes: behind the last whole one, 1 to 7 states are left.
@@ -96,11 +99,12 @@ class RestatedEngine:
             size = {"free": 3, "prismatic": mover.q.stop - mover.q.start}.get(mover.kind, 0)
             lengths[mover.q.start : mover.q.start + size] = units.length
         names, others = self.original.names, self.model.names
-        q, v, a, u = (np.empty((len(states), n)) for n in (self.model.nq, self.model.nv, self.model.nv, self.model.nu))
+        q, v, a, u = (np.zeros((len(states), n)) for n in (self.model.nq, self.model.nv, self.model.nv, self.model.nu))
         q[:, self._order(names.q, others.q)] = states.q * lengths
         v[:, self._speeds] = states.v * self._per_speed
         a[:, self._speeds] = states.a * self._per_speed / units.time
-        u[:, self._order(names.u, others.u)] = states.u * self._per_input
+        if self.restated.forces:
+            u[:, self._order(names.u, others.u)] = states.u * self._per_input
         return States(q, v, a, u, np.zeros_like(v), np.zeros_like(v))
 
     @cached_property
@@ -186,6 +190,9 @@ def judge_relations(asked: Related) -> Iterator[Comparison]:
         rng = np.random.default_rng(zlib.crc32(f"{label} {name}".encode()))
         yield _attempted(asked, name, lambda restate=restate, rng=rng: restate(system, rng))  # type: ignore[misc]
     yield _attempted(asked, "written and read again", lambda: _read_again(system))
+    for target in ("urdf", "mjcf"):
+        name = f"exported as {target.upper()} and read again"
+        yield _attempted(asked, name, lambda target=target: _exported(asked, target))  # type: ignore[misc]
     for name, count in (("asked again, in another order", _asked_again), ("tails of vectors", _tails)):
         differing = attempted(count, asked)
         if isinstance(differing, Raised):
@@ -210,14 +217,14 @@ def _compared(asked: Related, name: str, other: Restated) -> Comparison:
     """The worst of all quantities, by its share of the tolerance."""
     if other.system == asked.subject.system:  # Equal descriptions are one program.
         return _row(asked, name, 0.0, QUANTITIES["mass_matrix"].tolerance)
-    quantities = [QUANTITIES[one] for one in COMPARED if asked.subject.frames or not one.startswith("frame")]
-    if asked.subject.system.constraints and np.isfinite(asked.condition):
+    frames = asked.subject.frames if other.forces else ()
+    compared = COMPARED if other.forces else INERTIAL
+    quantities = [QUANTITIES[one] for one in compared if frames or not one.startswith("frame")]
+    if other.forces and asked.subject.system.constraints and np.isfinite(asked.condition):
         quantities.append(QUANTITIES["forward_dynamics"])
-    frames = tuple(other.names.get(one, one) for one in asked.subject.frames)
-    options = sf.Options(tuple(q.method or q.name for q in quantities), frames, backend="interpreter")
-    engine = RestatedEngine(
-        other, sf.compile(other.system, options), asked.ours.model, asked.assembly, asked.subject.frames
-    )
+    named = tuple(other.names.get(one, one) for one in frames)
+    options = sf.Options(tuple(q.method or q.name for q in quantities), named, backend="interpreter")
+    engine = RestatedEngine(other, sf.compile(other.system, options), asked.ours.model, asked.assembly, frames)
     states, shares = asked.states[:STATES], []
     for quantity in quantities:
         tolerance = quantity.tolerance
@@ -225,8 +232,10 @@ def _compared(asked: Related, name: str, other: Restated) -> Comparison:
             tolerance = max(tolerance, EPS * asked.condition)
         ours, theirs = compute(asked.ours, quantity, states), engine.value(quantity, states)
         if quantity.name == "potential_energy":  # Its zero is that of the world's origin, wherever that is.
-            ours, theirs = ours - ours[0], theirs - theirs[0]
-        errors, _ = scaled_errors(quantity, ours, theirs, asked.scales)
+            size = max(float(np.abs(x).max()) for x in (ours, theirs)) or 1.0
+            errors = np.abs((ours - ours[0]) - (theirs - theirs[0])) / size
+        else:
+            errors, _ = scaled_errors(quantity, ours, theirs, asked.scales)
         error = float(errors.max()) if np.all(np.isfinite(errors)) else np.inf
         shares.append((error / tolerance, error, tolerance, quantity.name))
     share, error, tolerance, worst = max(shares)
@@ -240,6 +249,26 @@ def _row(asked: Related, name: str, error: float, tolerance: float, note: str = 
     return Comparison(
         asked.subject.label, ENGINE, name, "agree" if agrees else "disagree", count, finite, tolerance, note=note
     )
+
+
+def _exported(asked: Related, target: Literal["urdf", "mjcf"]) -> Restated | Unsupported:
+    """What is read from a file of another format that the description was exported as."""
+    system, names = asked.subject.system, asked.ours.model.names
+    joints = [one.joint for one in asked.assembly.joints]
+    if any(joint.rotors or (target == "urdf" and joint.armature != 0.0) for joint in joints):
+        return Unsupported("the format holds no rotors, or no armatures")
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            file = next(path for path in sf.export(system, target, folder).files if path.suffix in (".urdf", ".xml"))
+        except sf.SymofrosError as refusal:
+            return Unsupported(f"not exported: {refusal.problem.what}")
+        free = any(joint.kind == "free" for joint in joints)
+        again = sf.load(file, floating_base=True) if free and target == "urdf" else sf.load(file)
+    read = sf.compile(again, sf.Options(("mass_matrix",), (), backend="interpreter")).names
+    if {*read.q} != {*names.q}:
+        return Unsupported("the format has other coordinates, or other names of them")
+    gravity = tuple(map(float, asked.assembly.gravity))  # URDF has no word for it.
+    return Restated(replace(again, gravity=gravity), forces=False)
 
 
 def _read_again(system: sf.System) -> Restated:

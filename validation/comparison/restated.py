@@ -72,6 +72,7 @@ class Restated:
         same_order: Whether coordinates, speeds and inputs come in the same order; else they are found by their names.
         world: Placement of the original's world in this one.
         units: Units of this one.
+        forces: Whether it states the forces and frames, too; else inertia alone.
     """
 
     system: sf.System
@@ -79,6 +80,7 @@ class Restated:
     same_order: bool = False
     world: Placement = field(default_factory=Placement.identity)
     units: Units = field(default_factory=Units)
+    forces: bool = True
 
 
 Answer = Restated | Unsupported

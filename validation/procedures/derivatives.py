@@ -36,6 +36,10 @@ BY_ENGINES = {
 }
 # States at which engines are asked, the last of the check's: each has a fast or a special one among the first.
 ASKED = 5
+# One of the last so many states is taken for differences.
+AMONG = 20
+# Parameters, by which is differentiated, too, whose work is that of one speed.
+PARAMETERS = 4
 # Work of a speed of a beam or rod, whose derivatives are of long polynomials, in speeds of rigid joints.
 ELASTIC = 3
 
@@ -60,7 +64,7 @@ class Question:
 QUESTIONS = (
     Question("derivatives of inverse dynamics", analyses.differentiated, 12, True),
     Question("derivatives of forward dynamics, and of frames", analyses.linearised, 8, True),
-    Question("transposed products", identities.transposed, 12, True),
+    Question("transposed products", identities.transposed, 10, True),
     Question("Coriolis matrix", identities.velocity_terms, 20),
 )
 
@@ -87,13 +91,14 @@ class Asked:
 
     def left_out(self, most: int) -> str:
         """Why a question is not asked; "" where it is."""
-        size = sum(
+        size = len(self.system.parameters) // PARAMETERS + sum(
             (mover.v.stop - mover.v.start) * (ELASTIC if mover.kind in ("elastic", "section") else 1)
             for mover in self.assembly.movers
         )
         if size <= most or self.full:
             return ""
-        return f"{size} speeds, those of beams counted {ELASTIC} times; beyond {most} `check --full` asks"
+        what = f"speeds, those of beams counted {ELASTIC} times, and one for {PARAMETERS} parameters"
+        return f"{size} {what}; beyond {most} `check --full` asks"
 
 
 def judge_derivatives(asked: Asked, engines: Sequence[ChartedEngine]) -> Iterator[Comparison]:
@@ -103,7 +108,10 @@ def judge_derivatives(asked: Asked, engines: Sequence[ChartedEngine]) -> Iterato
         asked: Model.
         engines: Engines that may have derivatives.
     """
-    one = asked.states[-1:]
+    few = asked.states[-AMONG:]
+    # Friction turns fast where a speed is small, faster than differences follow.
+    slowest = np.abs(few.v).min(axis=1, initial=np.inf)
+    one = few[int(np.argmax(slowest)) :][:1]
     model = sf.compile(asked.system, sf.Options(backend="interpreter"))
     q, v, u = one.q[0], one.v[0], one.u[0]
     scene = Scene(model, asked.system, Manifold.of(asked.assembly), q, v, lambda *_: u, u, backend="interpreter")
@@ -111,6 +119,8 @@ def judge_derivatives(asked: Asked, engines: Sequence[ChartedEngine]) -> Iterato
         reason = asked.left_out(question.most)
         if question.cells is identities.velocity_terms and asked.assembly.driven_joints:
             reason = "prescribed motions: h has speeds that are not among v"
+        if question.cells is analyses.linearised and _repeats(scene):
+            reason = "conditions repeat each other, so that accelerations have no derivative"
         if reason:
             yield Comparison(asked.label, ENGINE, question.name, "unsupported", note=reason)
             continue
@@ -121,6 +131,14 @@ def judge_derivatives(asked: Asked, engines: Sequence[ChartedEngine]) -> Iterato
     if not np.any(asked.states.passive) and not asked.system.constraints:
         for engine in engines:
             yield from _by_engine(asked, model, engine)
+
+
+def _repeats(scene: Scene) -> bool:
+    """Whether some conditions follow from others where they hold, which they do nowhere else."""
+    if not scene.model.nc:
+        return False
+    G = scene.model.constraint_jacobian(scene.q, u=scene.u)
+    return bool(np.linalg.matrix_rank(G) < len(G))
 
 
 def _by_engine(asked: Asked, model: sf.Model, engine: ChartedEngine) -> Iterator[Comparison]:

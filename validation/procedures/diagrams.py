@@ -10,6 +10,7 @@ import numpy as np
 import symofros as sf
 from symofros import blocks
 
+from ..mechanics.geometry import Array
 from .scene import Cell, off
 
 ROUNDING = 1e-10
@@ -84,3 +85,29 @@ def switched() -> Iterator[Cell]:
     b, t = 0.7, run.t
     wanted = (np.sin(7 * t) - b * np.cos(7 * t) + b * np.exp(-10 * t)) / (1 + b * b)
     yield Cell("a lag", off(run["lag.y"].ravel(), wanted), 1e-9)
+
+
+def sampled() -> Iterator[Cell]:
+    """Blocks that are sampled: at each instant a value is taken and held until the next; a delay gives the one before.
+
+    Periods that divide steps and records and periods that do not; instants that coincide with records.
+    """
+    d = sf.Diagram("sampled")
+    d.add(blocks.Sine(name="wave", amplitude=1.0, frequency=0.7))
+    rates = {"even": (0.02, 0.0), "odd": (0.03, 0.0), "late": (0.05, 0.015)}
+    for name, (period, offset) in rates.items():
+        d.add(blocks.Hold(name=f"hold_{name}", period=period, offset=offset), u="wave.y")
+        d.add(blocks.UnitDelay(name=f"delay_{name}", period=period, offset=offset), u="wave.y")
+    for method in ("rk4", "dopri5"):
+        run = sf.Simulation(d).run(0.4, dt=0.01, record=0.005, method=method)
+        for name, (period, offset) in rates.items():
+            number = np.floor((run.t - offset) / period + 1e-9)
+
+            def wave(n: Array, period: float = period, offset: float = offset) -> Array:
+                return np.where(n >= 0.0, np.sin(2 * math.pi * 0.7 * (offset + n * period)), 0.0)
+
+            errors = [
+                off(run[f"hold_{name}.y"].ravel(), wave(number)),
+                off(run[f"delay_{name}.y"].ravel(), wave(number - 1.0)),
+            ]
+            yield Cell(f"samples {name} by {method}", max(errors), ROUNDING)

@@ -32,12 +32,14 @@ class Cell:
         error: Error, relative to the size of what is compared.
         tolerance: Bound of the error.
         note: A remark.
+        absent: What is not installed that it takes; then nothing was compared.
     """
 
     name: str
     error: float
     tolerance: float
     note: str = ""
+    absent: str = ""
 
 
 @dataclass(frozen=True)
