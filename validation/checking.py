@@ -58,7 +58,8 @@ class Settings:
     Attributes:
         states: Number of random states a model.
         seed: Seed of the states.
-        engines: Names of the engines to compare with; None: all.
+        engines: Names of the engines to compare with; None: all. None and no names at all ask our own questions, too:
+            relations, derivatives, procedures.
         first: Number of the first state, where this is a part of a campaign. What does not depend on the number of
             states, free motions and orders of truncation, belongs to part 0.
     """
@@ -220,7 +221,7 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         for one in bench.engines:
             rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
-        if bench.settings.engines is None:
+        if not bench.settings.engines:
             yield from _relations(bench)
             if bench.subject.system is references.MODELS.get(bench.label):
                 yield from _by_formulas(bench, "procedures", bench.variants.states)
@@ -242,6 +243,7 @@ def _relations(bench: _Bench) -> Iterator[Comparison]:
             bench.condition,
             variants.states,
             vectors,
+            bench.settings.full,
         )
     )
     bench.seconds["relations"] = time.perf_counter() - start
