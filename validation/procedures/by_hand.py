@@ -116,6 +116,33 @@ def reversed_motion(scene: Scene) -> Iterator[Cell]:
         yield Cell(f"reversed time, steps of {h:g} s", max(off(end, scene.q), off(-back.v[-1], scene.v)), REVERSED)
 
 
+def along(scene: Scene) -> Iterator[Cell]:
+    """Integration along the manifold of q by matrix exponentials, and the way back; of several states at once, too."""
+    model, rng = scene.model, np.random.default_rng(11)
+    steps = rng.uniform(-0.9, 0.9, (MOTIONS, model.nv)) * np.logspace(-6, 0, MOTIONS)[:, None]
+    wanted = np.array([scene.manifold.retract(scene.q, step, twist=True) for step in steps])
+    found = np.asarray(model.integrate(scene.q, steps))
+    yield Cell("integrate", off(scene.manifold.same_sign(found, wanted), wanted), ROUNDING)
+    back = np.asarray(model.difference(scene.q, wanted))
+    yield Cell("difference", max(off(one, step) for one, step in zip(back, steps, strict=True)), 1e-8)
+    yield Cell("difference, of the largest", off(back, steps), ROUNDING)
+
+
+def acted(scene: Scene) -> Iterator[Cell]:
+    """Actions at events set speeds: a motion with two of them is three motions in a row."""
+    model, q, v = scene.model, scene.q, scene.v
+    name, t_end, kicks = model.names.v[0], 0.5, ((0.1, 0.7), (0.33, -0.4))
+    events = {f"kick {t}": sf.Event(f"t - {t}", "rising", action={f"d{name}": value}) for t, value in kicks}
+    run = sf.simulate(model, q, v, t_end, u=scene.u, method="rk4", dt=STEP, events=events)
+    t = 0.0
+    for end, value in (*kicks, (t_end, None)):
+        piece = sf.simulate(model, q, v, end, u=scene.u, method="rk4", dt=STEP, t0=t)
+        q, v, t = piece.q[-1], piece.v[-1].copy(), end
+        if value is not None:
+            v[0] = value
+    yield Cell("actions at events", max(off(run.q[-1], q), off(run.v[-1], v)), 1e-7)
+
+
 def balanced(scene: Scene) -> Iterator[Cell]:
     """Energy that a step of fourth order loses: half the step leaves a sixteenth of it, in the same time."""
 

@@ -47,12 +47,13 @@ def contacts(_: Scene) -> Iterator[Cell]:
         for _k in range(_STATES):
             q, v = model.random_state(rng)
             q[:3], q[7:10] = 0.5 * q[:3], 0.5 * q[7:10]
-            gaps, forces, efforts = _by_definition(name, exponent, model, q, v)
+            gaps, balls, efforts = _by_definition(name, exponent, model, q, v)
             found = model.contact_forces(q, v)
             Q = np.asarray(model.generalized_force(q, v, []))
             touched += int(np.any(gaps < 0.0))
             worst["gaps"] = max(worst["gaps"], off(found.gap, gaps))
-            worst["forces"] = max(worst["forces"], off(found.force, forces))
+            answers = np.c_[found.force, found.push, found.point, found.share]
+            worst["forces"] = max(worst["forces"], *map(off, answers.T, balls.T))
             worst["efforts"] = max(worst["efforts"], off(Q, efforts))
             worst["momentum"] = max(worst["momentum"], _unbalanced(model, q, Q))
         for what, error in worst.items():
@@ -75,12 +76,12 @@ def _pair(name: str, exponent: float, lossy: bool = True) -> sf.System:
 
 
 def _by_definition(name: str, exponent: float, model: sf.Model, q: Array, v: Array) -> tuple[Array, Array, Array]:
-    """Gaps (2), forces on the balls (2, 3) in world axes, and Q (12)."""
+    """Gaps (2); of the balls force in world axes, push, point, and depth as a share of the radius (2, 8); Q (12)."""
     poses = [model.frame_pose(frame, q) for frame in ("skew", "bent")]
     velocities = [model.frame_velocity(frame, q, v) for frame in ("skew", "bent")]
     (_, R), (p_S, R_S) = poses
     J, J_S = (np.asarray(model.frame_jacobian(frame, q)) for frame in ("skew", "bent"))
-    gaps, forces, Q = [], [], np.zeros(model.nv)
+    gaps, balls, Q = [], [], np.zeros(model.nv)
     for point in POINTS:
         C = poses[0][0] + R @ point
         D, n = _distance(name, R_S.T @ (C - p_S))
@@ -95,8 +96,8 @@ def _by_definition(name: str, exponent: float, model: sf.Model, q: Array, v: Arr
         force = push * n - GRIP * push * xi * (15.0 - 10.0 * square + 3.0 * square**2) / 8.0
         Q += J.T @ np.r_[force, np.cross(P - poses[0][0], force)] - J_S.T @ np.r_[force, np.cross(P - p_S, force)]
         gaps.append(D - RADIUS)
-        forces.append(force)
-    return np.array(gaps), np.array(forces), Q
+        balls.append([*force, push, *P, depth / RADIUS])
+    return np.array(gaps), np.array(balls), Q
 
 
 def _at(velocity: Array, arm: Array) -> Array:
