@@ -7,16 +7,17 @@ are interpreted: that C is what the interpreter evaluates shows elsewhere, and C
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 import symofros as sf
 
-from ..adapters.charted import ChartedEngine
 from ..comparison.errors import Comparison, Status, raised
 from ..comparison.participants import EPS
+from ..contract.conventions import Chart
 from ..contract.interface import NotOffered, States
 from ..contract.quantities import ROUNDING, SOLVE
 from ..contract.raised import Raised, attempted
@@ -42,6 +43,25 @@ AMONG = 20
 PARAMETERS = 4
 # Work of a speed of a beam or rod, whose derivatives are of long polynomials, in speeds of rigid joints.
 ELASTIC = 3
+
+
+class Differentiating(Protocol):
+    """An engine that may have derivatives of its own, under the names of the matrix's functions."""
+
+    @property
+    def name(self) -> str:
+        """Name of the engine as tables show it."""
+
+    @property
+    def chart(self) -> Chart:
+        """Map between its coordinates and ours."""
+
+    @property
+    def accuracy(self) -> Mapping[str, float]:
+        """Tolerances of what it documents as approximate."""
+
+    def asked(self, function: str, states: States) -> Array:
+        """A function at N states, in its own coordinates and speeds (N, ...)."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +121,7 @@ class Asked:
         return f"{size} {what}; beyond {most} `check --full` asks"
 
 
-def judge_derivatives(asked: Asked, engines: Sequence[ChartedEngine]) -> Iterator[Comparison]:
+def judge_derivatives(asked: Asked, engines: Sequence[Differentiating]) -> Iterator[Comparison]:
     """A row a question, and one for each engine that differentiates; what is not asked says why.
 
     Args:
@@ -141,7 +161,7 @@ def _repeats(scene: Scene) -> bool:
     return bool(np.linalg.matrix_rank(G) < len(G))
 
 
-def _by_engine(asked: Asked, model: sf.Model, engine: ChartedEngine) -> Iterator[Comparison]:
+def _by_engine(asked: Asked, model: sf.Model, engine: Differentiating) -> Iterator[Comparison]:
     """Derivatives that an engine has of its own, where its coordinates are ours."""
     at = asked.states[-ASKED:]
     for function, (name, output, tolerance) in BY_ENGINES.items():
@@ -164,7 +184,7 @@ def _by_engine(asked: Asked, model: sf.Model, engine: ChartedEngine) -> Iterator
         yield Comparison(asked.label, engine.name, function, status, len(at), finite, tolerance)
 
 
-def _derivative(engine: ChartedEngine, function: str, at: States) -> Array | None:
+def _derivative(engine: Differentiating, function: str, at: States) -> Array | None:
     """An engine's values of a function (N, nv, nv), turned into our order of speeds; None where it has none."""
     try:
         values = engine.asked(function, at)
