@@ -154,15 +154,14 @@ def velocity_terms(scene: Scene) -> Iterator[Cell]:
     """M by its entries; C(q, v) v is what h has of the speeds, and C + C^T the rate of M, so that M' - 2 C is skew."""
     model = sf.compile(scene.system, sf.Options(_VELOCITY_TERMS, (), backend=scene.backend))
     q, v = scene.q, scene.v
-    u = scene.law(0.0, q, v)
-    M, C, h = model.mass_matrix(q, u=u), model.coriolis_matrix(q, v, u=u), model.bias(q, v, u=u)
+    M, C, h = model.mass_matrix(q), model.coriolis_matrix(q, v), model.bias(q, v)
     dense = np.zeros_like(M)
-    dense[model.mass_matrix_pattern()] = model.mass_matrix_values(q, u=u)
+    dense[model.mass_matrix_pattern()] = model.mass_matrix_values(q)
     yield Cell("M by entries", off(dense + np.tril(dense, -1).T, M), ROUNDING)
-    yield Cell("C v and the weight", off(C @ v + model.bias(q, 0.0 * v, u=u), h), ROUNDING)
+    yield Cell("C v and the weight", off(C @ v + model.bias(q, 0.0 * v), h), ROUNDING)
     if omitted_orders(scene.system):
         return  # What an order leaves out of M, of C and of h is not of one degree.
-    (by_M,) = _rates(lambda t: [model.mass_matrix(scene.manifold.retract(q, t * v), u=u)])
+    (by_M,) = _rates(lambda t: [model.mass_matrix(scene.manifold.retract(q, t * v))])
     yield Cell("C and its transpose", off(C + C.T, by_M), DIFFERENCED)
 
 
