@@ -274,8 +274,8 @@ def _exported(asked: Related, target: Literal["urdf", "mjcf"]) -> Restated | Uns
         except sf.SymofrosError as refusal:
             return Unsupported(f"not exported: {refusal.problem.what}")
         try:
-            reading = {"floating_base": bool(bases)} if target == "urdf" else {}
-            again = sf.load(file, snap_tol=0.0, **reading)
+            floats = target == "urdf" and bool(bases)
+            again = sf.load(file, snap_tol=0.0, floating_base=floats)
         except sf.SymofrosError as refusal:
             if "inertia must satisfy" not in str(refusal):
                 raise
@@ -283,8 +283,8 @@ def _exported(asked: Related, target: Literal["urdf", "mjcf"]) -> Restated | Uns
     read = sf.compile(again, sf.Options(("mass_matrix",), (), backend="interpreter")).names
     if {*read.q} != {*names.q}:
         return Unsupported("the format has other coordinates, or other names of them")
-    gravity = tuple(map(float, asked.assembly.gravity))  # URDF has no word for it.
-    return Restated(replace(again, gravity=gravity), forces=False)
+    x, y, z = map(float, asked.assembly.gravity)  # URDF has no word for it.
+    return Restated(replace(again, gravity=(x, y, z)), forces=False)
 
 
 def _is_moved(place: Placement) -> bool:

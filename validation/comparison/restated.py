@@ -107,15 +107,16 @@ def turned(stated: sf.System, rng: np.random.Generator) -> Answer:
         if None in loads:
             return Unsupported(f"body '{body.name}': a load along axes of the world, by formula")
         carried = replace(joint, parent=elsewhere) if joint.parent == WORLD else joint
-        bodies.append(replace(body, joint=carried, loads=tuple(loads)))
+        bodies.append(replace(cast(Any, body), joint=carried, loads=tuple(loads)))
     gravity = _vector(world.R @ assemble(stated).gravity)
 
     def anchored(item: Any) -> Any:
         ends = {name: getattr(item, name, None) for name in ("first", "second", "anchor")}
         return replace(item, **{n: (elsewhere, end[1]) for n, end in ends.items() if end and end[0] == WORLD})
 
-    moved = {name: tuple(map(anchored, getattr(stated, name))) for name in ("connections", "constraints")}
-    return Restated(replace(stated, bodies=tuple(bodies), gravity=gravity, **moved), world=world)
+    connections, constraints = (tuple(map(anchored, items)) for items in (stated.connections, stated.constraints))
+    moved = replace(stated, bodies=tuple(bodies), gravity=gravity, connections=connections, constraints=constraints)
+    return Restated(moved, world=world)
 
 
 def _turned_load(load: Any, R: Array) -> Any:
@@ -182,8 +183,8 @@ def seated(stated: sf.System, rng: np.random.Generator) -> Answer:
             seat = sf.Joint(f"{name} weld", "fixed", joint.parent, joint.frame, joint.position, joint.rotation)
             bodies.append(sf.RigidBody(name, seat))
             rotors = tuple(_carried(one, joint.parent) for one in joint.rotors)
-            on_seat = {"parent": name, "frame": None, "position": (0.0, 0.0, 0.0), "rotation": sf.Rotation()}
-            body = replace(body, joint=replace(joint, rotors=rotors, **on_seat))
+            origin = {"frame": None, "position": (0.0, 0.0, 0.0), "rotation": sf.Rotation()}
+            body = replace(body, joint=replace(cast(Any, joint), parent=name, rotors=rotors, **origin))
         bodies.append(body)
     if len(bodies) == len(stated.bodies):
         return Unsupported("no joint moves")
@@ -247,7 +248,7 @@ def _frames_renamed(stated: sf.System, other: sf.System) -> dict[str, str]:
 def in_other_units(stated: sf.System, rng: np.random.Generator) -> Answer:
     """Its numbers in units of other length, mass and time; parameters' values as numbers."""
     del rng
-    refused = [*stated.potentials, *stated.virtual_power]
+    refused: list[Any] = [*stated.potentials, *stated.virtual_power]
     refused += [item for item in stated.constraints if isinstance(item, sf.Coupling | sf.Nonholonomic)]
     if refused:
         return Unsupported(f"'{refused[0].name}': {_BY_FORMULA}")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -90,12 +90,24 @@ _METHODS: dict[str, dict[str, Any]] = {
 }
 
 
+_CROSSINGS: tuple[tuple[str, Literal["rising", "falling", "both"]], ...] = (
+    ("t - 0.5", "rising"),
+    ("0.5 - t", "falling"),
+    ("2*t - 1", "both"),
+)
+
+
 def instants(scene: Scene) -> Iterator[Cell]:
     """Zeros that lie at the end of a step, and between two, of both directions: each is met once, at its time."""
-    for method, options in (("rk4", {"dt": 0.1}), ("rk4", {"dt": 0.25}), ("dopri5", {"rtol": 1e-8, "atol": 1e-10})):
+    ways: tuple[tuple[str, dict[str, Any]], ...] = (
+        ("rk4", {"dt": 0.1}),
+        ("rk4", {"dt": 0.25}),
+        ("dopri5", {"rtol": 1e-8, "atol": 1e-10}),
+    )
+    for method, options in ways:
         worst = 0.0
         for terminal in (False, True):
-            for formula, direction in (("t - 0.5", "rising"), ("0.5 - t", "falling"), ("2*t - 1", "both")):
+            for formula, direction in _CROSSINGS:
                 event = sf.Event(formula, direction, terminal)
                 opposite = sf.Event(formula, "falling" if direction == "rising" else "rising")
                 events = {"met": event} | ({} if direction == "both" else {"not": opposite})

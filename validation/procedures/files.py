@@ -40,9 +40,9 @@ def native() -> sf.System:
         "mast", sf.Joint("m", "fixed", position=(0.1, 0.2, 0.5), rotation=sf.Rotation.rpy(0.3, -0.2, 0.4))
     )
     turn = np.array([[np.cos(0.5), 0.0, -np.sin(0.5)], [0.0, 1.0, 0.0], [np.sin(0.5), 0.0, np.cos(0.5)]])
-    axis = tuple(map(float, turn @ [0.0, 0.6, 0.8]))  # Of the mast, along the joint's own axes.
+    x, y, z = map(float, turn @ [0.0, 0.6, 0.8])  # Of the mast, along the joint's own axes.
     shoulder = sf.Joint(
-        "shoulder", "revolute", "mast", position=(0.05, 0, 0), rotation=sf.Rotation.rpy(0, 0.5, 0), axis=axis
+        "shoulder", "revolute", "mast", position=(0.05, 0, 0), rotation=sf.Rotation.rpy(0, 0.5, 0), axis=(x, y, z)
     )
     upper = sf.Inertia(
         2.0, (0.2, 0.05, -0.03), (0.1, 0.2, 0.25, 0.01, -0.02, 0.005), rotation=sf.Rotation.rpy(0.3, 0.1, -0.2)
