@@ -156,7 +156,11 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda _: diagrams.sampled(),
         files.read,
     ),
-    "cart_pole": (lambda scene: diagrams.looped(scene.system), identities.weighted_curvature),
+    "cart_pole": (
+        lambda scene: diagrams.looped(scene.system),
+        lambda scene: diagrams.stored(scene.system),
+        identities.weighted_curvature,
+    ),
     "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u), reactions.of_constraints),
     "soft_pendulum": (runs.stated_error, beams.sampled_shapes, beams.power),
     "flexible_pendulum": (

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +13,7 @@ import symofros as sf
 from symofros import blocks
 
 from ..mechanics.geometry import Array
+from .exported import printed
 from .scene import Cell, off
 
 ROUNDING = 1e-10
@@ -111,3 +114,35 @@ def sampled() -> Iterator[Cell]:
                 off(run[f"delay_{name}.y"].ravel(), wave(number - 1.0)),
             ]
             yield Cell(f"samples {name} by {method}", max(errors), ROUNDING)
+
+
+def stored(plant: sf.System) -> Iterator[Cell]:
+    """A diagram that is written and read again runs to the same bits; exported as C, it tells what a run does.
+
+    Args:
+        plant: A mechanism of two coordinates with one input.
+    """
+    d = sf.Diagram("kept")
+    d.add_model("plant", plant, start=dict(zip(sf.compile(plant).names.q, (0.1, 0.2), strict=True)))
+    d.add(blocks.Sine(name="wave", amplitude=0.4, frequency=3.0))
+    d.add(blocks.TransferFunction(name="filter", num=(1.0,), den=(0.05, 1.0)), u="wave.y")
+    d.add(blocks.Pick(name="angle", entries=[1]), u="plant.q")
+    d.add(blocks.UnitDelay(name="late", period=0.02, offset=0.01), u="angle")
+    d.add(blocks.Formula(name="force", formulas={"y": ["2*a - 3*b[0] + 0.1*sin(t)"]}), a="filter", b="late")
+    d.add(blocks.Saturation(name="limited", low=-0.5, high=0.6), u="force.y")
+    d.add(blocks.ForwardDynamics(name="plant", model="plant"), u="limited")
+    names = ["plant.q", "plant.a", "late.y", "limited.y"]
+    run = sf.Simulation(d).run(0.2, dt=1e-3, record=0.05)
+    with tempfile.TemporaryDirectory() as folder:
+        sf.save_diagram(d, Path(folder, "kept.yaml"))
+        again = sf.Simulation(sf.load_diagram(Path(folder, "kept.yaml"))).run(0.2, dt=1e-3, record=0.05)
+    differing = sum(int(np.sum(again[name] != run[name])) for name in names)
+    yield Cell("a diagram read again", float(differing), 0.5, "entries of other bits")
+    with tempfile.TemporaryDirectory() as folder:
+        files = sf.export(d, "c", folder, outputs=names).folder
+        told = printed(files, "0.2", "0.05")
+    rows = np.array([[float(x) for x in row.split(",")] for row in told.splitlines()[1:]])
+    wanted = np.concatenate(
+        [run.t[:, None], *(np.asarray(run[name]).reshape(len(run.t), -1) for name in names)], axis=1
+    )
+    yield Cell("a diagram as a package of C", off(rows, wanted), 1e-8)

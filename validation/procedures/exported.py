@@ -48,15 +48,20 @@ def packages(scene: Scene) -> Iterator[Cell]:
 
 def _by_c(folder: Path) -> Array:
     """The last state (nq + nv) that the example of a package prints."""
-    files = sorted(path.name for path in folder.glob("*.c"))
-    compiler = find_toolchain()
-    assert compiler is not None  # The model was compiled by it.
-    command = [*compiler.command, "-O0", "-std=c99", "-I.", *files, "-lm", "-o", "example"]
-    subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    asked = ["./example", str(T_END), str(STEP), "--fast"]
-    said = subprocess.run(asked, cwd=folder, check=True, capture_output=True, text=True).stdout
+    said = printed(folder, str(T_END), str(STEP), "--fast")
     lines = {words[0]: words[1:] for line in said.splitlines() if (words := line.split())}
     return np.array([float(x) for key in ("q", "v") for x in lines[key]])
+
+
+def printed(folder: Path, *arguments: str) -> str:
+    """What the program of a package's sources prints."""
+    compiler = find_toolchain()
+    assert compiler is not None  # Models were compiled by it.
+    files = sorted(path.name for path in folder.glob("*.c"))
+    command = [*compiler.command, "-O0", "-std=c99", "-I.", *files, "-lm", "-o", "program"]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True)
+    done = subprocess.run(["./program", *arguments], cwd=folder, check=True, capture_output=True, text=True)
+    return done.stdout
 
 
 def _by_fmpy(unit: str, kind: str, model: sf.Model) -> Array:
