@@ -155,7 +155,7 @@ def falling(contact: sf.Contact, *joints: sf.Joint, **options: Any) -> sf.System
     return sf.System("falling", bodies, connections=[contact], **options)
 
 
-@pytest.mark.parametrize(("exponent", "speed"), itertools.product([1.0, 1.5, 2.0], [0.5, 3.0]))
+@pytest.mark.parametrize(("exponent", "speed"), list(itertools.product([1.0, 1.5, 2.0], [0.5, 3.0])))
 def test_a_ball_rebounds_by_the_closed_form(exponent: float, speed: float) -> None:
     """(64), whatever stiffness and exponent are."""
     c = 0.3

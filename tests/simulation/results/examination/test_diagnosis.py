@@ -17,7 +17,7 @@ BAD = (np.nan, np.inf, -np.inf)
 METHODS = ("rk4", "dopri5", "implicit_euler", "rodas4", "generalized_alpha")
 
 
-@pytest.mark.parametrize(("method", "bad"), zip(("rk4", "dopri5", "cvode"), BAD, strict=True))
+@pytest.mark.parametrize(("method", "bad"), list(zip(("rk4", "dopri5", "cvode"), BAD, strict=True)))
 def test_a_function_that_returns_no_finite_number_is_named_with_its_line(method: str, bad: float) -> None:
     def push(t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         return np.array([bad if t > 0.1 else 1.0])
