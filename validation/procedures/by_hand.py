@@ -155,6 +155,21 @@ def acted(scene: Scene) -> Iterator[Cell]:
     yield Cell("actions at events", max(off(run.q[-1], q), off(run.v[-1], v)), 1e-7)
 
 
+def told(scene: Scene) -> Iterator[Cell]:
+    """What a run says of itself: where it was cut, across actions too; a pulse that steps pass over; silence else."""
+    model, name = scene.model, scene.model.names.u[0]
+    given: dict[str, Any] = {"method": "rk4", "dt": STEP}
+    kick = {"kick": sf.Event("t - 0.105", "rising", action={f"d{model.names.v[0]}": 0.3})}
+    run = sf.simulate(model, scene.q, scene.v, 0.5, events=kick, max_steps=20, **given)
+    cut = float(run.outcome.kind != "interrupted") + abs(run.statistics.steps - 20)
+    yield Cell("steps to an end, across an action", float(cut), SAME)
+    still = np.zeros(model.nv)
+    for what, width, noted in (("between steps", 5e-4, True), ("of many steps", 0.2, False)):
+        pulse = f"{1.0 / width}*exp(-((t - 0.2525)/{width})^2)"
+        run = sf.simulate(model, scene.q, still, 0.5, u={name: pulse}, **given)
+        yield Cell(f"notes on a pulse {what}", float(bool(run.outcome.notes) != noted), SAME)
+
+
 def balanced(scene: Scene) -> Iterator[Cell]:
     """Energy that a step of fourth order loses: half the step leaves a sixteenth of it, in the same time."""
 

@@ -90,6 +90,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         by_hand.instants,
         by_hand.reversed_motion,
         by_hand.acted,
+        by_hand.told,
         exported.in_casadi,
         batches.trajectories,
         batches.lost,
@@ -145,6 +146,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),
         lambda scene: analyses.traced(scene, scene.model.names.frames[-1]),
     ),
+    "stanford_arm": (lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),),
     "pendulum": (
         forces.formulas,
         forces.applied,
