@@ -24,7 +24,7 @@ import symofros as sf
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import States, Subject, Unsupported
 from ..contract.quantities import QUANTITIES, Quantity
-from ..contract.raised import Raised, attempted
+from ..contract.raised import Raised, attempted, not_installed
 from ..mechanics.assembly import BASE, Assembly
 from ..mechanics.geometry import Array, Placement
 from .errors import Comparison, Scales, compute, raised, scaled_errors
@@ -277,6 +277,8 @@ def _exported(asked: Related, target: Literal["urdf", "mjcf"]) -> Restated | Uns
             floats = target == "urdf" and bool(bases)
             again = sf.load(file, snap_tol=0.0, floating_base=floats)
         except sf.SymofrosError as refusal:
+            if missing := not_installed(refusal):
+                return Unsupported(missing)
             if "inertia must satisfy" not in str(refusal):
                 raise
             return Unsupported("MuJoCo refuses inertias beyond A + B = C, rounded or not")

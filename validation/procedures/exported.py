@@ -80,7 +80,7 @@ def in_casadi(scene: Scene) -> Iterator[Cell]:
         yield Cell("CasADi", 0.0, SAME, absent="pip install 'symofros[casadi]'")
         return
     casadi, model = import_module("casadi"), scene.model
-    dynamics = import_module("symofros.interop.casadi").Dynamics(scene.system, model.names.frames[-1:], False)
+    dynamics = import_module("symofros.interop.casadi").Dynamics(scene.system, model.names.frames[-1:])
     q, v, u = scene.q, scene.v, scene.law(0.0, scene.q, scene.v)
     given = casadi.MX.sym("q", model.nq), casadi.MX.sym("v", model.nv)
 
@@ -112,6 +112,12 @@ def in_casadi(scene: Scene) -> Iterator[Cell]:
             lambda x, w: model.difference(q, model.integrate(x, 0.3 * w)),
         ),
     }
+    frame, twice = model.names.frames[-1], np.linspace(-0.5, 0.5, 3)
+    place = casadi.Function("p", [given[0]], [casadi.dot(dynamics.frame_position(frame, given[0]), twice)])
+    gradient = casadi.Function("g", [given[0]], [casadi.gradient(place(given[0]), given[0])])
+    H = np.asarray(casadi.Function("H", [given[0]], [casadi.hessian(place(given[0]), given[0])[0]])(q))
+    by_steps = derivative(lambda x: np.asarray(gradient(x)).ravel(), q)
+    yield Cell("CasADi, place of a frame: Hessian", off(H, by_steps), DIFFERENCED)
     for name, (theirs, ours) in asked.items():
         value, slope = answers(theirs)
 
