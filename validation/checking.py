@@ -13,7 +13,7 @@ from typing import Literal, cast
 import symofros as sf
 
 from . import references
-from .adapters import ROUTES, compiled, has_beams, in_order, route_of
+from .adapters import ROUTES, compiled, in_order, route_of
 from .adapters.charted import ChartedEngine
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
@@ -33,6 +33,8 @@ from .comparison.regular import (
     judge_omissions,
     judge_undefined,
     regular_states,
+    released,
+    unsampled_motion,
 )
 from .comparison.relations import Related, judge_relations
 from .comparison.retained import judge_order, omitted_orders
@@ -44,7 +46,6 @@ from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
 from .mechanics.assembly import Assembly
 from .mechanics.geometry import Array
-from .mechanics.parts import has_quaternion
 
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.
@@ -177,7 +178,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     """
     assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
-    obstacle = _unsampled_motion(subject.system, assembly) or _released(subject.system)
+    obstacle = unsampled_motion(subject.system, assembly) or released(subject.system)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
     start = time.perf_counter()
@@ -228,7 +229,7 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
 
 
 def _relations(bench: _Bench) -> Iterator[Comparison]:
-    """What our program owes to those of other descriptions of the same mechanism, and its derivatives to it."""
+    """What our program owes to those of other descriptions of the same mechanism, and derivatives to it."""
     start, variants = time.perf_counter(), bench.variants
     named = {one.name: one.engine for one in bench.engines if not one.route.independent}
     vectors = cast(compiled.SymofrosEngine | None, named.get("vectors"))
@@ -248,8 +249,7 @@ def _relations(bench: _Bench) -> Iterator[Comparison]:
     )
     bench.seconds["relations"] = time.perf_counter() - start
     if not len(closed):
-        note = "no random state leads to a posture that keeps the constraints"
-        yield Comparison(bench.label, "symofros", "derivatives", "unsupported", note=note)
+        yield Comparison(bench.label, "symofros", "derivatives", "unsupported", note="no state keeps the constraints")
     elif bench.solvable:
         yield from _by_formulas(bench, "derivatives", closed)
 
@@ -258,7 +258,7 @@ def _by_formulas(bench: _Bench, what: Literal["derivatives", "procedures"], clos
     """Comparisons with formulas: derivatives of every model; of reference models procedures, such as integrators."""
     start = time.perf_counter()
     label, system, assembly = bench.label, bench.subject.system, bench.assembly
-    # They need SciPy; its integrators take half a second to import, which other models do without.
+    # SciPy's integrators take half a second to import, which other models do without.
     try:
         if what == "derivatives":
             module = import_module(".procedures.derivatives", __package__)
@@ -272,29 +272,6 @@ def _by_formulas(bench: _Bench, what: Literal["derivatives", "procedures"], clos
         note = f"{error}; pip install 'symofros[validation]'"
         yield Comparison(label, "symofros", what, "unsupported", note=note)
     bench.seconds[what] = time.perf_counter() - start
-
-
-def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
-    """The reason why a prescribed motion prevents a comparison, which is not agreement; "" if none does."""
-    driven = assembly.driven_joints
-    if driven and not has_beams(system):
-        return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
-    for joint in driven:
-        if has_quaternion(joint):
-            return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
-    if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
-        return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
-    return ""
-
-
-def _released(system: sf.System) -> str:
-    """The reason why a constraint that does not hold prevents a comparison; "" if all hold at the stated values."""
-    for switch in system.switches:
-        if sf.evaluate(switch.engaged, system.parameter_values()) != 1.0:
-            return (
-                f"constraint '{switch.constraint}': released by its switch, which engines do not know; set it to hold"
-            )
-    return ""
 
 
 def _quantities(bench: _Bench) -> list[Quantity]:

@@ -53,9 +53,7 @@ def measure(
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
-    full: Annotated[
-        bool, typer.Option("--full", help="Also ask what takes long: derivatives of large models.")
-    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="Also ask what takes long on large models.")] = False,
     speed: Annotated[bool, typer.Option("--speed", help="Also time our functions, against a fixed program.")] = False,
     baseline: Annotated[
         Path | None, typer.Option(help="A stored check.json: fail where this run is less accurate or slower.")

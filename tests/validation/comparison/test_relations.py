@@ -15,7 +15,8 @@ from validation.adapters import interpreted
 from validation.comparison import relations
 from validation.comparison.errors import Comparison, typical_scales
 from validation.comparison.relations import Related, judge_relations
-from validation.comparison.restated import RESTATEMENTS, Restated, Units
+from validation.comparison.restated import RESTATEMENTS, Restated
+from validation.comparison.units import Units
 from validation.contract.interface import Subject
 from validation.inputs.cases import named
 from validation.inputs.sampling import sample
