@@ -18,6 +18,7 @@ notice. Each name has its reason:
 | CudaModel, DeviceArray, Driver, KernelUsage, compile_cuda, present | kernels and copies on a graphics processor |
 | states_per_second | the rate of a kernel there |
 | write_atomically | files that a reader never sees half written |
+| units_of | descriptions in other units: a relation that the harness asks for |
 | stored_json, stored_lines, append_line, keep | what an earlier run left; damage counts as absent, with a warning |
 | Visual, visual_mesh, read_motion, Session, Workspace | file readers of viewer and editor, for fuzzing |
 """
@@ -37,6 +38,7 @@ from symofros.base.stored import keep as keep
 from symofros.base.stored import stored_json as stored_json
 from symofros.base.stored import stored_lines as stored_lines
 from symofros.compiler import Compilation
+from symofros.description.entry_units import units_of as units_of
 from symofros.description.system import System
 from symofros.description.visual import Visual as Visual
 from symofros.expr.edges import Edge as Edge

@@ -8,11 +8,13 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from importlib import import_module
+from typing import Literal, cast
 
 import symofros as sf
 
 from . import references
-from .adapters import ROUTES, compiled, has_beams, in_order, route_of
+from .adapters import ROUTES, compiled, in_order, route_of
+from .adapters.charted import ChartedEngine
 from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
 from .comparison.loops import with_unique_multipliers
@@ -31,7 +33,10 @@ from .comparison.regular import (
     judge_omissions,
     judge_undefined,
     regular_states,
+    released,
+    unsampled_motion,
 )
+from .comparison.relations import Related, judge_relations
 from .comparison.retained import judge_order, omitted_orders
 from .comparison.variants import ModelVariants
 from .contract.interface import NotOffered, States, Subject
@@ -41,7 +46,6 @@ from .inputs.frames import chosen_frames
 from .inputs.sampling import DEFAULT_STATES, sample, special_states
 from .mechanics.assembly import Assembly
 from .mechanics.geometry import Array
-from .mechanics.parts import has_quaternion
 
 FORWARD = "forward_dynamics"
 # Quantities that come from solving a linear system, so that its condition limits their agreement.
@@ -55,7 +59,8 @@ class Settings:
     Attributes:
         states: Number of random states a model.
         seed: Seed of the states.
-        engines: Names of the engines to compare with; None: all.
+        engines: Names of the engines to compare with; None: all. None and no names at all ask our own questions, too:
+            relations, derivatives, procedures.
         first: Number of the first state, where this is a part of a campaign. What does not depend on the number of
             states, free motions and orders of truncation, belongs to part 0.
     """
@@ -64,6 +69,7 @@ class Settings:
     seed: int = 0
     engines: tuple[str, ...] | None = None
     first: int = 0
+    full: bool = False
 
     def routes(self) -> list[str]:
         """The engines asked for, in the order of reports."""
@@ -172,7 +178,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     """
     assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
-    obstacle = _unsampled_motion(subject.system, assembly) or _released(subject.system)
+    obstacle = unsampled_motion(subject.system, assembly) or released(subject.system)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
     start = time.perf_counter()
@@ -216,45 +222,56 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
         for one in bench.engines:
             rows = attempted(lambda one: list(judge_elements(one, bench.assembly, bench.variants)), one)
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
-        if bench.settings.engines is None and bench.subject.system is references.MODELS.get(bench.label):
-            yield from _procedures(bench)
+        if not bench.settings.engines:
+            yield from _relations(bench)
+            if bench.subject.system is references.MODELS.get(bench.label):
+                yield from _by_formulas(bench, "procedures", bench.variants.states)
 
 
-def _procedures(bench: _Bench) -> Iterator[Comparison]:
-    """Comparisons of procedures, such as integrators, on a reference model's equations; none for other models."""
+def _relations(bench: _Bench) -> Iterator[Comparison]:
+    """What our program owes to those of other descriptions of the same mechanism, and derivatives to it."""
+    start, variants = time.perf_counter(), bench.variants
+    named = {one.name: one.engine for one in bench.engines if not one.route.independent}
+    vectors = cast(compiled.SymofrosEngine | None, named.get("vectors"))
+    closed = variants.assembled if bench.subject.system.constraints else variants.states
+    yield from judge_relations(
+        Related(
+            bench.subject,
+            bench.assembly,
+            variants.as_described,
+            closed if len(closed) else variants.states,
+            bench.scales,
+            bench.condition,
+            variants.states,
+            vectors,
+            bench.settings.full,
+        )
+    )
+    bench.seconds["relations"] = time.perf_counter() - start
+    if not len(closed):
+        yield Comparison(bench.label, "symofros", "derivatives", "unsupported", note="no state keeps the constraints")
+    elif bench.solvable:
+        yield from _by_formulas(bench, "derivatives", closed)
+
+
+def _by_formulas(bench: _Bench, what: Literal["derivatives", "procedures"], closed: States) -> Iterator[Comparison]:
+    """Comparisons with formulas: derivatives of every model; of reference models procedures, such as integrators."""
     start = time.perf_counter()
-    # Others have none, and their checks do without SciPy's integrators, which take half a second to import.
+    label, system, assembly = bench.label, bench.subject.system, bench.assembly
+    # SciPy's integrators take half a second to import, which other models do without.
     try:
-        judge_procedures = import_module(".procedures.catalogue", __package__).judge_procedures
+        if what == "derivatives":
+            module = import_module(".procedures.derivatives", __package__)
+            asked = module.Asked(label, system, assembly, closed, bench.condition, bench.settings.full)
+            # What reads a file of its own states no derivatives that another route would not.
+            engines = [one.engine for one in bench.engines if not one.route.reads]
+            yield from module.judge_derivatives(asked, [one for one in engines if isinstance(one, ChartedEngine)])
+        else:
+            yield from import_module(".procedures.catalogue", __package__).judge_procedures(label, system, assembly)
     except ModuleNotFoundError as error:
         note = f"{error}; pip install 'symofros[validation]'"
-        yield Comparison(bench.label, "symofros", "procedures", "unsupported", note=note)
-    else:
-        yield from judge_procedures(bench.label, bench.subject.system, bench.assembly)
-    bench.seconds["procedures"] = time.perf_counter() - start
-
-
-def _unsampled_motion(system: sf.System, assembly: Assembly) -> str:
-    """The reason why a prescribed motion prevents a comparison, which is not agreement; "" if none does."""
-    driven = assembly.driven_joints
-    if driven and not has_beams(system):
-        return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
-    for joint in driven:
-        if has_quaternion(joint):
-            return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
-    if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
-        return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
-    return ""
-
-
-def _released(system: sf.System) -> str:
-    """The reason why a constraint that does not hold prevents a comparison; "" if all hold at the stated values."""
-    for switch in system.switches:
-        if sf.evaluate(switch.engaged, system.parameter_values()) != 1.0:
-            return (
-                f"constraint '{switch.constraint}': released by its switch, which engines do not know; set it to hold"
-            )
-    return ""
+        yield Comparison(label, "symofros", what, "unsupported", note=note)
+    bench.seconds[what] = time.perf_counter() - start
 
 
 def _quantities(bench: _Bench) -> list[Quantity]:

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..contract.conventions import Chart, Slot
 from ..contract.interface import NotOffered, SolvedEngine, States, Subject, Unsupported
+from ..contract.quantities import ROUNDING
 from ..engines.interface import (
     ORIGIN,
     EngineModel,
@@ -23,6 +24,7 @@ from ..engines.interface import (
     Joint,
     Link,
     State,
+    Steps,
     Tree,
     rows,
     vector,
@@ -193,7 +195,8 @@ class ChartedEngine(SolvedEngine):
         following: Quantities among the capabilities that the engine does not give: they follow from others.
         weights: Masses of its links, and times their mass centres (L, 4).
         gravity: Acceleration of gravity (3) [m/s^2].
-        accuracy: Tolerances, relative to the largest entry, of quantities that the engine documents as approximate.
+        accuracy: Tolerances, relative to the largest entry, of what the engine documents as approximate: functions of
+            the matrix, and quantities.
     """
 
     name: str
@@ -383,4 +386,14 @@ def build(
         following=following,
         weights=np.array([[link.mass, *(link.mass * np.array(link.com))] for link in described.tree.links]),
         gravity=np.array(described.tree.gravity),
+        accuracy=_accuracy(plugin),
     )
+
+
+def _accuracy(plugin: EnginePlugin) -> dict[str, float]:
+    """Tolerances of the functions that the engine documents as approximate, and of quantities that they state."""
+    granted = {
+        function: slack.truncation + ROUNDING / slack.step if isinstance(slack, Steps) else slack
+        for function, slack in plugin.slacks.items()
+    }
+    return granted | {name: granted[function] for name, function in FUNCTIONS.items() if function in granted}

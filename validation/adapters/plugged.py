@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..contract.interface import Subject, Unsupported
-from ..contract.quantities import FRAME_QUANTITIES, ROUNDING
-from ..engines.interface import EnginePlugin, Steps
+from ..contract.quantities import FRAME_QUANTITIES
 from ..engines.workers import registry
-from .charted import FUNCTIONS, KINDS, ChartedEngine
+from .charted import KINDS, ChartedEngine
 from .charted import build as build_charted
 from .compiled import NAME as OURS
 from .reach import bears_its_weight_alone
@@ -54,13 +53,4 @@ def build(name: str, subject: Subject) -> ChartedEngine | Unsupported:
     if not bears_its_weight_alone(subject.system):
         silent |= {"joint_wrenches"}
     offered = engine.capabilities - silent
-    return replace(engine, capabilities=offered, most_states=MOST_STATES, accuracy=_accuracy(plugin))
-
-
-def _accuracy(plugin: EnginePlugin) -> dict[str, float]:
-    """Tolerances of quantities whose functions the engine documents as approximate."""
-    slacks = {name: plugin.slacks[function] for name, function in FUNCTIONS.items() if function in plugin.slacks}
-    return {
-        name: slack.truncation + ROUNDING / slack.step if isinstance(slack, Steps) else slack
-        for name, slack in slacks.items()
-    }
+    return replace(engine, capabilities=offered, most_states=MOST_STATES)

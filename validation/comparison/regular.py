@@ -2,7 +2,8 @@
 
 Left out are states where one algorithm may find another rank than the next, and states where G does not exist: a disc
 that lies flat has no lowest point. Neither may hide a fault of ours. A state where only our G is not a finite number
-counts against us, and so does leaving out more states than a mechanism's singular postures explain.
+counts against us, and so does leaving out more states than a mechanism's singular postures explain. Some mechanisms have none
+to be compared at: those whose motion is prescribed, or whose constraints are released.
 """
 
 from __future__ import annotations
@@ -12,10 +13,15 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+import symofros as sf
+
+from ..adapters import has_beams
 from ..adapters.closed import of_clear_rank
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import Engine, States
 from ..contract.quantities import QUANTITIES
+from ..mechanics.assembly import Assembly
+from ..mechanics.parts import has_quaternion
 from .errors import Comparison, compute
 
 JACOBIAN = QUANTITIES["constraint_jacobian"]
@@ -109,3 +115,26 @@ def judge_undefined(label: str, engine: Engine, undefined: States) -> Comparison
         tolerance=JACOBIAN.tolerance,
         note=f"our G is not a finite number in {alone} states where the engine's is",
     )
+
+
+def unsampled_motion(system: sf.System, assembly: Assembly) -> str:
+    """The reason why a prescribed motion prevents a comparison, which is not agreement; "" if none does."""
+    driven = assembly.driven_joints
+    if driven and not has_beams(system):
+        return f"joint '{driven[0].name}': a prescribed motion, which no engine for rigid bodies can represent"
+    for joint in driven:
+        if has_quaternion(joint):
+            return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
+    if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
+        return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
+    return ""
+
+
+def released(system: sf.System) -> str:
+    """The reason why a constraint that does not hold prevents a comparison; "" if all hold at the stated values."""
+    for switch in system.switches:
+        if sf.evaluate(switch.engaged, system.parameter_values()) != 1.0:
+            return (
+                f"constraint '{switch.constraint}': released by its switch, which engines do not know; set it to hold"
+            )
+    return ""

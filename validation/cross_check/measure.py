@@ -53,6 +53,7 @@ def measure(
     ] = None,
     junit: Annotated[Path | None, typer.Option(help="Also write a JUnit file.")] = None,
     workers: Annotated[int, typer.Option(min=1, help="Models checked at the same time.")] = WORKERS,
+    full: Annotated[bool, typer.Option("--full", help="Also ask what takes long on large models.")] = False,
     speed: Annotated[bool, typer.Option("--speed", help="Also time our functions, against a fixed program.")] = False,
     baseline: Annotated[
         Path | None, typer.Option(help="A stored check.json: fail where this run is less accurate or slower.")
@@ -63,7 +64,7 @@ def measure(
         require_engines(engine or ())
     except LookupError as error:
         raise typer.BadParameter(str(error), param_hint="--engine") from None
-    settings = Settings(states, seed, tuple(engine) if engine else None)
+    settings = Settings(states, seed, tuple(engine) if engine else None, full=full)
     stored = _baseline(baseline, settings)
     cases = _cases(models or [], reading)
     first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])

@@ -10,6 +10,7 @@ from typing import Any
 from ..adapters import ROUTES, in_order
 from ..checking import ModelResult, Settings
 from ..comparison.errors import NOBODY, Comparison, Status
+from ..comparison.relations import ENGINE as RELATIONS
 from ..procedures import ENGINE as FORMULAS
 from ..reporting.numbers import finite
 from ..reporting.provenance import stamp
@@ -22,7 +23,7 @@ _BEFORE = ("load", "compile")
 # What a comparison states besides its further figures.
 _STATED = tuple("model engine quantity states error tolerance ok median worst_state note".split())
 # Names in the place of an engine that no engine is behind: our own drift, and what was asked of any of them.
-NO_ENGINE = ("symofros", NOBODY, FORMULAS)
+NO_ENGINE = ("symofros", NOBODY, FORMULAS, RELATIONS)
 # These, and adapters that are our own code and have no version of their own.
 _OURS = frozenset({*NO_ENGINE, *(name for name, route in ROUTES.items() if not route.independent)})
 

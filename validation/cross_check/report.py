@@ -8,6 +8,7 @@ from ..adapters import differences
 from ..checking import ModelResult
 from ..comparison.elements import ROWS as ELEMENT_ROWS
 from ..comparison.errors import NOBODY
+from ..comparison.relations import ENGINE as RELATIONS
 from ..contract.quantities import ROUNDING, SMALL, SOLVE
 from ..procedures import ENGINE as FORMULAS
 from ..reporting.figures import Figure
@@ -45,6 +46,10 @@ the third power of the deflection, rotary inertia by the second."""
 _PROCEDURES = """Steps of every method are repeated by SciPy's coefficients, matrix exponentials and general solvers;
 what chooses them, records, events, projection, assembly, equilibria, modes, derivatives, inverse kinematics, batches
 and diagrams are compared with their definitions, central differences and closed forms, on a few small models."""
+_RELATIONS = """What our program of a description says at some states, against what those of other descriptions of the
+same mechanism say: in another place, another order, of more bodies, under other names, in other units, read from files
+that it was written to. No engine is asked, and no reference. Bounds are those of engines; what is asked again, and the
+last states of a batch, must be the same to the bit."""
 _NOT_COMPARED = "These engines have no say on these models; nobody else's comparison is weakened."
 _SPEED = """Times of our functions in batches of 4096 states, as multiples of the time that a fixed program takes for as
 many rows in the same run: what `--baseline` compares. The noise is the range between the quartiles of 25 turns."""
@@ -153,7 +158,7 @@ def _closeness(record: Record, engines: list[str]) -> tuple[Section, ...]:
 
 def _own(record: Record) -> tuple[Section, ...]:
     """Sections on energy drift, convergence of finite elements, and procedures on the equations."""
-    drifts, powers, procedures = [], [], []
+    drifts, powers, procedures, related = [], [], [], []
     for row in record.compared:
         extra, limit = row.extra, verdict(digits(row.tolerance), row.ok)
         if row.quantity == "energy_drift":
@@ -165,12 +170,18 @@ def _own(record: Record) -> tuple[Section, ...]:
         elif row.engine == FORMULAS:
             error = verdict(digits(row.error), row.ok)
             procedures.append((row.model, row.quantity, error, digits(row.tolerance)))
+        elif row.engine == RELATIONS:
+            related.append(
+                (row.model, row.quantity, verdict(digits(row.error), row.ok), digits(row.tolerance), row.note)
+            )
     drift = Table.of("model | drift at the full step | at half the step | ratio | allowed", drifts)
     power = Table.of("model | what | power | at the finer scale | allowed | where", powers)
     procedure = Table.of("model | what | error | allowed", procedures)
+    relation = Table.of("model | relation | error | allowed | where", related)
     return (
         Section("Energy along a free motion", (_ENERGY, drift), page_only=True),
         Section("Beams against finite elements", (_ELEMENTS, power), page_only=True),
+        Section("Other descriptions of the same mechanism", (_RELATIONS, relation), page_only=True),
         Section("What is done with the equations", (_PROCEDURES, procedure), page_only=True),
     )
 

@@ -20,7 +20,14 @@ ROBOT_PACKAGE = "example-robot-data"
 BODY, ELASTIC, LOOP = 1500, 8, 4
 _CORPUS = Path(__file__).parents[1] / "corpus"
 # Our own files of what robots and reference models lack: kinds of joints, of shapes, ways to state them.
-FILES = {"battery": "battery.yaml", "beam_zoo": "beam_zoo.yaml", "creature": "creature.xml", "sampler": "arm.urdf"}
+FILES = {
+    "battery": "battery.yaml",
+    "motors": "motors.yaml",
+    "mirrored": "mirrored.yaml",
+    "beam_zoo": "beam_zoo.yaml",
+    "creature": "creature.xml",
+    "sampler": "arm.urdf",
+}
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from ..checking import Settings, check
 from ..comparison.errors import Comparison
 from ..contract.interface import Subject
 from ..inputs.cases import named
-from ..mechanics.assembly import assemble
-from ..procedures.catalogue import PROCEDURES, judge_procedures
+from ..procedures.catalogue import PROCEDURES
 
 STATES = 8
 # Compared by interpreted programs, which needs no compiler; in the order of cost: most faults show in the first ones.
@@ -39,6 +38,8 @@ READ = {"urdf": ("sampler", "ur5"), "mjcf": ("creature",)}
 WRITTEN = ("double_pendulum", "heavy_top", "friction_arm", "rolling_disc", "four_bar", "spinning_beam")
 # Of sums in vectors, whose lanes are copied from other vectors.
 PACKED = ("planar_robot",)
+# Relations and derivatives of what procedures have no model of: motors of every kind, equal limbs, other readers.
+ASKED = ("motors", "mirrored", "sampler", "creature")
 # Loops whose conditions repeat each other, where a module solves with them.
 REPEATED = ("bricard", "two_four_bars")
 _SOLVING = ("kkt", "null_space", "project", "constrained", "dense")
@@ -93,16 +94,17 @@ def judge(module: str) -> dict[str, Any]:
     def by_compiler(one: Subject) -> Iterable[Comparison]:
         return check(one, Settings(STATES, engines=tuple(ROUTES))).comparisons
 
-    def by_procedures(one: Subject) -> Iterable[Comparison]:
-        return judge_procedures(one.label, one.system, assemble(one.system))
+    def by_own_questions(one: Subject) -> Iterable[Comparison]:
+        """Relations, derivatives and procedures."""
+        return check(one, Settings(STATES, engines=())).comparisons
 
     stages = [
         *((name, by_interpreter) for name in interpreted_models(module)),
-        *((name, by_procedures) for name in PROCEDURES),
+        *((name, by_own_questions) for name in (*PROCEDURES, *ASKED)),
         *((name, by_compiler) for name in compiled_models(module)),
     ]
     if module.startswith(_WRITING + _FORMING):
-        stages.sort(key=lambda stage: stage[1] is by_procedures)
+        stages.sort(key=lambda stage: stage[1] is by_own_questions)
     for name, asked in stages:
         verdict = _verdict(name, asked)
         if verdict is not None:

@@ -14,7 +14,21 @@ from ..comparison.errors import Comparison, Status
 from ..contract.raised import not_installed
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
-from . import ENGINE, analyses, batches, beams, diagrams, forces, identities, reactions, runs
+from . import (
+    ENGINE,
+    analyses,
+    batches,
+    beams,
+    by_hand,
+    diagrams,
+    exported,
+    files,
+    forces,
+    identities,
+    reactions,
+    runs,
+    touching,
+)
 from .scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -71,6 +85,13 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         _events,
         lambda scene: runs.multistep(scene, ("cvode", "cvode_adams")),
         runs.pace,
+        by_hand.stepped,
+        by_hand.held,
+        by_hand.instants,
+        by_hand.reversed_motion,
+        by_hand.acted,
+        by_hand.told,
+        exported.in_casadi,
         batches.trajectories,
         batches.lost,
         batches.states,
@@ -82,7 +103,17 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.at_rest(scene, scene.q, ("q2",)),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
     ),
-    "heavy_top": (*_MOVED, *_DIFFERENTIATED, runs.small_turns, runs.implicit_steps, batches.trajectories),
+    "heavy_top": (
+        *_MOVED,
+        *_DIFFERENTIATED,
+        runs.small_turns,
+        runs.implicit_steps,
+        by_hand.reversed_motion,
+        by_hand.stepped,
+        by_hand.along,
+        exported.in_casadi,
+        batches.trajectories,
+    ),
     "torque_free_body": (*_MOVED, identities.twice_differentiated, identities.momenta, runs.implicit_steps),
     "four_bar": (
         *_MOVED,
@@ -97,8 +128,11 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.driven(scene, ("q1", "q2")),
         reactions.of_constraints,
         identities.weighted_curvature,
+        by_hand.stepped,
+        by_hand.balanced,
+        exported.packages,
     ),
-    "space_arm": (identities.momenta,),
+    "space_arm": (identities.momenta, by_hand.drifting, by_hand.along),
     "friction_arm": (lambda scene: analyses.driven(scene, scene.model.names.u),),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (
@@ -112,15 +146,23 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),
         lambda scene: analyses.traced(scene, scene.model.names.frames[-1]),
     ),
+    "stanford_arm": (lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),),
     "pendulum": (
         forces.formulas,
         forces.applied,
         forces.rods,
         reactions.of_drives,
+        touching.contacts,
         _oscillations,
         lambda _: diagrams.switched(),
+        lambda _: diagrams.sampled(),
+        files.read,
     ),
-    "cart_pole": (lambda scene: diagrams.looped(scene.system), identities.weighted_curvature),
+    "cart_pole": (
+        lambda scene: diagrams.looped(scene.system),
+        lambda scene: diagrams.stored(scene.system),
+        identities.weighted_curvature,
+    ),
     "stewart": (lambda scene: analyses.driven(scene, scene.model.names.u), reactions.of_constraints),
     "soft_pendulum": (runs.stated_error, beams.sampled_shapes, beams.power),
     "flexible_pendulum": (
@@ -157,6 +199,8 @@ def judge_procedures(label: str, system: sf.System, assembly: Assembly) -> Itera
 
 def row(label: str, cell: Cell) -> Comparison:
     """A cell as a row of the check's table."""
+    if cell.absent:
+        return Comparison(label, ENGINE, cell.name, "unsupported", note=cell.absent)
     agrees = cell.error <= cell.tolerance
     return Comparison(
         label, ENGINE, cell.name, "agree" if agrees else "disagree", 1, cell.error, cell.tolerance, note=cell.note

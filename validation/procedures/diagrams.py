@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 
 import symofros as sf
 from symofros import blocks
 
+from ..mechanics.geometry import Array
+from .exported import printed
 from .scene import Cell, off
 
 ROUNDING = 1e-10
@@ -84,3 +88,61 @@ def switched() -> Iterator[Cell]:
     b, t = 0.7, run.t
     wanted = (np.sin(7 * t) - b * np.cos(7 * t) + b * np.exp(-10 * t)) / (1 + b * b)
     yield Cell("a lag", off(run["lag.y"].ravel(), wanted), 1e-9)
+
+
+def sampled() -> Iterator[Cell]:
+    """Blocks that are sampled: at each instant a value is taken and held until the next; a delay gives the one before.
+
+    Periods that divide steps and records and periods that do not; instants that coincide with records.
+    """
+    d = sf.Diagram("sampled")
+    d.add(blocks.Sine(name="wave", amplitude=1.0, frequency=0.7))
+    rates = {"even": (0.02, 0.0), "odd": (0.03, 0.0), "late": (0.05, 0.015)}
+    for name, (period, offset) in rates.items():
+        d.add(blocks.Hold(name=f"hold_{name}", period=period, offset=offset), u="wave.y")
+        d.add(blocks.UnitDelay(name=f"delay_{name}", period=period, offset=offset), u="wave.y")
+    for method in ("rk4", "dopri5"):
+        run = sf.Simulation(d).run(0.4, dt=0.01, record=0.005, method=method)
+        for name, (period, offset) in rates.items():
+            number = np.floor((run.t - offset) / period + 1e-9)
+
+            def wave(n: Array, period: float = period, offset: float = offset) -> Array:
+                return np.where(n >= 0.0, np.sin(2 * math.pi * 0.7 * (offset + n * period)), 0.0)
+
+            errors = [
+                off(run[f"hold_{name}.y"].ravel(), wave(number)),
+                off(run[f"delay_{name}.y"].ravel(), wave(number - 1.0)),
+            ]
+            yield Cell(f"samples {name} by {method}", max(errors), ROUNDING)
+
+
+def stored(plant: sf.System) -> Iterator[Cell]:
+    """A diagram that is written and read again runs to the same bits; exported as C, it tells what a run does.
+
+    Args:
+        plant: A mechanism of two coordinates with one input.
+    """
+    d = sf.Diagram("kept")
+    d.add_model("plant", plant, start=dict(zip(sf.compile(plant).names.q, (0.1, 0.2), strict=True)))
+    d.add(blocks.Sine(name="wave", amplitude=0.4, frequency=3.0))
+    d.add(blocks.TransferFunction(name="filter", num=(1.0,), den=(0.05, 1.0)), u="wave.y")
+    d.add(blocks.Pick(name="angle", entries=[1]), u="plant.q")
+    d.add(blocks.UnitDelay(name="late", period=0.02, offset=0.01), u="angle")
+    d.add(blocks.Formula(name="force", formulas={"y": ["2*a - 3*b[0] + 0.1*sin(t)"]}), a="filter", b="late")
+    d.add(blocks.Saturation(name="limited", low=-0.5, high=0.6), u="force.y")
+    d.add(blocks.ForwardDynamics(name="plant", model="plant"), u="limited")
+    names = ["plant.q", "plant.a", "late.y", "limited.y"]
+    run = sf.Simulation(d).run(0.2, dt=1e-3, record=0.05)
+    with tempfile.TemporaryDirectory() as folder:
+        sf.save_diagram(d, Path(folder, "kept.yaml"))
+        again = sf.Simulation(sf.load_diagram(Path(folder, "kept.yaml"))).run(0.2, dt=1e-3, record=0.05)
+    differing = sum(int(np.sum(again[name] != run[name])) for name in names)
+    yield Cell("a diagram read again", float(differing), 0.5, "entries of other bits")
+    with tempfile.TemporaryDirectory() as folder:
+        files = sf.export(d, "c", folder, outputs=names).folder
+        told = printed(files, "0.2", "0.05")
+    rows = np.array([[float(x) for x in row.split(",")] for row in told.splitlines()[1:]])
+    wanted = np.concatenate(
+        [run.t[:, None], *(np.asarray(run[name]).reshape(len(run.t), -1) for name in names)], axis=1
+    )
+    yield Cell("a diagram as a package of C", off(rows, wanted), 1e-8)

@@ -12,6 +12,7 @@ import numpy as np
 
 import symofros as sf
 
+from ..comparison.retained import omitted_orders
 from ..contract.quantities import ROUNDING
 from ..mechanics.assembly import Mover, assemble
 from ..mechanics.geometry import Array
@@ -41,12 +42,8 @@ TRANSPOSED: Mapping[str, tuple[str, str]] = {
 }
 # What these are asked of is compiled at once.
 _SECOND = sf.Options(("inverse_dynamics_derivatives", "inverse_dynamics_second_derivatives", "inverse_dynamics_hvp"))
+_VELOCITY_TERMS = ("mass_matrix", "mass_matrix_pattern", "mass_matrix_values", "bias", "coriolis_matrix")
 _MOMENTA = (
-    "mass_matrix",
-    "mass_matrix_pattern",
-    "mass_matrix_values",
-    "bias",
-    "coriolis_matrix",
     "center_of_mass",
     "centroidal_momentum",
     "centroidal_momentum_matrix",
@@ -63,15 +60,22 @@ CURVED: Mapping[str, tuple[str, str, str]] = {
 _CURVED = sf.Options((*CURVED, *(f"{gradient}_vjp" for gradient, _, _ in CURVED.values())))
 # Of a direction: beams bend by a few hundredths, and differences take two steps of DIFFERENCE along it.
 _REACH = 0.1
+_LEAST = 1e-4  # Of the values: the smallest change that is not of their rounding.
 _CONSTRAINT_FUNCTIONS = ("constraint", "constraint_rate", "constraint_bias")
 
 
 def transposed(scene: Scene) -> Iterator[Cell]:
     """Vector-Jacobian products, against the change of the weighted sum of the outputs along one direction."""
-    names = [name for name in TRANSPOSED if scene.model.nc or name not in _CONSTRAINT_FUNCTIONS]
-    frame = scene.model.names.frames[-1]
+    frames = scene.model.names.frames[-1:]
+    absent = _CONSTRAINT_FUNCTIONS * (not scene.model.nc)
+    if scene.model.nc:
+        G = scene.model.constraint_jacobian(scene.q, u=scene.law(0.0, scene.q, scene.v))
+        # Where conditions repeat each other, multipliers are not unique, nor are their derivatives.
+        absent += ("forward_dynamics",) * int(np.linalg.matrix_rank(G) < len(G))
+    names = [name for name in TRANSPOSED if name not in absent and (frames or not name.startswith("frame"))]
     asked = tuple(text for name in names for text in (name, f"{name}_vjp"))
-    model, rng = sf.compile(scene.system, sf.Options(asked, (frame,))), np.random.default_rng(SEED)
+    model = sf.compile(scene.system, sf.Options(asked, frames, backend=scene.backend))
+    rng = np.random.default_rng(SEED)
     sizes = {"v": model.nv, "a": model.nv, "u": model.nu, "lam": model.nc}
     state: dict[str, Any] = {group: rng.standard_normal(size) for group, size in sizes.items()} | {
         "q": scene.q,
@@ -80,7 +84,7 @@ def transposed(scene: Scene) -> Iterator[Cell]:
     steps = {group: _REACH * rng.standard_normal(size) for group, size in {"q": model.nv, **sizes}.items()}
     for name in names:
         inputs, outputs = (text.split() for text in TRANSPOSED[name])
-        of, bar = (frame, "_WF_bar") if name.startswith("frame") else ("", "_bar")
+        of, bar = (frames[-1], "_WF_bar") if name.startswith("frame") else ("", "_bar")
 
         def values(h: float, name: str = name, of: str = of, inputs: list[str] = inputs) -> list[Array]:
             moved: dict[str, Any] = {group: state[group] + h * steps[group] for group in inputs if group != "q"}
@@ -92,7 +96,9 @@ def transposed(scene: Scene) -> Iterator[Cell]:
         given |= {f"{output}{bar}": w for output, w in zip(outputs, weights, strict=False)}
         products = model.vjp(name, of, **given)
         along = {group: float(products[group] @ steps[group]) for group in inputs}
-        size = max(sum(map(abs, along.values())), abs(change)) or 1.0
+        # Where nothing changes, differences are the rounding of the values.
+        least = _LEAST * sum(float(np.abs(w * y).sum()) for w, y in zip(weights, values(0.0), strict=False))
+        size = max(sum(map(abs, along.values())), abs(change), least) or 1.0
         yield Cell(f"{name}: vector-Jacobian products", abs(sum(along.values()) - change) / size, DIFFERENCED)
 
 
@@ -144,24 +150,33 @@ def weighted_curvature(scene: Scene) -> Iterator[Cell]:
         yield Cell(name.replace("_", " "), off(along, change), DIFFERENCED)
 
 
-def momenta(scene: Scene) -> Iterator[Cell]:
-    """C(q, v), M by entries, and the momentum about the mass centre of a tree of rigid bodies."""
-    movers = assemble(scene.system).movers
-    bodies = tuple(mover.body for mover in movers)
-    model, q, v = sf.compile(scene.system, sf.Options(_MOMENTA, bodies)), scene.q, scene.v
-    a = np.random.default_rng(SEED).standard_normal(model.nv)
+def velocity_terms(scene: Scene) -> Iterator[Cell]:
+    """M by its entries; C(q, v) v is what h has of the speeds, and C + C^T the rate of M, so that M' - 2 C is skew."""
+    model = sf.compile(scene.system, sf.Options(_VELOCITY_TERMS, (), backend=scene.backend))
+    q, v = scene.q, scene.v
     M, C, h = model.mass_matrix(q), model.coriolis_matrix(q, v), model.bias(q, v)
     dense = np.zeros_like(M)
     dense[model.mass_matrix_pattern()] = model.mass_matrix_values(q)
     yield Cell("M by entries", off(dense + np.tril(dense, -1).T, M), ROUNDING)
     yield Cell("C v and the weight", off(C @ v + model.bias(q, 0.0 * v), h), ROUNDING)
+    if omitted_orders(scene.system):
+        return  # What an order leaves out of M, of C and of h is not of one degree.
+    (by_M,) = _rates(lambda t: [model.mass_matrix(scene.manifold.retract(q, t * v))])
+    yield Cell("C and its transpose", off(C + C.T, by_M), DIFFERENCED)
+
+
+def momenta(scene: Scene) -> Iterator[Cell]:
+    """C(q, v), M by entries; the momentum about the mass centre of a tree of rigid bodies."""
+    yield from velocity_terms(scene)
+    movers = assemble(scene.system).movers
+    bodies = tuple(mover.body for mover in movers)
+    model, q, v = sf.compile(scene.system, sf.Options(_MOMENTA, bodies)), scene.q, scene.v
+    a = np.random.default_rng(SEED).standard_normal(model.nv)
 
     def moving(t: float) -> list[Array]:
-        at, speeds = scene.manifold.retract(q, t * v), v + t * a
-        return [model.mass_matrix(at), model.centroidal_momentum(at, speeds)]
+        return [model.centroidal_momentum(scene.manifold.retract(q, t * v), v + t * a)]
 
-    by_M, by_momentum = _rates(moving)
-    yield Cell("C and its transpose", off(C + C.T, by_M), DIFFERENCED)
+    (by_momentum,) = _rates(moving)
     rate = model.centroidal_momentum_rate(q, v, a)
     yield Cell("rate of the momentum about the mass centre", off(rate, by_momentum), DIFFERENCED)
     center, momentum = _about_mass_center(movers, model, q, v)

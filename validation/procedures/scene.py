@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from scipy.linalg import expm, null_space
@@ -32,12 +32,14 @@ class Cell:
         error: Error, relative to the size of what is compared.
         tolerance: Bound of the error.
         note: A remark.
+        absent: What is not installed that it takes; then nothing was compared.
     """
 
     name: str
     error: float
     tolerance: float
     note: str = ""
+    absent: str = ""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,14 @@ class Manifold:
     @classmethod
     def of(cls, assembly: Assembly) -> Manifold:
         """The manifold of a model."""
-        parts = [(mover.q.start, mover.v.start, mover.q.stop - mover.q.start) for mover in assembly.movers]
-        return cls(tuple(part for part in parts if part[2] > 0), assembly.nq, assembly.nv)
+        parts: list[tuple[int, int, int]] = []
+        for mover in assembly.movers:
+            size = mover.q.stop - mover.q.start
+            if mover.kind in ("ball", "free"):
+                parts.append((mover.q.start, mover.v.start, size))
+            else:  # A beam may have as many coordinates as a quaternion has components.
+                parts += [(mover.q.start + k, mover.v.start + k, 1) for k in range(size)]
+        return cls(tuple(parts), assembly.nq, assembly.nv)
 
     def retract(self, q: Array, theta: Array, twist: bool = False) -> Array:
         """Configuration q (+) theta, (1); with `twist`, poses move along the screw of that twist."""
@@ -134,6 +142,7 @@ class Scene:
         u: The same inputs, as our runs are given them.
         gains: Baumgarte's gains, where constraints are kept by them.
         projects: Whether each state is projected onto the constraints.
+        backend: How further models of the system are evaluated.
     """
 
     model: sf.Model
@@ -145,6 +154,7 @@ class Scene:
     u: Any = None
     gains: tuple[float, float] = (0.0, 0.0)
     projects: bool = True
+    backend: Literal["c", "interpreter"] = "c"
 
     def equations(self, t: float, q: Array, v: Array) -> tuple[Array, Array, Array, Array]:
         """M, Q - h, G and the right side of G v' = ..., Baumgarte's terms included."""

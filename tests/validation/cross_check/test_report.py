@@ -81,7 +81,7 @@ def test_names_from_files_cannot_break_the_page(mixed: Data) -> None:
 
 def test_comparisons_with_independent_engines_are_counted_separately(mixed: Data) -> None:
     """Our own code, read by other compilers or by NumPy, and formulas of ours are no second opinion."""
-    own = {"vectors", "interpreted", "description", "formulas", "symofros"}
+    own = {"vectors", "interpreted", "description", "formulas", "relations", "symofros"}
     judged = [row for row in mixed["comparisons"] if row["tolerance"]]
     independent = [row for row in judged if row["engine"] not in own]
     assert 0 < len(independent) < len(judged)
