@@ -2,8 +2,8 @@
 
 Left out are states where one algorithm may find another rank than the next, and states where G does not exist: a disc
 that lies flat has no lowest point. Neither may hide a fault of ours. A state where only our G is not a finite number
-counts against us, and so does leaving out more states than a mechanism's singular postures explain. Some mechanisms have none
-to be compared at: those whose motion is prescribed, or whose constraints are released.
+counts against us, and so does leaving out more states than a mechanism's singular postures explain. Some mechanisms
+have none to be compared at: those whose motion is prescribed, or whose constraints are released.
 """
 
 from __future__ import annotations
