@@ -54,6 +54,7 @@ class Truths:
         """The truth that an answer is judged by."""
         assert answer.layout is not None and answer.state is not None
         name = function.partition(":")[0]
+        tree = replace(tree, name="")
         key = (name, tree, answer.layout, _bytes(answer.state), slack)
         if key not in self._known:
             self._known[key] = expected(name, tree, answer.layout, answer.state, slack, self._perturbations)

@@ -18,7 +18,7 @@ from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
 from .models import hostile, kinds, loops, transformed
 from .models.formats import formats
-from .models.readers import Reading, readings
+from .models.readers import Reading
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
@@ -26,19 +26,6 @@ from .workers import Job, Worker, registry
 
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5
-# What a file's reading shows in: the functions that every number of it enters.
-READ = (
-    "sizes",
-    "mass_matrix",
-    "bias",
-    "gravity",
-    "inverse_dynamics",
-    "forward_dynamics",
-    "kinetic_energy",
-    "potential_energy",
-    "link_poses",
-    "link_jacobians",
-)
 RED = ("wrong", "imprecise", "crashes")
 
 
@@ -69,11 +56,12 @@ def read(
 ) -> list[Judged]:
     """The cells of engines on files that they read themselves; the arguments are those of `gathered`."""
     cells: list[Judged] = []
+    # Many files state the same tree.
+    truths = Truths()
     for name, reading in files.items():
-        truths = Truths()
         for plugin in plugins.values():
             if reading.form in plugin.formats:
-                asked = tuple(one for one in plugin.functions if one in READ)
+                asked = tuple(one for one in plugin.functions if one in reading.asked)
                 job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
                 cells += judged(plugin, job, truths, worker)
         after(name)
@@ -155,7 +143,7 @@ def measure(
             raise typer.BadParameter(f"engine '{name}' is in a stored part, too", param_hint="--engine")
     chosen = {name: present[name] for name in known(engines, present, "--engine", "engine present")}
     chosen = {name: plugin for name, plugin in chosen.items() if name in left}
-    all_trees, files = trees(), readings() | formats()
+    all_trees, files = trees(), formats()
     names_wanted = known(models, [*all_trees, *files], "--kinds", "kind")
     wanted = [all_trees[name] for name in names_wanted if name in all_trees]
     run.expect(len(names_wanted), "asking engines")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, Described, base, of_files, slots_of, through_reader
 
 _SETUP = """import numpy as np
 import idyntree.bindings as iDynTree
@@ -143,9 +143,8 @@ _BASE = "free xyzw, linear and angular before"
 def read(tree: Tree, described: Described) -> Source:
     """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
-    setup = _SETUP.format(
-        text=described.text, joints=list(described.moving), root=described.links[0] if floating else "world"
-    )
+    root = described.links[0] if floating else base(described.text)
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
     return Source(

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
-from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
+from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -290,7 +290,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return Unsupported("a joint that mimics stays one, with an equality constraint", offered=False)
     # MuJoCo's hinges know no cosine and sine: a joint of URDF without limits is one without limits.
     charts = {(kind, shape): chart for kind, (chart, _, _) in _CHARTS.items() for shape in ("", "unbounded")}
-    slots, nq, nv = in_series(tree, charts)
+    made = numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = (
         "import numpy as np",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..interface import Array, Convention, Joint, Link, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, numbered, series
 
 # Everything is in single precision: some hundred of its roundings.
 _SINGLE = 2e-5
@@ -175,6 +175,42 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(tuple(lines), tuple(slots), nq, nv, {"rotation": _ROTATION, "centres": _CENTRES})
 
 
+_READERS = {
+    "urdf": "b.add_urdf(TEXT)",
+    "mjcf": "b.add_mjcf(TEXT)",
+    "usd": "b.add_usd(stage)",
+}
+_CHARTS = {
+    ("revolute", ""): "angle",
+    ("revolute", "unbounded"): "angle",
+    ("prismatic", ""): "length",
+    ("ball", ""): "quaternion xyzw, parent speeds",
+}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has Newton read a file."""
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("what mimics is a constraint of its solvers", offered=False)
+    made = numbered(tree, _CHARTS)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
+    names = [link.name for link in tree.links]
+    lines = (
+        *_IMPORTS,
+        *(("from pxr import Usd", "stage = Usd.Stage.CreateInMemory()") if form == "usd" else ()),
+        f"TEXT = {text!r}",
+        *(("stage.GetRootLayer().ImportFromString(TEXT)",) if form == "usd" else ()),
+        f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})" if form == "urdf" else "b = newton.ModelBuilder()",
+        _READERS[form],
+        'm = b.finalize(device="cpu")',
+    )
+    labels = f"bodies = [[x.split('/')[-1] for x in m.body_label].index(name) for name in {names!r}]"
+    optional = {"rotation": _ROTATION, "bodies": (labels,)}
+    return Source(lines, slots, nq, nv, optional, spelling={"s.body_q.numpy()]": "s.body_q.numpy()[bodies]]"})
+
+
 PLUGIN = SourcePlugin(
     name="newton",
     package="newton",
@@ -210,4 +246,6 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    formats=tuple(_READERS),
+    write_reading=write_reading,
 )

@@ -9,7 +9,7 @@ import numpy as np
 from ..functions import ALIGNED
 from ..interface import Array, Convention, End, Joint, Rows, Slot, Tree, Unsupported
 from .loops import pinocchio as constrained
-from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
+from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.
@@ -339,10 +339,14 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
             "m = pin.buildModelFromMJCF(file.name)",
         ),
     }[form]
-    slots, nq, nv = in_series(tree, {key: model[1] for key, model in _MODELS.items()})
+    made = numbered(tree, {key: model[1] for key, model in _MODELS.items()})
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
-    return Source(lines, slots, nq, nv, {"fs": (f"fs = [m.getFrameId(name) for name in {names!r}]",)}, closing=CLOSING)
+    frames = f"fs = [m.getFrameId(name, pin.FrameType.BODY) for name in {names!r}]"
+    return Source(lines, slots, nq, nv, {"fs": (frames,)}, closing=CLOSING)
 
 
 PLUGIN = SourcePlugin(

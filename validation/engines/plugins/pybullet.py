@@ -24,6 +24,7 @@ _LOADS = {
     "urdf": (
         "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER)"
     ),
+    "urdf from shapes": "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_MAINTAIN_LINK_ORDER)",
     "sdf": "p.loadSDF(file.name)[0]",
 }
 _MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
@@ -79,10 +80,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return described
     if described.floating:
         return Unsupported("coordinates of floating bases are not documented", offered=False)
-    setup = _SETUP.format(text=text, form=form, load=_LOADS[form])
+    setup = _SETUP.format(text=text, form=form.split()[0], load=_LOADS[form])
     count = len(described.moving)
     optional: dict[str, tuple[str, ...]] = {"gravity": ("gravity = True", _GRAVITY.format(gravity=tree.gravity))}
-    if form == "urdf" and all(len(link.joints) == 1 for link in tree.links):
+    if form.startswith("urdf") and all(len(link.joints) == 1 for link in tree.links):
         # Links, and the joints before them, are numbered as in the file.
         places = [k for k, link in enumerate(tree.links) if link.joints[0].kind != "fixed"]
         optional |= {"joints": ("joints = ()",), "moving": (f"moving = {places}",)}
@@ -90,7 +91,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     else:
         optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
         optional |= {"links": (_LINKS.format(links=list(described.links)),)}
-    return Source(tuple(setup.split("\n")), slots_of(tree, described, described.moving), count, count, optional)
+    slots = slots_of(tree, described, described.moving)
+    # Its reader of SDF takes no joint with the world: one function asked says so.
+    lacks = tuple(name for name in WAYS if name != "link_poses") if form == "sdf" else ()
+    return Source(tuple(setup.split("\n")), slots, count, count, optional, lacks)
 
 
 PLUGIN = SourcePlugin(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from xml.etree import ElementTree
 
 from ...interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Tree, Unsupported, Vector
 from ...truth.charts import CHARTS
@@ -96,6 +97,13 @@ def describe(tree: Tree, *, base: str = WORLD) -> Described | Unsupported:
     return Described(text, floating, tuple(series), tuple(link.name for link in tree.links))
 
 
+def base(text: str) -> str:
+    """Name of the link that a file hangs all others on."""
+    robot = ElementTree.fromstring(text)
+    children = {one.get("link") for one in robot.iterfind("joint/child")}
+    return next(name for one in robot.iterfind("link") if (name := one.get("name", "")) not in children)
+
+
 # Text that has an engine read the file of a described tree.
 Reading = Callable[[Tree, Described], Source]
 
@@ -115,9 +123,22 @@ def of_files(reading: Reading) -> Callable[[Tree, str, str], Source | Unsupporte
 
     def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         described = describe(tree)
-        return described if isinstance(described, Unsupported) else reading(tree, replace(described, text=text))
+        if isinstance(described, Unsupported):
+            return described
+        names = _joint_names(text)
+        own = (
+            tuple(name if name in names.values() else names[link.name] for name in series)
+            for link, series in zip(tree.links, described.joints, strict=True)
+        )
+        return reading(tree, replace(described, text=text, joints=tuple(own)))
 
     return write_reading
+
+
+def _joint_names(text: str) -> dict[str, str]:
+    """Link -> name of the joint that it hangs on."""
+    joints = ElementTree.fromstring(text).iterfind("joint")
+    return {child.get("link", ""): one.get("name", "") for one in joints if (child := one.find("child")) is not None}
 
 
 def _floats(tree: Tree) -> bool:
