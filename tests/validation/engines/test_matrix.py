@@ -43,7 +43,7 @@ def test_engines_are_right_about_hostile_trees(name: str) -> None:
 
 
 # The reader that is held for each format's best.
-_BEST = {"urdf": "pinocchio", "mjcf": "mujoco", "sdf": "drake"}
+_BEST = {"urdf": "pinocchio", "mjcf": "mujoco", "sdf": "drake", "mjcf written": "mujoco"}
 _FILES = {name: one for name, one in formats().items() if one.form in _BEST and OWN[_BEST[one.form]].version()}
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+
 import numpy as np
 
 from ..interface import Joint, Tree, Unsupported
@@ -13,6 +16,10 @@ from .kinds import OBLIQUE, link, placed
 from .readers import Reading
 
 _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
+
+
+# MuJoCo writes six digits: files of MJCF whose numbers take more, once they are worked out, are not asked of writers.
+_LONG = re.compile("mjcf: .*(euler|angle|axes|zaxis|in full|turned by|geom (box|ell|cyl|cap)|frame (around|within))")
 
 
 def _chain() -> Tree:
@@ -46,4 +53,12 @@ def formats() -> dict[str, Reading]:
         for form, text in texts(tree).items():
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
-    return urdf_files.files() | mjcf_files.files() | sdf_files.files() | made
+    urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files()
+    written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
+    return urdf_stated | mjcf_stated | sdf_files.files() | made | dict(map(_written, written))
+
+
+def _written(one: Reading) -> tuple[str, Reading]:
+    """A file that is read, written by the engine and read again."""
+    name = f"{one.tree.name}, written"
+    return name, replace(one, form=f"{one.form} written", tree=replace(one.tree, name=name))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, Described, base, of_files, slots_of, through_reader
@@ -161,6 +163,23 @@ def read(tree: Tree, described: Described) -> Source:
     )
 
 
+_WRITTEN = """written, exporter = loader, iDynTree.ModelExporter()
+assert exporter.init(written.model())
+assert exporter.exportModelToFile("{file}")
+loader = iDynTree.ModelLoader()
+loader.setParsingOptions(options)
+assert loader.loadReducedModelFromFile("{file}", {joints})"""
+
+
+def _written(tree: Tree, described: Described) -> Source:
+    """A file through iDynTree's reader, its writer, and its reader again."""
+    source = read(tree, described)
+    at = next(k for k, line in enumerate(source.lines) if line.startswith("robot ="))
+    more = _WRITTEN.format(file="{file.name}", joints=list(described.moving)).replace('"{file.name}"', "file.name")
+    lines = ("from tempfile import NamedTemporaryFile", 'file = NamedTemporaryFile(suffix=".urdf")', *more.split("\n"))
+    return replace(source, lines=(*source.lines[:at], *lines, *source.lines[at:]))
+
+
 PLUGIN = SourcePlugin(
     name="idyntree",
     package="idyntree",
@@ -177,6 +196,6 @@ PLUGIN = SourcePlugin(
     kinds=KINDS | {"free": "floating base"},
     ways=WAYS,
     write=through_reader(read),
-    formats=("urdf",),
-    write_reading=of_files(read),
+    formats=("urdf", "urdf written"),
+    write_reading=lambda tree, form, text: of_files(_written if form == "urdf written" else read)(tree, form, text),
 )

@@ -284,6 +284,13 @@ WAYS = {
 }
 
 
+_READERS = {
+    "urdf": "mj.MjModel.from_xml_string({text})",
+    "mjcf": "mj.MjModel.from_xml_string({text})",
+    "mjcf written": "mj.MjModel.from_xml_string(mj.MjSpec.from_string({text}).to_xml())",
+}
+
+
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has MuJoCo read a file."""
     if any(joint.mimics for link in tree.links for joint in link.joints):
@@ -298,7 +305,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     lines = (
         "import numpy as np",
         "import mujoco as mj",
-        f"m = mj.MjModel.from_xml_string({text!r})",
+        f"m = {_READERS[form].format(text=repr(text))}",
         "d = mj.MjData(m)",
     )
     # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
@@ -324,6 +331,6 @@ PLUGIN = SourcePlugin(
     write=write,
     constraints=constrained.KINDS,
     transformations={"attached": "MjSpec, attach_body", "fused": "fusestatic"},
-    formats=("urdf", "mjcf"),
+    formats=tuple(_READERS),
     write_reading=write_reading,
 )

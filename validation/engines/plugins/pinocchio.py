@@ -338,6 +338,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
             "print(TEXT, file=file, flush=True)",
             "m = pin.buildModelFromMJCF(file.name)",
         ),
+        "urdf written": (
+            "written, m = pin.buildModelFromXML(TEXT, mimic=True), pin.Model()",
+            "m.loadFromString(written.saveToString())",
+        ),
     }[form]
     made = numbered(tree, {key: model[1] for key, model in _MODELS.items()})
     if isinstance(made, Unsupported):
@@ -366,6 +370,6 @@ PLUGIN = SourcePlugin(
     write=write,
     constraints=constrained.KINDS,
     transformations={"locked": "buildReducedModel", "attached": "appendModel"},
-    formats=("urdf", "mjcf"),
+    formats=("urdf", "mjcf", "urdf written"),
     write_reading=write_reading,
 )
