@@ -61,7 +61,7 @@ def read(
     for name, reading in files.items():
         for plugin in plugins.values():
             if reading.form in plugin.formats:
-                asked = tuple(one for one in plugin.functions if one in reading.asked)
+                asked = reading.functions(plugin.functions)
                 job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
                 cells += judged(plugin, job, truths, worker)
         after(name)

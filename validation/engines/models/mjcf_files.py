@@ -19,7 +19,6 @@ from .readers import (
     PASSIVE,
     PRINCIPAL,
     PRODUCTS,
-    STILL,
     Reading,
     about,
     along,
@@ -271,7 +270,7 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
 def _trees() -> Iterator[tuple[str, Reading]]:
     """Bodies that don't move, frames, copies, gravity."""
     still = hung(_FIRST, kind="fixed")
-    yield _of("fixed body with mass first", _file(a=_MA), still, NEXT, asked=STILL)
+    yield _of("fixed body with mass first", _file(a=_MA), still, NEXT)
     yield _of("fixed body with mass", _file(b=_MB), _FIRST, hung(NEXT, kind="fixed"))
     nothing = replace(still, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
     yield _of("fixed body without inertia first", _file(a=""), nothing, NEXT)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,10 +11,9 @@ import numpy as np
 from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
 
 # What a file's reading shows in: the functions that every number of it enters. PASSIVE: with springs or dampers, which
-# some engines count among their forces. STILL: not all engines count the weight of what stands still.
-READ = ("sizes", "mass_matrix", "bias", "gravity", "potential_energy", "link_poses")
+# some engines count among their forces.
+READ = ("sizes", "mass_matrix", "bias", "link_poses")
 PASSIVE = ("sizes", "mass_matrix", "gravity", "link_poses")
-STILL = ("sizes", "mass_matrix", "bias", "gravity", "link_poses")
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,11 @@ class Reading:
     text: str
     tree: Tree
     asked: tuple[str, ...] = READ
+
+    def functions(self, offered: Collection[str]) -> tuple[str, ...]:
+        """Those that are asked of an engine; in place of the bias that it does not offer, gravity's part of it."""
+        asked = self.asked if "bias" in offered else (*self.asked, "gravity")
+        return tuple(name for name in offered if name in asked)
 
 
 def about(axis: Vector, angle: float) -> Rows:
