@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import cache, cached_property, partial
 from pathlib import Path
 
@@ -29,6 +30,7 @@ from symofros.expr.program import Program
 from symofros.generator.beams import beams_at
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
+from symofros.generator.codegen.tape import machine_text
 from symofros.generator.held_beams import held_beams, may_be_held
 from symofros.generator.instants import has_instants, instants_at
 from symofros.generator.passes.count import Operations, count_program
@@ -42,7 +44,9 @@ from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rounded_rotations
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.runtime.background import BackgroundCompilation
 from symofros.runtime.beams import ElasticBeam
+from symofros.runtime.build.prebuilt import prebuilt_library
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain, find_toolchain
 from symofros.runtime.calls.kernel import Array, LaneOptions, Precision, Unit
 from symofros.runtime.cuda.device_code import DeviceCode
@@ -121,7 +125,9 @@ class Compilation:
             stated = f"{type(system).__name__} {system!r:.60}"
             raise DescriptionError(Problem("there is no system to compile", stated, "a system is a sf.System", remedy))
         check_argument("options", options, Options | None)
-        self.system, self.options = system, options or Options()
+        self.system, self._stated = system, options or Options()
+        # Of the stages, none depends on when C is compiled.
+        self.options = replace(self._stated, background=False)
         self._further: tuple[Request, ...] = ()
 
     @cached_property
@@ -206,10 +212,14 @@ class Compilation:
         rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
         for text in (*inconsistencies(self.system), *rounded, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
-        units = self._units(_choose_toolchain(self.options))
+        toolchain, on_tape = _choose_toolchain(self.options)
+        background = None
+        if self._stated.background and toolchain is not None:
+            background = BackgroundCompilation(partial(compile_system, self.system, self.options))
+        units = self._units(toolchain, on_tape, background)
         if self.options.functions is None:
-            return self._model(units, units.functions)
-        return self._model(units, None, units.functions(chosen))
+            return self._model(units, units.functions, background=background)
+        return self._model(units, None, units.functions(chosen), background=background)
 
     def _held_beams(self) -> Iterator[str]:
         """Messages about beams that a loop holds along an axis in which they do not stretch."""
@@ -228,8 +238,10 @@ class Compilation:
         units = self._units(None)
         return self._model(units, None, units.functions(self.requests))
 
-    def _units(self, toolchain: Toolchain | None) -> UnitCompiler:
-        return UnitCompiler(self.programs, self.record, self.options, toolchain)
+    def _units(
+        self, toolchain: Toolchain | None, on_tape: bool = False, background: BackgroundCompilation | None = None
+    ) -> UnitCompiler:
+        return UnitCompiler(self.programs, self.record, self.options, toolchain, on_tape, background)
 
     def _model(
         self,
@@ -237,6 +249,7 @@ class Compilation:
         on_demand: Callable[[Sequence[Key], Callable[[], None] | None], Unit] | None,
         *made: Unit,
         tell: bool = True,
+        background: BackgroundCompilation | None = None,
     ) -> Model:
         return Model(
             self.record,
@@ -245,10 +258,11 @@ class Compilation:
             formulas=units.formulas,
             beams=self._beams_at,
             parameter_check=self._parameter_check.problems,
-            origin=partial(compile_system, self.system, self.options),
+            origin=partial(compile_system, self.system, self._stated),
             device_code=units.device_code,
             instants=instants_at(self.tree),
             routes=units.routes if tell else None,
+            background=background,
         )
 
     def library(self, precision: Precision = "double") -> tuple[Path, str]:
@@ -281,21 +295,24 @@ def inconsistencies(system: System) -> Iterator[str]:
             )
 
 
-def _choose_toolchain(options: Options) -> Toolchain | None:
-    """The compiler; None where the interpreter is asked for, or is all there is."""
-    if options.backend == "interpreter":
-        return None
+def _choose_toolchain(options: Options) -> tuple[Toolchain | None, bool]:
+    """The compiler, None where there is none or an interpreter is asked for; and whether that is the tape machine."""
+    if options.backend != "c":
+        return None, options.backend == "tape"
     toolchain = find_toolchain(options.compiler)
     if toolchain is None:
+        on_tape = prebuilt_library(machine_text()) is not None
+        slower = "in C, several" if on_tape else "by NumPy, some thousand"
         warnings.warn(
-            "no C compiler found: models run on the NumPy interpreter, some thousand times slower."
+            f"no C compiler found: models are interpreted {slower} times slower than compiled ones."
             " Install gcc or clang, or `pip install ziglang`.",
             CompilerMissingWarning,
             stacklevel=4,
         )
-    elif toolchain.is_fallback:
+        return None, on_tape
+    if toolchain.is_fallback:
         _warn_fallback()
-    return toolchain
+    return toolchain, False
 
 
 @cache

@@ -127,7 +127,7 @@ def test_wrong_arguments_are_refused_in_four_parts(name: str) -> None:
             lambda: sf.load("a.yaml", floating=True),
             "unexpected keyword argument 'floating'.*did you mean 'floating_base'",
         ),
-        (lambda: sf.compile(system(), sf.Options(backend="d")), "backend is not one of 'c', 'interpreter'"),
+        (lambda: sf.compile(system(), sf.Options(backend="d")), "backend is not one of 'c', 'tape', 'interpreter'"),
         (lambda: model().frame_pose(["tip"], Q), r"no frame '\['tip'\]'"),
         (lambda: model().dynamics(Q, V, U, t=None), "t is not an array of numbers"),
     ],

@@ -24,7 +24,11 @@ class Options(metaclass=CheckedCalls):
             each function when it is first called, by itself or with those that go with it
             (`symofros/base/functions.py`: names, inputs, outputs, units); `Model.prepare` makes some before.
         frames: Frames that frame functions in `functions` are generated for; None: all.
-        backend: "c", or "interpreter" (NumPy; slow, needs no compiler, the reference for the C code).
+        backend: "c"; "tape", instructions that a program in C interprets: there at once, several times slower than
+            compiled code, with the bits of C without contraction; or "interpreter" (NumPy; slow, the reference for the
+            C code). Both need no compiler, "tape" where a wheel brings its machine.
+        background: Whether a model answers on tape at once while C is compiled in another process; `Model.ready` gives
+            the compiled model, and the next `compile` has what is in the cache by then.
         flags: Flags of the C compiler, in place of the default.
         compiler: Path or name of the C compiler; None: $CC, cc, gcc, clang, then the ziglang package.
         constraints: How forward dynamics keeps them: "multipliers" solves for the forces first, by M^-1;
@@ -49,13 +53,14 @@ class Options(metaclass=CheckedCalls):
 
     functions: tuple[str, ...] | None = None
     frames: tuple[str, ...] | None = None
-    backend: Literal["c", "interpreter"] = "c"
+    backend: Literal["c", "tape", "interpreter"] = "c"
     flags: tuple[str, ...] | None = None
     compiler: str | None = None
     constraints: Literal["multipliers", "null_space"] = "multipliers"
     forward_dynamics: Literal["auto", "articulated", "factors"] = "auto"
     batch: Literal["vector", "loop"] = "vector"
     packs: bool = True
+    background: bool = False
     tune: bool = False
     processors: Literal["native", "any"] = "native"
 

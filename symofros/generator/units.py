@@ -19,20 +19,26 @@ from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
+from symofros.generator.codegen.tape import machine_text, tape_functions
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
 from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Request
 from symofros.native import native_text
-from symofros.runtime.build.build import build_library, recall_library
+from symofros.runtime.background import BackgroundCompilation
+from symofros.runtime.build.build import build_library, known_library, recall_library
 from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
+from symofros.runtime.calls.tape import TapeUnit, tape_machine
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
+
+# Part of a request: code for one state at a time.
+_SINGLE = "one by one"
 
 
 class _SolverError(Exception):
@@ -47,12 +53,21 @@ class UnitCompiler:
         record: Names, sizes and hash of the model.
         options: Options of compilation.
         toolchain: C compiler; None where units are interpreted.
+        on_tape: Whether they are so by the tape machine, not by NumPy.
+        background: Compiles functions that are not in the cache, which are on tape meanwhile.
     """
 
     def __init__(
-        self, programs: ProgramBuilder, record: ModelRecord, options: Options, toolchain: Toolchain | None
+        self,
+        programs: ProgramBuilder,
+        record: ModelRecord,
+        options: Options,
+        toolchain: Toolchain | None,
+        on_tape: bool = False,
+        background: BackgroundCompilation | None = None,
     ) -> None:
         self._programs, self._record, self._options, self._toolchain = programs, record, options, toolchain
+        self._on_tape, self._background = on_tape, background
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
         self._recipe = repr((programs.tree.system, options, np.__version__))
         self._told: dict[tuple[Request, ...], dict[Key, tuple[Choice, ...]]] = {}
@@ -68,6 +83,10 @@ class UnitCompiler:
         """
         requests = tuple(Request(*key) for key in keys)
         names = ", ".join(f"{name}({frame})" if frame else name for name, frame in keys)
+        if self._background is not None and not self._is_known(requests):
+            self._background.start(keys)
+            with self._generating:
+                return self._tape_unit(self._programs.program(requests))
         return self._unit(requests, names, lambda: self._programs.program(requests), meanwhile)
 
     def by_vectors(self, keys: Sequence[Key], functions: Collection[str]) -> Unit:
@@ -150,9 +169,21 @@ class UnitCompiler:
         program = cache(form)
         if self._toolchain is None:
             with self._generating:
-                return InterpretedUnit(program())
+                return self._tape_unit(program()) if self._on_tape else InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
-        return self._compile((request, "one by one"), names, program, self._toolchain, None, in_lanes, meanwhile)
+        return self._compile((request, _SINGLE), names, program, self._toolchain, None, in_lanes, meanwhile)
+
+    def _recipe_of(self, request: object) -> str:
+        return f"{self._recipe}{request!r}"
+
+    def _is_known(self, requests: tuple[Request, ...]) -> bool:
+        """Whether there is no compiler to wait for."""
+        assert self._toolchain is not None
+        recipe = self._recipe_of((requests, _SINGLE))
+        return known_library(recipe, _header(), self._toolchain, self._options.flags) is not None
+
+    def _tape_unit(self, program: Program) -> TapeUnit:
+        return TapeUnit(tape_machine(machine_text()), *tape_functions(program), self._record)
 
     def _compile(
         self,
@@ -178,7 +209,8 @@ class UnitCompiler:
             return text
 
         with progress:
-            path = recall_library(f"{self._recipe}{request!r}", source, _header(), toolchain, self._options.flags)
+            recipe = self._recipe_of(request)
+            path = recall_library(recipe, source, _header(), toolchain, self._options.flags)
         return CompiledUnit(path, self.symbol, self._record.hash, in_lanes)
 
     def _in_lanes(

@@ -16,6 +16,7 @@ HEADERS = (
     "stepping/symofros_hand.h",
     "diagrams/symofros_diagram.h",
     "diagrams/symofros_program.h",
+    "tape/symofros_tape.h",
 )
 _C_INCLUDE = re.compile(r'^#include "(?P<file>[^"]+\.c)"(?:\n|\Z)', re.MULTILINE)
 

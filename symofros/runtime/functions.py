@@ -16,6 +16,7 @@ from symofros.base.routes import Choice
 from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
 from symofros.runtime.arguments import Arguments
 from symofros.runtime.arguments import ArrayLike as ArrayLike
+from symofros.runtime.background import BackgroundCompilation
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.bound import into, receivers
 from symofros.runtime.calls.extension import begin
@@ -65,6 +66,7 @@ class Functions(Arguments):
         instants: Gives the instants at which formulas of time bend, jump or change fast, the model's own and those of
             laws, from laws, parameters (npar), start and end of a run; None where no formulas are known.
         routes: Tells the methods of the functions of one unit; None where there is no description.
+        background: What is compiled while the functions are on tape; None where they are what they stay.
     """
 
     def __init__(
@@ -82,6 +84,7 @@ class Functions(Arguments):
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
         instants: Callable[[Sequence[Any], Array, float, float], Array] | None = None,
         routes: Callable[[tuple[Key, ...]], Mapping[Key, tuple[Choice, ...]]] | None = None,
+        background: BackgroundCompilation | None = None,
     ) -> None:
         check_argument("Model: record", record, ModelRecord)
         super().__init__(record, np.array(record.par_default if par is None else par, dtype=np.float64))
@@ -95,6 +98,7 @@ class Functions(Arguments):
         self._beams_at = beams
         self._instants_of = instants
         self._routes_of = routes
+        self._background = background
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
         self._prepared: dict[Key, Array] = {}
         self._plain_calls = PlainCalls()
@@ -153,6 +157,7 @@ class Functions(Arguments):
             self._device_code,
             self._instants_of,
             self._routes_of,
+            self._background,
         )
         other._kernels = self._kernels  # Shared, so that what either compiles serves both.
         return other
@@ -185,6 +190,15 @@ class Functions(Arguments):
         """
         return self._kernel(name, "", "a kernel is a function of the whole model; those of frames are bound")
 
+    def make(self, name: str, frame: str = "") -> None:
+        """Generate a function that is not there yet, of a frame or of the whole model.
+
+        Raises:
+            UnknownNameError: There is no such function.
+            CompileError: The C compiler failed.
+        """
+        self._kernel(name, frame, "a function of the model")
+
     def has(self, name: str) -> bool:
         """Whether a function of the whole model can be called: `Options.functions` may have left it out."""
         return self._build is not None or (name, "") in self._kernels
@@ -192,7 +206,8 @@ class Functions(Arguments):
     @property
     def libraries(self) -> frozenset[Path]:
         """The shared libraries of the functions made so far; none of those that are interpreted."""
-        return frozenset(kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
+        compiled = (kernel.library for kernel in self._kernels.values() if isinstance(kernel, CompiledKernel))
+        return frozenset(path for path in compiled if path is not None)
 
     def _check_name(self, name: str, frame: str, rule: str) -> None:
         known = FRAME_FUNCTIONS if frame else MODEL_FUNCTIONS

@@ -11,8 +11,7 @@ import pytest
 
 from ..engines.matrix import SEED, Truths, judged, suited
 from ..engines.models.kinds import KINDS, tree_of
-from ..engines.study import RED
-from ..engines.verdicts import Cell
+from ..engines.verdicts import RED, Cell
 from ..engines.workers import Job, Worker, registry
 from ..reporting.numbers import digits
 from .cells import CellFailure, CellItem
@@ -30,7 +29,7 @@ def _worker() -> Worker:
 def _cells(engine: str, kind: str, functions: tuple[str, ...]) -> dict[str, Cell]:
     """The cells of an engine on the tree of a kind, by function."""
     plugin = registry().plugins[engine]
-    job = Job(engine, suited(tree_of(kind), plugin), functions, SEED)
+    job = Job(engine, suited(tree_of(kind), plugin), functions, SEED, further=True)
     return {one.cell.function: one.cell for one in judged(plugin, job, Truths(), _worker())}
 
 
@@ -52,10 +51,10 @@ class EngineCheck(CellItem):
     def runtest(self) -> None:
         """Ask the engine, and fail if its answer is wrong, or none."""
         cell = _cells(self.engine, self.kind, self.together)[self.wanted]
-        if cell.verdict == "raises":
-            raise CellFailure(f"{self.engine}, {self.wanted} on {self.kind}: the plug-in raises {cell.words}")
+        if cell.verdict == "plug-in":
+            raise CellFailure(f"{self.engine}, {self.wanted} on {self.kind}: in the plug-in: {cell.words}")
         if cell.verdict in RED:
-            stated = cell.words if cell.verdict == "crashes" else f"error {digits(cell.error)}"
+            stated = cell.words or f"error {digits(cell.error)}"
             raise CellFailure(
                 f"{self.engine}, {self.wanted} on {self.kind}: {cell.verdict}: {stated}, "
                 f"of the largest entry; rounding explains {digits(cell.tolerance)}"

@@ -23,7 +23,7 @@ QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "tim
 # Verdict of an entry -> whether what was asked for is met.
 _VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
 # Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
-_INTRODUCTIONS = {"check": "The opinions on our C, engine by engine:", "engines": "What engines are wrong about:"}
+_INTRODUCTIONS = {"check": "The opinions on our C, engine by engine:", "engines": "What each engine is to mend first:"}
 _SHOWN = ("pareto", "timing")
 
 

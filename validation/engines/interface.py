@@ -14,10 +14,10 @@ R of a placement turns components of the placed frame into those of the frame it
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import entry_points
-from typing import NamedTuple, Protocol
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,6 +66,32 @@ class Convention(NamedTuple):
 
     what: str
     convention: str
+
+
+class Statement(NamedTuple):
+    """What an engine says of itself that explains an answer that is not right; one that is right, it never hides.
+
+    Attributes:
+        verdict: "precondition": it documents or asserts that it is not for this. "repairs": it changed what it was
+            given, with a warning.
+        words: What it says.
+        source: Where: a link, or a file and line of a release.
+        functions: Pattern of whole names of functions that it is about.
+        holds: Tree, text of the file that it was read from ("" for none) -> whether it is about that.
+        warned: Pattern of a warning of Python's that the engine gave as the model was made; "" for none.
+    """
+
+    verdict: Literal["precondition", "repairs"]
+    words: str
+    source: str
+    functions: str = ".*"
+    holds: Callable[[Tree, str], bool] = lambda tree, text: True
+    warned: str = ""
+
+
+# Unit roundoffs (the spacing of numbers at 1), and the random states that a function is asked at unless said otherwise.
+DOUBLE, SINGLE = 2.0**-52, 2.0**-23
+CALLS = 16
 
 
 # The name by which plug-ins know it that were written before `contract.conventions.Difference` was told apart from it.
@@ -273,6 +299,9 @@ class EnginePlugin(Protocol):
         formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf", "usd" (`models.readers.Reading`).
         slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry, or the steps
             of its differences.
+
+    A plug-in may have more: `transformations`, `refusals`, `statements`, `roundoff` and `calls` of
+    `plugins.writing.source.SourcePlugin`.
     """
 
     @property

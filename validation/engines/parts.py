@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..reporting.record import Data
+from .verdicts import Cell
 
 Row = dict[str, Any]
 # What rows of a stored table are found by, in its nesting, and what is kept of each.
@@ -61,6 +62,11 @@ def unnested(table: Data, layout: tuple[Sequence[str], Sequence[str]]) -> list[R
         dict(zip(keys, names, strict=True)) | dict.fromkeys(kept, "") | dict(zip(kept, values, strict=False))
         for names, values in places
     ]
+
+
+def cells(data: Data, table: str = "cells") -> list[Cell]:
+    """The cells of a report's table; none where it has no such table."""
+    return [Cell(**row) for row in unnested(data.get(table, {}), CELLS)]
 
 
 def load(paths: Iterable[Path]) -> list[Data]:
@@ -115,7 +121,7 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
         result["absent"] = result["absent"] | part["absent"]
         result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
         result["proofs"] = [*result["proofs"], *part["proofs"]]
-        for table in ("cells", "identities"):
+        for table in ("cells", "corrected", "identities"):
             result[table] = result[table] | part[table]
     # Each part's sources are to be those of now.
     result["digests"] = sorted({one for part in parts for one in (part.get("digest", ""), *part.get("digests", ()))})

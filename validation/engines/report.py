@@ -4,166 +4,244 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from operator import itemgetter
 from typing import Any
 
 from ..reporting.numbers import counted
-from ..reporting.record import Bullets, Cell, Code, Data, Fact, Report, Section, Table, Text, Topic, verdict
+from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from . import parts
+from .causes import shown
+from .causes.cause import Cause
+from .causes.grouping import Group, causes_of, stale
 from .proving.scripts import NO_SCRIPT
-from .study import RED, measure
+from .study import measure
+from .verdicts import RED
 
 _TEXT = """Each engine builds the same small trees by its own API and answers in its own conventions: coordinates,
-speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds mean
-(`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off by what
-2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more than a
-millionth of the largest entry. **imprecise**: off by more, but less than that. **refuses**: says in words that it
-can't. **crashes**: takes its process with it. **raises**: the plug-in, not the engine, ends in an exception: nothing is
-said of the engine. Empty: not offered. A proven fault has a script that imports the engine alone, was shrunk to the
-plainest tree and state that still show it, and was run in a process of its own to fail; one that does not end proves
-nothing."""
-_DECISION = "**Which engine is wrong:** {}, proven by {}."
-_COUNTED = """A cell counts where the answer is wrong against the truth in many digits; {} more lose digits beyond what
-rounding explains."""
-# Functions that the report begins with, of each engine that is wrong.
-_NAMED = 4
+speeds, frames. What is right is worked out in 130 digits from nothing but what the engine's coordinates and speeds
+mean (`validation/engines/truth/charts.py`), by Newton's and Euler's equations and differences. An answer may be off
+by what 2000 roundings of its inputs and of the forces between links make of it. **wrong**: off by more, and by more
+than a millionth of the largest entry. **imprecise**: off by more, but less than that. **crashes**: takes its process
+with it. **raises**: an exception inside the engine that is no refusal. **refuses**: says in words that it can't.
+**precondition**: the engine documents or asserts that it is not for this. **repairs**: it changed what it was given,
+with a warning. **plug-in**: the plug-in, not the engine, is in the way: nothing is said of the engine. Empty: not
+offered. A proven fault has a script that imports the engine alone, was shrunk to the plainest tree and state that
+still show it, and was run in a process of its own to fail; one that does not end proves nothing."""
+_DECISION = "**Which engine is wrong, and what to mend first:** {} behind {} of {}, proven by {}."
+_COUNTED = """Wrong numbers and crashes come before exceptions, these before lost digits; among them what most kinds of
+trees show comes first. An engine that offers more functions is asked more."""
+_CAUSES = """Red cells are the consequence of causes. A cause is stated by people, with the rule by which a cell is its
+consequence, the line of documentation or the derivation that it offends, and the public thread, or the day on which
+none was found; cells that no stated cause explains are grouped by functions that are red on the same trees. Where a
+cause can be taken out of an answer, the answer is judged again without it: what is still red then has another cause
+behind it."""
 Row = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class _Found:
+    """What the cells of a report come to: causes of the red ones, those withdrawn, causes that explain none."""
+
+    groups: list[Group]
+    withdrawn: list[str]
+    stale: list[Cause]
+
+    @classmethod
+    def of(cls, data: Data) -> _Found:
+        """Of the JSON of a report."""
+        cells, corrected = parts.cells(data), parts.cells(data, "corrected")
+        groups = causes_of(cells, corrected=corrected)
+        return cls(groups, shown.withdrawn(cells), stale(groups, [engine["name"] for engine in data["engines"]]))
+
+    def by(self, engine: str) -> list[Group]:
+        """The causes of an engine, the heaviest first."""
+        return [group for group in self.groups if group.engine == engine]
 
 
 def compose(data: Data) -> Report:
     """The report of its JSON."""
+    found = _Found.of(data)
     data = {
         **data,
         "cells": parts.unnested(data["cells"], parts.CELLS),
         "identities": parts.unnested(data["identities"], parts.IDENTITIES),
     }
-    cells, proofs, identities = data["cells"], data["proofs"], data["identities"]
-    tally = Counter(cell["verdict"] for cell in cells)
+    proofs = data["proofs"]
+    tally = Counter(cell["verdict"] for cell in data["cells"])
     red = sum(tally[name] for name in RED)
-    wrong = Counter(cell["engine"] for cell in cells if cell["verdict"] in ("wrong", "crashes"))
-    listed = ", ".join(f"{engine} in {number}" for engine, number in wrong.most_common())
-    listed = f"{listed} cells of [the matrix](engines.html#overview)" if listed else "none"
-    proven, held = sum(proof["proven"] for proof in proofs), sum(row["ok"] for row in identities)
-    scripts, open_faults = counted(proven, "script"), len(proofs) - proven
+    scripts = counted(sum(proof["proven"] for proof in proofs), "script")
     all_proven = all(proof["proven"] or proof["output"] == NO_SCRIPT for proof in proofs)
     # Of plug-ins from elsewhere an exception is an answer; of ours it is a fault of ours.
-    raising = Counter(cell["engine"] for cell in cells if cell["verdict"] == "raises")
+    raising = Counter(cell["engine"] for cell in data["cells"] if cell["verdict"] == "plug-in")
     sound = not raising.keys() & set(data.get("ours", ()))
-    said = f", {open_faults} of {len(proofs)} faults not proven" if open_faults else ""
-    said += f"; {counted(raising.total(), 'cell')} where a plug-in raises" if raising else ""
-    head = "engine | version | right | wrong | imprecise | crashes | refuses | raises | faults proven | measured"
-    overview = Table.of(head, (_tally(engine, data) for engine in data["engines"]))
-    absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
-    missing = (Text(f"Not installed here: {absent}.", "soft"),) if absent else ()
-    conventions = ((engine["name"], *row) for engine in data["engines"] for row in engine["conventions"])
-    stated = Table.of("engine | what | convention", conventions)
+    overview = _overview(data, found)
+    engines = {group.engine for group in found.groups}
+    decision = _DECISION.format(
+        counted(len(found.groups), "cause"), counted(red, "red cell"), counted(len(engines), "engine"), scripts
+    )
     return Report(
         "Which engine is wrong where",
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
-        f"{counted(len(data['functions']), 'function')}: {tally['right']} cells right, {red} red, "
-        f"by {scripts} that fail as they must{said}.",
+        f"{counted(len(data['functions']), 'function')}: {tally['right']} cells right, {red} red, behind them "
+        f"{counted(len(found.groups), 'cause')}, by {scripts} that fail as they must{_shortcomings(data, raising)}.",
         all_proven and sound,
-        (_TEXT,),
+        (_CAUSES, *_stale(found), _TEXT),
         (
-            Section("Engines", (overview, *missing), "overview"),
-            *(_matrix(engine, data) for engine in data["engines"]),
+            *(_engine(engine, data, found) for engine in sorted(data["engines"], key=itemgetter("name"))),
+            Section("Engines", (overview, *_missing(data)), "overview"),
+            Section("Cells withdrawn, and why", (Bullets(tuple(found.withdrawn)),), "withdrawn"),
+            Section(
+                "Functions", tuple(_functions(engine, data) for engine in data["engines"]), "functions", page_only=True
+            ),
             Section("Identities of engines with themselves", (_identities(data),), "identities"),
-            Section("Conventions", (stated,), "conventions", page_only=True),
-            Section("Proofs", tuple(map(_proof, proofs)), "proofs", all_proven, page_only=True),
+            Section("Conventions", (_conventions(data),), "conventions", page_only=True),
         ),
-        facts=(
-            Fact(str(tally["right"]), "cells right"),
-            Fact(str(red), "red cells: wrong, imprecise, crashing"),
-            Fact(str(proven), f"scripts that prove them, of {len(proofs)} faults", all_proven),
-            *((Fact(str(raising.total()), "cells where a plug-in raises", sound),) if raising else ()),
-            Fact(str(tally["refuses"]), "cells where the engine refuses in words"),
-            Fact(f"{held} of {len(identities)}", "identities that hold"),
-        ),
+        facts=_facts(data, found, all_proven, sound),
         digest=(overview,),
         decisions=(
-            _DECISION.format(listed, scripts),
-            Table.of("engine | wrong about | cells | of asked", _wrong_about(data, wrong)),
-            Text(_COUNTED.format(counted(tally["imprecise"], "cell")), "soft"),
+            decision,
+            Bullets(tuple(_first(data, found))),
+            Text(_COUNTED, "soft"),
         ),
     )
 
 
-def _wrong_about(data: Data, wrong: Counter[str]) -> Iterator[tuple[str, ...]]:
-    """What each engine is wrong about or crashes at, the functions of most such cells first."""
-    for name, number in wrong.most_common():
-        own = [cell for cell in data["cells"] if cell["engine"] == name]
-        functions = Counter(cell["function"] for cell in own if cell["verdict"] in ("wrong", "crashes"))
-        *few, rest = *functions.most_common(_NAMED), len(functions) - _NAMED
-        said = ", ".join(f"`{function}` ({count})" for function, count in few)
-        more = f", and {counted(rest, 'function')} more" if rest > 0 else ""
-        yield f"[{name}](engines.html#engine-{name})", said + more, str(number), str(len(own))
+def _shortcomings(data: Data, raising: Counter[str]) -> str:
+    """What the headline says of faults without proof, and of plug-ins that are in the way."""
+    proofs = data["proofs"]
+    open_faults = sum(not proof["proven"] for proof in proofs)
+    said = f", {open_faults} of {len(proofs)} faults not proven" if open_faults else ""
+    return said + (f"; {counted(raising.total(), 'cell')} where a plug-in raises" if raising else "")
 
 
-def _tally(engine: Row, data: Data) -> tuple[str, ...]:
+def _facts(data: Data, found: _Found, all_proven: bool, sound: bool) -> tuple[Fact, ...]:
+    """The key numbers."""
+    tally, proofs = Counter(cell["verdict"] for cell in data["cells"]), data["proofs"]
+    unexplained = [group for group in found.groups if not group.cause]
+    held, raising = sum(row["ok"] for row in data["identities"]), tally["plug-in"]
+    return (
+        Fact(str(tally["right"]), "cells right"),
+        Fact(str(len(found.groups)), f"causes, {len(unexplained)} of them not yet found"),
+        Fact(str(sum(tally[name] for name in RED)), "red cells: wrong, imprecise, crashing, raising"),
+        Fact(
+            str(sum(proof["proven"] for proof in proofs)),
+            f"scripts that prove them, of {len(proofs)} faults",
+            all_proven,
+        ),
+        *((Fact(str(raising), "cells where a plug-in raises", sound),) if raising else ()),
+        Fact(str(tally["refuses"]), "cells where the engine refuses in words"),
+        Fact(f"{held} of {len(data['identities'])}", "identities that hold"),
+    )
+
+
+def _first(data: Data, found: _Found) -> Iterator[str]:
+    """Of each engine with causes: how many, and the heaviest."""
+    for name in sorted(engine["name"] for engine in data["engines"]):
+        if own := found.by(name):
+            heaviest = own[0]
+            link, causes = f"[{name}](engines.html#engine-{name})", counted(len(own), "cause")
+            said = f"{shown.what(heaviest)} Shows in: {shown.where(heaviest)}. Thread: {shown.thread(heaviest)}"
+            yield f"**{link}**, {causes}{', first' if len(own) > 1 else ''}: {said}."
+
+
+def _stale(found: _Found) -> tuple[Text, ...]:
+    """Causes that are stated and explain nothing any more: mended, or not asked about in this run."""
+    named = "; ".join(f"{cause.engine}, {cause.name}" for cause in found.stale)
+    return (Text(f"Stated, but of no cell of this run: {named}.", "soft"),) if named else ()
+
+
+def _engine(engine: Row, data: Data, found: _Found) -> Section:
+    """What an engine's maintainer is to mend, the heaviest first; nothing of an engine without causes."""
+    name, own = engine["name"], found.by(engine["name"])
+    folds = tuple(shown.fold(group, k + 1, found.groups, data["proofs"]) for k, group in enumerate(own))
+    return Section(f"{name} {engine['version']}: {counted(len(own), 'cause')}", folds, f"engine-{name}")
+
+
+def _functions(engine: Row, data: Data) -> Section:
+    """On how many trees each function of an engine is right, red, or something else."""
+    names = engine["functions"]
+    cells: dict[str, list[Row]] = {function: [] for function in data["functions"] if function in names}
+    for cell in data["cells"]:
+        if cell["engine"] == engine["name"]:
+            cells.setdefault(cell["function"], []).append(cell)
+    rows = (
+        (Cell(f"`{function}`", hint=data["functions"].get(function, "")), names.get(function, ""), *_fared(own))
+        for function, own in cells.items()
+    )
+    title = f"{engine['name']}: {counted(len(names), 'function')}"
+    table = Table.of("function | its name | right | red | otherwise", rows)
+    said = (f"{engine['refusals']}.".capitalize(),) if "refusals" in engine else ()
+    return Section(title, (*said, table), f"functions-{engine['name']}", page_only=True)
+
+
+def _fared(cells: list[Row]) -> Iterator[str | Cell]:
+    """How many cells are right, red, and otherwise."""
+    tally = Counter(cell["verdict"] for cell in cells)
+    red = [cell["model"] for cell in cells if cell["verdict"] in RED]
+    others = {verdict: number for verdict, number in tally.items() if verdict not in ("right", *RED)}
+    yield str(tally["right"])
+    yield Cell(verdict(str(len(red)) if red else "", not red), hint=", ".join(red))
+    yield ", ".join(f"{number} {name}" for name, number in others.items())
+
+
+def _overview(data: Data, found: _Found) -> Table:
+    """A line for each engine; columns in which nothing is stated are left out."""
+    head = (
+        "engine | version | causes | right | wrong | imprecise | crashes | raises | refuses | precondition | repairs"
+        " | plug-in | faults proven | measured"
+    )
+    return Table.of(head, (_tally(engine, data, found) for engine in data["engines"])).without_empty()
+
+
+def _missing(data: Data) -> tuple[Text, ...]:
+    """Engines that are not installed, and those that refuse so much that what is left shows little."""
+    absent = "; ".join(f"{name}: {why}" for name, why in data["absent"].items())
+    refusing = [f"{one['name']} {said}" for one in data["engines"] if "above" in (said := one.get("refusals", ""))]
+    said = (f"Not installed here: {absent}." if absent else "", *(f"{one}." for one in refusing))
+    return tuple(Text(one, "soft") for one in said if one)
+
+
+def _conventions(data: Data) -> Table:
+    """How engines state what they are asked."""
+    rows = ((engine["name"], *row) for engine in data["engines"] for row in engine["conventions"])
+    return Table.by_group(("engine", "what", "convention"), rows)
+
+
+def _tally(engine: Row, data: Data, found: _Found) -> tuple[str, ...]:
     """A line of the overview."""
     name, tally = engine["name"], Counter(cell["verdict"] for cell in data["cells"] if cell["engine"] == engine["name"])
     own = [proof["proven"] for proof in data["proofs"] if proof["engine"] == name]
-    proofs = (f"{sum(own)} of {len(own)}" if not all(own) else len(own)) if any(tally[red] for red in RED) else ""
-    further = *(tally[name] for name in ("imprecise", "crashes", "refuses", "raises")), proofs
-    counts = verdict(tally["wrong"], not tally["wrong"]), *further
+    proofs = (f"{sum(own)} of {len(own)}" if not all(own) else str(len(own))) if any(tally[red] for red in RED) else ""
+    verdicts = ("imprecise", "crashes", "raises", "refuses", "precondition", "repairs", "plug-in")
+    counts = verdict(tally["wrong"] or "", not tally["wrong"]), *(str(tally[name] or "") for name in verdicts)
     measured = {name: data.get(name, "") for name in parts.ORIGIN} | engine.get("measured", {})
     when = f"{measured['date']}, {measured['revision'][:8]}"
-    return f"[{name}](#engine-{name})", engine["version"], str(tally["right"]), *map(str, counts), when
-
-
-def _matrix(engine: Row, data: Data) -> Section:
-    """Functions by trees, those that the engine has; red cells lead to their proofs."""
-    name, names = engine["name"], engine["functions"]
-    own = {(cell["function"], cell["model"]): cell for cell in data["cells"] if cell["engine"] == name}
-    proofs = [proof for proof in data["proofs"] if proof["engine"] == name]
-    anchors = {(proof["function"], model): _anchor(proof) for proof in proofs for model in proof["models"]}
-    models = [model for model in data["models"] if any(model == known for _, known in own)]
-
-    def cell(place: tuple[str, str]) -> str | Cell:
-        if place not in own:
-            return ""
-        one, anchor = own[place], anchors.get(place)
-        sign = one["verdict"].replace("right", "ok")
-        hint = one["words"] or f"error {one['error']:.1e}, tolerance {one['tolerance']:.1e}"
-        return Cell(verdict(f"[{sign}](#{anchor})" if anchor else sign, one["verdict"] not in RED), hint=hint)
-
-    rows = [
-        (Cell(f"`{function}`", hint=what), names[function], *(cell((function, model)) for model in models))
-        for function, what in data["functions"].items()
-        if function in names
-    ]
-    table = Table(("function", "its name", *models), tuple(rows))
-    return Section(f"{name} {engine['version']}", (table,), f"engine-{name}", page_only=True)
+    causes = str(len(found.by(name)) or "")
+    return (
+        f"[{name}](#{'engine' if causes else 'functions'}-{name})",
+        engine["version"],
+        causes,
+        str(tally["right"]),
+        *counts,
+        proofs,
+        when,
+    )
 
 
 def _identities(data: Data) -> Table:
-    def held(identity: str, engine: str) -> Cell:
-        own = [row for row in data["identities"] if (row["identity"], row["engine"]) == (identity, engine)]
-        broken = [row["model"] for row in own if not row["ok"]]
-        text = f"{len(own) - len(broken)} of {len(own)}" if own else ""
-        return Cell(verdict(text, not broken), hint=", ".join(broken))
+    """On how many trees of all engines an identity holds, and where it does not."""
 
-    engines = [engine["name"] for engine in data["engines"]]
-    identities = dict.fromkeys(row["identity"] for row in data["identities"])
-    rows = tuple((identity, *(held(identity, engine) for engine in engines)) for identity in identities)
-    return Table(("identity: trees on which it holds", *engines), rows)
+    def row(identity: str) -> tuple[str | Cell, ...]:
+        own = [one for one in data["identities"] if one["identity"] == identity]
+        broken = [one for one in own if not one["ok"]]
+        asked, failed = (Counter(one["engine"] for one in rows) for rows in (own, broken))
+        where = "; ".join(f"{name} on {number} of {asked[name]}" for name, number in failed.items())
+        hint = "; ".join(f"{one['engine']}, {one['model']}" for one in broken)
+        return identity, str(len(asked)), f"{len(own) - len(broken)} of {len(own)}", Cell(where, hint=hint)
 
-
-def _anchor(proof: Row) -> str:
-    return str(proof["file"].removesuffix(".py"))
-
-
-def _proof(proof: Row) -> Section:
-    """A red cell: where it is red, who knows it, the script, what it prints."""
-    facts = (
-        f"`{proof['function']}` is {proof['verdict']}: error {proof['error']:.1e} of the largest entry, "
-        f"tolerance {proof['tolerance']:.1e}.",
-        f"The same functions are red on: {', '.join(proof['models'])}.",
-        f"Public thread: {proof['thread']}.",
-        *((f"Script: `reports/engines/{proof['file']}`.",) if proof["text"] else ()),
-    )
-    title = f"{proof['engine']}: {proof['native']}, {proof['model']}{'' if proof['proven'] else ': not proven'}"
-    shown = tuple(map(Code, filter(None, (proof["text"], proof["output"]))))
-    return Section(title, (Bullets(facts), *shown), _anchor(proof), page_only=True)
+    identities = dict.fromkeys(one["identity"] for one in data["identities"])
+    return Table.of("identity | engines | holds on | broken by", map(row, identities))
 
 
 TOPIC = Topic("engines", "Correctness", "Which engine is wrong where?", compose, measure)

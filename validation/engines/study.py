@@ -12,6 +12,7 @@ import typer
 from ..reporting.command import Run, known
 from ..reporting.record import Data
 from . import parts
+from .causes.grouping import by_function, causes_of, without_their_causes
 from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
@@ -22,11 +23,8 @@ from .models.readers import Reading
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
+from .verdicts import Cell, refusals
 from .workers import Job, Worker, registry
-
-# Part of the functions that are red on either of two trees that must be red on both.
-_SIMILAR = 0.5
-RED = ("wrong", "imprecise", "crashes")
 
 
 def gathered(
@@ -45,7 +43,7 @@ def gathered(
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = Truths()
         for plugin in plugins.values():
-            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED)
+            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED, further=True)
             cells += judged(plugin, job, truths, worker)
         after(tree.name)
     return cells
@@ -61,36 +59,23 @@ def read(
     for name, reading in files.items():
         for plugin in plugins.values():
             if reading.form in plugin.formats:
-                asked = reading.functions(plugin.functions)
-                job = Job(plugin.name, suited(reading.tree, plugin), asked, SEED, form=reading.form, text=reading.text)
+                asked, tree = reading.functions(plugin.functions), suited(reading.tree, plugin)
+                # What a reader makes of a file shows at one state.
+                job = Job(plugin.name, tree, asked, SEED, form=reading.form, text=reading.text)
                 cells += judged(plugin, job, truths, worker)
         after(name)
     return cells
 
 
 def fault_groups(cells: Sequence[Judged]) -> list[list[Judged]]:
-    """Red cells that are taken for one fault: one function of an engine, on trees where the same functions are red.
+    """Red cells that one script stands for: a function of an engine, on the trees that one cause shows it on.
 
     Returns:
         Groups of red cells, the first of which stands for the others.
     """
-    red = [one for one in cells if one.cell.verdict in RED]
-    functions: dict[tuple[str, str], set[str]] = {}
-    for one in red:
-        functions.setdefault((one.cell.engine, one.cell.model), set()).add(one.cell.function)
-    groups: dict[tuple[str, str], list[list[Judged]]] = {}
-    for one in red:
-        own = functions[one.cell.engine, one.cell.model]
-        known = groups.setdefault((one.cell.engine, one.cell.function), [])
-        for group in known:
-            others = functions[one.cell.engine, group[0].cell.model]
-            same_verdict = group[0].cell.verdict == one.cell.verdict
-            if same_verdict and len(own & others) >= _SIMILAR * len(own | others):
-                group.append(one)
-                break
-        else:
-            known.append([one])
-    return [group for known in groups.values() for group in known]
+    judged_cells = {one.cell: one for one in cells}
+    groups = (lot for group in causes_of(judged_cells) for lot in by_function(group.cells))
+    return [[judged_cells[cell] for cell in lot] for lot in groups]
 
 
 def proofs(
@@ -157,7 +142,7 @@ def measure(
         )
     own: Data = {
         "question": parts.question(),
-        "engines": [_engine(plugin) for plugin in chosen.values()],
+        "engines": [_engine(plugin, [one.cell for one in cells]) for plugin in chosen.values()],
         "absent": {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures,
         "models": names_wanted,
         "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
@@ -165,6 +150,7 @@ def measure(
         "ours": [name for name in chosen if plugins[name] is OWN.get(name)],
         # What an engine does not offer is what is left: a third of all.
         "cells": parts.nested((asdict(one.cell) for one in cells if one.cell.verdict != "not offered"), parts.CELLS),
+        "corrected": parts.nested(map(asdict, without_their_causes(cells)), parts.CELLS),
         "identities": parts.nested(map(asdict, held(cells)), parts.IDENTITIES),
         "proofs": [asdict(proof) | {"models": models} for proof, models in proven],
     }
@@ -177,8 +163,10 @@ def measure(
     return whole
 
 
-def _engine(plugin: EnginePlugin) -> Data:
+def _engine(plugin: EnginePlugin, cells: Sequence[Cell]) -> Data:
+    own = [cell for cell in cells if cell.engine == plugin.name and cell.verdict != "not offered"]
     return {
+        "refusals": refusals(own),
         "name": plugin.name,
         "version": plugin.version(),
         "conventions": [list(row) for row in plugin.conventions],

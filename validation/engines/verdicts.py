@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
@@ -11,22 +12,45 @@ import numpy as np
 from .functions import FUNCTIONS
 from .interface import Array, HasLayout, Link, State, Steps, Tree, Unsupported, Vector, rows, vector
 from .proving.pieces import Layout
+from .scales import size_of
 from .truth.arithmetic import Exact
 from .truth.dynamics import ROUNDING, Point, Truth, digits
 
-Verdict = Literal["right", "imprecise", "wrong", "refuses", "raises", "crashes", "not offered"]
+# "raises": an exception inside the engine that is no refusal of its own. "refuses": in the engine's own words.
+# "precondition": documented or asserted by the engine. "repairs": it changed the input, with a warning. "plug-in": a
+# limit, refusal or exception of a plug-in or of this harness, which says nothing of the engine.
+Verdict = Literal[
+    "right",
+    "imprecise",
+    "wrong",
+    "raises",
+    "refuses",
+    "precondition",
+    "repairs",
+    "crashes",
+    "plug-in",
+    "not offered",
+]
+# Faults of an engine.
+RED: tuple[Verdict, ...] = ("wrong", "imprecise", "crashes", "raises")
 
 # An answer may be off by what BACKWARD roundings of its inputs and of each link's force and moment make of it, and by
 # FORWARD of its largest entry: good recursions lose some tens of roundings, engines that form 1e3 products in series
 # some hundreds. The derivation is in docs/engines.md, "What rounding explains".
 BACKWARD = 2000.0
 FORWARD = 1e-12
-# An answer that is off by more than this part of its largest entry is no matter of rounding.
+# An answer that is off by more than this part of its largest entry is no matter of rounding: of doubles, more than half
+# of the digits are gone; of other numbers, as many of theirs.
 GROSS = 1e-6
 # What is approximate by its documentation is wrong where it is this much worse than documented.
 _FAR = 100.0
+# Errors are parts of the largest entry, unless all entries are smaller than this part of what the tree makes of such.
+_SMALL = 1e-3
 # What differences leave of zeros (`arithmetic`).
 _NOTHING = 1e-30
+
+# Part of what an engine offers that it may refuse in words: one that refuses more is not shown to be right by the rest.
+REFUSALS = 0.25
 
 
 @dataclass(frozen=True)
@@ -38,9 +62,10 @@ class Cell:
         model: Name of the tree.
         function: Name of the function.
         verdict: The verdict.
-        error: Largest deviation from the truth, as part of its largest entry; 0 without an answer.
-        tolerance: What rounding explains, as part of the largest entry.
-        words: What the engine says, or what breaks.
+        error: Largest deviation from the truth, as part of its largest entry; 0 without an answer. Of states, that of
+            the worst.
+        tolerance: What rounding is known to explain, as part of the largest entry.
+        words: What the engine says, or what breaks; at which state, unless it is the first.
     """
 
     engine: str
@@ -58,12 +83,16 @@ class Expected:
 
     Attributes:
         value: Its value.
-        allowed: Deviation that rounding explains.
-        approximate: Whether the engine documents what it is off by.
+        allowed: Deviation that rounding explains, or what the engine documents.
+        gross: Deviation beyond which it is no matter of either.
+        scale: What deviations are parts of: the largest entry, or where all are small, what the tree makes of such.
+        approximate: Whether the engine documents what it is off by, or has few digits.
     """
 
     value: Array
     allowed: float
+    gross: float
+    scale: float
     approximate: bool = False
 
 
@@ -74,6 +103,7 @@ def expected(
     state: State,
     slack: float | Steps = 0.0,
     perturbations: int = 1,
+    roundoff: float = ROUNDING,
 ) -> Expected:
     """The truth, and how far roundings of the inputs move it.
 
@@ -83,28 +113,32 @@ def expected(
         model: Says how the engine keeps its joints.
         state: Where it is evaluated.
         slack: What the engine documents to be off (`EnginePlugin.slacks`).
-        perturbations: Number of perturbed inputs; without any, gross faults alone are seen.
+        perturbations: Number of perturbed inputs; without any, an answer that is right is so with them, too.
+        roundoff: Unit roundoff of the engine's numbers.
     """
     layout = Layout(model.nq, model.nv, model.slots)
     exact_value = _value(function, tree, layout, state)
     value = digits(exact_value)
     value[np.abs(value) < _NOTHING] = 0.0
-    # Of what is zero throughout, the trees' own sizes, of order one, say what is small.
-    scale = largest(value) or 1.0
-    allowed = BACKWARD * _moved(function, tree, layout, state, perturbations)
+    size = size_of(function, tree)
+    scale = max(largest(value), _SMALL * size)
+    # Roundings are so small that what they move is in proportion to them.
+    roundings = roundoff / ROUNDING
+    allowed = BACKWARD * roundings * _moved(function, tree, layout, state, perturbations)
     if isinstance(slack, Steps):
         # Two values, each off by what rounding explains, apart by a step.
         of = digits(_value(slack.function, tree, layout, state))
         noise = _moved(slack.function, tree, layout, state, perturbations)
-        allowed += (BACKWARD * noise + FORWARD * largest(of)) / slack.step + slack.truncation * scale
+        allowed += roundings * (BACKWARD * noise + FORWARD * largest(of)) / slack.step + slack.truncation * scale
     else:
-        allowed += max(FORWARD, slack) * scale
-    return Expected(value, allowed, bool(slack))
+        allowed += max(FORWARD * roundings, slack) * max(largest(value), size)
+    gross = _FAR * allowed if slack else GROSS * roundings**0.5 * scale
+    return Expected(value, allowed, gross, scale, bool(slack) or roundoff > ROUNDING)
 
 
 def _value(function: str, tree: Tree, layout: Layout, state: State) -> Exact:
     truth_of = FUNCTIONS[function.partition(":")[0]].truth
-    return _truth(tree, layout, None).value(truth_of, Point.of(state))
+    return _truth(tree, layout, None, placed(state)).value(truth_of, Point.of(state))
 
 
 def _moved(function: str, tree: Tree, layout: Layout, state: State, perturbations: int) -> float:
@@ -114,16 +148,33 @@ def _moved(function: str, tree: Tree, layout: Layout, state: State, perturbation
     moved = 0.0
     for seed in range(perturbations):
         draw = np.random.default_rng(seed)
-        truth = _truth(_perturbed_tree(tree, draw), layout, seed)
+        truth = _truth(_perturbed_tree(tree, draw), layout, seed, placed(state))
         other = truth.value(truth_of, Point.of(_perturbed_state(state, draw)))
         moved = max(moved, largest(digits(other - exact_value)))
     return moved
 
 
-@lru_cache(maxsize=4)
-def _truth(tree: Tree, layout: Layout, roundings: int | None) -> Truth:
-    """Functions of one tree share what they work out: poses, and the dynamics of constraints."""
+@lru_cache(maxsize=12)
+def _truth(tree: Tree, layout: Layout, roundings: int | None, place: bytes) -> Truth:
+    """Functions of one tree at one state share what they work out: poses, and the dynamics of constraints."""
     return Truth(tree, layout, roundings)
+
+
+def placed(state: State) -> bytes:
+    """A key of a state."""
+    return b"|".join(np.asarray(part).tobytes() for part in vars(state).values())
+
+
+def refusals(cells: Collection[Cell]) -> str:
+    """How much of what an engine offers it refuses, and whether that is too much to call it right.
+
+    Args:
+        cells: All cells of the engine, those of functions that it does not offer left out.
+    """
+    refused = sum(cell.verdict == "refuses" for cell in cells)
+    bound = f"the bound of {REFUSALS:.0%}"
+    held = f"within {bound}" if refused <= REFUSALS * len(cells) else f"above {bound}: what is left shows little of it"
+    return f"refuses {refused} of {len(cells)} cells in its own words, {held}"
 
 
 def largest(values: Array) -> float:
@@ -172,9 +223,8 @@ def judge(engine: str, tree: Tree, function: str, answer: Array | Unsupported, w
         return Cell(engine, tree.name, function, "wrong", words=f"shape {answer.shape}, not {want.value.shape}")
     if not np.all(np.isfinite(answer)):
         return Cell(engine, tree.name, function, "wrong", words="not finite")
-    deviation, scale = largest(answer - want.value), largest(want.value) or 1.0
+    deviation = largest(answer - want.value)
     verdict: Verdict = "right"
     if deviation > want.allowed:
-        gross = deviation > (_FAR * want.allowed if want.approximate else GROSS * scale)
-        verdict = "wrong" if gross else "imprecise"
-    return Cell(engine, tree.name, function, verdict, deviation / scale, want.allowed / scale)
+        verdict = "wrong" if deviation > want.gross else "imprecise"
+    return Cell(engine, tree.name, function, verdict, deviation / want.scale, want.allowed / want.scale)

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+import warnings
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 
 from ..contract.raised import Raised, attempted
 from ..worker_process import WorkerError, WorkerProcess
 from .functions import FUNCTIONS
-from .interface import Array, EngineModel, Registry, Slot, State, Tree, Unsupported, installed
+from .interface import CALLS, Array, EngineModel, Registry, Slot, State, Tree, Unsupported, installed
 from .plugins import OWN
+from .plugins.writing.source import SourceModel
 from .proving.pieces import Layout, Pieces, assembled
+from .states import AMONG, Visit, visits
 from .truth.charts import CHARTS
 from .truth.constraints import closed
 from .truth.dynamics import random_state
@@ -21,6 +26,8 @@ from .truth.dynamics import random_state
 # Time for one answer; the first includes the import of the engine, and Warp and JAX compile then: minutes on a busy
 # machine.
 LIMIT = 300.0
+T = TypeVar("T")
+Ask = Callable[[State], Array | Unsupported | Raised]
 
 
 @dataclass(frozen=True)
@@ -47,6 +54,8 @@ class Job:
         form: Format of a file that the engine reads; "" to build the tree by its API.
         text: The file.
         called: Whether functions are called; otherwise only their scripts are written.
+        further: Whether each is asked at further states on the same model (`states.visits`).
+        before: States, likewise joint by joint, at which each is asked first on the same model.
     """
 
     engine: str
@@ -57,6 +66,8 @@ class Job:
     form: str = ""
     text: str = ""
     called: bool = True
+    further: bool = False
+    before: tuple[Pieces, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -68,7 +79,10 @@ class Answer:
         value: The result, or what came in its place.
         layout: Layout of the model; None where there is no model.
         state: The state that it was evaluated at.
-        script: Text that does the same, for a value only.
+        script: Text that does the same, for a value, or an exception inside the engine.
+        at: Name of the state, for words; "" for the first.
+        further: Answers at further states, in the order in which they were asked.
+        warned: Warnings that the engine gave as the model was made.
     """
 
     function: str
@@ -76,6 +90,9 @@ class Answer:
     layout: Layout | None = None
     state: State | None = None
     script: str = ""
+    at: str = ""
+    further: tuple[Answer, ...] = ()
+    warned: tuple[str, ...] = ()
 
 
 @cache
@@ -92,18 +109,76 @@ def made(job: Job) -> EngineModel | Unsupported:
 
 def answered(job: Job) -> Iterator[Answer]:
     """Do a job in this process; whatever a plug-in raises is its answer."""
-    prepared = attempted(_prepared, job)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        prepared = _told(job, attempted(_prepared, job))
+    warned = tuple(str(one.message) for one in caught)
     if isinstance(prepared, Raised | Unsupported):
         yield from (Answer(function, prepared) for function in job.functions)
         return
     model, layout, state = prepared
+    many = getattr(registry().plugins[job.engine], "calls", CALLS)
+    further = list(visits(job.tree, layout, state, job.seed, many)) if job.further and job.called else []
     for function in job.functions:
-        value = attempted(_called, model, function, state) if job.called else Unsupported("not called")
-        silent = job.called and not isinstance(value, np.ndarray)
-        script = "" if silent else attempted(model.script, function, state)
-        if isinstance(script, Raised):
-            value, script = Raised(f"the script of {function}: {script.words}"), ""
-        yield Answer(function, value, layout, state, script)
+        first = replace(_answer(job, model, layout, function, Visit("", state)), warned=warned)
+        if isinstance(first.value, np.ndarray) and further:
+            first = replace(first, further=tuple(_at_all(job, model, layout, function, further)))
+        yield first
+
+
+def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: Visit) -> Answer:
+    """An answer with its script, of a model whose last call was of another function, or at the states before."""
+    before = [one for pieces in job.before if isinstance(one := assembled(layout, pieces), State)]
+    value: Array | Unsupported | Raised = Unsupported("not called")
+    if job.called:
+        ask: Ask = _asker(job, model, function) if before else lambda state: model.call(function, state)
+        for state in (*before, visit.state):
+            value = _called(job, ask, state)
+    is_told = isinstance(value, np.ndarray) or (isinstance(value, Raised) and value.kind == "raises")
+    script: str | Raised = ""
+    if is_told or not job.called:
+        # Whoever writes scripts of one state writes none of several.
+        writes = not before or isinstance(model, SourceModel)
+        states = (*before, visit.state)
+        script = attempted(lambda: model.script(function, *states)) if writes else ""
+    if isinstance(script, Raised):
+        value, script = Raised(f"the script of {function}: {script.words}"), ""
+    return Answer(function, value, layout, visit.state, script, visit.name)
+
+
+def _at_all(job: Job, model: EngineModel, layout: Layout, function: str, further: Sequence[Visit]) -> Iterator[Answer]:
+    """Answers on what the calls before left; of the random states among many, those that are no numbers."""
+    ask = _asker(job, model, function)
+    for visit in further:
+        value = _called(job, ask, visit.state)
+        if visit.name != AMONG or not isinstance(value, np.ndarray) or not np.all(np.isfinite(value)):
+            yield Answer(function, value, layout, visit.state, at=visit.name)
+
+
+def _asker(job: Job, model: EngineModel, function: str) -> Ask:
+    """Calls of a function that share the engine's data, as far as the plug-in can."""
+    if not isinstance(model, SourceModel):
+        return lambda state: model.call(function, state)
+    made = attempted(model.kept, function)
+    return (lambda state: made) if isinstance(made, Unsupported | Raised) else made
+
+
+def _called(job: Job, ask: Ask, state: State) -> Array | Unsupported | Raised:
+    """What a call returns; an array of numbers, if it is one."""
+    given = State(*(np.array(part) for part in vars(state).values()))
+    value = attempted(ask, given)
+    if isinstance(value, np.ndarray | Unsupported | Raised):
+        return _told(job, value)
+    return attempted(np.array, value, dtype=float)
+
+
+def _told(job: Job, made: T) -> T | Raised | Unsupported:
+    """What was made; an exception by which the engine refuses is its refusal."""
+    if not isinstance(made, Raised):
+        return made
+    patterns = getattr(registry().plugins[job.engine], "refusals", ())
+    is_refusal = made.kind == "refuses" or any(re.search(pattern, made.words) for pattern in patterns)
+    return Unsupported(made.words) if is_refusal else made
 
 
 def _prepared(job: Job) -> tuple[EngineModel, Layout, State] | Unsupported:
@@ -154,12 +229,6 @@ def _require(tree: Tree, layout: Layout) -> None:
             for place, size in ((slot.q, layout.nq), (slot.v, layout.nv)):
                 if not set(place) <= set(range(size)):
                     raise ValueError(f"slot of link '{link.name}': places {place} of {size}")
-
-
-def _called(model: EngineModel, function: str, state: State) -> Array | Unsupported:
-    """What a call returns; an array of numbers, if it is one."""
-    value = model.call(function, state)
-    return value if isinstance(value, Unsupported) else np.array(value, dtype=float)
 
 
 class Worker(WorkerProcess):

@@ -28,6 +28,8 @@ _PAGE = """<!doctype html>
 </body>
 </html>
 """
+# [text](place in a report, or an address).
+_LINK = re.compile(r"\[([^\]]+)\]\((https://[\w.#/-]+|[#\w][\w.#/-]*)\)")
 # Tones of verdicts in the style sheet.
 _TONE = {True: "good", False: "bad", None: "soft"}
 # Where a table is too wide, and from which width on [px]: on any page, or on a phone.
@@ -70,10 +72,10 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
 
 
 def prose(text: str) -> str:
-    """Escaped, with `code`, **bold** and [links](#anchor) set as such."""
+    """Escaped, with `code`, **bold** and [links](#anchor) set as such; links lead into the reports, or to https."""
     text = re.sub("`([^`]+)`", r"<code>\1</code>", escape(" ".join(text.split()), quote=False))
     text = re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
-    return re.sub(r"\[([^\]]+)\]\(([#\w][\w.#/-]*)\)", r'<a href="\2">\1</a>', text)
+    return _LINK.sub(r'<a href="\2">\1</a>', text)
 
 
 def tile(fact: Fact) -> str:
@@ -155,7 +157,10 @@ def table(item: Table) -> str:
     # About how wide a column is: numbers stay on a line, other texts break between words.
     letter, padding = (6.4, 6.0) if dense else (7.2, 16.0)
     columns = [
-        [one.text if n and k else max(one.text.split(), key=len, default="") for k, one in enumerate(column)]
+        [
+            one.text if n and k else max(_LINK.sub(r"\1", one.text).split(), key=len, default="")
+            for k, one in enumerate(column)
+        ]
         for column, n in zip(zip(*rows, strict=True), numeric, strict=True)
     ]
     width = sum(padding + letter * max(3, *map(len, column)) for column in columns)

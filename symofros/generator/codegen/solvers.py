@@ -98,6 +98,11 @@ def with_solver(
     return FunctionText(code, work, max(terms, *parts, key=lambda text: len(text.code)).choices)
 
 
+def routine_work(function: Function, solver: Solver, needs: int) -> int:
+    """Doubles of scratch of a routine with full matrices, whose terms and parts need so many."""
+    return _CALLS[solver.routine]("", function, needs, None)[1]
+
+
 def _tables(solver: Solver, sparse: SparseSystem | None) -> list[str]:
     """The tables of a routine as the constant `measures`; C has no empty arrays."""
     names = ("group", "unit", "speed")

@@ -47,14 +47,24 @@ def recall_library(
     Raises:
         CompileError: As for `build_library`.
     """
-    folder = cache_folder()
-    known = folder / f"{cache_key(toolchain, flags, recipe, CODE_IDENTITY, header)}.known"
-    name = stored_text(known, file_name)
-    if name is not None and is_intact(folder / name):
-        return folder / name
+    path = known_library(recipe, header, toolchain, flags)
+    if path is not None:
+        return path
     library = build_library(source(), header, toolchain, flags)
-    keep(known, library.name)
+    keep(_note(recipe, header, toolchain, flags), library.name)
     return library
+
+
+def known_library(recipe: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None = None) -> Path | None:
+    """Path of the library of a recipe that is in the cache; None where it is not. Arguments as of `recall_library`."""
+    known = _note(recipe, header, toolchain, flags)
+    name = stored_text(known, file_name)
+    return known.parent / name if name is not None and is_intact(known.parent / name) else None
+
+
+def _note(recipe: str, header: str, toolchain: Toolchain, flags: Sequence[str] | None) -> Path:
+    """The file that names the library of a recipe."""
+    return cache_folder() / f"{cache_key(toolchain, flags, recipe, CODE_IDENTITY, header)}.known"
 
 
 def file_name(text: str) -> str:

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import CompileError, Problem, SymofrosError
+from symofros.errors import Problem, SymofrosError
 from symofros.native import HEADERS, amalgamated, native_text
-from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import DEFAULT_FLAGS, NO_COMPILER, find_toolchain
+from symofros.runtime.build.prebuilt import machine_library
+from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls.declarations import interface
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel
@@ -34,15 +34,17 @@ def native_library() -> Any:
     """The integrator of native/, loaded; compiled at the first use on a machine, then taken from the cache.
 
     Raises:
-        CompileError: There is no C compiler.
+        CompileError: There is no C compiler, and no library came with the package.
     """
-    toolchain = find_toolchain(None)
-    if toolchain is None:
-        raise CompileError(NO_COMPILER)
+    return interface().dlopen(str(machine_library(native_source(), _FLAGS)))
+
+
+def native_source() -> str:
+    """The integrator's C text: one file, as the cache keeps it; the model's header stays beside it."""
     source = amalgamated("library.c")
-    for name in reversed(HEADERS[1:]):  # One file, as the cache keeps it; the model's header stays beside it.
+    for name in reversed(HEADERS[1:]):
         source = source.replace(f'#include "{PurePosixPath(name).name}"', native_text(name))
-    return interface().dlopen(str(build_library(source, native_text(HEADERS[0]), toolchain, _FLAGS)))
+    return source
 
 
 def native_library_is_loaded() -> bool:

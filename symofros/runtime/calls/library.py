@@ -34,60 +34,30 @@ from symofros.runtime.calls.sharing import parts, share, together
 MANY = 256
 
 
-class CompiledUnit:
-    """The functions of one shared library.
+class ModelUnit:
+    """The functions of a sym_model in C.
 
     Args:
-        path: Path of the library.
-        symbol: Name of its exported function, `NAME_model`.
-        expected_hash: Hash that the struct must state.
+        model: Pointer to the sym_model; what it points to lives as long as this object.
+        path: The shared library that it lies in, if it has one of its own.
         in_lanes: Function, and how to use vectors -> the same by vectors, or None; asked for once, at the first large
             batch.
-
-    Raises:
-        CompileError: It does not load, or is not what it should be.
     """
 
     def __init__(
         self,
-        path: Path,
-        symbol: str,
-        expected_hash: str,
+        model: Any,
+        path: Path | None = None,
         in_lanes: Callable[[tuple[str, str], LaneOptions], CompiledKernel | None] | None = None,
     ) -> None:
-        self.in_lanes = in_lanes
-        self.path = path
+        self.model, self.path, self.in_lanes = model, path, in_lanes
         self.ffi = interface()
         self.nowhere = self.ffi.cast("char *", 0)
-        try:
-            # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
-            self._library = ctypes.CDLL(str(path))
-            address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
-            self.model = self.ffi.cast("const sym_model *(*)(void)", address)()
-        except (OSError, AttributeError) as error:
-            raise CompileError(
-                Problem(
-                    "the compiled model does not load",
-                    str(error),
-                    "a library in the cache folder is whole and of this machine",
-                    f"delete {path.name} from the cache folder",
-                )
-            ) from error
-        found_hash = self.ffi.string(self.model.hash).decode()
-        if self.model.abi != model_abi() or found_hash != expected_hash:
-            raise CompileError(
-                Problem(
-                    "the compiled model is another one",
-                    f"abi {self.model.abi}, hash {found_hash}",
-                    f"abi {model_abi()}, hash {expected_hash}",
-                    f"delete {path.name} from the cache folder",
-                )
-            )
         self.compiled: dict[tuple[str, str], CompiledKernel] = {}
-        lanes = self.model.lanes if self.model.size >= self.ffi.sizeof("sym_model") else self.ffi.NULL
-        for i in range(self.model.n_functions):
+        lanes = model.lanes if model.size >= self.ffi.sizeof("sym_model") else self.ffi.NULL
+        for i in range(model.n_functions):
             by_vectors = lanes[i] if lanes != self.ffi.NULL and lanes[i].batch != self.ffi.NULL else None
-            kernel = CompiledKernel(self, self.model.functions[i], by_vectors)
+            kernel = CompiledKernel(self, model.functions[i], by_vectors)
             self.compiled[kernel.signature.name, kernel.signature.frame] = kernel
 
     @property
@@ -106,6 +76,54 @@ class CompiledUnit:
         return pre
 
 
+class CompiledUnit(ModelUnit):
+    """The functions of one shared library.
+
+    Args:
+        path: Path of the library.
+        symbol: Name of its exported function, `NAME_model`.
+        expected_hash: Hash that the struct must state.
+        in_lanes: As of `ModelUnit`.
+
+    Raises:
+        CompileError: It does not load, or is not what it should be.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        symbol: str,
+        expected_hash: str,
+        in_lanes: Callable[[tuple[str, str], LaneOptions], CompiledKernel | None] | None = None,
+    ) -> None:
+        ffi = interface()
+        try:
+            # ctypes finds the symbol, whose name differs from model to model; cffi makes the calls, by one interface.
+            self._library = ctypes.CDLL(str(path))
+            address = ctypes.cast(self._library[symbol], ctypes.c_void_p).value
+            model = ffi.cast("const sym_model *(*)(void)", address)()
+        except (OSError, AttributeError) as error:
+            raise CompileError(
+                Problem(
+                    "the compiled model does not load",
+                    str(error),
+                    "a library in the cache folder is whole and of this machine",
+                    f"delete {path.name} from the cache folder",
+                )
+            ) from error
+        found_hash = ffi.string(model.hash).decode()
+        if model.abi != model_abi() or found_hash != expected_hash:
+            raise CompileError(
+                Problem(
+                    "the compiled model is another one",
+                    f"abi {model.abi}, hash {found_hash}",
+                    f"abi {model_abi()}, hash {expected_hash}",
+                    f"delete {path.name} from the cache folder",
+                )
+            )
+        super().__init__(model, path, in_lanes)
+
+
 class _Scratch(threading.local):
     """Per-thread work arrays, so that threads may call one model at the same time."""
 
@@ -122,7 +140,7 @@ class CompiledKernel:
         by_vectors: Its `sym_lanes` in C, if there is code by vectors.
     """
 
-    def __init__(self, unit: CompiledUnit, function: Any, by_vectors: Any = None) -> None:
+    def __init__(self, unit: ModelUnit, function: Any, by_vectors: Any = None) -> None:
         self._unit = unit
         self._function = function
         self._by_vectors = by_vectors
@@ -152,8 +170,8 @@ class CompiledKernel:
         return self._unit.ffi.NULL if self._by_vectors is None else self._unit.ffi.addressof(self._by_vectors)
 
     @property
-    def library(self) -> Path:
-        """The shared library that it lies in."""
+    def library(self) -> Path | None:
+        """The shared library that it lies in; None of one that is interpreted."""
         return self._unit.path
 
     @property

@@ -84,6 +84,31 @@ class CopyFunctions(ParameterFunctions):
             )
         return CudaModel(self.record, self._par, self._device_code, precision or self._precision, contract)
 
+    def ready(self, wait: bool = True) -> Self:
+        """The model with its functions as compiled C, where those of `Options(background=True)` began on tape.
+
+        A model never changes the bits of its results by itself: this one stays on tape, and so does a run of it.
+
+        Args:
+            wait: Whether to wait for the compiler to make what was called by now; else the result is this model while
+                it works.
+
+        Returns:
+            This model, where nothing of it is on tape.
+
+        Raises:
+            CompileError: The C compiler failed.
+        """
+        background = self._background
+        if background is None or not background.keys or (not wait and background.is_running):
+            return self
+        background.wait()
+        arguments = (self._par, self._threads, self._precision, self._parameter_check is not None)
+        model: Self = _restored(background.origin, *arguments)  # type: ignore[assignment]
+        for name, frame in background.keys:
+            model.make(name, frame)
+        return model
+
     def __copy__(self) -> Self:
         """The same model."""
         return self._like()

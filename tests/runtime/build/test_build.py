@@ -109,7 +109,7 @@ def test_without_a_compiler_the_interpreter_is_used(
 ) -> None:
     without_compilers.setattr(toolchain.importlib.util, "find_spec", lambda name: None)
     try:
-        with pytest.warns(sf.CompilerMissingWarning, match="interpreter"):
+        with pytest.warns(sf.CompilerMissingWarning, match="by NumPy"):
             m = compiled(random_tree(31))
         assert np.isfinite(m.mass_matrix(m.random_state(rng)[0])).all()
         assert not cache.exists()

@@ -75,7 +75,7 @@ def proven(stored: Report, engine: str) -> list[bool]:
     ],
 )
 def test_exceptions_of_plug_ins_are_shown_in_their_cells(stored: Report, engine: str, words: str) -> None:
-    assert set(verdicts(stored, engine).values()) == {"raises"} and len(verdicts(stored, engine)) == 2
+    assert set(verdicts(stored, engine).values()) == {"plug-in"} and len(verdicts(stored, engine)) == 2
     assert words in said(stored, engine)
 
 
@@ -155,7 +155,7 @@ def test_cells_in_this_process_do_not_raise_either(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(workers, "registry", lambda: Registry({**OWN, **PLUGINS}))
     for engine in PLUGINS:
         found = list(cells(PLUGINS[engine], tree_of("revolute x")))
-        assert {cell.verdict for cell in found} <= {"wrong", "raises"} and len(found) == 2
+        assert {cell.verdict for cell in found} <= {"wrong", "plug-in"} and len(found) == 2
 
 
 def test_a_script_that_does_not_end_proves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -171,9 +171,9 @@ def test_a_plug_in_that_raises_fails_its_test_in_pytest(monkeypatch: pytest.Monk
     from validation.ci.cells import CellFailure
     from validation.engines.verdicts import Cell
 
-    cell = Cell("uncalled", "revolute x", "gravity", "raises", words="KeyError: 'no joint 7'")
+    cell = Cell("uncalled", "revolute x", "gravity", "plug-in", words="KeyError: 'no joint 7'")
     monkeypatch.setattr(engines, "_cells", lambda *_: {"gravity": cell})
     item = engines.EngineCheck.__new__(engines.EngineCheck)
     item.engine, item.kind, item.wanted, item.together = "uncalled", "revolute x", "gravity", ("gravity",)
-    with pytest.raises(CellFailure, match="the plug-in raises KeyError: 'no joint 7'"):
+    with pytest.raises(CellFailure, match="in the plug-in: KeyError: 'no joint 7'"):
         item.runtest()

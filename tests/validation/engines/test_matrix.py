@@ -34,7 +34,9 @@ def test_an_engine_is_right_about_a_joint_between_oblique_links(engine: str, kin
 @pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("euler xyz", "revolute unbounded oblique")])
 def test_pinocchio_is_right_for_every_kind_of_joint(kind: str) -> None:
     (cell,) = cells(OWN["pinocchio"], tree_of(kind), ("mass_matrix",))
-    assert (cell.verdict, cell.words) == ("right", "")
+    # What a joint that mimics another adds to M, crba leaves in the data for its next call.
+    said = "at speeds times 100, after another state on the same model: right by itself"
+    assert (cell.verdict, cell.words) == (("wrong", said) if kind.startswith("mimic") else ("right", ""))
 
 
 @pytest.mark.parametrize("name", ["fixed links amid", "hinges at one point", "gravity aside", "kilometres"])
@@ -144,12 +146,11 @@ def test_splitting_a_state_does_not_change_it() -> None:
     np.testing.assert_array_equal(np.asarray(again.value), np.asarray(answer.value))
 
 
-def test_trees_that_show_the_same_functions_red_share_a_script() -> None:
+def test_trees_that_one_cause_shows_on_share_a_script() -> None:
     reds = [
         one
-        for kind in ("universal", "three hinges", "mimic revolute")
+        for kind in ("universal", "three hinges", "euler zyx")
         for one in _judged(kind, "coriolis_forces", "coriolis_symmetry")
     ]
-    assert [[one.cell.model for one in group] for group in fault_groups(reds)] == [
-        ["universal", "three hinges", "mimic revolute"]
-    ] * 2
+    groups = [[one.cell.model for one in group] for group in fault_groups(reds)]
+    assert groups == [["universal", "three hinges", "euler zyx"]] * 2

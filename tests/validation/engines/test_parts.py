@@ -30,7 +30,13 @@ def part(engine: str, **changes: Any) -> dict[str, Any]:
     cells = {engine: {"bias": {"ball": ["right", 1e-16, 1e-12]}}}
     proof = {"engine": engine, "file": f"{engine}.py", "text": "assert False\n"}
     stated = {"question": parts.question(), "models": ["ball"], "engines": [{"name": engine}], "absent": {}}
-    stated |= {"functions": {"bias": "h"}, "cells": cells, "identities": {engine: {}}, "proofs": [proof]}
+    stated |= {
+        "functions": {"bias": "h"},
+        "cells": cells,
+        "corrected": {},
+        "identities": {engine: {}},
+        "proofs": [proof],
+    }
     return stated | {"revision": "abc", "date": "now", "versions": {"numpy": "2"}} | changes
 
 

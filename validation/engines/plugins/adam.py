@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, UNIT_AXIS, Described, of_files, slots_of, through_reader
 
 _SETUP = """import casadi as ca
 import numpy as np
@@ -96,4 +96,6 @@ PLUGIN = SourcePlugin(
     write=through_reader(read),
     formats=("urdf",),
     write_reading=of_files(read),
+    statements=(UNIT_AXIS,),
+    calls=4,
 )

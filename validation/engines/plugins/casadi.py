@@ -219,4 +219,5 @@ PLUGIN = SourcePlugin(
     ),
     ways=WAYS,
     write=write,
+    calls=2,
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.urdf import UNIT_AXIS
 
 
 class _Native(NamedTuple):
@@ -244,4 +245,7 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
+    # Its parsers return no skeleton, and write why to the log.
+    refusals=("no skeleton: see the log",),
+    statements=(UNIT_AXIS,),
 )

@@ -10,6 +10,7 @@ import numpy as np
 from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .writing import urdf
 from .writing.source import Source, SourcePlugin, Way, series
+from .writing.urdf import UNIT_AXIS
 
 
 class _Native(NamedTuple):
@@ -308,4 +309,5 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_PARSERS),
     write_reading=write_reading,
+    statements=(UNIT_AXIS,),
 )

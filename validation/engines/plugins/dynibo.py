@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, Described, breadth_first, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, UNIT_AXIS, Described, breadth_first, of_files, slots_of, through_reader
 
 _SETUP = '''import numpy as np
 import tempfile
@@ -88,4 +88,5 @@ PLUGIN = SourcePlugin(
     gravity=(0.0, 0.0, -9.80665),
     formats=("urdf",),
     write_reading=of_files(read),
+    statements=(UNIT_AXIS,),
 )

@@ -177,4 +177,5 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    calls=4,
 )

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, Described, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, UNIT_AXIS, Described, of_files, slots_of, through_reader
 
 _SETUP = '''import os
 import numpy as np
@@ -76,4 +76,6 @@ PLUGIN = SourcePlugin(
     gravity=(0.0, 0.0, -9.81),
     formats=("urdf",),
     write_reading=of_files(_of_file),
+    statements=(UNIT_AXIS,),
+    calls=4,
 )

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, Described, base, of_files, slots_of, through_reader
+from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
 
 _SETUP = """import numpy as np
 import idyntree.bindings as iDynTree
@@ -18,7 +18,7 @@ assert loader.loadReducedModelFromString({text!r}, {joints})
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
-assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}\""""
+{base}"""
 _FLOATING_STATE = (
     "def state(q, v):",
     "    x, y, z, w = q[3:7]",
@@ -146,7 +146,8 @@ def read(tree: Tree, described: Described) -> Source:
     """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
     root = described.links[0] if floating else base(described.text)
-    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
+    asserted = f"assert robot.setFloatingBase({root!r})" if floating else f"robot.setFloatingBase({root!r})"
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), base=asserted)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
     return Source(
@@ -198,4 +199,5 @@ PLUGIN = SourcePlugin(
     write=through_reader(read),
     formats=("urdf", "urdf written"),
     write_reading=lambda tree, form, text: of_files(_written if form == "urdf written" else read)(tree, form, text),
+    statements=(UNIT_AXIS,),
 )

@@ -45,4 +45,5 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
+    calls=4,
 )

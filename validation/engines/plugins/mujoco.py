@@ -8,9 +8,10 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Steps, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Statement, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
+from .writing.urdf import UNIT_AXIS
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -333,4 +334,21 @@ PLUGIN = SourcePlugin(
     transformations={"attached": "MjSpec, attach_body", "fused": "fusestatic"},
     formats=tuple(_READERS),
     write_reading=write_reading,
+    statements=(
+        Statement(
+            "precondition",
+            "mj_rne leaves armature out: mj_inverse adds armature*qacc, later M*qacc, to what it gives",
+            "mujoco, src/engine/engine_inverse.c: mj_inverseSkip",
+            "inverse_dynamics:mj_rne",
+            lambda tree, text: any(any(joint.armature) for link in tree.links for joint in link.joints),
+        ),
+        Statement(
+            "precondition",
+            "a row's reference acceleration is -b v - k r: what the rate of a tendon's Jacobian adds, J'v, is left out",
+            "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
+            "constraint_velocity_products|constrained_acceleration|constraint_forces",
+            lambda tree, text: any(one.kind == "path" for one in tree.constraints),
+        ),
+        UNIT_AXIS,
+    ),
 )

@@ -6,11 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Link, Slot, Tree, Unsupported
+from ..interface import SINGLE, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, numbered, series
-
-# Everything is in single precision: some hundred of its roundings.
-_SINGLE = 2e-5
 
 # Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
 _IMPORTS = ("import numpy as np, warp as wp", "wp.config.quiet = True", "import newton")
@@ -34,25 +31,21 @@ def _passive(name: str) -> str:
 
 
 WAYS = {
-    "mass_matrix": Way("eval_mass_matrix", f"{_Q}value = newton.eval_mass_matrix(m, s).numpy()[0]", _SINGLE),
-    "gravity": Way("eval_inverse_dynamics_passive", f"{_Q}{_passive('gravity')}value = gravity.numpy()", _SINGLE),
-    "coriolis_forces": Way(
-        "eval_inverse_dynamics_passive", f"{_QV}{_passive('coriolis')}value = coriolis.numpy()", _SINGLE
-    ),
+    "mass_matrix": Way("eval_mass_matrix", f"{_Q}value = newton.eval_mass_matrix(m, s).numpy()[0]"),
+    "gravity": Way("eval_inverse_dynamics_passive", f"{_Q}{_passive('gravity')}value = gravity.numpy()"),
+    "coriolis_forces": Way("eval_inverse_dynamics_passive", f"{_QV}{_passive('coriolis')}value = coriolis.numpy()"),
     "inverse_dynamics": Way(
         "eval_inverse_dynamics_force",
         f"{_QV}{_passive('gravity')}{_passive('coriolis')}out = wp.zeros(m.joint_dof_count, device='cpu')\n"
         "M = newton.eval_mass_matrix(m, s)\n"
         "newton.eval_inverse_dynamics_force(m, s, mass_matrix=M, joint_qdd=wp.array(a, dtype=float, device='cpu'),"
         " coriolis_force=coriolis, gravity_force=gravity, joint_f=out)\nvalue = out.numpy()",
-        _SINGLE,
     ),
-    "link_poses": Way("eval_fk", f"{_Q}value = [[*x[:3], *rotation(*x[3:]).flat] for x in s.body_q.numpy()]", _SINGLE),
+    "link_poses": Way("eval_fk", f"{_Q}value = [[*x[:3], *rotation(*x[3:]).flat] for x in s.body_q.numpy()]"),
     "link_velocities": Way(
         "eval_fk",
         f"{_QV}rotation\n"
         "value = [[*(x[:3] - np.cross(x[3:], r)), *x[3:]] for x, r in zip(s.body_qd.numpy(), centres(s))]",
-        _SINGLE,
     ),
     # Of the mass centres.
     "link_jacobians": Way(
@@ -60,7 +53,6 @@ WAYS = {
         f"""rotation
 {_Q}J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
-        _SINGLE,
     ),
 }
 
@@ -248,4 +240,13 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
+    statements=(
+        Statement(
+            "repairs",
+            "inertias that are too small are made larger",
+            "newton 1.8, newton/_src/sim/builder.py: ModelBuilder.finalize, its warning",
+            warned="Inertia validation corrected",
+        ),
+    ),
+    roundoff=SINGLE,
 )

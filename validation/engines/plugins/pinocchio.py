@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from ..functions import ALIGNED
-from ..interface import Array, Convention, End, Joint, Rows, Slot, Tree, Unsupported
+from ..interface import Array, Convention, End, Joint, Rows, Slot, Statement, Tree, Unsupported
 from .loops import pinocchio as constrained
-from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
+from .writing.source import Source, SourcePlugin, Way, attached, is_depth_first, numbered, series
+from .writing.urdf import UNIT_AXIS
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.
@@ -372,4 +373,20 @@ PLUGIN = SourcePlugin(
     transformations={"locked": "buildReducedModel", "attached": "appendModel"},
     formats=("urdf", "mjcf", "urdf written"),
     write_reading=write_reading,
+    statements=(
+        Statement(
+            "precondition",
+            "joints need to be added to the tree in a depth-first order",
+            "pinocchio 4.1, src/multibody/model.hxx:394; https://github.com/stack-of-tasks/pinocchio/issues/1897",
+            holds=lambda tree, text: not text and not is_depth_first(tree),
+        ),
+        Statement(
+            "precondition",
+            "computeCoriolisMatrix does not support mimic joints: asserted, which wheels are built without",
+            "pinocchio 4.1, src/algorithm/rnea.hxx:732: assert(model.check(MimicChecker()))",
+            "coriolis_forces|coriolis_symmetry",
+            lambda tree, text: any(joint.mimics for link in tree.links for joint in link.joints),
+        ),
+        UNIT_AXIS,
+    ),
 )

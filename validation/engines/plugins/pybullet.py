@@ -6,7 +6,7 @@ import re
 
 from ..interface import Convention, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, describe, slots_of
+from .writing.urdf import KINDS, UNIT_AXIS, describe, slots_of
 
 # One client serves all models; its gravity stays.
 _SETUP = """from tempfile import NamedTemporaryFile
@@ -115,4 +115,5 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,
+    statements=(UNIT_AXIS,),
 )

@@ -41,6 +41,11 @@ def _turned(axis: Vector) -> Array:
     return np.stack([u, np.cross(w, u), w], axis=1)
 
 
+def _symmetric(matrix: Array) -> Array:
+    """Without what roundings leave of a difference: links with one are refused."""
+    return np.asarray((matrix + matrix.T) / 2.0)
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree; where an axis is oblique, the link's frame is turned so that it is z."""
     lines: list[str] = []
@@ -72,7 +77,7 @@ def write(tree: Tree) -> Source | Unsupported:
                     motor = f", Jm={joint.armature[0]!r}, G=1"
             inertia = ""
             if last:
-                com, moments = (turn.T @ link.com).tolist(), (turn.T @ link.inertia @ turn).tolist()
+                com, moments = (turn.T @ link.com).tolist(), _symmetric(turn.T @ link.inertia @ turn).tolist()
                 inertia = f", m={link.mass!r}, r={com!r}, I=np.array({moments!r})"
             name = f"l{k}_{place}"
             placed = f"ET.SE3(np.array({T.tolist()!r}))" if not moves or not np.array_equal(T, np.eye(4)) else ""

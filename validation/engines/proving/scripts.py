@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ...contract.raised import Raised, attempted
+from ..causes.grouping import cause_of
 from ..functions import FUNCTIONS
 from ..interface import Array, EnginePlugin
 from ..matrix import SEED, Judged, Truths, judged
@@ -19,7 +20,6 @@ from ..plugins.writing.source import SourcePlugin
 from ..workers import Crashed, Job, Worker
 from .pieces import taken
 from .shrink import TRIES, Case, size, smallest
-from .threads import NONE, thread
 
 # A smaller case keeps at least this part of the error, so that it shows the same fault plainly.
 _KEPT = 0.05
@@ -41,14 +41,14 @@ class Proof:
         model: Name of the tree.
         function: Name of the function.
         native: Name that the engine gives it.
-        verdict: "wrong", "imprecise" or "crashes".
+        verdict: One of `verdicts.RED`.
         error: Error of the cell, as part of the largest entry.
         tolerance: Tolerance, likewise.
         file: Name of the script's file.
         text: The script; "" where there is none.
         output: What it printed, and how it ended; or why there is no script.
         proven: Whether it failed as it must.
-        thread: Public thread that knows the fault, or "none found".
+        thread: Public thread that knows the fault, or that none was found.
     """
 
     engine: str
@@ -93,23 +93,28 @@ class Prover:
         path = self.folder / file_of(red)
         if path.exists():
             kept = path.read_text(encoding="utf-8")
-            output, failed = fails(path)
+            output, failed = fails(path, _exception(red))
             if failed and kept.startswith(_title(plugin, red)):
                 return _proof(plugin, red, kept, output, failed)
-        crashes = red.cell.verdict == "crashes"
-        small = _with_script(plugin, red, self.worker) if crashes else self.shrunk(plugin, red)
+        ends = red.cell.verdict in ("crashes", "raises")
+        small = _with_script(plugin, red, self.worker) if ends else self.shrunk(plugin, red)
         if not small.answer.script.strip():
             return _proof(plugin, red, "", NO_SCRIPT, False)
         self.folder.mkdir(parents=True, exist_ok=True)
-        script = text(plugin, small, thread(plugin.name, red.cell.model, red.cell.function))
+        script = text(plugin, small, _thread(red))
         path.write_text(script, encoding="utf-8")
-        output, failed = fails(path)
+        output, failed = fails(path, _exception(red))
         return _proof(plugin, red, script, output, failed)
 
     def shrunk(self, plugin: EnginePlugin, red: Judged) -> Judged:
         """The smallest case that shows the fault of a red cell; of a crash, the case itself."""
         answer, truths = red.answer, Truths()
-        if answer.layout is None or answer.state is None or red.cell.verdict not in ("wrong", "imprecise"):
+        if (
+            red.before
+            or answer.layout is None
+            or answer.state is None
+            or red.cell.verdict not in ("wrong", "imprecise")
+        ):
             return red
         # A fault that is no matter of rounding is seen without asking how far roundings go.
         quick = Truths(perturbations=0) if red.cell.verdict == "wrong" else truths
@@ -147,10 +152,14 @@ class Prover:
 
 def _with_script(plugin: EnginePlugin, red: Judged, worker: Worker) -> Judged:
     """A cell whose engine took its script with it; where it does so as it builds, what would have been run."""
-    job = Job(red.cell.engine, red.tree, (red.cell.function,), SEED, form=red.form, text=red.text, called=False)
+    if red.answer.script:
+        return red
+    layout, state = red.answer.layout, red.answer.state
+    pieces = taken(layout, state) if layout is not None and state is not None else ()
+    job = Job(red.cell.engine, red.tree, (red.cell.function,), SEED, pieces, red.form, red.text, called=False)
     (answer,) = worker.ask(job)
     script = answer.script
-    if isinstance(answer.value, Crashed) and isinstance(plugin, SourcePlugin):
+    if isinstance(answer.value, Crashed | Raised) and isinstance(plugin, SourcePlugin):
         script = plugin.building(red.tree, red.form, red.text)
     return replace(red, answer=replace(red.answer, script=script))
 
@@ -169,7 +178,7 @@ def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: 
         text=script,
         output=output,
         proven=failed,
-        thread=thread(plugin.name, cell.model, cell.function),
+        thread=_thread(red),
     )
 
 
@@ -178,6 +187,12 @@ def file_of(red: Judged) -> str:
     cell = red.cell
     stem = f"{cell.engine}-{cell.model}-{cell.function}".replace(":", "-").replace(" ", "_")
     return "".join(letter for letter in stem if letter.isalnum() or letter in "-_") + ".py"
+
+
+def _thread(red: Judged) -> str:
+    """The public thread that knows the cause of a cell."""
+    cause = cause_of(red.cell)
+    return cause.known if cause else "not searched: its cause is not yet found"
 
 
 def _title(plugin: EnginePlugin, red: Judged) -> str:
@@ -205,13 +220,15 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     Args:
         plugin: The engine.
         red: The case.
-        known: Public thread that knows the fault.
+        known: Public thread that knows the fault, or that none was found.
     """
     function = FUNCTIONS[red.cell.function.partition(":")[0]]
-    verdict = {"crashes": "crashes"}.get(red.cell.verdict, f"is {red.cell.verdict}")
+    verdict = red.cell.verdict if red.cell.verdict in ("crashes", "raises") else f"is {red.cell.verdict}"
     about = _SHAPES.sub("", function.text)
     head = f"{_title(plugin, red)}{plugin.functions[red.cell.function]} {verdict} ({about}).\n"
-    if known != NONE:
+    if red.cell.words and red.want is not None:
+        head += f"# {red.cell.words}.\n"
+    if known.startswith("https://"):
         head += f"# Known: {known}.\n"
     if red.want is None:
         return f"{head}{red.answer.script}\n"
@@ -226,8 +243,18 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     return "\n".join([head + red.answer.script.rstrip(), "import numpy as np", *lines, ""])
 
 
-def fails(path: Path) -> tuple[str, bool]:
-    """Run a script in a fresh process: what it says, and whether it fails by its assertion or by a crash."""
+def _exception(red: Judged) -> str:
+    """Type of the exception that a red cell is; "" for none."""
+    return red.cell.words.partition(":")[0] if red.cell.verdict == "raises" else ""
+
+
+def fails(path: Path, exception: str = "") -> tuple[str, bool]:
+    """Run a script in a fresh process: what it says, and whether it fails as it must.
+
+    Args:
+        path: The script.
+        exception: Type of the exception that it must end in; "" for its assertion or a crash.
+    """
     try:
         done = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, timeout=_TIME)
     except subprocess.TimeoutExpired:
@@ -235,5 +262,6 @@ def fails(path: Path) -> tuple[str, bool]:
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
     said = re.sub(r"\S*/site-packages/", "", said)  # Warnings of engines name where they are installed here.
     said = said.replace(str(Path.home()), "~")  # Banners of engines name their caches.
-    failed = done.returncode < 0 or (done.returncode != 0 and "AssertionError" in done.stderr)
+    ending = re.compile(rf"^(\w+\.)*{exception or 'AssertionError'}\b", re.MULTILINE)
+    failed = done.returncode != 0 and (done.returncode < 0 or ending.search(done.stderr) is not None)
     return f"{said.strip()}\nexit code {done.returncode}", failed

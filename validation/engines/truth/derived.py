@@ -263,14 +263,22 @@ def _to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
 
 def integrated_dq(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its configuration, in tangents at both."""
-    columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
-    return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    def compute() -> Exact:
+        columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
+        return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    return truth.once(("integrated_dq", *s.q, *s.v2), compute)
 
 
 def integrated_dv(truth: Truth, s: Point) -> Exact:
     """Derivatives (nv, nv) of integrate by its speeds, in the tangent at the result."""
-    columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
-    return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    def compute() -> Exact:
+        columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
+        return _to_tangent(truth, integrated(truth, s.q, s.v2), columns)
+
+    return truth.once(("integrated_dv", *s.q, *s.v2), compute)
 
 
 def difference_dq(truth: Truth, s: Point) -> Exact:

@@ -141,7 +141,7 @@ def simulate(request: Json, tell: Tell) -> Json:
     options = request.get("options", {})
     t_end = number_of(options.get("t_end", 1.0), "t_end")
     tell(0, 100, "compiling")
-    model = compile_system(system)
+    model = compile_system(system, sf.Options(background=True))  # A first run does not wait for a compiler.
     par = _vector(model.names.par, options.get("parameters"), model.parameter_values, "parameter")
     q = _vector(model.names.q, options.get("q0"), model.neutral(), "coordinate")
     v = _vector(model.names.v, options.get("v0"), np.zeros(model.nv), "speed")

@@ -124,6 +124,9 @@ _J = "J = d.efc_J.reshape(-1, m.nv)\n"
 # Constraints are springs by design (MuJoCo's documentation, "Constraint model"): at the largest impedance a regulariser
 # of 1e-4 of the inertia that a row sees, by an estimate at the reference configuration, stands beside J M^-1 J^T.
 _SOFT = 1e-2
+# Far from there the inertia that a row sees is a fraction of the estimate, and forces between redundant rows take the
+# weakest direction of J M^-1 J^T, down to a twentieth of its diagonal: 1e-4 becomes some hundredths.
+_SOFT_FORCES = 5e-2
 
 WAYS = {
     "constraint_jacobian": Way("efc_J", f"{_AT}{_J}value = axes() @ J"),
@@ -133,5 +136,7 @@ WAYS = {
         f"{_AT}{_J}X = np.zeros_like(J)\nmj.mj_solveM(m, d, X, J)\nvalue = axes() @ J @ X.T @ axes().T",
     ),
     "constrained_acceleration": Way("mj_forward: qacc", f"{_AT}value = d.qacc", _SOFT),
-    "constraint_forces": Way("mj_forward: efc_force", f"{_AT}value = np.linalg.solve(axes().T, d.efc_force)", _SOFT),
+    "constraint_forces": Way(
+        "mj_forward: efc_force", f"{_AT}value = np.linalg.solve(axes().T, d.efc_force)", _SOFT_FORCES
+    ),
 }

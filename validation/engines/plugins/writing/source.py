@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
@@ -9,7 +10,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...interface import Array, Convention, EngineModel, Slot, State, Steps, Tree, Unsupported
+from ....contract.raised import TEXT, kind_of
+from ...interface import CALLS, DOUBLE, Array, Convention, EngineModel, Slot, State, Statement, Steps, Tree, Unsupported
 from ...truth.charts import CHARTS
 
 # Names that not every tree's source defines -> why it may not.
@@ -72,12 +74,14 @@ class Source:
             code = code.replace(general, own)
         return code
 
-    def script(self, code: str, state: State) -> str:
-        """The statements that build the tree, state what the code needs, and run it."""
+    def script(self, code: str, *states: State) -> str:
+        """The statements that build the tree and, for each state, state what the code needs, and run it."""
         code = self.spelled(code)
         used = [name for name in _INPUTS if name in identifiers(code)]
-        given = [f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used]
-        return "\n".join([*self.text(), *given, code])
+        lines = [*self.text()]
+        for state in states:
+            lines += [*(f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used), code]
+        return "\n".join(lines)
 
     def text(self) -> tuple[str, ...]:
         """The statements that build the tree, with all that functions need."""
@@ -91,14 +95,21 @@ class SourceModel:
         source: The text.
         ways: Functions by name.
         given: Objects that the text does not make.
+        refusals: See `SourcePlugin`.
     """
 
-    def __init__(self, source: Source, ways: Mapping[str, Way], given: Mapping[str, Any] | None = None) -> None:
-        self._source, self._ways = source, ways
+    def __init__(
+        self,
+        source: Source,
+        ways: Mapping[str, Way],
+        given: Mapping[str, Any] | None = None,
+        refusals: tuple[str, ...] = (),
+    ) -> None:
+        self._source, self._ways, self._refusals = source, ways, refusals
         self.slots, self.nq, self.nv = source.slots, source.nq, source.nv
         # What the text defines: the engine's own objects.
         self.names: dict[str, Any] = dict(given or {})
-        exec("\n".join(source.text()), self.names)  # Our own text, of numbers and the engine's names.
+        _run("\n".join(source.text()), self.names)  # Our own text, of numbers and the engine's names.
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function in the engine's conventions (`EngineModel`)."""
@@ -107,27 +118,49 @@ class SourceModel:
 
     def each(self, function: str, states: Iterable[State]) -> Array | Unsupported:
         """Values of a function at N states (N, ...), one state after the other."""
+        try:
+            ask = self.kept(function)
+            return ask if isinstance(ask, Unsupported) else np.array([ask(state) for state in states])
+        except Exception as error:
+            return refusal(error, self._refusals)
+
+    def kept(self, function: str) -> Callable[[State], Array] | Unsupported:
+        """A function whose calls share what the text makes: the engine's data are those that the last call left."""
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
         text = self._source.spelled(self._ways[function].code)
         for name in (OPTIONAL.keys() & identifiers(text)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
-        code, names, values = compile(text, function, "exec"), dict(self.names), []
-        try:
-            exec("\n".join(self._source.closing), names)
-            for state in states:
-                names.update({name: getattr(state, name).copy() for name in _INPUTS})
-                exec(code, names)
-                values.append(np.array(names["value"], dtype=float))
-        except (NameError, SyntaxError):  # A fault of our text is no word of the engine's.
-            raise
-        except Exception as error:  # The engine refuses, in its own words.
-            return Unsupported(f"{type(error).__name__}: {error}".strip())
-        return np.array(values)
+        code, names = compile(text, TEXT, "exec"), dict(self.names)
+        _run("\n".join(self._source.closing), names)
 
-    def script(self, function: str, state: State) -> str:
-        """The text that the call runs, with the state that it needs (`EngineModel`)."""
-        return self._source.script(self._ways[function].code, state)
+        def ask(state: State) -> Array:
+            names.update({name: getattr(state, name).copy() for name in _INPUTS})
+            exec(code, names)
+            return np.array(names["value"], dtype=float)
+
+        return ask
+
+    def script(self, function: str, *states: State) -> str:
+        """The text that calls run at these states, one after the other, with what they need (`EngineModel`)."""
+        return self._source.script(self._ways[function].code, *states)
+
+
+def _run(text: str, names: dict[str, Any]) -> None:
+    exec(compile(text, TEXT, "exec"), names)
+
+
+def refusal(error: Exception, patterns: Iterable[str]) -> Unsupported:
+    """An engine's refusal in its own words; whatever else was raised goes on.
+
+    Args:
+        error: What was raised.
+        patterns: See `SourcePlugin.refusals`.
+    """
+    said = f"{type(error).__name__}: {error}".strip()
+    if kind_of(error) == "refuses" or any(re.search(pattern, said) for pattern in patterns):
+        return Unsupported(said)
+    raise error
 
 
 def identifiers(code: str) -> set[str]:
@@ -146,6 +179,11 @@ class SourcePlugin:
         find: Version of an engine that is no Python distribution.
         constraints: Kinds of constraints that it has of its own -> what it calls them.
         transformations: What it does to trees that are built (`Tree.transformations`) -> what it calls that.
+        refusals: Patterns of exceptions ("Type: message") by which the engine refuses, where it is not seen by where
+            they are raised.
+        statements: See `interface.Statement`.
+        roundoff: Unit roundoff of its numbers.
+        calls: Random states that a function is asked at besides.
     """
 
     name: str
@@ -161,6 +199,10 @@ class SourcePlugin:
     find: Callable[[], str] | None = None
     constraints: Mapping[str, str] = field(default_factory=dict)
     transformations: Mapping[str, str] = field(default_factory=dict)
+    refusals: tuple[str, ...] = ()
+    statements: tuple[Statement, ...] = ()
+    roundoff: float = DOUBLE
+    calls: int = CALLS
 
     @property
     def functions(self) -> Mapping[str, str]:
@@ -219,11 +261,9 @@ class SourcePlugin:
         if isinstance(source, Unsupported):
             return source
         try:
-            return SourceModel(source, self.ways)
-        except (NameError, SyntaxError):
-            raise
-        except Exception as error:  # The engine refuses, in its own words.
-            return Unsupported(f"{type(error).__name__}: {error}".strip())
+            return SourceModel(source, self.ways, refusals=self.refusals)
+        except Exception as error:
+            return refusal(error, self.refusals)
 
 
 Numbered = tuple[tuple[tuple[Slot, ...], ...], int, int]
@@ -260,6 +300,16 @@ def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> Numbered:
             nq, nv = nq + size.nq, nv + size.nv
         slots[link.name] = tuple(own)
     return tuple(slots.values()), nq, nv
+
+
+def is_depth_first(tree: Tree) -> bool:
+    """Whether each link follows the one that it hangs on, or the last of what another hangs there before it."""
+    path = [-1]
+    for k, link in enumerate(tree.links):
+        if link.parent not in path:
+            return False
+        path = [*path[: path.index(link.parent) + 1], k]
+    return True
 
 
 def attached(tree: Tree) -> set[int]:

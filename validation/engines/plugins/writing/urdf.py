@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from xml.etree import ElementTree
 
-from ...interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Tree, Unsupported, Vector
+from ...interface import IDENTITY, ORIGIN, Joint, Link, Rows, Slot, Statement, Tree, Unsupported, Vector
 from ...truth.charts import CHARTS
 from .source import Source
 
@@ -24,6 +25,23 @@ KINDS = {
     "prismatic": "prismatic",
     "prismatic oblique": "prismatic",
 }
+
+_AXIS = re.compile(r'<axis xyz="([^"]*)"|<axis>.*?<xyz[^>]*>([^<]*)<')
+
+
+def _has_long_axis(tree: Tree, text: str) -> bool:
+    """Whether a file of URDF or SDF states an axis of another length than 1."""
+    axes = (found[1] or found[2] for found in _AXIS.finditer(text))
+    return any(abs(math.hypot(*map(float, axis.split())) - 1.0) > 1e-6 for axis in axes)
+
+
+# Of whoever reads these formats.
+UNIT_AXIS = Statement(
+    "precondition",
+    "the vector of an axis should be normalized",
+    "http://wiki.ros.org/urdf/XML/joint and http://sdformat.org/spec?elem=joint: axis, xyz",
+    holds=_has_long_axis,
+)
 
 
 @dataclass(frozen=True)

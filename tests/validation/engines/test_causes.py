@@ -1,0 +1,126 @@
+"""Causes of red cells: each cell has one or is counted as not explained; what hides behind another is found."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from validation.engines import parts, study
+from validation.engines.causes.cause import FOLDER, read, stated
+from validation.engines.causes.corrections import by_columns
+from validation.engines.causes.grouping import causes_of, stale, without_their_causes
+from validation.engines.matrix import SEED, Truths, judged
+from validation.engines.models.formats import formats
+from validation.engines.models.kinds import tree_of
+from validation.engines.models.readers import readings
+from validation.engines.plugins import OWN
+from validation.engines.report import compose
+from validation.engines.verdicts import RED
+from validation.engines.workers import Job
+from validation.reporting import html, markdown
+from validation.reporting.provenance import Provenance
+
+ROOT = Path(__file__).parents[3]
+HESSIANS = ("jacobian_dq_local", "jacobian_dq_aligned")
+
+
+@pytest.fixture(scope="module")
+def data() -> dict[str, Any]:
+    """The stored report."""
+    found: dict[str, Any] = json.loads((ROOT / "reports" / "engines.json").read_text(encoding="utf-8"))
+    return found
+
+
+def test_every_red_cell_has_one_cause_or_is_in_a_group_without(data: dict[str, Any]) -> None:
+    cells = parts.cells(data)
+    groups = causes_of(cells)
+    assert sorted(map(repr, (cell for group in groups for cell in group.cells))) == sorted(
+        repr(cell) for cell in cells if cell.verdict in RED
+    )
+    assert [group.weight for group in groups] == sorted((group.weight for group in groups), reverse=True)
+    for group in groups:
+        assert {group.cause} == {next((one for one in stated() if one.explains(cell)), None) for cell in group.cells}
+
+
+def test_without_stated_causes_functions_that_are_red_on_the_same_trees_are_one(data: dict[str, Any]) -> None:
+    cells = parts.cells(data)
+    groups = causes_of(cells, ())
+    assert {group.cause for group in groups} == {None}
+    assert sum(len(group.cells) for group in groups) == sum(cell.verdict in RED for cell in cells)
+    assert all(len(group.cells) == len(group.functions) * len(group.models) for group in groups)
+
+
+def test_what_no_stated_cause_explains_and_what_explains_nothing_are_said(data: dict[str, Any]) -> None:
+    row = {"gravity": {"ball": ["wrong", 0.5, 1e-12], "free": ["wrong", 0.5, 1e-12]}}
+    aside = {"bias": {"ball": ["precondition", 0.5, 1e-12, "no balls (manual, p. 3): wrong by 5.0e-01"]}}
+    engine = {"name": "toy", "version": "1", "conventions": [], "functions": {"gravity": "weight", "bias": "h"}}
+    engine["refusals"] = "refuses 9 of 9 cells in its own words, above the bound of 25%"
+    toy = data | {"engines": [engine], "cells": {"toy": row | aside}, "identities": {}, "proofs": []}
+    report = compose(toy)
+    assert "2 red, behind them 1 cause," in report.summary
+    assert "causes, 1 of them not yet found" in {fact.label for fact in report.facts}
+    for text in (html.page(report), markdown.page(report, Provenance.of({}), "")):
+        assert "Cause not yet found:" in text and "no balls (manual, p. 3)." in text
+        assert "toy refuses 9 of 9 cells" in text
+    frax = next(cause for cause in stated() if cause.engine == "frax")
+    assert stale([], ["frax"]) == [frax] and not stale([], ["toy"])
+
+
+def test_tensors_are_read_by_columns() -> None:
+    right = np.arange(48.0).reshape(2, 6, 2, 2)
+    wrong = np.array([np.reshape(np.ravel(one, order="F"), one.shape) for one in right])
+    np.testing.assert_array_equal(by_columns(wrong), right)
+
+
+def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
+    cells = [
+        one
+        for kind in ("ball", "universal", "revolute x")
+        for one in judged(OWN["pinocchio"], Job("pinocchio", tree_of(kind), HESSIANS, SEED), Truths(0))
+    ]
+    first, *behind = causes_of([one.cell for one in cells], corrected=without_their_causes(cells))
+    assert first.cause and (first.cause.name, len(first.cells), first.hidden) == ("tensors by columns", 6, ())
+    assert {group.cause and group.cause.name: len(group.hidden) for group in behind} == {
+        "axes that move with q": 2,
+        "Hessian in the joint's own axes": 1,
+    }
+    assert not any(group.cells for group in behind)
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ("wat: it is wrong", "unknown entries"),
+        ("offends:", "entries missing: .'offends'."),
+        ("fault: nowhere", "the name of a file"),
+        ("thread: somewhere", "a thread is an address"),
+        ("searched: ''", "says when no thread was found"),
+        ("correction: by magic", "a correction is one of"),
+        ('last: "2"', "has a first one"),
+    ],
+)
+def test_files_that_break_a_rule_are_refused(tmp_path: Path, changed: str, said: str) -> None:
+    good = {"name": "a", "what": "It is wrong.", "shows": "balls", "offends": "M.", "searched": '"2026-11-28"'}
+    name, _, value = changed.partition(":")
+    path = tmp_path / "toy.yaml"
+    rows = [f"{key}: {text}" for key, text in (good | {name: value}).items() if text]
+    path.write_text("- " + "\n  ".join(rows) + "\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=said):
+        read(path)
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.yaml")), ids=lambda path: path.stem)
+def test_stated_causes_are_sentences_of_an_engine_that_is_there(path: Path) -> None:
+    trees = [*study.trees(), *readings(), *formats()]
+    for cause in read(path):
+        assert cause.engine in OWN
+        for text in (cause.what, cause.offends, cause.documented or "."):
+            assert text.rstrip('"').endswith("."), text
+        for patterns, names in ((cause.functions, OWN[cause.engine].functions), (cause.trees, trees)):
+            for pattern in patterns:
+                assert any(re.fullmatch(pattern, name) for name in names), (cause.name, pattern)
