@@ -17,7 +17,6 @@ from validation.engines.causes.grouping import causes_of, stale, without_their_c
 from validation.engines.matrix import SEED, Truths, judged
 from validation.engines.models.formats import formats
 from validation.engines.models.kinds import tree_of
-from validation.engines.models.readers import readings
 from validation.engines.plugins import OWN
 from validation.engines.report import compose
 from validation.engines.verdicts import RED
@@ -116,7 +115,7 @@ def test_files_that_break_a_rule_are_refused(tmp_path: Path, changed: str, said:
 
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("*.yaml")), ids=lambda path: path.stem)
 def test_stated_causes_are_sentences_of_an_engine_that_is_there(path: Path) -> None:
-    trees = [*study.trees(), *readings(), *formats()]
+    trees = [*study.trees(), *formats()]
     for cause in read(path):
         assert cause.engine in OWN
         for text in (cause.what, cause.offends, cause.documented or "."):

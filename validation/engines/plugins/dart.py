@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Tree, Unsupported
+from ..interface import Array, Convention, Joint, Slot, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, numbered, series
-from .writing.urdf import UNIT_AXIS
+from .writing.urdf import UNIT_AXIS, has_bare_link
 
 
 class _Native(NamedTuple):
@@ -247,5 +247,13 @@ PLUGIN = SourcePlugin(
     write_reading=write_reading,
     # Its parsers return no skeleton, and write why to the log.
     refusals=("no skeleton: see the log",),
-    statements=(UNIT_AXIS,),
+    statements=(
+        Statement(
+            "precondition",
+            "links without <inertial> have the loader's defaultInertia, by default of 1 kg and 1 kg m^2",
+            "dart 6.20, dart/utils/urdf/DartLoader.hpp: Options::mDefaultInertia",
+            holds=has_bare_link,
+        ),
+        UNIT_AXIS,
+    ),
 )

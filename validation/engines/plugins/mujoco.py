@@ -11,7 +11,7 @@ import numpy as np
 from ..interface import Array, Convention, Joint, Slot, Statement, Steps, Tree, Unsupported
 from .loops import mujoco as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
-from .writing.urdf import UNIT_AXIS
+from .writing.urdf import UNIT_AXIS, has_bare_shape
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -335,6 +335,12 @@ PLUGIN = SourcePlugin(
     formats=tuple(_READERS),
     write_reading=write_reading,
     statements=(
+        Statement(
+            "precondition",
+            "where <inertial> is missing, mass and moments are inferred from geoms",
+            "https://mujoco.readthedocs.io/en/stable/XMLreference.html#compiler-inertiafromgeom: auto",
+            holds=has_bare_shape,
+        ),
         Statement(
             "precondition",
             "mj_rne leaves armature out: mj_inverse adds armature*qacc, later M*qacc, to what it gives",

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..interface import SINGLE, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.urdf import has_bare_shape
 
 # Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
 _IMPORTS = ("import numpy as np, warp as wp", "wp.config.quiet = True", "import newton")
@@ -241,6 +242,18 @@ PLUGIN = SourcePlugin(
     formats=tuple(_READERS),
     write_reading=write_reading,
     statements=(
+        Statement(
+            "precondition",
+            "coordinates of joints are counted from ref",
+            "newton 1.8, newton/_src/utils/import_mjcf.py:2683: Newton joint coordinates use qpos - ref",
+            holds=lambda tree, text: " ref=" in text,
+        ),
+        Statement(
+            "precondition",
+            "where <inertial> is missing, mass and moments are those of shapes, of the density of ShapeConfig",
+            "newton 1.8, newton/_src/sim/builder.py: ShapeConfig.density",
+            holds=has_bare_shape,
+        ),
         Statement(
             "repairs",
             "inertias that are too small are made larger",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from ..interface import Convention, Tree, Unsupported
+from ..interface import Convention, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, UNIT_AXIS, describe, slots_of
+from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
 # One client serves all models; its gravity stays.
 _SETUP = """from tempfile import NamedTemporaryFile
@@ -115,5 +115,13 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,
-    statements=(UNIT_AXIS,),
+    statements=(
+        Statement(
+            "repairs",
+            "links without <inertial> get a mass of 1 kg and moments of 1 kg m^2, with a warning",
+            "bullet3 3.2.7, examples/Importers/ImportURDFDemo/UrdfParser.cpp: No inertial data for link",
+            holds=has_bare_link,
+        ),
+        UNIT_AXIS,
+    ),
 )

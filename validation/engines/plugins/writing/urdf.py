@@ -35,6 +35,16 @@ def _has_long_axis(tree: Tree, text: str) -> bool:
     return any(abs(math.hypot(*map(float, axis.split())) - 1.0) > 1e-6 for axis in axes)
 
 
+def has_bare_link(tree: Tree, text: str) -> bool:
+    """Whether a file of URDF states a link without inertia, which by the format has no mass."""
+    return "<robot" in text and any(not link.mass for link in tree.links)
+
+
+def has_bare_shape(tree: Tree, text: str) -> bool:
+    """Whether one of these has shapes."""
+    return has_bare_link(tree, text) and "<collision" in text
+
+
 # Of whoever reads these formats.
 UNIT_AXIS = Statement(
     "precondition",
