@@ -171,7 +171,6 @@ def write(tree: Tree) -> Source | Unsupported:
 _READERS = {
     "urdf": "b.add_urdf(TEXT)",
     "mjcf": "b.add_mjcf(TEXT)",
-    "usd": "b.add_usd(stage)",
 }
 _CHARTS = {
     ("revolute", ""): "angle",
@@ -192,9 +191,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     names = [link.name for link in tree.links]
     lines = (
         *_IMPORTS,
-        *(("from pxr import Usd", "stage = Usd.Stage.CreateInMemory()") if form == "usd" else ()),
         f"TEXT = {text!r}",
-        *(("stage.GetRootLayer().ImportFromString(TEXT)",) if form == "usd" else ()),
         f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})" if form == "urdf" else "b = newton.ModelBuilder()",
         _READERS[form],
         'm = b.finalize(device="cpu")',
