@@ -12,13 +12,12 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 from xml.etree import ElementTree
 
 import typer
 
 import symofros as sf
-from symofros.studio.differences.diff import compare, read_fully
 
 # Folder in example-robot-data -> whether the root floats in what is compared.
 ROBOTS = {
@@ -43,6 +42,19 @@ WAYS = {
 }
 
 
+_BY_MUJOCO = """
+import sys
+import mujoco
+urdf, written, floating = sys.argv[1:]
+options = '<mujoco><compiler fusestatic="false" discardvisual="false" strippath="false"/></mujoco></robot>'
+spec = mujoco.MjSpec.from_string(open(urdf).read().replace("</robot>", options))
+if floating:
+    spec.worldbody.first_body().add_freejoint()
+spec.compile()
+open(written, "w").write(spec.to_xml())
+"""
+
+
 def bare(urdf: Path, target: Path) -> Path:
     """The file without shapes, whose meshes converters would look for."""
     robot = ElementTree.parse(urdf).getroot()
@@ -59,20 +71,27 @@ def bare(urdf: Path, target: Path) -> Path:
 
 def by_mujoco(urdf: Path, folder: Path, floating: bool) -> Path:
     """What MuJoCo's compiler makes of it, as MuJoCo writes it."""
-    import mujoco
+    written = folder / "mujoco.xml"
+    command = [sys.executable, "-c", _BY_MUJOCO, str(urdf), str(written), "floating" if floating else ""]
+    subprocess.run(command, check=True, capture_output=True)
+    return written
 
-    options = '<mujoco><compiler fusestatic="false" discardvisual="false" strippath="false"/></mujoco></robot>'
-    spec = mujoco.MjSpec.from_string(urdf.read_text().replace("</robot>", options))
-    if floating:
-        spec.worldbody.first_body().add_freejoint()
-    spec.compile()
-    (folder / "mujoco.xml").write_text(spec.to_xml())
-    return folder / "mujoco.xml"
+
+def read(file: Path, floating: bool) -> sf.System:
+    """A file with all that it states; joints that can't mimic as it says are independent."""
+    asked: dict[str, Any] = {"dissipation": "all", "waive": ("massless_tip",)}
+    asked |= {} if file.suffix == ".xml" else {"floating_base": floating}
+    if file.suffix != ".urdf":
+        return sf.load(file, **asked)
+    try:
+        return sf.load(file, **asked, mimic=True)
+    except sf.DescriptionError:
+        return sf.load(file, **asked)
 
 
 def exported(urdf: Path, folder: Path, floating: bool) -> Path:
     """What our export makes of it."""
-    system = read_fully(urdf, floating_base=floating)
+    system = read(urdf, floating)
     files = sf.export(system, "mjcf", folder / "mjcf").files
     return next(one for one in files if one.suffix == ".xml")
 
@@ -110,9 +129,7 @@ def compared(urdf: Path, floating: bool, folder: Path, programs: dict[str, str])
             file = make()
             # URDF does not say whether its root is held; what libsdformat makes of it is not, unless it is the world.
             floats = floating or (way == "libsdformat" and 'link name="world"' not in source.read_text())
-            theirs = read_fully(file) if file.suffix == ".xml" else read_fully(file, floating_base=floats)
-            ours = read_fully(source, floating_base=floats)
-            found = compare(ours, theirs, names=("URDF", way), tolerance=WAYS[way])
+            found = sf.diff(read(source, floats), read(file, floats), tolerance=WAYS[way])
             yield way, "same" if found.same else str(found)
         except subprocess.CalledProcessError as error:
             yield way, f"the converter refuses: {str(error.stderr)[-300:]}"
