@@ -27,8 +27,11 @@ _RANK: tuple[Verdict, ...] = (
 _OF_NO_SPEED = re.compile(
     "integrate|difference|interpolate|impact|impulse|delassus|kkt|mass_matrix|gravity|potential_en"
 )
+# One draw of roundings may fall short of what others do: where digits alone are lost, so many times as many are drawn.
+_MORE = 4
 _AFTER_ONE = ", after another state on the same model: right by itself"
 _AFTER_ALL = ", after other states on the same model: right by itself"
+_AFTER = ", after {} at another state on the same model: right by itself"
 _NO_MORE = ", in one of many calls: not again"
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")
@@ -45,7 +48,7 @@ class Judged:
         tree: The tree, with the engine's gravity.
         form: Format of the file that the engine read; "" where it was built by its API.
         text: The file.
-        before: States at which the same model was asked first, where it is red after these alone.
+        before: Functions and states that the same model was asked first, where it is red after these alone.
     """
 
     cell: Cell
@@ -54,7 +57,7 @@ class Judged:
     tree: Tree
     form: str = ""
     text: str = ""
-    before: tuple[Pieces, ...] = ()
+    before: tuple[tuple[str, Pieces], ...] = ()
 
 
 class Truths:
@@ -125,7 +128,7 @@ def judged(
         if isinstance(worst.answer.value, Crashed) and job.further:
             worst = _crashed(plugin, own, worst, ask)
         elif before and worst.cell.verdict in RED:
-            worst = _alone(plugin, own, worst, before, truths, ask)
+            worst = _alone(plugin, own, worst, before, truths, ask, offered.functions)
         yield _stated(plugin, worst)
 
 
@@ -158,15 +161,25 @@ def _again(first: Judged, again: Judged) -> Judged:
     return replace(again, cell=cell)
 
 
-def _alone(plugin: EnginePlugin, job: Job, red: Judged, before: Sequence[Answer], truths: Truths, ask: Ask) -> Judged:
-    """A red answer of a further state, asked anew: by itself, or if that is not it, after the states before it."""
+def _alone(
+    plugin: EnginePlugin,
+    job: Job,
+    red: Judged,
+    before: Sequence[Answer],
+    truths: Truths,
+    ask: Ask,
+    others: Sequence[str],
+) -> Judged:
+    """A red answer of a further state, asked anew: by itself, or if that is not it, after what was asked before it."""
     answer = red.answer
     assert answer.layout is not None and answer.state is not None
     alone = replace(job, pieces=taken(answer.layout, answer.state))
-    earlier = tuple(taken(answer.layout, one.state) for one in before if one.state is not None)
-    for states, how in (((), ""), (earlier[-1:], _AFTER_ONE), (earlier, _AFTER_ALL)):
-        asked = replace(alone, before=states)
-        found = [replace(_judged(plugin, asked, one, truths), before=states) for one in ask(asked)]
+    earlier = tuple((answer.function, taken(answer.layout, one.state)) for one in before if one.state is not None)
+    asked_first = others[: others.index(answer.function)]
+    after_others = ((((name, earlier[0][1]),), _AFTER.format(name)) for name in asked_first)
+    for calls, how in (((), ""), (earlier[-1:], _AFTER_ONE), (earlier, _AFTER_ALL), *after_others):
+        asked = replace(alone, before=calls)
+        found = [replace(_judged(plugin, asked, one, truths), before=calls) for one in ask(asked)]
         if found and found[0].cell.verdict in RED:
             return _said(found[0], answer.at + how)
     return _said(replace(red, before=earlier), answer.at + _NO_MORE)
@@ -213,7 +226,7 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
         return replace(plain, verdict="refuses" if value.offered else "not offered", words=value.reason), None
     if isinstance(value, Raised):
         return replace(plain, verdict=value.kind, words=value.words), None
-    for perturbations in dict.fromkeys((0, truths.perturbations)):
+    for perturbations in dict.fromkeys((0, truths.perturbations, _MORE * truths.perturbations)):
         try:
             want = truths.of(answer.function, tree, answer, plugin, perturbations)
         except ZeroDivisionError:
@@ -221,7 +234,8 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
         except Exception as error:  # Of a layout that can't be: a fault of the plug-in's, or of ours.
             return replace(plain, verdict="plug-in", words=f"the truth in its layout: {words(error)}"), None
         cell = judge(plugin.name, tree, answer.function, value, want)
-        if cell.verdict == "right":  # It is so without asking how far roundings go.
+        # It is right without asking how far roundings go, or wrong however far they do.
+        if cell.verdict == "right" or (perturbations and cell.verdict == "wrong"):
             break
     return cell, want
 

@@ -55,7 +55,7 @@ class Job:
         text: The file.
         called: Whether functions are called; otherwise only their scripts are written.
         further: Whether each is asked at further states on the same model (`states.visits`).
-        before: States, likewise joint by joint, at which each is asked first on the same model.
+        before: Functions that are asked first on the same model, each at a state, likewise joint by joint.
     """
 
     engine: str
@@ -67,7 +67,7 @@ class Job:
     text: str = ""
     called: bool = True
     further: bool = False
-    before: tuple[Pieces, ...] = ()
+    before: tuple[tuple[str, Pieces], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -127,20 +127,21 @@ def answered(job: Job) -> Iterator[Answer]:
 
 
 def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: Visit) -> Answer:
-    """An answer with its script, of a model whose last call was of another function, or at the states before."""
-    before = [one for pieces in job.before if isinstance(one := assembled(layout, pieces), State)]
+    """An answer with its script, of a model whose last call was of another function, or those that are to be before."""
+    before = [(name, at) for name, pieces in job.before if isinstance(at := assembled(layout, pieces), State)]
     value: Array | Unsupported | Raised = Unsupported("not called")
     if job.called:
-        ask: Ask = _asker(job, model, function) if before else lambda state: model.call(function, state)
-        for state in (*before, visit.state):
-            value = _called(job, ask, state)
+        kept = {name: _asker(job, model, name) for name in dict.fromkeys((*(name for name, _ in before), function))}
+        for name, at in before:
+            _called(job, kept[name], at)
+        value = _called(job, kept[function] if before else lambda state: model.call(function, state), visit.state)
     is_told = isinstance(value, np.ndarray) or (isinstance(value, Raised) and value.kind == "raises")
     script: str | Raised = ""
     if is_told or not job.called:
-        # Whoever writes scripts of one state writes none of several.
-        writes = not before or isinstance(model, SourceModel)
-        states = (*before, visit.state)
-        script = attempted(lambda: model.script(function, *states)) if writes else ""
+        if isinstance(model, SourceModel):
+            script = attempted(model.script, function, visit.state, before)
+        elif not before:  # Whoever writes scripts of one call writes none of several.
+            script = attempted(model.script, function, visit.state)
     if isinstance(script, Raised):
         value, script = Raised(f"the script of {function}: {script.words}"), ""
     return Answer(function, value, layout, visit.state, script, visit.name)

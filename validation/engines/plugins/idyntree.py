@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from ..interface import Convention, Tree
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
@@ -18,7 +16,7 @@ assert loader.loadReducedModelFromString({text!r}, {joints})
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
-{base}"""
+assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}\""""
 _FLOATING_STATE = (
     "def state(q, v):",
     "    x, y, z, w = q[3:7]",
@@ -146,8 +144,7 @@ def read(tree: Tree, described: Described) -> Source:
     """A file through iDynTree's reader of URDF."""
     count, floating = len(described.moving), described.floating
     root = described.links[0] if floating else base(described.text)
-    asserted = f"assert robot.setFloatingBase({root!r})" if floating else f"robot.setFloatingBase({root!r})"
-    setup = _SETUP.format(text=described.text, joints=list(described.moving), base=asserted)
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
     return Source(
@@ -162,23 +159,6 @@ def read(tree: Tree, described: Described) -> Source:
         },
         spelling={general: own.replace("{gravity}", gravity) for general, own in spelling.items()},
     )
-
-
-_WRITTEN = """written, exporter = loader, iDynTree.ModelExporter()
-assert exporter.init(written.model())
-assert exporter.exportModelToFile("{file}")
-loader = iDynTree.ModelLoader()
-loader.setParsingOptions(options)
-assert loader.loadReducedModelFromFile("{file}", {joints})"""
-
-
-def _written(tree: Tree, described: Described) -> Source:
-    """A file through iDynTree's reader, its writer, and its reader again."""
-    source = read(tree, described)
-    at = next(k for k, line in enumerate(source.lines) if line.startswith("robot ="))
-    more = _WRITTEN.format(file="{file.name}", joints=list(described.moving)).replace('"{file.name}"', "file.name")
-    lines = ("from tempfile import NamedTemporaryFile", 'file = NamedTemporaryFile(suffix=".urdf")', *more.split("\n"))
-    return replace(source, lines=(*source.lines[:at], *lines, *source.lines[at:]))
 
 
 PLUGIN = SourcePlugin(
@@ -197,7 +177,7 @@ PLUGIN = SourcePlugin(
     kinds=KINDS | {"free": "floating base"},
     ways=WAYS,
     write=through_reader(read),
-    formats=("urdf", "urdf written"),
-    write_reading=lambda tree, form, text: of_files(_written if form == "urdf written" else read)(tree, form, text),
+    formats=("urdf",),
+    write_reading=of_files(read),
     statements=(UNIT_AXIS,),
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
@@ -74,12 +74,12 @@ class Source:
             code = code.replace(general, own)
         return code
 
-    def script(self, code: str, *states: State) -> str:
-        """The statements that build the tree and, for each state, state what the code needs, and run it."""
-        code = self.spelled(code)
-        used = [name for name in _INPUTS if name in identifiers(code)]
+    def script(self, *calls: tuple[str, State]) -> str:
+        """The statements that build the tree and, for each code and state, state what it needs, and run it."""
         lines = [*self.text()]
-        for state in states:
+        for code, state in calls:
+            code = self.spelled(code)
+            used = [name for name in _INPUTS if name in identifiers(code)]
             lines += [*(f"{name} = np.array({getattr(state, name).tolist()!r})" for name in used), code]
         return "\n".join(lines)
 
@@ -141,9 +141,9 @@ class SourceModel:
 
         return ask
 
-    def script(self, function: str, *states: State) -> str:
-        """The text that calls run at these states, one after the other, with what they need (`EngineModel`)."""
-        return self._source.script(self._ways[function].code, *states)
+    def script(self, function: str, state: State, before: Sequence[tuple[str, State]] = ()) -> str:
+        """The text that a call runs, with the state that it needs (`EngineModel`), after other calls."""
+        return self._source.script(*((self._ways[name].code, at) for name, at in (*before, (function, state))))
 
 
 def _run(text: str, names: dict[str, Any]) -> None:
