@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
 from itertools import zip_longest
@@ -24,65 +24,12 @@ from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
 from .models import acting, hostile, kinds, loops, sensed, transformed
 from .models.formats import formats
-from .models.readers import Reading, readings
+from .models.readers import Reading
 from .plugins import OWN
 from .proving.scripts import Proof, Prover
 from .proving.shrink import TRIES
 from .verdicts import Cell, refusals
 from .workers import Job, Worker, registry
-
-# What a file's reading shows in: the functions that every number of it enters.
-READ = (
-    "sizes",
-    "mass_matrix",
-    "bias",
-    "gravity",
-    "inverse_dynamics",
-    "forward_dynamics",
-    "kinetic_energy",
-    "potential_energy",
-    "link_poses",
-    "link_jacobians",
-)
-
-
-def gathered(
-    plugins: Mapping[str, EnginePlugin], trees: Iterable[Tree], worker: Worker, after: Callable[[str], object]
-) -> list[Judged]:
-    """The cells of engines on trees.
-
-    Args:
-        plugins: Engines.
-        trees: Trees.
-        worker: Process that the engines run in.
-        after: Told the name of each tree when it is done.
-    """
-    cells: list[Judged] = []
-    for tree in trees:
-        # Engines with the same layout of a tree share its truths; other trees have none in common with it.
-        truths = Truths()
-        for plugin in plugins.values():
-            job = Job(plugin.name, suited(tree, plugin), asked(plugin, tree), SEED, further=True)
-            cells += judged(plugin, job, truths, worker)
-        after(tree.name)
-    return cells
-
-
-def read(
-    plugins: Mapping[str, EnginePlugin], files: Mapping[str, Reading], worker: Worker, after: Callable[[str], object]
-) -> list[Judged]:
-    """The cells of engines on files that they read themselves; the arguments are those of `gathered`."""
-    cells: list[Judged] = []
-    for name, reading in files.items():
-        truths = Truths()
-        for plugin in plugins.values():
-            if reading.form in plugin.formats:
-                asked = tuple(one for one in plugin.functions if one in READ)
-                tree = suited(reading.tree, plugin)
-                job = Job(plugin.name, tree, asked, SEED, form=reading.form, text=reading.text, further=True)
-                cells += judged(plugin, job, truths, worker)
-        after(name)
-    return cells
 
 
 def fault_groups(cells: Sequence[Judged]) -> list[list[Judged]]:
@@ -123,7 +70,7 @@ def lots() -> list[Questions]:
     """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
     own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
     trees = (family.trees() for family in (hostile, loops, transformed, acting, sensed))
-    return [*own, *trees, readings(), formats()]
+    return [*own, *trees, formats()]
 
 
 def questions() -> dict[str, Tree | Reading]:
@@ -138,7 +85,7 @@ def in_turn() -> Iterator[str]:
 
 def about(
     plugins: Mapping[str, EnginePlugin],
-    asked: Questions,
+    questions: Questions,
     worker: Worker,
     after: Callable[[str], object],
     goes_on: Callable[[], bool] = lambda: True,
@@ -147,21 +94,36 @@ def about(
 
     Args:
         plugins: Engines.
-        asked: The questions.
+        questions: The questions.
         worker: Process that the engines run in.
         after: Told the name of each when it is done.
         goes_on: Asked before each.
     """
     cells: list[Judged] = []
     left: list[str] = []
-    for name, question in asked.items():
+    of_files = Truths()  # Many files state the same tree.
+    for name, question in questions.items():
         if not goes_on():
             left.append(name)
-        elif isinstance(question, Reading):
-            cells += read(plugins, {name: question}, worker, after)
-        else:
-            cells += gathered(plugins, [question], worker, after)
+            continue
+        # Engines with the same layout of a tree share its truths; other trees have none in common with it.
+        truths = of_files if isinstance(question, Reading) else Truths()
+        for plugin in plugins.values():
+            job = _job(plugin, question)
+            cells += judged(plugin, job, truths, worker) if job is not None else ()
+        after(name)
     return cells, left
+
+
+def _job(plugin: EnginePlugin, question: Tree | Reading) -> Job | None:
+    """What an engine is asked about a tree, or about a file; None where it has no reader of such files."""
+    if not isinstance(question, Reading):
+        return Job(plugin.name, suited(question, plugin), asked(plugin, question), SEED, further=True)
+    if question.form not in plugin.formats:
+        return None
+    # What a reader makes of a file shows at one state.
+    functions, tree = question.functions(plugin.functions), suited(question.tree, plugin)
+    return Job(plugin.name, tree, functions, SEED, form=question.form, text=question.text)
 
 
 def measure(

@@ -16,6 +16,7 @@ FUNCTIONS = (
     "bias",
     "gravity",
     "inverse_dynamics",
+    "joint_wrenches",
     "forward_dynamics",
     "kinetic_energy",
     "potential_energy",

@@ -39,6 +39,10 @@ CONVENTIONS = (
     "SI units and radians. The world's z axis points up unless the model's gravity says otherwise.",
     "A link's frame stands where its joint leaves it; the joint is placed in the parent link's frame by p and R, whose "
     "columns are the placed axes. The numbers of models/NAME.json are exact; other formats repeat them to rounding.",
+    "Doubles state no exact rotation and no exact direction. An R means the nearest rotation, U V^T of its singular "
+    "value decomposition U S V^T; an axis means the vector of unit length along it; a quaternion among q likewise. All "
+    "other numbers are taken as they are. Worked out so in 60 digits, the values agree to all that are written; with "
+    "R, axes and quaternions as they are, to 1e-16 at best.",
     "q and v hold the joints in the order of the links; `chart` says what a joint's entries are. Quaternions are "
     "(x, y, z, w). Speeds of ball and free joints lie along the axes after the joint, linear before angular.",
     "Spatial quantities of links stack linear and angular parts, of the link's origin, along the world's axes.",

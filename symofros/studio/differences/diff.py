@@ -233,7 +233,11 @@ def compare(
 def _notes(found: Findings) -> list[str]:
     mechanisms = (found.a, found.b)
     notes = [f"{m.label}: not compared: {note}" for m in mechanisms for note in m.lost]
-    notes += [f"{m.label}: {UNREAD_MIMICRY}" for m in mechanisms if UNREAD_MIMICRY in m.system.notes]
+    # What readers leave out of couplings is missed in the comparison.
+    notes += [f"{m.label}: {note}" for m in mechanisms for note in m.system.notes if "mimic" in note.lower()]
+    inputs = [len(m.system.inputs) for m in mechanisms]
+    if any(inputs):
+        notes.append(f"actuators are not compared: {inputs[0]} in the first, {inputs[1]} in the second")
     if found.reframed:
         listed = ", ".join(found.reframed[:5]) + (", ..." if len(found.reframed) > 5 else "")
         notes.append(f"frames of {len(found.reframed)} links are placed otherwise, which changes no motion: {listed}")

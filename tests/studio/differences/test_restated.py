@@ -148,3 +148,16 @@ def test_many_equal_bodies_take_bounded_work() -> None:
     with pytest.raises(sf.DescriptionError, match="too many bodies"):
         many = tuple(sf.RigidBody(f"b{k}", sf.Joint(f"j{k}", "revolute")) for k in range(1001))
         sf.diff(sf.System("many", many), star("x"))
+
+
+def test_what_is_not_compared_is_noted(tmp_path: Path) -> None:
+    """Actuators, and couplings that a reader leaves out."""
+    pytest.importorskip("mujoco")
+    body = '<body><joint name="j"/><inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/></body>'
+    for name, more in (("plain", ""), ("driven", '<actuator><motor joint="j" gear="3"/></actuator>')):
+        (tmp_path / f"{name}.xml").write_text(f"<mujoco><worldbody>{body}</worldbody>{more}</mujoco>")
+    found = sf.diff(tmp_path / "plain.xml", tmp_path / "driven.xml")
+    assert found.same and found.notes == ("actuators are not compared: 0 in the first, 1 in the second",)
+    assert sf.diff(tmp_path / "plain.xml", tmp_path / "plain.xml").notes == ()
+    robot, ignored = sf.load(tmp_path / "plain.xml"), "API schema NewtonMimicAPI ignored: 1 joint (j)"
+    assert sf.diff(robot, replace(robot, notes=(ignored,))).notes == (f"plain: {ignored}",)

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from validation.engines.identities import held
-from validation.engines.interface import Array, Unsupported
+from validation.engines.interface import Array, EnginePlugin, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
+from validation.engines.models.formats import formats
 from validation.engines.models.hostile import trees
 from validation.engines.models.kinds import KINDS, tree_of
-from validation.engines.models.readers import readings
+from validation.engines.models.readers import Reading
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
 from validation.engines.study import fault_groups
@@ -54,14 +55,25 @@ def test_engines_are_right_about_hostile_trees(name: str) -> None:
         assert {cell.verdict for cell in cells(OWN[engine], trees()[name], SIMPLE)} == {"right"}
 
 
-@pytest.mark.parametrize("name", readings())
-def test_engines_are_right_about_files_that_they_read_themselves(name: str) -> None:
-    for engine in ("pinocchio", "mujoco"):
-        plugin, reading = OWN[engine], readings()[name]
-        functions = ("sizes", "mass_matrix", "bias")
-        job = Job(engine, reading.tree, functions, SEED, form=reading.form, text=reading.text)
-        verdicts = {one.cell.verdict for one in judged(plugin, job, Truths())}
-        assert verdicts == ({"not offered"} if (name, engine) == ("urdf: mimic", "mujoco") else {"right"})
+# The reader that is held for each format's best.
+_BEST = {"urdf": "pinocchio", "mjcf": "mujoco", "sdf": "drake", "mjcf written": "mujoco"}
+_FILES = {name: one for name, one in formats().items() if one.form in _BEST and OWN[_BEST[one.form]].version()}
+
+
+@pytest.mark.parametrize("name", _FILES)
+def test_our_reader_and_the_best_of_a_format_read_what_its_files_state(name: str) -> None:
+    reading = _FILES[name]
+    for plugin in (OWN["symofros"], OWN[_BEST[reading.form]]):
+        if reading.form in plugin.formats:
+            refused = {"refuses"} if name == "sdf: placement frame" and plugin.name == "symofros" else set()
+            assert _verdicts(plugin, reading) <= {"right", "not offered"} | refused, plugin.name
+
+
+def _verdicts(plugin: EnginePlugin, reading: Reading) -> set[str]:
+    job = Job(
+        plugin.name, reading.tree, reading.functions(plugin.functions), SEED, form=reading.form, text=reading.text
+    )
+    return {one.cell.verdict for one in judged(plugin, job, Truths())}
 
 
 def test_digits_that_are_lost_about_a_far_origin_are_seen() -> None:

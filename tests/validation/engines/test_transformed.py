@@ -60,7 +60,7 @@ def test_a_locked_joint_is_a_placement() -> None:
     np.testing.assert_allclose(digits(M[0]), digits(M[1]), rtol=1e-15)
 
 
-@pytest.mark.parametrize("name", [name for name in formats() if "of " in name])
+@pytest.mark.parametrize("name", [name for name in formats() if ": " not in name])
 def test_readers_agree_about_a_tree_in_each_format(name: str) -> None:
     reading = formats()[name]
     for engine in ("pinocchio", "mujoco", "drake"):

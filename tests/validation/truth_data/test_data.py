@@ -14,6 +14,7 @@ import jsonschema
 import numpy as np
 import pyarrow.parquet
 import pytest
+from mpmath import mp
 from typer.testing import CliRunner
 
 import symofros as sf
@@ -88,6 +89,60 @@ def test_our_readers_of_each_format_give_the_same_equations(name: str) -> None:
             assert np.allclose(model.mass_matrix(q), M, rtol=0, atol=1e-13 * np.abs(M).max()), path.name
             ours = model.inverse_dynamics(q, v, a)
             assert np.allclose(ours, forces, rtol=0, atol=1e-12 * np.abs(forces).max()), path.name
+
+
+class InSixtyDigits:
+    """A model of the data worked out anew by mpmath, from what manifest.json says: nothing of ours has a part in it."""
+
+    def __init__(self, name: str, q: list[float]) -> None:
+        data = stored(f"models/{name}.json")
+        self.links, self.nv, self.gravity = data["links"], data["nv"], mp.matrix(data["gravity"])
+        self.poses: list[tuple[Any, Any]] = []  # R and p in the world.
+        self.axes: list[list[tuple[int, str, Any, Any]]] = []  # Of the joints before: speed, kind, axis, origin.
+        for link in self.links:
+            joint, parent = link["joint"], link["parent"]
+            R0, p0 = self.poses[parent] if parent >= 0 else (mp.eye(3), mp.zeros(3, 1))
+            U, _, V = mp.svd_r(mp.matrix(joint["R"]))
+            R, p, axes = R0 * U * V, p0 + R0 * mp.matrix(joint["p"]), [*(self.axes[parent] if parent >= 0 else [])]
+            if joint["kind"] != "fixed":
+                u, angle = mp.matrix(joint["axis"]), mp.mpf(q[joint["q"][0]])
+                u /= mp.norm(u)
+                axes.append((joint["v"][0], joint["kind"], R * u, p))
+                if joint["kind"] == "revolute":
+                    K = mp.matrix([[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]])
+                    R = R * (mp.eye(3) + mp.sin(angle) * K + (1 - mp.cos(angle)) * K * K)
+                else:
+                    p = p + R * u * angle
+            self.poses.append((R, p))
+            self.axes.append(axes)
+
+    def values(self) -> dict[str, list[Any]]:
+        """Values of some functions, row by row."""
+        M, g, V = mp.zeros(self.nv), mp.zeros(self.nv, 1), mp.mpf(0)
+        for link, (R, p), axes in zip(self.links, self.poses, self.axes, strict=True):
+            m, c, inertia = mp.mpf(link["mass"]), p + R * mp.matrix(link["com"]), R * mp.matrix(link["inertia"]) * R.T
+            J, W = mp.zeros(3, self.nv), mp.zeros(3, self.nv)
+            for k, kind, u, at in axes:
+                r = c - at
+                turning = (u[1] * r[2] - u[2] * r[1], u[2] * r[0] - u[0] * r[2], u[0] * r[1] - u[1] * r[0])
+                for i in range(3):
+                    J[i, k] = turning[i] if kind == "revolute" else u[i]
+                    W[i, k] = u[i] if kind == "revolute" else 0
+            M += m * J.T * J + W.T * inertia * W
+            g -= m * J.T * self.gravity
+            V -= m * (self.gravity.T * c)[0]
+        flat = [x for R, p in self.poses for x in [*p, *R]]
+        return {"mass_matrix": [*M], "gravity": [*g], "potential_energy": [V], "link_poses": flat}
+
+
+@pytest.mark.parametrize("name", ["two_hinges", "slides_and_hinges", "arm", "tree", "fixed_amid"])
+def test_sixty_digits_of_another_reader_agree_to_thirty(name: str) -> None:
+    with mp.workdps(60):
+        for state in stored(f"values/{name}.json")["states"]:
+            for function, found in InSixtyDigits(name, state["q"]).values().items():
+                expected = [mp.mpf(text) for text in state["values"][function]["digits"]]
+                scale = max(abs(x) for x in expected)
+                assert max(abs(x - y) for x, y in zip(found, expected, strict=True)) < scale * mp.mpf("1e-28"), function
 
 
 def test_the_table_and_the_texts_agree() -> None:

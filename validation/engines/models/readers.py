@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..interface import Joint, Link, Rows, Tree, rows
+from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
+
+# What a file's reading shows in: the functions that every number of it enters. PASSIVE: with springs or dampers, which
+# some engines count among their forces.
+READ = ("sizes", "mass_matrix", "bias", "link_poses")
+PASSIVE = ("sizes", "mass_matrix", "gravity", "link_poses")
 
 
 @dataclass(frozen=True)
@@ -15,174 +21,75 @@ class Reading:
     """A file and the tree that it states.
 
     Attributes:
-        form: Format: "urdf", "mjcf" or "sdf".
+        form: Format: "urdf", "mjcf", "sdf" or "usd"; "urdf from shapes" for readers that work out inertias anew.
         text: The file; its links are named as the tree's.
         tree: The tree.
+        asked: Functions that are asked of it.
     """
 
     form: str
     text: str
     tree: Tree
+    asked: tuple[str, ...] = READ
+
+    def functions(self, offered: Collection[str]) -> tuple[str, ...]:
+        """Those that are asked of an engine; in place of the bias that it does not offer, gravity's part of it."""
+        asked = self.asked if "bias" in offered else (*self.asked, "gravity")
+        return tuple(name for name in offered if name in asked)
+
+
+def about(axis: Vector, angle: float) -> Rows:
+    """Rotation about an axis of any length."""
+    x, y, z = np.array(axis) / math.hypot(*axis)
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return rows(np.eye(3) + math.sin(angle) * K + (1.0 - math.cos(angle)) * K @ K)
+
+
+def in_series(*turns: tuple[str, float]) -> Rows:
+    """Rotations about axes of the frame that turns, one after the other: letter and angle of each."""
+    R: Array = np.eye(3)
+    for letter, angle in turns:
+        R = R @ np.array(about(_UNIT[letter], angle))
+    return rows(R)
 
 
 def rpy_rotation(roll: float, pitch: float, yaw: float) -> Rows:
     """Rz(yaw) Ry(pitch) Rx(roll)."""
-    (cr, sr), (cp, sp), (cy, sy) = ((math.cos(angle), math.sin(angle)) for angle in (roll, pitch, yaw))
-    Rx, Ry = np.array([[1, 0, 0], [0, cr, -sr], [0, sr, cr]]), np.array([[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]])
-    return rows(np.array([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]]) @ Ry @ Rx)
+    return in_series(("z", yaw), ("y", pitch), ("x", roll))
 
 
-_PRINCIPAL: Rows = ((0.2, 0.0, 0.0), (0.0, 0.3, 0.0), (0.0, 0.0, 0.4))
-_PLACED = Joint("revolute", R=rpy_rotation(0.3, -0.4, 0.5), p=(0.1, 0.2, 0.3), axis=(0.6, 0.0, 0.8))
-_BODY = Link("a", -1, (_PLACED,), 2.0, (0.1, -0.2, 0.3), _PRINCIPAL)
-_NEXT = Link("b", 0, (Joint("revolute", p=(0.0, 0.0, 0.5), axis=(0.0, 1.0, 0.0)),), 1.0, (0.0, 0.1, 0.2), _PRINCIPAL)
-
-_INERTIA = '<inertia ixx="0.2" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="0.4"/>'
-_A = f'<link name="a"><inertial><origin xyz="0.1 -0.2 0.3"/><mass value="2"/>{_INERTIA}</inertial></link>'
-_B = f'<link name="b"><inertial><origin xyz="0 0.1 0.2"/><mass value="1"/>{_INERTIA}</inertial></link>'
-_LIMIT = '<limit lower="-9" upper="9" effort="9" velocity="9"/>'
-_AT = '<origin xyz="0.1 0.2 0.3" rpy="0.3 -0.4 0.5"/>'
+def along(R: Rows, inertia: Rows) -> Rows:
+    """An inertia (3, 3) along axes whose directions are the columns of R."""
+    turned = np.array(R) @ np.array(inertia) @ np.array(R).T
+    return rows((turned + turned.T) / 2.0)
 
 
-def _urdf(first: str, second: str, a: str = _A, b: str = _B) -> str:
-    def joint(name: str, parent: str, inside: str) -> str:
-        kind, _, rest = inside.partition("|")
-        ends = f'<parent link="{parent}"/><child link="{name}"/>'
-        return f'<joint name="joint_{name}" type="{kind}">{ends}{rest}</joint>'
-
-    return f'<robot name="r"><link name="w"/>{a}{b}{joint("a", "w", first)}{joint("b", "a", second)}</robot>'
+def diagonal(x: float, y: float, z: float) -> Rows:
+    """A diagonal matrix."""
+    return ((x, 0.0, 0.0), (0.0, y, 0.0), (0.0, 0.0, z))
 
 
-_FIRST = f'revolute|{_AT}<axis xyz="0.6 0 0.8"/>{_LIMIT}'
-_SECOND = f'revolute|<origin xyz="0 0 0.5"/><axis xyz="0 1 0"/>{_LIMIT}'
-_TURNED_A = _A.replace('xyz="0.1 -0.2 0.3"', 'xyz="0.1 -0.2 0.3" rpy="0.5 0.6 0.7"')
-
-
-def _mjcf(a: str, b: str, options: str = '<compiler angle="radian"/>') -> str:
-    return (
-        f'<mujoco model="r">{options}<worldbody><body name="a" {a}<body name="b" {b}</body></body></worldbody></mujoco>'
-    )
-
-
-_MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'
-_MB = '<inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/>'
-_HINGE_A = f'pos="0.1 0.2 0.3"><joint axis="0.6 0 0.8"/>{_MA}'
-_HINGE_B = f'pos="0 0 0.5"><joint axis="0 1 0"/>{_MB}'
-_UNTURNED = replace(_BODY, joints=(replace(_PLACED, R=rpy_rotation(0, 0, 0)),))
-
-
-def _tree(name: str, a: Link, b: Link) -> Tree:
-    return Tree(name, (a, b))
-
-
-def _with(link: Link, **changes: object) -> Link:
-    """A link with another joint."""
+def hung(link: Link, **changes: object) -> Link:
+    """A link on another joint."""
     return replace(link, joints=(replace(link.joints[0], **changes),))  # type: ignore[arg-type]
 
 
-def _turned_inertia() -> Link:
-    R = np.array(rpy_rotation(0.5, 0.6, 0.7))
-    return replace(_BODY, inertia=rows(R @ np.array(_PRINCIPAL) @ R.T))
+_UNIT: dict[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+IDENTITY = in_series()
+PRINCIPAL = diagonal(0.2, 0.3, 0.4)
+# Inertia with products: ixx, iyy, izz, ixy, ixz, iyz of OBLONG.
+PRODUCTS = (0.21, 0.32, 0.43, 0.01, -0.02, 0.03)
+OBLONG: Rows = ((0.21, 0.01, -0.02), (0.01, 0.32, 0.03), (-0.02, 0.03, 0.43))
+TURNED = rpy_rotation(0.3, -0.4, 0.5)
+# Turn of the frames of inertias.
+ASKEW = rpy_rotation(0.5, 0.6, 0.7)
+_HINGE = Joint("revolute", R=TURNED, p=(0.1, 0.2, 0.3), axis=(0.0, 0.0, 1.0))
+# The links that files state where they state nothing else: `a` in the world, `b` on it.
+BODY = Link("a", -1, (_HINGE,), 2.0, (0.1, -0.2, 0.3), PRINCIPAL)
+NEXT = Link("b", 0, (Joint("revolute", p=(0.0, 0.0, 0.5), axis=(0.0, 1.0, 0.0)),), 1.0, (0.0, 0.1, 0.2), PRINCIPAL)
 
 
-def readings() -> dict[str, Reading]:
-    """All files, by name."""
-    made = [("urdf", *row) for row in _urdf_files()] + [("mjcf", *row) for row in _mjcf_files()]
-    return {name: Reading(form, text, _tree(name, a, b)) for form, name, text, a, b in made}
-
-
-def _urdf_files() -> list[tuple[str, str, Link, Link]]:
-    """URDF files: name, text, the two links that it states."""
-    return [
-        ("urdf: plain", _urdf(_FIRST, _SECOND), _BODY, _NEXT),
-        ("urdf: inertial frame turned", _urdf(_FIRST, _SECOND, _TURNED_A), _turned_inertia(), _NEXT),
-        (
-            "urdf: continuous",
-            _urdf(_FIRST, _SECOND.replace("revolute", "continuous")),
-            _BODY,
-            _with(_NEXT, form="unbounded"),
-        ),
-        (
-            "urdf: continuous, oblique",
-            _urdf(_FIRST.replace("revolute", "continuous"), _SECOND),
-            _with(_BODY, form="unbounded"),
-            _NEXT,
-        ),
-        (
-            "urdf: axis left out",
-            _urdf(_FIRST, _SECOND.replace('<axis xyz="0 1 0"/>', "")),
-            _BODY,
-            _with(_NEXT, axis=(1.0, 0.0, 0.0)),
-        ),
-        ("urdf: axis of length 2", _urdf(_FIRST.replace("0.6 0 0.8", "1.2 0 1.6"), _SECOND), _BODY, _NEXT),
-        (
-            "urdf: fixed link with mass",
-            _urdf(_FIRST, 'fixed|<origin xyz="0 0 0.5"/>'),
-            _BODY,
-            _with(_NEXT, kind="fixed"),
-        ),
-        (
-            "urdf: prismatic",
-            _urdf(_FIRST, _SECOND.replace("revolute", "prismatic")),
-            _BODY,
-            _with(_NEXT, kind="prismatic"),
-        ),
-        (
-            "urdf: mimic",
-            _urdf(_FIRST, f'{_SECOND}<mimic joint="joint_a" multiplier="2" offset="0.5"/>'),
-            _BODY,
-            _with(_NEXT, mimics="a", ratio=2.0, offset=0.5),
-        ),
-    ]
-
-
-def _mjcf_files() -> list[tuple[str, str, Link, Link]]:
-    """MJCF files, likewise."""
-    anchor = (
-        Joint("fixed", p=(0.0, 0.0, 0.7)),
-        Joint("revolute", axis=(0.0, 1.0, 0.0)),
-        Joint("fixed", p=(0.0, 0.1, -0.2)),
-    )
-    unplaced = '<compiler angle="radian"/>'
-    return [
-        ("mjcf: plain", _mjcf(_HINGE_A, _HINGE_B), _UNTURNED, _NEXT),
-        (
-            "mjcf: anchor of a joint",
-            _mjcf(_HINGE_A, _HINGE_B.replace("<joint", '<joint pos="0 -0.1 0.2"')),
-            _UNTURNED,
-            replace(_NEXT, joints=(Joint("fixed", p=(0.0, -0.1, 0.7)), *anchor[1:])),
-        ),
-        (
-            "mjcf: angles in degrees",
-            _mjcf(_HINGE_A.replace('0.3">', '0.3" euler="30 0 0">', 1), _HINGE_B, '<compiler angle="degree"/>'),
-            _with(_UNTURNED, R=rpy_rotation(math.pi / 6, 0, 0)),
-            _NEXT,
-        ),
-        (
-            "mjcf: two joints of a body",
-            _mjcf(_HINGE_A, _HINGE_B.replace("<inertial", '<joint type="slide" axis="1 0 0"/><inertial'), unplaced),
-            _UNTURNED,
-            replace(_NEXT, joints=(*_NEXT.joints, Joint("prismatic", axis=(1.0, 0.0, 0.0)))),
-        ),
-        (
-            "mjcf: armature by default",
-            _mjcf(_HINGE_A, _HINGE_B, f'{unplaced}<default><joint armature="0.5"/></default>'),
-            _with(_UNTURNED, armature=(0.5,)),
-            _with(_NEXT, armature=(0.5,)),
-        ),
-        (
-            "mjcf: ball",
-            _mjcf(_HINGE_A, _HINGE_B.replace('<joint axis="0 1 0"/>', '<joint type="ball"/>')),
-            _UNTURNED,
-            _with(_NEXT, kind="ball"),
-        ),
-        (
-            "mjcf: inertia of geoms",
-            _mjcf(
-                _HINGE_A,
-                'pos="0 0 0.5"><joint axis="0 1 0"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.1 0.2" mass="3"/>',
-            ),
-            _UNTURNED,
-            replace(_NEXT, mass=3.0, inertia=((0.13, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.05))),
-        ),
-    ]
+def reading(form: str, name: str, text: str, *links: Link, asked: tuple[str, ...] = READ) -> tuple[str, Reading]:
+    """A file by its name; its tree is of the links."""
+    title = f"{form}: {name}"
+    return title, Reading(form, text, Tree(title, links), asked)

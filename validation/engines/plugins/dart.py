@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import STEP, Array, Convention, Joint, Link, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, series
-from .writing.urdf import UNIT_AXIS
+from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
+from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.urdf import UNIT_AXIS, has_bare_link
 
 
 class _Native(NamedTuple):
@@ -218,31 +218,35 @@ _READERS = {
         "options = dart.utils.SdfParser.Options(None, dart.utils.SdfParser.RootJointType.FIXED)",
         "s = dart.utils.SdfParser.readSkeleton(dart.common.Uri('file://' + file.name), options)",
     ),
+    "mjcf": (
+        "from tempfile import NamedTemporaryFile",
+        "file = NamedTemporaryFile('w', suffix='.xml')",
+        "print(TEXT, file=file, flush=True)",
+        "world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))",
+        "s = world and world.getSkeleton(0)",
+    ),
 }
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has DART read a file."""
-    slots: list[tuple[Slot, ...]] = []
-    count = 0
-    for link in tree.links:
-        own = []
-        for joint in link.joints:
-            if joint.mimics:
-                return Unsupported("what mimics is a constraint of its simulation", offered=False)
-            if joint.kind != "fixed":
-                own.append(Slot(_JOINTS[joint.kind].chart, (count,), (count,)))
-                count += 1
-        slots.append(tuple(own))
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("what mimics is a constraint of its simulation", offered=False)
+    # Its hinges know no cosine and sine.
+    charts = {(kind, shape): native.chart for kind, native in _JOINTS.items() for shape in ("", "unbounded")}
+    made = numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    slots, count, _ = made
     names = [link.name for link in tree.links]
     lines = [
         *_IMPORTS,
         *(line.replace("TEXT", repr(text)) for line in _READERS[form]),
         "if s is None: raise ValueError('no skeleton: see the log')",
-        *_gravity(tree),
+        *([] if form == "mjcf" else _gravity(tree)),
     ]
     links = f"links = [s.getBodyNode(name) for name in {names!r}]"
-    return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
+    return Source(tuple(lines), slots, count, count, {"links": (links,)})
 
 
 PLUGIN = SourcePlugin(
@@ -295,5 +299,13 @@ PLUGIN = SourcePlugin(
     },
     # Its parsers return no skeleton, and write why to the log.
     refusals=("no skeleton: see the log",),
-    statements=(UNIT_AXIS,),
+    statements=(
+        Statement(
+            "precondition",
+            "links without <inertial> have the loader's defaultInertia, by default of 1 kg and 1 kg m^2",
+            "dart 6.20, dart/utils/urdf/DartLoader.hpp: Options::mDefaultInertia",
+            holds=has_bare_link,
+        ),
+        UNIT_AXIS,
+    ),
 )

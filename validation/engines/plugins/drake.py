@@ -11,6 +11,7 @@ import numpy as np
 from ..interface import Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
 from .loops import drake_forces as forces
 from .loops.drake_forces import FORCES, QV, Q
+from .writing import urdf
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS
 
@@ -273,11 +274,12 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
                 natives.append(native)
         chosen.append(natives)
     names = [link.name for link in tree.links]
+    base = urdf.base(text) if form == "urdf" else ""
     lines = [
         *_IMPORTS,
-        *_gravity(tree),
+        *([] if form == "mjcf" else _gravity(tree)),
         f"drake.Parser(p).AddModelsFromString({text!r}, {_PARSERS[form]!r})",
-        *(["p.WeldFrames(p.world_frame(), p.GetFrameByName('w'))"] if '<link name="w"/>' in text else []),
+        *([f"p.WeldFrames(p.world_frame(), p.GetFrameByName({base!r}))"] if base not in ("", "world") else []),
         "p.Finalize()",
     ]
     links = f"links = [p.GetBodyByName(name) for name in {names!r}]"

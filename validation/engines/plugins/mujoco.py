@@ -12,8 +12,8 @@ from ..interface import Array, Constraint, Convention, Joint, Slot, Statement, S
 from .loops import mujoco as constrained
 from .loops import mujoco_forces as forces
 from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
-from .writing.source import Source, SourcePlugin, Way, attached, in_series, series
-from .writing.urdf import UNIT_AXIS
+from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
+from .writing.urdf import UNIT_AXIS, has_bare_shape
 
 # Kind of a joint -> elements (type, axis), chart, coordinates, speeds.
 _CHARTS: dict[str, tuple[str, int, int]] = {
@@ -314,18 +314,28 @@ WAYS = {
 }
 
 
+_READERS = {
+    "urdf": "mj.MjModel.from_xml_string({text})",
+    "mjcf": "mj.MjModel.from_xml_string({text})",
+    "mjcf written": "mj.MjModel.from_xml_string(mj.MjSpec.from_string({text}).to_xml())",
+}
+
+
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has MuJoCo read a file."""
     if any(joint.mimics for link in tree.links for joint in link.joints):
         return Unsupported("a joint that mimics stays one, with an equality constraint", offered=False)
     # MuJoCo's hinges know no cosine and sine: a joint of URDF without limits is one without limits.
     charts = {(kind, shape): chart for kind, (chart, _, _) in _CHARTS.items() for shape in ("", "unbounded")}
-    slots, nq, nv = in_series(tree, charts)
+    made = numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = (
         "import numpy as np",
         "import mujoco as mj",
-        f"m = mj.MjModel.from_xml_string({text!r})",
+        f"m = {_READERS[form].format(text=repr(text))}",
         "d = mj.MjData(m)",
     )
     # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
@@ -362,9 +372,15 @@ PLUGIN = SourcePlugin(
         "tendons": "tendon/fixed, tendon/spatial",
         "actuators": "general, motor, position, velocity",
     },
-    formats=("urdf", "mjcf"),
+    formats=tuple(_READERS),
     write_reading=write_reading,
     statements=(
+        Statement(
+            "precondition",
+            "where <inertial> is missing, mass and moments are inferred from geoms",
+            "https://mujoco.readthedocs.io/en/stable/XMLreference.html#compiler-inertiafromgeom: auto",
+            holds=has_bare_shape,
+        ),
         Statement(
             "precondition",
             "mj_rne leaves armature out: mj_inverse adds armature*qacc, later M*qacc, to what it gives",

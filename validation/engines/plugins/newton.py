@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..interface import SINGLE, STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.urdf import has_bare_shape
 
 # Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
 _IMPORTS = ("import numpy as np, warp as wp", "wp.config.quiet = True", "import newton")
@@ -179,6 +180,39 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(tuple(lines), tuple(slots), nq, nv, {"rotation": _ROTATION, "centres": _CENTRES})
 
 
+_READERS = {
+    "urdf": "b.add_urdf(TEXT)",
+    "mjcf": "b.add_mjcf(TEXT)",
+}
+_CHARTS = {
+    ("revolute", ""): "angle",
+    ("revolute", "unbounded"): "angle",
+    ("prismatic", ""): "length",
+    ("ball", ""): "quaternion xyzw, parent speeds",
+}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has Newton read a file."""
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("what mimics is a constraint of its solvers", offered=False)
+    made = numbered(tree, _CHARTS)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
+    names = [link.name for link in tree.links]
+    lines = (
+        *_IMPORTS,
+        f"TEXT = {text!r}",
+        f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})" if form == "urdf" else "b = newton.ModelBuilder()",
+        _READERS[form],
+        'm = b.finalize(device="cpu")',
+    )
+    labels = f"bodies = [[x.split('/')[-1] for x in m.body_label].index(name) for name in {names!r}]"
+    optional = {"rotation": _ROTATION, "bodies": (labels,)}
+    return Source(lines, slots, nq, nv, optional, spelling={"s.body_q.numpy()]": "s.body_q.numpy()[bodies]]"})
+
+
 PLUGIN = SourcePlugin(
     name="newton",
     package="newton",
@@ -215,7 +249,21 @@ PLUGIN = SourcePlugin(
     ways=WAYS,
     write=write,
     demands={"dampers": "damping", "springs": "stiffness, rest_q"},
+    formats=tuple(_READERS),
+    write_reading=write_reading,
     statements=(
+        Statement(
+            "precondition",
+            "coordinates of joints are counted from ref",
+            "newton 1.8, newton/_src/utils/import_mjcf.py:2683: Newton joint coordinates use qpos - ref",
+            holds=lambda tree, text: " ref=" in text,
+        ),
+        Statement(
+            "precondition",
+            "where <inertial> is missing, mass and moments are those of shapes, of the density of ShapeConfig",
+            "newton 1.8, newton/_src/sim/builder.py: ShapeConfig.density",
+            holds=has_bare_shape,
+        ),
         Statement(
             "repairs",
             "inertias that are too small are made larger",

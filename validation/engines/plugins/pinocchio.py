@@ -10,7 +10,7 @@ import numpy as np
 from ..functions import ALIGNED
 from ..interface import Array, Convention, End, Joint, Rows, Slot, Statement, Tree, Unsupported
 from .loops import pinocchio as constrained
-from .writing.source import Source, SourcePlugin, Way, attached, in_series, is_depth_first, series
+from .writing.source import Source, SourcePlugin, Way, attached, is_depth_first, numbered, series
 from .writing.urdf import UNIT_AXIS
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
@@ -374,11 +374,19 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
             "print(TEXT, file=file, flush=True)",
             "m = pin.buildModelFromMJCF(file.name)",
         ),
+        "urdf written": (
+            "written, m = pin.buildModelFromXML(TEXT, mimic=True), pin.Model()",
+            "m.loadFromString(written.saveToString())",
+        ),
     }[form]
-    slots, nq, nv = in_series(tree, {key: model[1] for key, model in _MODELS.items()})
+    made = numbered(tree, {key: model[1] for key, model in _MODELS.items()})
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
-    return Source(lines, slots, nq, nv, {"fs": (f"fs = [m.getFrameId(name) for name in {names!r}]",)}, closing=CLOSING)
+    frames = f"fs = [m.getFrameId(name, pin.FrameType.BODY) for name in {names!r}]"
+    return Source(lines, slots, nq, nv, {"fs": (frames,)}, closing=CLOSING)
 
 
 PLUGIN = SourcePlugin(
@@ -406,7 +414,7 @@ PLUGIN = SourcePlugin(
         "changed frame": "jointPlacements",
         "changed gravity": "gravity",
     },
-    formats=("urdf", "mjcf"),
+    formats=("urdf", "mjcf", "urdf written"),
     write_reading=write_reading,
     statements=(
         Statement(

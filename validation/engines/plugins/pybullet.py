@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from ..interface import STEP, Convention, Tree, Unsupported
+from ..interface import STEP, Convention, Statement, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, UNIT_AXIS, describe, slots_of
+from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
 # One client serves all models; its gravity stays.
 _SETUP = """from tempfile import NamedTemporaryFile
@@ -24,6 +24,7 @@ _LOADS = {
     "urdf": (
         "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER)"
     ),
+    "urdf from shapes": "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_MAINTAIN_LINK_ORDER)",
     "sdf": "p.loadSDF(file.name)[0]",
 }
 _MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
@@ -95,10 +96,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return described
     if described.floating:
         return Unsupported("coordinates of floating bases are not documented", offered=False)
-    setup = _SETUP.format(text=text, form=form, load=_LOADS[form])
+    setup = _SETUP.format(text=text, form=form.split()[0], load=_LOADS[form])
     count = len(described.moving)
     optional: dict[str, tuple[str, ...]] = {"gravity": ("gravity = True", _GRAVITY.format(gravity=tree.gravity))}
-    if form == "urdf" and all(len(link.joints) == 1 for link in tree.links):
+    if form.startswith("urdf") and all(len(link.joints) == 1 for link in tree.links):
         # Links, and the joints before them, are numbered as in the file.
         places = [k for k, link in enumerate(tree.links) if link.joints[0].kind != "fixed"]
         optional |= {"joints": ("joints = ()",), "moving": (f"moving = {places}",)}
@@ -106,7 +107,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     else:
         optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
         optional |= {"links": (_LINKS.format(links=list(described.links)),)}
-    return Source(tuple(setup.split("\n")), slots_of(tree, described, described.moving), count, count, optional)
+    slots = slots_of(tree, described, described.moving)
+    # Its reader of SDF takes no joint with the world: one function asked says so.
+    lacks = tuple(name for name in WAYS if name != "link_poses") if form == "sdf" else ()
+    return Source(tuple(setup.split("\n")), slots, count, count, optional, lacks)
 
 
 PLUGIN = SourcePlugin(
@@ -129,5 +133,14 @@ PLUGIN = SourcePlugin(
     formats=tuple(_LOADS),
     write_reading=write_reading,
     demands={"dampers": "dynamics, damping"},
-    statements=(UNIT_AXIS,),
+    statements=(
+        Statement(
+            "repairs",
+            "links without <inertial> get a mass of 1 kg and moments of 1 kg m^2, with a warning",
+            "bullet3 3.2.7, examples/Importers/ImportURDFDemo/UrdfParser.cpp: No inertial data for link",
+            "mass_matrix|bias|gravity|inverse_dynamics",
+            has_bare_link,
+        ),
+        UNIT_AXIS,
+    ),
 )

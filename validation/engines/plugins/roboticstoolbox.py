@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..interface import Array, Convention, Slot, Tree, Unsupported, Vector
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, Way, numbered
 
+_CHARTS = {"revolute": "angle", "prismatic": "length"}
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
 WAYS = {
     "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
@@ -96,6 +97,32 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(setup, tuple(slots), count, count, {"links": (links,)}, closing=(*lines, robot))
 
 
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has its reader of URDF read a file."""
+    charts = {(kind, shape): chart for kind, chart in _CHARTS.items() for shape in ("", "unbounded")}
+    made = Unsupported("joints that mimic are independent", offered=False) if _mimics(tree) else numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
+    paths: list[list[int]] = []
+    for link, own in zip(tree.links, slots, strict=True):
+        paths.append([*([] if link.parent < 0 else paths[link.parent]), *(slot.v[0] for slot in own)])
+    setup = (
+        "import io",
+        "import numpy as np",
+        "from roboticstoolbox import Robot",
+        "from roboticstoolbox.models.URDF.URDFRobot import URDF_file",
+        f"TEXT = {text!r}",
+    )
+    names = {link.name: (np.eye(3).tolist(), path) for link, path in zip(tree.links, paths, strict=True)}
+    robot = f"robot = Robot(URDF_file(io.StringIO(TEXT))[0], gravity={list(tree.gravity)!r})"
+    return Source(setup, slots, nq, nv, {"links": (f"links = {names!r}",)}, closing=(robot,))
+
+
+def _mimics(tree: Tree) -> bool:
+    return any(joint.mimics for link in tree.links for joint in link.joints)
+
+
 PLUGIN = SourcePlugin(
     name="roboticstoolbox",
     package="roboticstoolbox-python",
@@ -116,4 +143,6 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    formats=("urdf",),
+    write_reading=write_reading,
 )

@@ -7,7 +7,7 @@ from typing import Any
 import symofros
 
 from ..interface import Convention, Joint, Link, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, numbered, series
 
 _SETUP = """import numpy as np
 import symofros as sf
@@ -177,6 +177,36 @@ def write(tree: Tree) -> Source | Unsupported:
     )
 
 
+_SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "sdf": ".sdf", "usd": ".usda"}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has our importers read a file; what it states is interpreted, not compiled."""
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("what mimics is a coupling, a constraint", offered=False)
+    charts = {(kind, form): made[1] for kind, made in _KINDS.items() for form in ("", "unbounded")}
+    made = numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    links = [link.name for link in tree.links]
+    lines = (
+        "from tempfile import NamedTemporaryFile",
+        "import numpy as np",
+        "import symofros as sf",
+        f"TEXT = {text!r}",
+        f"file = NamedTemporaryFile('w', suffix={_SUFFIXES[form]!r})",
+        "print(TEXT, file=file, flush=True)",
+        "system = sf.load(file.name, waive=['massless_tip'])",
+        # Links of a model within the model bear its name, too.
+        f"links = [next(b.name for b in system.bodies if b.name.split('::')[-1] == name) for name in {links!r}]",
+        f"asked = {list(_READ)!r}",
+        "m = sf.compile(system, sf.Options(functions=asked, frames=links, backend='interpreter'))",
+    )
+    return Source(lines, *made)
+
+
+_READ = ("mass_matrix", "bias", "gravity_force", "frame_pose")
+
 PLUGIN = SourcePlugin(
     name="symofros",
     package="symofros",
@@ -191,5 +221,7 @@ PLUGIN = SourcePlugin(
     kinds={},
     ways=WAYS,
     write=write,
+    formats=tuple(_SUFFIXES),
+    write_reading=write_reading,
     find=lambda: symofros.__version__,
 )

@@ -277,7 +277,18 @@ class SourcePlugin:
             return refusal(error, self.refusals)
 
 
-def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> tuple[tuple[tuple[Slot, ...], ...], int, int]:
+Numbered = tuple[tuple[tuple[Slot, ...], ...], int, int]
+
+
+def numbered(tree: Tree, charts: Mapping[tuple[str, str], str]) -> Numbered | Unsupported:
+    """`in_series`, of trees that files state: of some of their joints an engine may have none."""
+    for joint in (joint for link in tree.links for joint in link.joints):
+        if joint.kind != "fixed" and (joint.kind, joint.form) not in charts:
+            return Unsupported(f"no joint of kind {joint.kind} {joint.form}".strip(), offered=False)
+    return in_series(tree, charts)
+
+
+def in_series(tree: Tree, charts: Mapping[tuple[str, str], str]) -> Numbered:
     """Slots of an engine that numbers joints as the tree does, nq and nv.
 
     Args:

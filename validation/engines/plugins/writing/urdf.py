@@ -35,6 +35,16 @@ def _has_long_axis(tree: Tree, text: str) -> bool:
     return any(abs(math.hypot(*map(float, axis.split())) - 1.0) > 1e-6 for axis in axes)
 
 
+def has_bare_link(tree: Tree, text: str) -> bool:
+    """Whether a file of URDF states a link without inertia, which by the format has no mass."""
+    return "<robot" in text and any(not link.mass for link in tree.links)
+
+
+def has_bare_shape(tree: Tree, text: str) -> bool:
+    """Whether one of these has shapes."""
+    return has_bare_link(tree, text) and "<collision" in text
+
+
 # Of whoever reads these formats.
 UNIT_AXIS = Statement(
     "precondition",
@@ -141,9 +151,22 @@ def of_files(reading: Reading) -> Callable[[Tree, str, str], Source | Unsupporte
 
     def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         described = describe(tree)
-        return described if isinstance(described, Unsupported) else reading(tree, replace(described, text=text))
+        if isinstance(described, Unsupported):
+            return described
+        names = _joint_names(text)
+        own = (
+            tuple(name if name in names.values() else names[link.name] for name in series)
+            for link, series in zip(tree.links, described.joints, strict=True)
+        )
+        return reading(tree, replace(described, text=text, joints=tuple(own)))
 
     return write_reading
+
+
+def _joint_names(text: str) -> dict[str, str]:
+    """Link -> name of the joint that it hangs on."""
+    joints = ElementTree.fromstring(text).iterfind("joint")
+    return {child.get("link", ""): one.get("name", "") for one in joints if (child := one.find("child")) is not None}
 
 
 def _floats(tree: Tree) -> bool:
