@@ -34,6 +34,7 @@ class Restated:
         world: Placement of the original's world in this one.
         units: Units of this one.
         forces: Whether it states the forces and frames, too; else inertia alone.
+        margin: Factor of the tolerances, for numbers that it states with roundings of their own.
     """
 
     system: sf.System
@@ -42,6 +43,7 @@ class Restated:
     world: Placement = field(default_factory=Placement.identity)
     units: Units = field(default_factory=Units)
     forces: bool = True
+    margin: float = 1.0
 
 
 Answer = Restated | Unsupported
