@@ -35,7 +35,7 @@ from ..engines.workers import layout_of
 from ..mechanics.assembly import BASE, Assembly, Mover
 from ..mechanics.geometry import Array
 from ..mechanics.joint_kinds import PartKind
-from .reach import armature, stores_energy, unrepresented
+from .reach import armature, bears_its_weight_alone, stores_energy, unrepresented
 
 # Simple joints of a description -> kinds of the matrix.
 KINDS: dict[PartKind, str] = {
@@ -330,9 +330,10 @@ def _each(model: EngineModel, function: str, states: Iterable[State]) -> Array |
 
 
 def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:
-    """Quantities that an engine can be compared by: it knows the weight's potential energy, not that of springs."""
+    """Quantities that an engine can be compared by: of forces on bodies, and of their energy, it knows the weight."""
     names = frozenset(name for name, function in FUNCTIONS.items() if {name, function} & {*functions})
-    return names - ({"potential_energy"} if stores_energy(subject.system) else set())
+    names -= {"potential_energy"} if stores_energy(subject.system) else set()
+    return names - ({"joint_wrenches"} if not bears_its_weight_alone(subject.system) else set())
 
 
 def build(

@@ -12,7 +12,6 @@ from ..engines.workers import registry
 from .charted import KINDS, ChartedEngine
 from .charted import build as build_charted
 from .compiled import NAME as OURS
-from .reach import bears_its_weight_alone
 
 # States in one call: each is a call of Python at least.
 MOST_STATES = 100
@@ -50,7 +49,5 @@ def build(name: str, subject: Subject) -> ChartedEngine | Unsupported:
         engine, silent = (engine if isinstance(bare, Unsupported) else bare), FRAME_QUANTITIES
     if isinstance(engine, Unsupported):
         return engine
-    if not bears_its_weight_alone(subject.system):
-        silent |= {"joint_wrenches"}
     offered = engine.capabilities - silent
     return replace(engine, capabilities=offered, most_states=MOST_STATES)

@@ -181,7 +181,9 @@ def _by_engine(asked: Asked, model: sf.Model, engine: Differentiating) -> Iterat
         sizes = np.maximum(np.abs(theirs).max(axis=(1, 2)), least)
         error = float((np.abs(both[output] - theirs).max(axis=(1, 2)) / sizes).max())
         solved = EPS * asked.condition if tolerance == SOLVE else 0.0
-        tolerance = max(tolerance, solved, engine.accuracy.get(function, 0.0))
+        # What is granted to differences is a rounding over their step; of what is solved for, cond(M) roundings.
+        granted = engine.accuracy.get(function, 0.0) * max(1.0, solved / ROUNDING)
+        tolerance = max(tolerance, solved, granted)
         status: Status = "agree" if error <= tolerance else "disagree"
         finite = error if np.isfinite(error) else None
         yield Comparison(asked.label, engine.name, function, status, len(at), finite, tolerance)

@@ -10,7 +10,7 @@ from ...contract.interface import Subject, Unsupported
 from ...mechanics.joint_kinds import PartKind
 from ..charted import ChartedEngine
 from ..charted import build as build_charted
-from ..reach import armature, bears_its_weight_alone
+from ..reach import armature
 
 NAME = "pinocchio"
 # Kinds of simple joints that it has.
@@ -28,7 +28,4 @@ def build(subject: Subject) -> ChartedEngine | Unsupported:
     # Pinocchio 4.1 counts an armature in the energy of some joints (prismatic, free) and not of others (revolute about
     # a general axis), while its M counts all: with armatures, its kinetic energy is not one to compare with.
     armatures = any(np.any(armature(subject.system, mover)) for mover in subject.assembly.movers)
-    silent = {"kinetic_energy"} if armatures else set()
-    if not bears_its_weight_alone(subject.system):
-        silent.add("joint_wrenches")
-    return replace(engine, capabilities=engine.capabilities - silent)
+    return replace(engine, capabilities=engine.capabilities - ({"kinetic_energy"} if armatures else set()))
