@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
 from functools import partial
 from itertools import zip_longest
@@ -15,6 +17,7 @@ import typer
 from ..faults.environment import NotAskedError
 from ..reporting.command import Exit, Run, known
 from ..reporting.record import Data
+from ..worker_process import WorkerProcess
 from . import changes, parts, releases
 from .bisection import history
 from .causes.grouping import by_function, causes_of, without_their_causes
@@ -101,18 +104,36 @@ def about(
     """
     cells: list[Judged] = []
     left: list[str] = []
-    of_files = Truths()  # Many files state the same tree.
+    ask = _asker(plugins, worker)
     for name, question in questions.items():
-        if not goes_on():
+        if goes_on():
+            cells += ask(question)
+            after(name)
+        else:
             left.append(name)
-            continue
+    return cells, left
+
+
+def _asker(plugins: Mapping[str, EnginePlugin], worker: Worker) -> Callable[[Tree | Reading], list[Judged]]:
+    """Question -> the cells of engines on it."""
+    of_files = Truths()  # Many files state the same tree.
+
+    def ask(question: Tree | Reading) -> list[Judged]:
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = of_files if isinstance(question, Reading) else Truths()
-        for plugin in plugins.values():
-            job = _job(plugin, question)
-            cells += judged(plugin, job, truths, worker) if job is not None else ()
-        after(name)
-    return cells, left
+        jobs = ((plugin, _job(plugin, question)) for plugin in plugins.values())
+        return [one for plugin, job in jobs if job is not None for one in judged(plugin, job, truths, worker)]
+
+    return ask
+
+
+def part_of(engines: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str, list[Judged]]]:
+    """Some questions with the cells of engines on each, asked in this process and a worker of its own."""
+    every, plugins = questions(), {name: registry().plugins[name] for name in engines}
+    with Worker() as worker:
+        ask = _asker(plugins, worker)
+        for name in names:
+            yield name, ask(every[name])
 
 
 def _job(plugin: EnginePlugin, question: Tree | Reading) -> Job | None:
@@ -246,8 +267,24 @@ def _chosen(
 
 
 def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
-    """The cells of all engines."""
-    return about(reach.plugins, {name: every[name] for name in wanted}, reach.worker, run.advance)[0]
+    """The cells of all engines; of those of this environment, half of the questions in a second process."""
+    if reach.release or (os.cpu_count() or 1) < 2:
+        return about(reach.plugins, {name: every[name] for name in wanted}, reach.worker, run.advance)[0]
+    found: dict[str, list[Judged]] = {}
+
+    def elsewhere() -> None:
+        for name, cells in process.call(part_of, list(reach.plugins), list(wanted[1::2])):
+            found[name] = cells
+            run.advance(name)
+
+    ask = _asker(reach.plugins, reach.worker)
+    with WorkerProcess() as process, ThreadPoolExecutor(1) as threads:
+        rest = threads.submit(elsewhere)
+        for name in wanted[::2]:
+            found[name] = ask(every[name])
+            run.advance(name)
+        rest.result()
+    return [cell for name in wanted for cell in found[name]]
 
 
 def _within_a_minute(reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
