@@ -13,10 +13,10 @@ from validation.engines.plugins import OWN
 from validation.engines.releases import Opened
 from validation.engines.workers import Worker
 
-NAMES = ("revolute x", "mjcf: plain", "prismatic oblique", "urdf: plain", "ball")
+NAMES = ("revolute x", "prismatic oblique", "ball")
 
 
-@pytest.mark.parametrize("engine", ["mujoco"])
+@pytest.mark.parametrize("engine", ["exudyn"])
 def test_two_processes_give_the_cells_of_one(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     require(engine, "validation")
     every, told = study.questions(), list[str]()
