@@ -31,8 +31,7 @@ static void sym_let_go(const sym_system *s, double *par) {
 #define SYM_ACCELERATION_ROUNDING 1e-10
 /* Rounds in which modes are changed all at once, beyond their number; most rounds. */
 enum { SYM_ALL_AT_ONCE = 3, SYM_MOST_ROUNDS = 1000 };
-/* How often a mode may end at one instant. */
-enum { SYM_MOST_REPEATS = 20 };
+#define SYM_MOST_REPEATS 20.0 /* how often a mode may end at one instant */
 
 /* Count that a mode ends once more: acted_at runs ahead of time by a share of what counts as an instant each time. Returns 0
  * or a status. */
