@@ -58,7 +58,7 @@ def test_what_no_stated_cause_explains_and_what_explains_nothing_are_said(data: 
     aside = {"bias": {"ball": ["precondition", 0.5, 1e-12, "no balls (manual, p. 3): wrong by 5.0e-01"]}}
     engine = {"name": "toy", "version": "1", "conventions": [], "functions": {"gravity": "weight", "bias": "h"}}
     engine["refusals"] = "refuses 9 of 9 cells in its own words, above the bound of 25%"
-    toy = data | {"engines": [engine], "cells": {"toy": row | aside}, "identities": {}, "proofs": []}
+    toy = data | {"engines": [engine], "cells": {"toy": row | aside}, "corrected": {}, "identities": {}, "proofs": []}
     report = compose(toy)
     assert "2 red, behind them 1 cause," in report.summary
     assert "causes, 1 of them not yet found" in {fact.label for fact in report.facts}

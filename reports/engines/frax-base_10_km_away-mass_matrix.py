@@ -1,0 +1,28 @@
+# frax 0.1.0, base 10 km away: mass_matrix is imprecise (M).
+import os
+import numpy as np
+import tempfile
+os.environ["JAX_ENABLE_X64"] = "1"
+os.environ["FRAX_SUPPRESS_WARNINGS"] = "1"
+import jax
+jax.config.update("jax_enable_x64", True)
+from frax import Robot
+URDF = """<robot name="tree">
+<link name="world"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<link name="a"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.8187017420963922"/>
+<inertia ixx="1.0" ixy="0.0" ixz="0.0" iyy="1.0" iyz="0.0" izz="1.0"/></inertial></link>
+<joint name="joint_a" type="continuous"><parent link="world"/><child link="a"/>
+<origin xyz="6400.0 -4800.0 6000.0" rpy="1.5707963267948966 0.0 1.5707963267948966"/>
+<axis xyz="0.0 0.0 1.0"/>
+</joint>
+</robot>"""
+with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    file.write(URDF)
+    file.flush()
+    robot = Robot(file.name, joint_ordering=['joint_a'], floating_base=None)
+
+q = np.array([0.0])
+value = robot.mass_matrix(q)
+import numpy as np
+value, expected = np.reshape(value, (1, 1))[(0, 0)], 1.0
+assert abs(value - expected) <= 2.7e-12, f"{value = }, {expected = }"

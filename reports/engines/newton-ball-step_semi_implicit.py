@@ -1,0 +1,27 @@
+# newton 1.8.0, ball: SolverFeatherstone is imprecise (q+, v+ (nq + nv) after a step: v+ = v + h M^-1 f, f = tau + Q - (bias); q+ where v+ leads in h).
+import numpy as np, warp as wp
+wp.config.quiet = True
+import newton
+b = newton.ModelBuilder(gravity=[0.0, 0.0, 0.0])
+b0 = b.add_link(mass=1.0, com=[0.0, 0.0, 0.0], inertia=wp.mat33([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), lock_inertia=True)
+j0 = b.add_joint_ball(-1, b0, armature=0.0)
+b.add_articulation([j0])
+m = b.finalize(device="cpu")
+def rotation(x, y, z, w):
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * K + 2 * K @ K
+def centres(s): return [rotation(*x[3:]) @ c for x, c in zip(s.body_q.numpy(), m.body_com.numpy())]
+q = np.array([0.0, 0.0, 0.0, 1.0])
+v = np.array([0.0, -89.0, 61.0])
+tau = np.array([0.0, 0.0, 0.0])
+solver, after, control = newton.solvers.SolverFeatherstone(m, angular_damping=0.0), m.state(), m.control()
+s = m.state()
+s.joint_q.assign(q.astype(np.float32))
+s.joint_qd.assign(v.astype(np.float32))
+newton.eval_fk(m, s.joint_q, s.joint_qd, s)
+control.joint_f.assign(tau.astype(np.float32))
+solver.step(s, after, control, None, 0.015625)
+value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]
+import numpy as np
+value, expected = np.reshape(value, (7,))[(3,)], 0.6652603106389265
+assert abs(value - expected) <= 8.5e-02, f"{value = }, {expected = }"

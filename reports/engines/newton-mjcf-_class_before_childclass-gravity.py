@@ -1,0 +1,24 @@
+# newton 1.8.0, mjcf: class before childclass: eval_inverse_dynamics_passive is wrong (g: gravity forces).
+# Known: https://github.com/newton-physics/newton/pull/3687.
+import numpy as np, warp as wp
+wp.config.quiet = True
+import newton
+TEXT = '<mujoco model="m"><compiler angle="radian"/><default><joint axis="1 0 0"/><default class="k"><joint axis="0 1 0"/></default></default><worldbody><body name="a" pos="0.1 0.2 0.3" childclass="k"><joint class="main"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5" ><joint/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></body></worldbody></mujoco>'
+b = newton.ModelBuilder()
+b.add_mjcf(TEXT)
+m = b.finalize(device="cpu")
+def rotation(x, y, z, w):
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * K + 2 * K @ K
+bodies = [[x.split('/')[-1] for x in m.body_label].index(name) for name in ['a', 'b']]
+q = np.array([0.0, 0.0])
+s = m.state()
+s.joint_q.assign(q.astype(np.float32))
+s.joint_qd.zero_()
+newton.eval_fk(m, s.joint_q, s.joint_qd, s)
+gravity = wp.zeros(m.joint_dof_count, device='cpu')
+newton.eval_inverse_dynamics_passive(m, s, gravity_force=gravity)
+value = gravity.numpy()
+import numpy as np
+value, expected = np.reshape(value, (2,))[(0,)], -2.9430000000000005
+assert abs(value - expected) <= 5.3e-03, f"{value = }, {expected = }"

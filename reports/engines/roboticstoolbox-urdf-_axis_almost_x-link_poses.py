@@ -1,0 +1,15 @@
+# roboticstoolbox 1.5.0, urdf: axis almost x: fkine is wrong (positions and rows of R).
+# Known: https://github.com/petercorke/robotics-toolbox-python/pull/441.
+import io
+import numpy as np
+from roboticstoolbox import Robot
+from roboticstoolbox.models.URDF.URDFRobot import URDF_file
+TEXT = '<robot name="r"><link name="world"/><link name="a"><inertial><origin xyz="0.1 -0.2 0.3"/><mass value="2"/><inertia ixx="0.2" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="0.4"/></inertial></link><link name="b"><inertial><origin xyz="0 0.1 0.2"/><mass value="1"/><inertia ixx="0.2" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="0.4"/></inertial></link><joint name="joint_a" type="revolute"><parent link="world"/><child link="a"/><origin xyz="0.1 0.2 0.3" rpy="0.3 -0.4 0.5"/><axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="9" velocity="9"/></joint><joint name="joint_b" type="revolute"><parent link="a"/><child link="b"/><origin xyz="0 0 0.5"/><axis xyz="0.99999999995 0.00001 0"/><limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>'
+links = {'a': ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0]), 'b': ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0, 1])}
+robot = Robot(URDF_file(io.StringIO(TEXT))[0], gravity=[0.0, 0.0, -9.81])
+q = np.array([0.0, 0.0])
+T = [robot.fkine(q, end=name).A for name in links]
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]
+import numpy as np
+value, expected = np.reshape(value, (2, 12))[(1, 7)], 0.7832138784613234
+assert abs(value - expected) <= 1.3e-12, f"{value = }, {expected = }"
