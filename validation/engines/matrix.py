@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Overflow
 
 import numpy as np
 
@@ -227,6 +228,8 @@ def _judge(plugin: EnginePlugin, tree: Tree, answer: Answer, truths: Truths) -> 
             want = truths.of(answer.function, tree, answer, plugin, perturbations)
         except ZeroDivisionError:
             return replace(plain, words="the truth is singular"), None
+        except Overflow:
+            return replace(plain, words="the truth is beyond all numbers"), None
         except Exception as error:  # Of a layout that can't be: a fault of the plug-in's, or of ours.
             return replace(plain, verdict="plug-in", words=f"the truth in its layout: {words(error)}"), None
         cell = judge(plugin.name, tree, answer.function, value, want)
