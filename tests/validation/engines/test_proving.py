@@ -14,10 +14,11 @@ SCRIPTS = sorted((Path(__file__).parents[3] / "reports" / "engines").glob("*.py"
 
 
 @pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: path.stem)
-def test_stored_script_compiles_and_ends_by_an_assertion_or_a_crash(path: Path) -> None:
+def test_stored_script_compiles_and_ends_by_an_assertion_an_exception_or_a_crash(path: Path) -> None:
     text = path.read_text()
     compile(text, path.name, "exec")
-    assert text.startswith("# ") and (" crashes (" in text.partition("\n")[0]) != ("\nassert " in text)
+    ends = any(f" {word} (" in text.partition("\n")[0] for word in ("crashes", "raises"))
+    assert text.startswith("# ") and ends != ("\nassert " in text)
 
 
 def test_files_written_from_trees_are_distinguished() -> None:
