@@ -59,4 +59,4 @@ def compile_received() -> None:
     origin, keys = pickle.load(sys.stdin.buffer)
     model = origin()
     for name, frame in keys:
-        model.make(name, frame)
+        model.kernel(name, frame)

@@ -194,15 +194,6 @@ class Functions(Arguments):
         """
         return self._kernel(name, self._frame_or_none(frame), "a kernel of a function of frames is asked for with one")
 
-    def make(self, name: str, frame: str = "") -> None:
-        """Generate a function that is not there yet, of a frame or of the whole model.
-
-        Raises:
-            UnknownNameError: There is no such function.
-            CompileError: The C compiler failed.
-        """
-        self._kernel(name, frame, "a function of the model")
-
     def has(self, name: str) -> bool:
         """Whether a function of the whole model can be called: `Options.functions` may have left it out."""
         return self._build is not None or (name, "") in self._kernels

@@ -70,6 +70,12 @@ class Actions:
         except SymofrosError as error:
             raise next(_wrong_formulas(model, events, stated), error) from None
 
+    @property
+    def places(self) -> list[tuple[int, int, int, int]]:
+        """Rows of sym_assignment: event, whether a speed is set, index of what is set, index of the formula."""
+        first = len(self.model.record.switches)
+        return [(of.event, int(of.group == "v"), of.entry, first + k) for k, of in enumerate(self.assignments)]
+
     def engaging(self, par: Array, par_set: Array, state: tuple[float, Array, Array, Array]) -> tuple[str, ...]:
         """Names of the constraints that engage where parameters par (npar) change to others, at t, q, v, u."""
         switches, (t, q, v, u) = self.model.record.switches, state

@@ -57,6 +57,11 @@ class Event(metaclass=CheckedCalls):
         return _SIGNS[self.direction]
 
     @property
+    def coefficient(self) -> float:
+        """The restitution, as C has it: below zero where constraints that engage are to hold."""
+        return -1.0 if self.restitution is None else self.restitution
+
+    @property
     def cut(self) -> int:
         """What a crossing does, as sym_system's event_terminal has it at first.
 

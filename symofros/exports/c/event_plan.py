@@ -82,24 +82,21 @@ def _lines(
     switches = record.switches
     turning = [switch for switch in switches if switch.rotation]
     sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
-    assignments = actions.assignments if actions else []
-    places = [
-        f"{{{a.event}, {int(a.group == 'v')}, {a.entry}, {len(switches) + k}}}" for k, a in enumerate(assignments)
-    ]
+    places = [f"{{{', '.join(map(str, place))}}}" for place in (actions.places if actions else ())]
     arrays = {
         "direction": [event.sign for event in events],
         "cut": [event.cut for event in events],
         "acts": [int(event.acts) for event in events],
         "once": [int(event.once) for event in events],
     }
-    restitution = [-1.0 if event.restitution is None else event.restitution for event in events]
+    restitution = [event.coefficient for event in events]
     frames = [frame for switch in turning for frame in switch.frames]
     held = [
         f"static const int32_t {name}_switch{i}[] = {{{integers((*rows, *places_of, *switch.rotation))}}};"
         for i, switch in enumerate(switches)
         for rows, places_of in (tuple(zip(*switch.offsets, strict=True)) or ((), ()),)
     ]
-    counts = f"{len(assignments)}, {len(switches)}, {len(frames)}"
+    counts = f"{len(places)}, {len(switches)}, {len(frames)}"
     pointers = ", ".join(f"{name}_event_{key}" for key in (*arrays, "restitution"))
     models = f"{name}_events_model, {f'{name}_actions_model' if actions else 'NULL'}"
     return [

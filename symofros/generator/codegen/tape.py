@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from heapq import heappop, heappush
 from itertools import count
 from math import prod
@@ -18,7 +19,7 @@ from string import Template
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph, Slot
 from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.ops import ADD, DIV, MUL, STOP_GRADIENT
+from symofros.expr.ops import ADD, MUL, STOP_GRADIENT
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.solvers import ROUTINES, routine_work
@@ -33,6 +34,7 @@ _STORED_TOGETHER = 16
 _TRIGONOMETRIC = ("sin", "cos")
 
 
+@cache
 def machine_text() -> str:
     """C text of the machine that interprets tapes, with the routines that finish functions."""
     sines = trigonometry.routines(["sym_sincos_1(", f"sym_sincos_{WIDEST}("])
@@ -197,7 +199,7 @@ class _Writer:
         elif name == STOP_GRADIENT:  # The same number: as a product by one.
             self._add("MUL", node, [self._value(args[0]), self._number(1.0)])
         else:
-            self._add({MUL: "MUL", DIV: "DIV"}.get(name, name.upper()), node, [self._value(arg) for arg in args])
+            self._add(name.upper(), node, [self._value(arg) for arg in args])
 
     def _sum(self, node: int, a: Edge, b: Edge) -> None:
         """The sum of a, which is positive by construction, and b."""

@@ -106,7 +106,7 @@ class CopyFunctions(ParameterFunctions):
         arguments = (self._par, self._threads, self._precision, self._parameter_check is not None)
         model: Self = _restored(background.origin, *arguments)  # type: ignore[assignment]
         for name, frame in background.keys:
-            model.make(name, frame)
+            model.kernel(name, frame)
         return model
 
     def __copy__(self) -> Self:

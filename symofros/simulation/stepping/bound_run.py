@@ -177,14 +177,12 @@ class BoundRun:
         run, memory, model, events = self.run, self.memory, self.model, self.events
         switches = model.record.switches
         plan = self._actions = self.ffi.new("sym_actions *")
-        places = [
-            (of.event, int(of.group == "v"), of.entry, len(switches) + k) for k, of in enumerate(actions.assignments)
-        ]
+        places = actions.places
         plan.npar, plan.n_assignments, plan.n_switches = model.npar, len(places), len(switches)
         plan.assignments = memory.own("sym_assignment[]", places)
         plan.acts = memory.own("int32_t[]", [int(event.acts) for event in events])
         plan.once = memory.own("int32_t[]", [int(event.once) for event in events])
-        plan.restitution = memory.doubles([-1.0 if e.restitution is None else e.restitution for e in events])
+        plan.restitution = memory.doubles([event.coefficient for event in events])
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
         plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
         plan.first_mode, plan.modes = actions.first_mode, memory.zeros(model.npar + 2 * sticking)
