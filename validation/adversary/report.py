@@ -48,5 +48,5 @@ def compose(data: Data) -> Report:
     )
 
 
-QUESTION = "Is anything called good that an independent route contradicts?"
+QUESTION = "Is a wrong answer ever called good?"
 TOPIC = Topic("adversary", "Correctness", QUESTION, compose, measure)

@@ -236,5 +236,5 @@ def _paint(record: Record, shown: list[KernelRow], functions: list[str], axes: A
     logarithmic(axes.xaxis)
 
 
-_QUESTION = "Are kernels right on a graphics processor, and the faster beside MuJoCo Warp?"
+_QUESTION = "Right and fast on a graphics processor?"
 TOPIC = Topic("cuda", "Speed", _QUESTION, compose, measure)

@@ -41,7 +41,7 @@ def dashboard(
     except QuoteError as error:
         raise typer.BadParameter(str(error), param_hint="--readme") from None
     typer.echo(f"{headline(entries)} Page: {page}")
-    missed = any(entry.verdict == "missed" for entry in entries.values())
+    missed = any(entry.verdict in ("wrong", "missed") for entry in entries.values())
     raise typer.Exit(Exit.MISSED if missed else Exit.GOOD)
 
 

@@ -1,9 +1,10 @@
-"""Entries -> index.html (one self-contained page), summary.md, and the summary's main lines in the README."""
+"""Entries -> index.html and trust.html (self-contained pages), summary.md, and its main lines in the README."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from symofros.tools import write_atomically
@@ -12,8 +13,9 @@ from ..program import PROGRAM
 from ..reporting import html, markdown
 from ..reporting.evidence import revision, standing_text
 from ..reporting.figures import Figure
-from ..reporting.record import Block, Bullets, Report, Section, Table, Text, verdict
+from ..reporting.record import MISSED, SHORT, Block, Bullets, Report, Section, Table, Text
 from .gather import Entry
+from .trust import TITLE, trust
 
 BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends -->"
 
@@ -21,10 +23,23 @@ BEGIN, END = "<!-- reports/summary.md begins -->", "<!-- reports/summary.md ends
 QUOTED = ("check", "oracle", "mutants", "engines", "accuracy", "stability", "timing")
 
 # Verdict of an entry -> whether what was asked for is met.
-_VERDICTS = {"good": True, "missed": False, "measured": None, "absent": None}
-# Reports whose decisions the index shows, in this order: first the sentences of some, then all of the others.
-_INTRODUCTIONS = {"check": "The opinions on our C, engine by engine:", "engines": "What each engine is to mend first:"}
-_SHOWN = ("pareto", "timing")
+_VERDICTS = {"good": True, "wrong": False, "missed": False, "measured": None, "absent": None}
+# Verdict of an entry -> mark of its cell: red is for what is wrong, and for nothing else.
+_MARKS = {"wrong": MISSED, "missed": SHORT}
+# Reports whose decisions the index has under a line that opens them.
+_DECIDING = {
+    "pareto": "Which method for my scene?",
+    "timing": "How fast is it beside which engine, on which model?",
+    "engines": "Which engine is wrong, and why?",
+    "check": "Which engine has which opinion of our C?",
+    "accuracy": "How far may a beam bend, how many functions does it need?",
+}
+
+
+# Where the first sentence of a summary ends.
+_CLAUSE = re.compile(r"(?<=[.?!])\s+(?=[A-Z0-9])|;\s+")
+# The page that answers whether one may trust all this.
+TRUST = "trust.html"
 
 
 class QuoteError(ValueError):
@@ -32,7 +47,7 @@ class QuoteError(ValueError):
 
 
 def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
-    """Write index.html, which is returned, and summary.md.
+    """Write index.html, which is returned, trust.html and summary.md.
 
     Raises:
         OSError: The folder can't be written to.
@@ -40,60 +55,106 @@ def write_index(entries: Mapping[str, Entry], folder: Path, date: str) -> Path:
     report = index(entries)
     closing = f"Gathered {date} by `{PROGRAM} dashboard`; `{PROGRAM} all` makes reports anew."
     page = html.page(report, closing=closing, listed=False)
+    own = html.page(trust(entries), closing=f"{closing} All reports: [the index](index.html).", listed=False)
     source = f" of revision {revision()[:9]}" if revision() else ""
-    said = f"**{report.summary}** (gathered {date}{source})", markdown.table(summary_table(entries)), origins(entries)
+    said = (
+        f"**{headline(entries)}** (gathered {date}{source})",
+        markdown.table(summary_table(entries)),
+        origins(entries),
+    )
     write_atomically(folder / "index.html", page)
+    write_atomically(folder / TRUST, own)
     write_atomically(folder / "summary.md", "\n\n".join(said) + "\n")
     return folder / "index.html"
 
 
 def index(entries: Mapping[str, Entry]) -> Report:
-    """The report over all reports: a line each, then what each says in short."""
-    reports = {name: entry.report for name, entry in entries.items() if entry.report}
+    """The report over all reports: a line each; what people decide by; then what each says in short, folded."""
+    groups = dict.fromkeys(entry.topic.group for entry in entries.values())
+    wrong = [(name, entry.report) for name, entry in entries.items() if entry.report and entry.verdict == "wrong"]
+    verdicts = {entry.verdict for entry in entries.values()}
     return Report(
         "What the harness found",
-        headline(entries),
-        all(entry.verdict != "missed" for entry in entries.values()),
-        (summary_table(entries, linked=True),),
-        tuple(_section(name, entry) for name, entry in entries.items()),
-        decisions=_decisions(reports),
-        missed=tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.missed),
+        _found(entries),
+        not verdicts & {"wrong", "missed"},
+        (
+            _LEAD,
+            summary_table(entries, linked=True),
+            *(Text(f"Of the reports, {aged}.", "soft") for aged in [", ".join(_aged(entries))] if aged),
+            *_decisions(entries),
+            *_short_of(entries),
+        ),
+        tuple(_group(group, {n: e for n, e in entries.items() if e.topic.group == group}) for group in groups),
+        missed=tuple(f"[{name}](#{name}): {line}" for name, report in wrong for line in report.missed),
+        aims="wrong" not in verdicts,
     )
 
 
-def _decisions(reports: Mapping[str, Report]) -> tuple[Block, ...]:
-    """Sentences that a table would hide; then sentences with their tables; then the tables of the former."""
-    said = {name: reports[name].decisions for name in _INTRODUCTIONS if name in reports and reports[name].decisions}
-    shown = [block for name in _SHOWN if name in reports for block in reports[name].decisions]
-    tables = [block for name, group in said.items() if group[1:] for block in (_INTRODUCTIONS[name], *group[1:])]
-    return (*(group[0] for group in said.values()), *shown, *tables)
+_LEAD = f"**[{TITLE}]({TRUST})** says in a minute what is covered, who agrees, how fast it is, where it fails."
+
+
+def _decisions(entries: Mapping[str, Entry]) -> Iterator[Section]:
+    """What people decide by, folded under the question that it answers."""
+    for name, asked in _DECIDING.items():
+        report = entries[name].report if name in entries else None
+        if report is not None and report.decisions:
+            yield Section(asked, report.decisions)
+
+
+def _short_of(entries: Mapping[str, Entry]) -> Iterator[Section]:
+    """Targets of ours that are missed, folded."""
+    reports = {name: entry.report for name, entry in entries.items() if entry.report and entry.verdict == "missed"}
+    lines = tuple(f"[{name}](#{name}): {line}" for name, report in reports.items() for line in report.missed)
+    if lines:
+        yield Section(f"Which targets of ours are missed? {len(lines)}", (Bullets(lines),))
+
+
+def _group(title: str, entries: Mapping[str, Entry]) -> Section:
+    return Section(title, tuple(_section(name, entry) for name, entry in entries.items()))
 
 
 def headline(entries: Mapping[str, Entry]) -> str:
-    """One sentence that counts the reports by verdict and by age of their sources."""
+    """One sentence that says what is wrong, counts the reports by verdict and by age of their sources."""
+    return "; ".join([_found(entries).removesuffix("."), *_aged(entries)]) + "."
+
+
+def _found(entries: Mapping[str, Entry]) -> str:
     named = {word: [n for n, e in entries.items() if e.verdict == word] for word in _VERDICTS}
-    good, missed, measured, absent = named.values()
-    said = [f"{len(good)} of {len(good) + len(missed)} reports with a verdict are good"]
-    said += [f"missed: {', '.join(missed)}"] if missed else []
-    said += [f"{len(measured)} measure without one"] if measured else []
+    good, wrong, missed, _, absent = named.values()
+    said = [f"Something is wrong in {', '.join(wrong)}" if wrong else "No report finds anything wrong"]
+    said += [f"{len(good)} of {len(good) + len(wrong) + len(missed)} with a verdict are good"]
+    said += [f"{', '.join(missed)} miss{'es' * (len(missed) == 1)} targets of ours"] if missed else []
     said += [f"absent: {', '.join(absent)}"] if absent else []
-    aged = Counter(entry.standing for entry in entries.values() if entry.standing)
-    said += [f"{number} {standing}" for standing, number in aged.items()]
     return "; ".join(said) + "."
 
 
+def _aged(entries: Mapping[str, Entry]) -> list[str]:
+    """How many reports judge nothing, and how many are of which age."""
+    aged = Counter(entry.standing for entry in entries.values() if entry.standing)
+    measured = sum(entry.verdict == "measured" for entry in entries.values())
+    said = [f"{measured} measure{'s' * (measured == 1)} without a verdict"] if measured else []
+    return said + [f"{number} {standing}" for standing, number in aged.items()]
+
+
 def summary_table(entries: Mapping[str, Entry], linked: bool = False) -> Table:
-    """A line a report; `linked`: its name leads to what the page says of it, and a miss is marked."""
-    rows = (
-        (
-            f"[{name}](#{name})" if linked else name,
-            entry.said,
-            verdict(entry.verdict, not linked or entry.verdict != "missed"),
-            "; ".join(filter(None, (entry.provenance.date.removesuffix(" UTC") or "-", entry.standing))),
-        )
-        for name, entry in entries.items()
-    )
-    return Table.of("report | what it found | verdict | made (UTC)", rows)
+    """A line a report; `linked`: for the page, where its question leads to it, its name to what the page says of it."""
+    rows: list[tuple[str, ...]] = []
+    for name, entry in entries.items():
+        made = "; ".join(filter(None, (entry.provenance.date.removesuffix(" UTC") or "-", entry.standing)))
+        if linked:
+            asked = entry.topic.question
+            said = f"[{asked}]({entry.page})" if entry.page else asked
+            marked = f"{_MARKS.get(entry.verdict, '')}[{entry.verdict}](#{name})"
+            rows.append((said, _first(entry.said), marked))
+        else:
+            rows.append((name, entry.said, entry.verdict, made))
+    head = "question | answer | verdict" if linked else "report | what it found | verdict | made (UTC)"
+    return Table.of(head, rows)
+
+
+def _first(said: str) -> str:
+    """The first sentence of a summary, or what of it comes before a semicolon."""
+    return f"{_CLAUSE.split(said)[0].rstrip('.')}."
 
 
 def origins(entries: Mapping[str, Entry]) -> str:
@@ -105,6 +166,7 @@ def origins(entries: Mapping[str, Entry]) -> str:
 
 
 def _section(name: str, entry: Entry) -> Section:
+    """What the index says of a report, folded."""
     blocks: list[Block] = []
     if entry.report is not None:
         facts = tuple(f"**{fact.value}** {fact.label}" for fact in entry.report.facts)
@@ -115,8 +177,9 @@ def _section(name: str, entry: Entry) -> Section:
     whole = f"[The whole report]({entry.page}). " if entry.page else ""
     origin = "; ".join(f"{what} {value}" for what, value in entry.provenance.rows)
     blocks.append(Text(f"{whole}Written by `{entry.topic.command}`{': ' if origin else ''}{origin}.", "soft"))
-    title = f"{entry.topic.group}: {entry.topic.question}"
-    return Section(title, tuple(blocks), name, _VERDICTS[entry.verdict], badge=entry.verdict)
+    aged = f", {entry.standing}" if entry.standing else ""
+    title = f"{entry.topic.question} {name}: {entry.verdict}{aged}"
+    return Section(title, tuple(blocks), name, None)
 
 
 def brief(summary: str) -> str:

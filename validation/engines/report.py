@@ -106,6 +106,7 @@ def compose(data: Data) -> Report:
             Bullets(tuple(_first(data, found))),
             Text(_COUNTED, "soft"),
         ),
+        aims=all_proven,
     )
 
 

@@ -170,5 +170,5 @@ def _paint(shown: list[dict[str, Row]], sides: list[str], axes: Any) -> None:
     logarithmic(axes.xaxis)
 
 
-_QUESTION = "Is a model the same, and the faster, in JAX, PyTorch, CasADi and a web page?"
+_QUESTION = "Same and fast in JAX, PyTorch, CasADi, a page?"
 TOPIC = Topic("environments", "Speed", _QUESTION, compose, measure)

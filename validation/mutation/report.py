@@ -108,8 +108,9 @@ def compose(data: Data) -> Report:
             Fact(f"{seconds:.1f} s", "a fault, all judges together"),
         ),
         unfinished=tuple(data.get("unfinished", ())),
+        aims=True,
     )
 
 
-QUESTION = "Would check or the tests see a fault in the source?"
+QUESTION = "Would the tests see a fault in the source?"
 TOPIC = Topic("mutants", "Correctness", QUESTION, compose, measure, beside=("tests",))

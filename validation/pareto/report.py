@@ -27,11 +27,9 @@ INTRO = (
     on timing.""",
 )
 DECISION = "**Which method, on which model:** the fastest run that keeps the error, in each scene."
-_EXPLAINED = (
-    "Time is the processor's for the stepping alone; the next best, and the other side, take so much more of it."
-)
-_CHOICES = """scene | error at most | method | model | step or tolerance | time | next best method loses by |
-    other side loses by"""
+_EXPLAINED = """Time is the processor's for the stepping alone; the next best method, and the best engine of the other
+side, take so much more of it."""
+_CHOICES = """scene | error at most | method | model | step or tolerance | time | next best method | other side"""
 _TARGETS = "scene | at error | against | ours | its best | winner | asked | verdict"
 
 
@@ -85,6 +83,7 @@ def compose(data: Data) -> Report:
             for _, one, v in judged
             if v.ok is False
         ),
+        aims=not failures,
     )
 
 
@@ -95,7 +94,7 @@ def _chosen(name: str, problem: BenchmarkProblem, result: Result) -> list[str]:
         if other is None:
             return "no other"
         ratio = other.seconds / best.seconds
-        return f"{times(ratio) if ratio >= 2.0 else f'{100 * (ratio - 1):.0f} %'} {who}"
+        return f"{who} takes {f'{times(ratio)} the time' if ratio >= 2.0 else f'{100 * (ratio - 1):.0f} % more'}"
 
     scene = f"[{problem.title}](pareto.html#{name}): {problem.axis.removesuffix('  [1]')}"
     rows: list[str] = []

@@ -71,6 +71,7 @@ def compose(data: Data) -> Report:
         ),
         digest=(overview, Table.of(_HEAD, map(_line, rows))),
         unfinished=tuple(data["unfinished"]),
+        aims=all(met[:2]),
     )
 
 
@@ -136,4 +137,4 @@ def _shown(row: Row) -> tuple[Any, ...]:
     return (row["what"], Table.of(head, lines)) if lines else ()
 
 
-TOPIC = Topic("recall", "Correctness", "Which real faults of releases does the harness see?", compose, measure)
+TOPIC = Topic("recall", "Correctness", "Which faults of real releases are seen?", compose, measure)

@@ -17,7 +17,7 @@ from .figures import SHAPES, Chart, Curve, Drawing
 from .numbers import short
 
 # Names in the style sheet -> colours on light and on dark paper.
-INK, SOFT, LINE, PAPER, GOOD, BAD = "#1c2024", "#5c6670", "#dfe3e6", "#fcfcfb", "#1a7f4b", "#c0362c"
+INK, SOFT, LINE, PAPER, GOOD, BAD, SHORT = "#1c2024", "#5c6670", "#dfe3e6", "#fcfcfb", "#1a7f4b", "#c0362c", "#8a6000"
 SERIES = tuple(
     "#2563b8 #d9730d #5aa0e6 #e39a45 #7a8691 #2f9e6e #8a5cc7 #b0508a #12908e #8c5a2b #5b6fae #c2342d "
     "#6b7d2a #3d4a57".split()
@@ -32,6 +32,7 @@ PALETTE = {
     "paper": (PAPER, "#15181b"),
     "good": (GOOD, "#4cc38a"),
     "bad": (BAD, "#ff7a6e"),
+    "short": (SHORT, "#e0b040"),
     **{f"e{k}": pair for k, pair in enumerate(zip(SERIES, _DARK_SERIES, strict=True))},
 }
 MARKS = "osD^vPX*"

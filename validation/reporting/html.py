@@ -1,4 +1,7 @@
-"""Report -> one self-contained page: nothing from outside, no script, readable on a phone, light or dark."""
+"""Report -> one self-contained page: nothing from outside, readable on a phone, light or dark.
+
+Pages hold no script, but for the one that looks through a `Search`.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from .charts import PALETTE, draw
 from .evidence import standing_text
 from .figures import Chart, Drawing, Figure
 from .provenance import Provenance
-from .record import MISSED, Block, Bullets, Cell, Code, Fact, Report, Section, Table, Text
+from .record import MISSED, SHORT, Block, Bullets, Cell, Code, Fact, Report, Search, Section, Table, Text
 
 _PAGE = """<!doctype html>
 <html lang="en">
@@ -22,12 +25,15 @@ _PAGE = """<!doctype html>
 {style}</style>
 </head>
 <body>
-<main>
+<main{kind}>
 {body}
 </main>
 </body>
 </html>
 """
+_SEARCH = """<div class="search"><label>Look for <input type="search" placeholder="{examples}"></label>
+<p class="soft" role="status"></p>{table}<script>
+{script}</script></div>"""
 # [text](place in a report, or an address).
 _LINK = re.compile(r"\[([^\]]+)\]\((https://[\w.#/-]+|[#\w][\w.#/-]*)\)")
 # Tones of verdicts in the style sheet.
@@ -36,6 +42,8 @@ _TONE = {True: "good", False: "bad", None: "soft"}
 _PAGES = {"wide": 1052.0, "phone": 360.0}
 # Tables of more columns are set closer.
 _MANY_COLUMNS = 11
+# Lines of what is missed that stand on the page unfolded.
+_FEW = 6
 # Width that a phone shows whole [px].
 _PHONE = 320.0
 
@@ -47,7 +55,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         report: Report to render.
         provenance: Origin of the numbers, stated at the end.
         closing: Last line.
-        listed: Whether links to the sections come before them.
+        listed: Whether sections that can be linked to are folded, where there are several: their headings are the list.
     """
     links = [section for section in report.sections if section.anchor] if listed else []
     standing = provenance.standing if provenance else ""
@@ -56,11 +64,10 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
         block(Text(f"This report {standing_text(standing)}.", "bad")) if standing else "",
         *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
-        block(Text("**Missed:**", "bad")) + block(Bullets(report.missed)) if report.missed else "",
+        _missed(report),
         f'<div class="tiles">{"".join(map(tile, report.facts))}</div>' if report.facts else "",
         *map(block, report.blocks),
-        f"<ol>{''.join(map(link, links))}</ol>" if len(links) > 1 else "",
-        *(section(one, k + 1) for k, one in enumerate(report.sections)),
+        *(section(one, k + 1, folded=len(links) > 1) for k, one in enumerate(report.sections)),
     ]
     if provenance is not None:
         parts += ["<h2>Versions and machine</h2>", table(Table(("what", "value"), provenance.rows))]
@@ -68,7 +75,18 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     style = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
     light, dark = (" ".join(f"--{name}: {pair[k]};" for name, pair in PALETTE.items()) for k in (0, 1))
     style = f":root {{ {light} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {dark} }} }}\n{style}"
-    return _PAGE.format(title=escape(report.title), style=style, body="\n".join(filter(None, parts)))
+    kind = ' class="aims"' if report.aims else ""
+    return _PAGE.format(title=escape(report.title), style=style, kind=kind, body="\n".join(filter(None, parts)))
+
+
+def _missed(report: Report) -> str:
+    """What is missed; more than a few lines are folded."""
+    if not report.missed:
+        return ""
+    title = "Targets of ours that are missed" if report.aims else "Missed"
+    if len(report.missed) > _FEW:
+        return block(Section(f"{title}: {len(report.missed)}", (Bullets(report.missed),)))
+    return block(Text(f"**{title}:**", "bad")) + block(Bullets(report.missed))
 
 
 def prose(text: str) -> str:
@@ -84,21 +102,24 @@ def tile(fact: Fact) -> str:
     return f'<div class="tile"><b class="{tone}">{escape(fact.value)}</b><span>{prose(fact.label)}</span></div>'
 
 
-def link(one: Section) -> str:
-    """A link to a section, marked where it misses something."""
-    mark = " <b class=bad>missed</b>" if one.ok is False else ""
-    return f'<li><a href="#{escape(one.anchor)}">{prose(one.title)}</a>{mark}</li>'
-
-
-def section(one: Section, number: int) -> str:
-    """A section; its figures are numbered within it."""
-    anchor = f' id="{escape(one.anchor)}"' if one.anchor else ""
+def section(one: Section, number: int, folded: bool = False) -> str:
+    """A section; its figures are numbered within it. One that misses something is never folded."""
     badge = f' <span class="badge {_TONE[one.ok]}">{escape(one.badge)}</span>' if one.badge else ""
-    parts, figures = [f"<h2{anchor}>{prose(one.title)}{badge}</h2>"], 0
+    mark = " <b class=bad>missed</b>" if folded and one.ok is False else ""
+    figures, parts = 0, []
     for item in one.blocks:
         figures += isinstance(item, Figure)
         parts.append(block(item, f"Figure {number}.{figures}."))
-    return "\n".join(parts)
+    inner, heading = "\n".join(parts), f"{prose(one.title)}{badge}{mark}"
+    if not (folded and one.anchor):
+        anchor = f' id="{escape(one.anchor)}"' if one.anchor else ""
+        return f"<h2{anchor}>{heading}</h2>\n{inner}"
+    opened = " open" if one.ok is False else ""
+    # As in a fold of a section, a link to the anchor opens it.
+    return (
+        f'<details class="section"{opened}><summary><h2>{heading}</h2></summary>\n'
+        f'<div id="{escape(one.anchor)}">{inner}</div></details>'
+    )
 
 
 def block(item: Block, figure_name: str = "") -> str:
@@ -112,6 +133,8 @@ def block(item: Block, figure_name: str = "") -> str:
             return f'<pre tabindex="0">{escape(text)}</pre>'
         case Table():
             return table(item)
+        case Search(searched, examples):
+            return _SEARCH.format(examples=escape(", ".join(examples)), table=table(searched), script=_script())
         case Bullets(items):
             return f"<ul>{''.join(f'<li>{prose(one)}</li>' for one in items)}</ul>"
         case Figure(_, ()):
@@ -125,6 +148,10 @@ def block(item: Block, figure_name: str = "") -> str:
             # The anchor is within the fold, so that a link to it opens it.
             inner = f'<div id="{escape(anchor)}">{inner}</div>' if anchor else inner
             return f"<details{' open' if ok is False else ''}><summary>{prose(title)}</summary>\n{inner}</details>"
+
+
+def _script() -> str:
+    return Path(__file__).with_name("search.js").read_text(encoding="utf-8")
 
 
 def chart(item: Chart | Drawing) -> str:
@@ -173,8 +200,10 @@ def table(item: Table) -> str:
 
 def cell(item: Cell, is_number: bool, tag: str) -> str:
     """A cell of a table: of its head (th) or of its body (td)."""
-    kinds = " ".join(["n"] * is_number + ["wrong"] * item.text.startswith(MISSED))
+    marks = {"wrong": MISSED, "short": SHORT}
+    marked = [name for name, mark in marks.items() if item.text.startswith(mark)]
+    kinds = " ".join(["n"] * is_number + marked)
     attributes = f' class="{kinds}"' if kinds else ""
     attributes += f' style="background: rgba(var(--shade), {item.shade:.2f})"' if item.shade else ""
     attributes += f' title="{escape(item.hint)}"' if item.hint else ""
-    return f"<{tag}{attributes}>{prose(item.text.removeprefix(MISSED))}</{tag}>"
+    return f"<{tag}{attributes}>{prose(item.text.removeprefix(MISSED).removeprefix(SHORT))}</{tag}>"

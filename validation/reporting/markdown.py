@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .evidence import standing_text
 from .provenance import Provenance
-from .record import Block, Bullets, Cell, Code, Report, Section, Table, Text
+from .record import Block, Bullets, Cell, Code, Report, Search, Section, Table, Text
 
 
 def page(report: Report, provenance: Provenance, closing: str) -> str:
@@ -30,6 +30,8 @@ def block(item: Block) -> str:
             return f"```\n{text}\n```"
         case Table():
             return table(item)
+        case Search(inner, _):
+            return table(inner)
         case Bullets(items):
             return "\n".join(f"- {' '.join(one.split())}" for one in items)
         case Section(title, blocks, page_only=False):

@@ -14,6 +14,8 @@ from ..program import PROGRAM
 from .figures import Chart, Drawing, Figure
 
 MISSED = "**missed** "
+# Marks a cell of a target that is not reached, where nothing is wrong.
+SHORT = "**short of it** "
 _BAR = re.compile(r"\s*(?<!\S)\|(?!\S)\s*")
 _NUMBER = re.compile(r"([<>] )?[-+−]?\d([-+−\d.,: ]|e[-+]?\d| of \d)*( ?[%×]| [a-zA-Zµ]{1,3})?( \(\w+\))?|NaN|-?")
 
@@ -103,6 +105,18 @@ class Table:
 
 
 @dataclass(frozen=True)
+class Search:
+    """A table with a field above it that shows the rows with all words of what is typed; on pages only.
+
+    Attributes:
+        examples: Words that one may look for.
+    """
+
+    table: Table
+    examples: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Section:
     """Blocks under a heading; within a section, under a line that opens and shuts them.
 
@@ -129,7 +143,7 @@ class Section:
         return any(map(is_filled, shown)) if shown else bool(self.blocks)
 
 
-Block = str | Text | Code | Bullets | Table | Figure | Section
+Block = str | Text | Code | Bullets | Table | Search | Figure | Section
 
 
 def is_filled(block: Block) -> bool:
@@ -137,6 +151,8 @@ def is_filled(block: Block) -> bool:
     match block:
         case Table(_, content) | Figure(_, content) | Bullets(content):
             return bool(content)
+        case Search(table):
+            return bool(table.rows)
         case Section():
             return block.shows
     return True
@@ -167,6 +183,7 @@ class Report:
         refused: Inputs that could not be read, where nothing else is wrong.
         decisions: What readers decide by, first on the page and on the index of reports.
         missed: What is missed, a line each, with its numbers; by default the key numbers that miss something.
+        aims: Whether what it misses is a target that we set ourselves; otherwise something is wrong.
     """
 
     title: str
@@ -181,6 +198,7 @@ class Report:
     refused: tuple[str, ...] = ()
     decisions: tuple[Block, ...] = ()
     missed: tuple[str, ...] = ()
+    aims: bool = False
 
     def __post_init__(self) -> None:
         missed = tuple(f"{fact.value} {fact.label}" for fact in self.facts if fact.ok is False)
@@ -193,7 +211,7 @@ class Report:
     @property
     def verdict(self) -> str:
         """The verdict in a word."""
-        return {True: "good", False: "missed", None: "measured"}[self.ok]
+        return {True: "good", False: "missed" if self.aims else "wrong", None: "measured"}[self.ok]
 
     @property
     def first_chart(self) -> tuple[Chart | Drawing, ...]:

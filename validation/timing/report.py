@@ -55,13 +55,16 @@ def compose(data: Data) -> Report:
     by_peer = {row.peer: sorted(other.ratio for other in best if other.peer == row.peer) for row in best}
     medians = {peer: times(median(group)) for peer, group in by_peer.items()}
     raced = ", ".join(f"{peer} {ratio}" for peer, ratio in medians.items())
-    raced = f"; median of their time over ours: {raced}" if raced else ""
+    won = sum(row.ratio > 1.0 for row in best)
+    race = f"{won} of {counted(len(best), 'race')} over {' and '.join(sizes)}"
+    raced = f" (median of their time over ours: {raced})" if raced else ""
+    raced = f"The generated C is faster than the peer in {race}{raced}; " if best else ""
     late = [wait for wait in record.waits if not wait.met]
     any_judged = measured or record.waits or record.failed
     costly = [cost for cost in reverse_costs(record) if not cost.met]
     return Report(
         "Timing: generated C against engines and symbolic peers",
-        f"{said}; {counted(len(best), 'race')} over {' and '.join(sizes)}{raced}{failed}.{cut}",
+        f"{raced}{said}{failed}.{cut}",
         met == len(measured) and not (late or costly or record.failed) if any_judged else None,
         (*LIMITS, _conditions(record.machine)),
         (
@@ -70,6 +73,7 @@ def compose(data: Data) -> Report:
             flexible_section(record.flexible),
         ),
         facts=(
+            Fact(f"{won} of {len(best)}", "races in which the generated C is faster than the peer"),
             Fact(f"{met} of {len(judged)}", "targets are met", met == len(measured)),
             *(
                 Fact(
@@ -98,6 +102,7 @@ def compose(data: Data) -> Report:
             for wait in late
             if wait.asked is not None
         ),
+        aims=not record.failed,
     )
 
 
@@ -130,4 +135,4 @@ def _conditions(machine: Mapping[str, Any]) -> str:
     )
 
 
-TOPIC = Topic("timing", "Speed", "How fast is the C against engines and other generators?", compose, measure)
+TOPIC = Topic("timing", "Speed", "How fast is the C beside engines and generators?", compose, measure)

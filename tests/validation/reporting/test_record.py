@@ -42,7 +42,8 @@ def test_a_page_shows_everything() -> None:
     for text in ("Title", "1 of 2 missed.", "First.", "<code>so</code>", '<a href="#other">there</a>', "Figure 1.1."):
         assert text in page, text
     assert "t &lt; u" in page and "limit: 2" in page and "hidden" in page and "2026-11-22" in page
-    assert "details open" in page, "what misses its bounds is not folded away"
+    assert page.count("details open") == 1 and '<details class="section" open>' in page, "a miss is not folded away"
+    assert '<details class="section"><summary><h2>Other</h2>' in page, "what is good is"
     assert 'class="n wrong"' in page and page.count("<b class=bad>missed</b>") == 1
 
 
