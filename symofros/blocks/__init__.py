@@ -10,6 +10,7 @@ from symofros.blocks.controllers.joint import JointPID as JointPID
 from symofros.blocks.controllers.lqr import LQR as LQR
 from symofros.blocks.dynamics import ForwardDynamics as ForwardDynamics
 from symofros.blocks.dynamics import InverseDynamics as InverseDynamics
+from symofros.blocks.fmu.functional_mockup_unit import FMU as FMU
 from symofros.blocks.generic.calculus import Derivative as Derivative
 from symofros.blocks.generic.calculus import Integrator as Integrator
 from symofros.blocks.generic.formula import Formula as Formula

@@ -15,6 +15,7 @@ from symofros.commands import view_options
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import (
     NOT_FOR_DIAGRAMS,
+    AllowNative,
     AsJson,
     FilePath,
     Network,
@@ -93,6 +94,7 @@ def simulate(
     ] = False,
     exaggeration: Annotated[float, typer.Option(help="Multiplies the elastic coordinates in the picture.")] = 1.0,
     network: Network = False,
+    allow_native: AllowNative = False,
     as_json: AsJson = False,
 ) -> None:
     """Move a model or a diagram through time, and say how it went."""
@@ -109,7 +111,7 @@ def simulate(
             names = tuple(names_of(signals) or ())
             formulas = {name: entries_of(text) for name, text in assignments(inputs, "--input").items()}
             request = diagrams.RunRequest(t_end, formulas, stated, pace, names, output, picture, jitter)
-            diagram = sf.load_diagram(model, network=network)
+            diagram = sf.load_diagram(model, network=network, allow_native=allow_native)
             diagram, live = view_options.with_live_view(diagram, viewing, bool(pace or diagram.simulation.realtime))
             diagram_run = diagrams.run_diagram(diagram, request, wanted)
             files = diagrams.write_files(diagram_run, request) + view_options.record_run(diagram_run, viewing)

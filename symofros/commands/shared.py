@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 ModelPath = Annotated[Path, typer.Argument(help="A model: .yaml, .urdf, .sdf, .xml (MJCF) or .usd", show_default=False)]
 FilePath = Annotated[Path, typer.Argument(help="A model, or a diagram's .yaml.", show_default=False)]
 Network = Annotated[bool, typer.Option("--network", help="Let a diagram's blocks reach other machines.")]
+AllowNative = Annotated[
+    bool, typer.Option("--allow-native", help="Let a diagram's blocks run native code of files: imported FMUs.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
 # Why options of reading are refused.

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from symofros.base.arrays import Array
-from symofros.diagrams.block import Block, Environment
+from symofros.diagrams.block import Block, Environment, EvaluationContext, Values
 
 
 class Running(ABC):
@@ -33,7 +35,19 @@ class Running(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class ExternalBlock(Block, ABC):
-    """A block that the loop calls at its samples; its formulas are unknown: all inputs feed through to all outputs."""
+    """A block that the loop calls at its samples; its formulas are unknown."""
+
+    def feeds_through(self) -> bool:
+        """Whether outputs answer to inputs of the same sample; else it is called with those of the one before."""
+        return True
+
+    def memory(self, environment: Environment) -> Mapping[str, Any]:
+        """The inputs of the sample before, where outputs do not answer to those of the same one."""
+        return {} if self.feeds_through() else {port: np.zeros(shape) for port, shape in environment.inputs.items()}
+
+    def update(self, context: EvaluationContext) -> Values:
+        """Keep the inputs."""
+        return {port: context.inputs[port] for port in self.memory(context.environment)}
 
     @abstractmethod
     def begin(self, environment: Environment) -> Running:

@@ -25,12 +25,14 @@ class Quantity:
         shape: Its shape; () for one number.
         units: Unit of each entry; "" for none.
         start: First value of each entry; none of outputs.
+        depends: Names of the inputs that an output answers to at once.
     """
 
     name: str
     shape: Shape
     units: tuple[str, ...]
     start: tuple[float, ...] = ()
+    depends: frozenset[str] = frozenset()
 
     @property
     def entries(self) -> Iterator[str]:
@@ -75,8 +77,9 @@ class Interface:
         told = []
         for text, source in zip(outputs, sources, strict=True):
             units = next(port for port in wired.ports[source[0]].outputs if port.name == source[1]).entry_units
-            shape = wired.shape(source)
-            told.append(Quantity(text if text in wired.outlets else ".".join(source), shape, _spread(units, shape)))
+            shape, depends = wired.shape(source), _inlets_behind(resolved, source)
+            name = text if text in wired.outlets else ".".join(source)
+            told.append(Quantity(name, shape, _spread(units, shape), depends=depends))
         parameters = []
         for (block, key), place in layout.parameters.items():
             values = layout.par[place.slice]
@@ -110,6 +113,25 @@ class Interface:
             lines += [f"    {row}," for row in rows]
             lines += [f"    {prefix}_{total} = {at}", "};"]
         return lines
+
+
+def _inlets_behind(resolved: Resolved, source: Source) -> frozenset[str]:
+    """The open inlets that an output answers to at once."""
+    wired, pieces = resolved.wired, resolved.pieces
+    open_ones = {inlet.name for inlet in open_inlets(wired.blocks)}
+    found, seen, stack = set[str](), set[Source](), [source]
+    while stack:
+        name, port = one = stack.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        if name in open_ones:
+            found.add(name)
+            continue
+        piece = pieces[name]
+        solved = port in piece.outputs and not {"a", "lam"}.isdisjoint(piece.groups(piece.outputs[port].flat))
+        stack += wired.behind(name, None if solved else piece.needs[port])
+    return frozenset(found)
 
 
 def entry_names(quantities: Iterable[Quantity]) -> list[str]:

@@ -51,7 +51,7 @@ OF_THE_USER = {
     "Noise", "Pick", "Product", "Pulse", "PythonBlock", "Quantizer", "Ramp", "RateLimit", "Relay", "Reshape",
     "Saturation", "Sequence", "Sine", "StateSpace", "Step", "Store", "Sum", "Switch", "TransferFunction", "Transform",
     "FrameTransform", "UdpReceiver", "UdpTransmitter", "UnitDelay", "ZenohPublisher", "ZenohSubscriber", "Scope",
-    "LivePlot", "JointTrajectory",
+    "LivePlot", "JointTrajectory", "FMU",
 }  # fmt: skip
 # Measured by what is connected: tests below.
 BY_WIRE = {"JointPD", "JointPID"}

@@ -171,6 +171,7 @@ class PythonBlock(ExternalBlock):
         outputs: Output -> shape.
         on_begin: Called before a run.
         on_end: Called after a run, however it ended.
+        feedthrough: Whether outputs answer to inputs of the same sample; else it gets those of the one before.
     """
 
     function: Callable[[float, Mapping[str, Array]], Mapping[str, Any]]
@@ -178,6 +179,7 @@ class PythonBlock(ExternalBlock):
     outputs: Any = None
     on_begin: Callable[[], None] | None = None
     on_end: Callable[[], None] | None = None
+    feedthrough: bool = True
 
     def __post_init__(self) -> None:
         """A function, an output or more, a sample time."""
@@ -199,6 +201,10 @@ class PythonBlock(ExternalBlock):
             tuple(Port(name, shape) for name, shape in given.items()),
             tuple(Port(name, tuple(shape)) for name, shape in dict(self.outputs).items()),
         )
+
+    def feeds_through(self) -> bool:
+        """As stated."""
+        return self.feedthrough
 
     def begin(self, environment: Environment) -> Running:
         """Call the user's `on_begin`, if given, and return the running function."""

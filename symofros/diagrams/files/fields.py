@@ -13,6 +13,8 @@ import numpy as np
 from symofros.description.yaml import Node
 
 MISSING = dataclasses.MISSING
+# A field of blocks that run native code of files: who reads a diagram consents, no file does.
+CONSENT = "allow_native"
 # What a field of any type may be: numbers of any shape, texts, true and false.
 _ANY = "numbers, lists of them, texts, or a mapping to such"
 
@@ -26,9 +28,14 @@ class Misfit(Exception):
 
 
 def types_of(owner: type[Any]) -> dict[str, Any]:
-    """Field -> type of a dataclass, for fields that its constructor takes."""
+    """Field -> type of a dataclass, for fields that its constructor takes and that files may state."""
     hints = get_type_hints(owner)
-    return {item.name: hints[item.name] for item in dataclasses.fields(owner) if item.init}
+    return {item.name: hints[item.name] for item in dataclasses.fields(owner) if item.init and item.name != CONSENT}
+
+
+def runs_native_code(owner: type[Any]) -> bool:
+    """Whether blocks of a class run native code of files, once there is consent."""
+    return any(item.name == CONSENT for item in dataclasses.fields(owner))
 
 
 def required(owner: type[Any]) -> frozenset[str]:

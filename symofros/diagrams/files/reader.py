@@ -15,7 +15,7 @@ from symofros.description.yaml import DIAGRAM, Node, YamlFault, compose
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
-from symofros.diagrams.files.fields import Misfit, read, required, types_of
+from symofros.diagrams.files.fields import CONSENT, Misfit, read, required, runs_native_code, types_of
 from symofros.diagrams.files.inlets import read_inlets
 from symofros.diagrams.files.paths import DIAGRAMS, refused
 from symofros.diagrams.files.reading_options import READING, read_options
@@ -40,19 +40,26 @@ _ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs
 
 
 @checked
-def load_diagram(path: str | os.PathLike[str], *, blocks: Iterable[type[Block]] = (), network: bool = False) -> Diagram:
+def load_diagram(
+    path: str | os.PathLike[str],
+    *,
+    blocks: Iterable[type[Block]] = (),
+    network: bool = False,
+    allow_native: bool = False,
+) -> Diagram:
     """Read a diagram and the models it names (docs/diagrams.md).
 
     Args:
         path: A YAML file. Models and parts lie in its folder or below.
         blocks: Classes of blocks of the caller's own, which files may state by their names in snake case.
         network: Whether blocks may reach other machines than this one.
+        allow_native: Whether blocks may run the native code of files, as of functional mock-up units.
 
     Raises:
         DescriptionError: With every fault that was found. What concerns the diagram as a whole (wires, shapes, units,
             loops) is found by `sf.Simulation`, which knows the same lines.
     """
-    diagram, problems = read_diagram(path, blocks=blocks, network=network)
+    diagram, problems = read_diagram(path, blocks=blocks, network=network, allow_native=allow_native)
     if problems or diagram is None:
         raise DescriptionError(problems)
     return diagram
@@ -64,6 +71,7 @@ def read_diagram(
     *,
     blocks: Iterable[type[Block]] = (),
     network: bool = False,
+    allow_native: bool = False,
 ) -> tuple[Diagram | None, list[Problem]]:
     """Read a diagram as far as it can be read, and everything that is wrong with its file.
 
@@ -72,9 +80,10 @@ def read_diagram(
         text: Content of the file, where that is not written yet; then only its name and folder are used.
         blocks: Classes of blocks of the caller's own.
         network: Whether blocks may reach other machines than this one.
+        allow_native: Whether blocks may run the native code of files.
     """
     file = Path(path)
-    shared = _Shared(resolved(file.parent), kinds(blocks), network)
+    shared = _Shared(resolved(file.parent), kinds(blocks), network, allow_native)
     if text is not None:
         shared.unwritten[resolved(file)] = text.encode("utf-8")
     diagram = shared.file(file, str(file), ())
@@ -88,6 +97,7 @@ class _Shared:
     folder: Path
     kinds: Mapping[str, type[Block]]
     network: bool
+    allow_native: bool
     problems: list[Problem] = field(default_factory=list)
     systems: dict[tuple[Path, str], System | None] = field(default_factory=dict)
     files: int = 0
@@ -272,6 +282,8 @@ class _Reader(Entries):
             self.missing(node, what, key, entries, f"{kind} needs {key}")
         if len(self.problems) > before:
             return None
+        if runs_native_code(owner):
+            values[CONSENT] = self.shared.allow_native
         try:
             return owner(name=name, **values)
         except DescriptionError as error:

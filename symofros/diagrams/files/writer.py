@@ -16,7 +16,7 @@ from symofros.description import resolved
 from symofros.description.yaml import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
-from symofros.diagrams.files.fields import MISSING, same, write
+from symofros.diagrams.files.fields import CONSENT, MISSING, same, write
 from symofros.diagrams.files.inlets import written_inlets
 from symofros.diagrams.files.paths import DIAGRAMS
 from symofros.diagrams.files.reader import HEAD, VERSION, load_diagram
@@ -195,7 +195,9 @@ def _unchanged(diagram: Diagram, path: Path) -> bool:
 
 def _alike(a: Block, b: Block | None) -> bool:
     """Whether two blocks say the same."""
-    return type(a) is type(b) and all(same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.init)
+    return type(a) is type(b) and all(
+        same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.init and f.name != CONSENT
+    )
 
 
 def _path(value: Any, folder: Path) -> str:
@@ -218,7 +220,7 @@ def _block(diagram: Diagram, block: Block, folder: Path) -> Plain:
         if item.default_factory is not MISSING:
             default = item.default_factory()
         has_default = item.default is not MISSING or item.default_factory is not MISSING
-        if item.name == "name" or not item.init or (has_default and same(value, default)):
+        if item.name in ("name", CONSENT) or not item.init or (has_default and same(value, default)):
             continue
         try:
             entries[entry_of(item.name)] = _path(value, folder) if item.name in block.paths and value else write(value)

@@ -373,9 +373,15 @@ class Fuser:
         return Function(name, "", AFTER, (_vector("u_next", u), _vector("q_next", q), _vector("v_next", v)))
 
     def _gathered_inputs(self, g: Graph, name: str, block: str, due: frozenset[str]) -> Function:
-        at = self._at(g, due, after=True)
-        sources = [self._wired.sources.get((block, port.name)) for port in self._wired.ports[block].inputs]
-        edges = [edge for source in sources if source is not None for edge in at.signal(source).flat]
+        at, memory = self._at(g, due, after=True), self._layout.memory
+        edges = [
+            edge
+            for port in self._wired.ports[block].inputs
+            if (source := self._wired.sources.get((block, port.name))) is not None
+            for edge in (
+                at.input("u", memory[block, port.name]) if (block, port.name) in memory else at.signal(source)
+            ).flat
+        ]
         return Function(name, "", AFTER, (_vector("inputs", edges),))
 
     def signals(self, sources: Sequence[Source]) -> Program:

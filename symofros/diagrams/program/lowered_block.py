@@ -130,8 +130,9 @@ def piece_of(wired: Wired, name: str) -> Piece:
         v0,
     )
     _fit(wired, piece)
-    if piece.is_external:
-        needs = {port.name: frozenset(p.name for p in wired.ports[name].inputs) for port in wired.ports[name].outputs}
+    if isinstance(block, ExternalBlock):
+        at_once = frozenset(p.name for p in wired.ports[name].inputs if block.feeds_through())
+        needs = {port.name: at_once for port in wired.ports[name].outputs}
     else:
         needs = {port: piece.inputs_of(value.flat) for port, value in outputs.items()}
     return replace(piece, needs=needs | {port: frozenset() for port in block.samples()})

@@ -151,7 +151,11 @@ class Blocks:
 
     def _call_python(self, called: Called, name: str) -> None:
         sources = self.resolved.wired.sources
-        inputs = {port: self.out[source].copy() for (block, port), source in sources.items() if block == name}
+        inputs = {
+            port: self.memory.get((name, port), self.out[source]).copy()
+            for (block, port), source in sources.items()
+            if block == name
+        }
         for key, value in called.call(name, float(self.t[0]), inputs).items():
             self.out[name, key][...] = value
 

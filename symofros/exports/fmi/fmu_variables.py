@@ -6,11 +6,11 @@ symofros_fmu.h counts the same way, of diagrams symofros_fmu_program.h.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import accumulate
 
-from symofros.exports.diagram_interface import Interface, entry_names, entry_starts, entry_units
+from symofros.exports.diagram_interface import Interface, entry_names, entry_starts
 from symofros.exports.material import Material
 from symofros.mechanics.topology import coordinate_names
 
@@ -61,13 +61,22 @@ def diagram_variables(shown: Interface) -> list[Variable]:
         ("output", "calculated", shown.outputs),
         ("parameter", "exact", shown.parameters),
     )
+    references: dict[str, list[int]] = {}
     for causality, initial, quantities in kinds:
         variability = "tunable" if causality == "parameter" else "continuous"
-        starts: Sequence[float | None] = entry_starts(quantities) or [None] * len(entry_names(quantities))
-        for name, unit, start in zip(entry_names(quantities), entry_units(quantities), starts, strict=True):
-            base, bracket, index = name.partition("[")
-            label = ".".join(map(quoted, base.split("."))) + bracket + index.replace("][", ",")
-            listed.append(Variable(len(listed), label, causality, variability, initial, start, _plain_unit(unit)))
+        starts: Iterator[float | None] = iter(entry_starts(quantities) or [None] * len(entry_names(quantities)))
+        for quantity in quantities:
+            depends = sorted(at for name in quantity.depends for at in references[name])
+            for name, unit, start in zip(quantity.entries, quantity.units, starts, strict=False):
+                base, bracket, index = name.partition("[")
+                label = ".".join(map(quoted, base.split("."))) + bracket + index.replace("][", ",")
+                references.setdefault(quantity.name, []).append(len(listed))
+                stated = tuple(depends) if causality == "output" else None
+                listed.append(
+                    Variable(
+                        len(listed), label, causality, variability, initial, start, _plain_unit(unit), depends=stated
+                    )
+                )
     return _distinct(listed)
 
 

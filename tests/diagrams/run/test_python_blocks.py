@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import LivePlot, PythonBlock, Store, UdpReceiver
+from symofros.blocks import Formula, LivePlot, PythonBlock, Store, UdpReceiver
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from tests.blocks.sockets import free_port
@@ -132,3 +132,27 @@ def test_started_blocks_are_stopped_when_another_fails_to_start() -> None:
         with pytest.raises(RuntimeError, match="no cable"):
             run(PERIOD)
         assert heard == ["begin", "end first"]
+
+
+def test_a_block_without_feedthrough_closes_no_loop_and_is_called_with_the_inputs_of_the_sample_before() -> None:
+    """A filter in Python in a loop through a gain: x_k = x_k-1 / 2 + u_k-1, u = 1 - x / 4; interpreted, too."""
+
+    def filtered(t: float, inputs: Mapping[str, Any]) -> Mapping[str, Any]:
+        state["x"] = 0.0 if t == 0.0 else state["x"] / 2 + float(inputs["u"])
+        return {"x": state["x"]}
+
+    state = {"x": 0.0}
+    d = sf.Diagram("loop")
+    ports: dict[str, Any] = {"inputs": {"u": ()}, "outputs": {"x": ()}}
+    d.add(PythonBlock(name="filter", function=filtered, period=PERIOD, feedthrough=False, **ports), u="law.y")
+    d.add(Formula(name="law", formulas="1 - x/4"), x="filter.x")
+    expected = [0.0]
+    for _ in range(5):
+        expected.append(expected[-1] / 2 + 1.0 - expected[-1] / 4)
+    simulation = sf.Simulation(d)
+    for run in (simulation.run(5 * PERIOD, dt=PERIOD), simulation.interpret(5 * PERIOD, dt=PERIOD)):
+        assert run["filter.x"].tolist() == expected
+    d.add(PythonBlock(name="direct", function=filtered, period=PERIOD, **ports), u="loop.y")
+    d.add(Formula(name="loop", formulas="1 - x/4"), x="direct.x")
+    with pytest.raises(sf.DescriptionError, match="algebraic loop"):
+        sf.Simulation(d)

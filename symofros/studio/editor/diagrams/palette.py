@@ -22,6 +22,7 @@ GROUPS = {
     "controllers": "Controllers",
     "generic": "Generic",
     "graphics": "View",
+    "fmu": "Functional mock-up units",
     "network": "Network",
 }
 _MODEL: Json = {
