@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.errors import DescriptionError, Problem
+from symofros.simulation.events import Event
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,15 +24,22 @@ class ForwardDynamics(Block):
         engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
             block. A constraint that engages takes the speeds onto itself as a plastic impact does; one whose frames are
             then more than 1e-3 m or rad apart ends the run.
+        events: Events of the mechanism, as `sf.simulate` takes them: name -> formula, or sf.Event with what it sets. In
+            place of `engaged`, for constraints with switches; inputs are those of `u`.
     """
 
     model: str
     perturbed: tuple[str, ...] = ()
     engaged: bool = False
+    events: Mapping[str, Event | str] = field(default_factory=dict)
 
     def mechanism(self) -> str:
         """The model."""
         return self.model
+
+    def mechanism_events(self) -> Mapping[str, Event | str]:
+        """The events."""
+        return self.events
 
     def lock_inputs(self) -> tuple[str, ...]:
         """The input that says which constraints hold."""

@@ -227,6 +227,10 @@ class Block(metaclass=CheckedCalls):
         """Inputs that engage and release constraints; held between samples, and a change projects the state at once."""
         return ()
 
+    def mechanism_events(self) -> Mapping[str, Any]:
+        """Events of the mechanism, as `sf.simulate` takes them: name -> formula or Event."""
+        return {}
+
     def states(self, environment: Environment) -> Mapping[str, Any]:
         """Continuous states -> their first values."""
         return {}

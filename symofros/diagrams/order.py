@@ -71,7 +71,7 @@ def _loop(wired: Wired, path: Sequence[Source]) -> AlgebraicLoopError:
 
 
 def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str]]:
-    """Blocks that move between samples, grouped where their motions are coupled; all in one if there are crossings.
+    """Blocks that move between samples, grouped where their motions are coupled; all in one if events are located.
 
     What only meets at samples can move apart, each with steps of its own, on a thread of its own.
     """
@@ -83,7 +83,7 @@ def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str
             name = parent[name]
         return name
 
-    watched = [name for name, piece in pieces.items() if piece.crossings]
+    watched = [name for name, piece in pieces.items() if piece.crossings or piece.switching is not None]
     for name in moving:
         piece = pieces[name]
         edges = [*piece.motion_edges(), *(edge for value in piece.rates.values() for edge in value.flat)]

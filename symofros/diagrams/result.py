@@ -18,6 +18,7 @@ from symofros.runtime.beams import BeamBending
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw, show_windows, window_figure
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
+from symofros.simulation.results.trajectory import Found
 
 
 @dataclass(frozen=True, repr=False)
@@ -27,6 +28,7 @@ class DiagramRun(Records, Mapping[str, Array]):
     Attributes:
         outcome: Outcome of the run.
         crossings: Crossings met, in the order of time.
+        events: Block -> events of its mechanism, as `sf.Trajectory.events` has them.
         cost: Cost of the run.
         bendings: Bending of each beam at the step where its theory errs most.
         kept: Block -> what it kept of the run by itself, by name: arrays at its own times "t", or counts.
@@ -34,6 +36,7 @@ class DiagramRun(Records, Mapping[str, Array]):
 
     outcome: Outcome
     crossings: tuple[Crossed, ...]
+    events: Mapping[str, tuple[Found, ...]]
     cost: Cost
     bendings: tuple[BeamBending, ...] = ()
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)

@@ -93,7 +93,7 @@ class DiagramStepper(Stepped):
             plan = self._plan = replace(plan, par=parameter_values(resolved, parameters))
         self._ends.close()
         self._called = self._ends.enter_context(begun(resolved.wired))
-        begin, t0 = Start.of(resolved, plan.options.t0), plan.options.t0
+        begin, t0 = Start.of(resolved, plan.options.t0, plan.par), plan.options.t0
         ahead = replace(plan, t_end=t0 + _AHEAD * self.period)
         self._loop, parts = placed_loop(ahead, begin, self._called)
         self._ends.enter_context(closing(self._loop))
@@ -192,7 +192,7 @@ class DiagramStepper(Stepped):
             raise refusal("stepper: no motion yet", repr(self), "a motion has a step at least", "step() first")
         plan = replace(plan, t_end=self.t if self.running else plan.options.t0 + self._marks * self.period)
         resolved, given = plan.compiled.resolved, self._called.given
-        ended = run_from(plan, Start.of(resolved, plan.options.t0), CalledBefore(resolved.wired, given))
+        ended = run_from(plan, Start.of(resolved, plan.options.t0, plan.par), CalledBefore(resolved.wired, given))
         if live.failure is not None:
             ended.loop.failure, ended.loop.failed_block = live.failure, live.failed_block
         elif isinstance(ended.loop.failure, NotKeptError):

@@ -71,7 +71,7 @@ def first_motion(diagram: Diagram, interface: Interface, outputs: Sequence[str],
     compiled, options = compile_diagram(resolved), diagram_options(None, changes)
     par = np.array(resolved.layout.par)
     placed = place_parts(
-        compiled, lambda model: part_settings(options, model, until), par, Start.of(resolved, options.t0)
+        compiled, lambda model: part_settings(options, model, until), par, Start.of(resolved, options.t0, par)
     )
     run = run_compiled(compiled, until, options)
     probed = run_compiled(compile_diagram(resolve(diagram, given)), until, options) if given else run

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from typing import Any
 
 from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
@@ -17,6 +18,7 @@ from symofros.generator.codegen.effort import effort
 from symofros.generator.passes import run_passes
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
+from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree, coupled_speeds
@@ -84,6 +86,16 @@ class ProgramBuilder:
         equations = self._taken_over
         methods = Methods(self.trees) if function == _FORWARD.name else Methods()
         return form_program(equations, [Request(function, frame)], methods)
+
+    def of_formulas(self, formulas: Sequence[Any], reactions: bool) -> Program:
+        """Formulas over the model's names as they are formed, for a graph that takes them over.
+
+        Args:
+            formulas: Numbers, texts or SymPy expressions.
+            reactions: Whether they may use multipliers, wrenches and reactions, and are of a and lam then.
+        """
+        values = [(value, 0) for value in stated_formulas(self.tree, formulas, reactions)]
+        return formula_program(self.equations(), values, derivatives=False)
 
     @cached_property
     def _taken_over(self) -> Equations:

@@ -6,7 +6,7 @@ What is said here compiles into the tables of `native/stepping/actions.c`, which
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ from symofros.base.names import coordinate_of, speed_column, speed_of
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls import Kernel
 from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
 from symofros.simulation.events import Event, ModeEvent
 
 
@@ -33,52 +34,69 @@ class Assignment(NamedTuple):
     entry: int
 
 
-class Actions:
-    """The actions of the events of one run.
-
-    Args:
-        model: Model.
-        events: All events of the run.
+class StatedActions(NamedTuple):
+    """What the events of one model do, before anything is compiled.
 
     Attributes:
         assignments: In the order in which they are stated.
         formulas: Of what says whether constraints hold, of the assignments, then of the most that friction takes at
             rest.
-        kernel: The same, compiled.
         first_mode: The event at which the first mode of friction that sticks ends; those after it are of others.
-
-    Raises:
-        UnknownNameError: An action names no run-time parameter or speed, or a formula no name of the model.
-        SymofrosError: An action sets one thing twice, or the pose that a constraint holds.
     """
 
-    def __init__(self, model: Model, events: Sequence[Event]) -> None:
-        self.model, self.assignments = model, list[Assignment]()
-        self.first_mode = sum(not isinstance(event, ModeEvent) for event in events)
-        stated = [(i, name) for i, event in enumerate(events) for name in event.action or {}]
-        for i, name in stated:
-            place = Assignment(i, *_target(model, events[i], name))
-            if place in self.assignments:
-                what, rule = f"event '{events[i].name}': its action sets '{name}' twice", "one value for each"
-                raise SymofrosError(Problem(what, ", ".join(events[i].action or {}), rule, "leave one of them out"))
-            self.assignments.append(place)
-        self.formulas: list[Any] = [switch.engaged for switch in model.record.switches]
-        self.formulas += [(events[i].action or {})[name] for i, name in stated]
-        self.formulas += [one.breakaway for one in model.record.sticking]
-        try:
-            self.kernel: Kernel = model.formulas(self.formulas, derivatives=False)
-        except SymofrosError as error:
-            raise next(_wrong_formulas(model, events, stated), error) from None
+    assignments: tuple[Assignment, ...]
+    formulas: tuple[Any, ...]
+    first_mode: int
+
+    @classmethod
+    def of(cls, record: ModelRecord, events: Sequence[Event]) -> StatedActions:
+        """The actions of events.
+
+        Args:
+            record: Names and switches of the model.
+            events: All events, ends of modes last.
+
+        Raises:
+            UnknownNameError: An action names no run-time parameter or speed.
+            SymofrosError: An action sets one thing twice, or the pose that a constraint holds.
+        """
+        assignments, values = list[Assignment](), list[Any]()
+        for i, event in enumerate(events):
+            for name, value in (event.action or {}).items():
+                place = Assignment(i, *_target(record, event, name))
+                if place in assignments:
+                    what, rule = f"event '{event.name}': its action sets '{name}' twice", "one value for each"
+                    raise SymofrosError(Problem(what, ", ".join(event.action or {}), rule, "leave one of them out"))
+                assignments.append(place)
+                values.append(value)
+        engaged = (switch.engaged for switch in record.switches)
+        breakaway = (one.breakaway for one in record.sticking)
+        first_mode = sum(not isinstance(event, ModeEvent) for event in events)
+        return cls(tuple(assignments), (*engaged, *values, *breakaway), first_mode)
+
+
+@dataclass(frozen=True)
+class Actions:
+    """The actions of the events of one run.
+
+    Attributes:
+        record: Names and switches of what moves.
+        stated: What they do.
+        kernel: Its formulas, compiled.
+    """
+
+    record: ModelRecord
+    stated: StatedActions
+    kernel: Kernel
 
     @property
     def places(self) -> list[tuple[int, int, int, int]]:
         """Rows of sym_assignment: event, whether a speed is set, index of what is set, index of the formula."""
-        first = len(self.model.record.switches)
-        return [(of.event, int(of.group == "v"), of.entry, first + k) for k, of in enumerate(self.assignments)]
+        return places_of(self.record, self.stated)
 
     def engaging(self, par: Array, par_set: Array, state: tuple[float, Array, Array, Array]) -> tuple[str, ...]:
         """Names of the constraints that engage where parameters par (npar) change to others, at t, q, v, u."""
-        switches, (t, q, v, u) = self.model.record.switches, state
+        switches, (t, q, v, u) = self.record.switches, state
         given = {"t": np.array([t]), "q": q, "v": v, "u": u}
         inputs = [given[group][np.newaxis] for group, _ in self.kernel.signature.inputs]
         before, after = (
@@ -88,44 +106,61 @@ class Actions:
         return tuple(switch.name for i, switch in enumerate(switches) if after[i] > before[i])
 
 
+def places_of(record: ModelRecord, stated: StatedActions) -> list[tuple[int, int, int, int]]:
+    """Rows of sym_assignment, as of `Actions.places`."""
+    first = len(record.switches)
+    return [(of.event, int(of.group == "v"), of.entry, first + k) for k, of in enumerate(stated.assignments)]
+
+
 def plan_actions(model: Model, events: Sequence[Event]) -> Actions | None:
-    """The actions of a run's events; None where they have none."""
-    return Actions(model, events) if any(event.acts for event in events) else None
+    """The actions of a run's events; None where they have none.
+
+    Raises:
+        UnknownNameError: An action names no run-time parameter or speed, or a formula no name of the model.
+        SymofrosError: An action sets one thing twice, or the pose that a constraint holds.
+    """
+    if not any(event.acts for event in events):
+        return None
+    stated = StatedActions.of(model.record, events)
+    try:
+        kernel = model.formulas(stated.formulas, derivatives=False)
+    except SymofrosError as error:
+        raise next(_wrong_formulas(model, events), error) from None
+    return Actions(model.record, stated, kernel)
 
 
-def _wrong_formulas(model: Model, events: Sequence[Event], stated: list[tuple[int, str]]) -> Iterator[SymofrosError]:
+def _wrong_formulas(model: Model, events: Sequence[Event]) -> Iterator[SymofrosError]:
     """What is wrong with a formula of an action, said of the event."""
-    for i, name in stated:
+    for event, name in ((event, name) for event in events for name in event.action or {}):
         try:
-            model.formulas([(events[i].action or {})[name]], derivatives=False)
+            model.formulas([(event.action or {})[name]], derivatives=False)
         except SymofrosError as error:
-            of = f"event '{events[i].name}', what its action sets '{name}' to"
+            of = f"event '{event.name}', what its action sets '{name}' to"
             yield type(error)([replace(problem, what=f"{of}: {problem.what}") for problem in error.problems])
 
 
-def _target(model: Model, event: Event, name: str) -> tuple[str, int]:
+def _target(record: ModelRecord, event: Event, name: str) -> tuple[str, int]:
     """Group, "par" or "v", and index of what an action sets."""
-    names = model.names
-    if found := coordinate_of(name, names.par):
-        index = names.par.index(found)
-        _refuse_held(model, event, found, index)
+    if found := coordinate_of(name, record.par_names):
+        index = record.par_names.index(found)
+        _refuse_held(record, event, found, index)
         return "par", index
-    if name in names.q:  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
+    if name in record.q_names:  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
         what, rule = f"event '{event.name}': its action sets the coordinate '{name}'", "an action moves nothing at once"
-        speed = f"its speed, '{speed_column(name, names.q)}'" if name in names.v else "speeds"
+        speed = f"its speed, '{speed_column(name, record.q_names)}'" if name in record.v_names else "speeds"
         remedy = f"set {speed}, or a parameter"
         raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
-    if found := speed_of(name, names.v):
-        return "v", names.v.index(found)
-    known = [*names.par, *names.v]
+    if found := speed_of(name, record.v_names):
+        return "v", record.v_names.index(found)
+    known = [*record.par_names, *record.v_names]
     rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
     what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
     raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
 
 
-def _refuse_held(model: Model, event: Event, name: str, index: int) -> None:
+def _refuse_held(record: ModelRecord, event: Event, name: str, index: int) -> None:
     """Refuse to set the pose of the moment, which the constraint takes as it engages."""
-    for switch in model.record.switches:
+    for switch in record.switches:
         if index in (*switch.rotation, *(place for _, place in switch.offsets)):
             what = f"event '{event.name}': its action sets '{name}'"
             rule = f"'{switch.name}' holds the pose of the moment in which it engages"

@@ -9,7 +9,7 @@ from typing import Any, Literal
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
-from symofros.runtime.record import HELD
+from symofros.runtime.record import HELD, ModelRecord
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -118,8 +118,12 @@ def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
 
 def events_of(model: Model, given: Mapping[str, Any] | None) -> tuple[Event, ...]:
     """The events of a run: a user's by name, then the ends of modes of a model's friction that sticks."""
-    own = (ModeEvent(one.watch, "falling", name=one.name, mode=one.mode) for one in model.record.sticking)
-    return (*named_events(given), *own)
+    return (*named_events(given), *mode_events(model.record))
+
+
+def mode_events(record: ModelRecord) -> tuple[ModeEvent, ...]:
+    """The ends of modes of a model's friction that sticks."""
+    return tuple(ModeEvent(one.watch, "falling", name=one.name, mode=one.mode) for one in record.sticking)
 
 
 def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:

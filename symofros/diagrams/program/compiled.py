@@ -16,9 +16,11 @@ from symofros.base.options import Options
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.inlets import with_inlets
 from symofros.diagrams.order import groups_in_motion, order_of
-from symofros.diagrams.program.fused_functions import Fuser, reads
+from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.layout import Layout, Part, lay_out
-from symofros.diagrams.program.lowered_block import Piece, piece_of
+from symofros.diagrams.program.lowered_block import Piece, piece_of, watched
+from symofros.diagrams.program.point import reads
+from symofros.diagrams.program.switching import CrossingEvent, PartSwitching, part_switching
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
@@ -30,6 +32,7 @@ from symofros.runtime.build import NO_COMPILER, Toolchain, build_library, find_t
 from symofros.runtime.calls import CompiledUnit, Kernel, Unit
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
+from symofros.simulation.actions import Actions
 
 GENERATOR = "symofros diagram"
 
@@ -51,6 +54,19 @@ class Resolved:
     order: Sequence[Source]
     layout: Layout
     schedule: Schedule
+
+    @property
+    def crossings(self) -> tuple[CrossingEvent, ...]:
+        """Crossings of all blocks, which stop the motion."""
+        return tuple(
+            CrossingEvent(name, self.pieces[block].crossings[which].direction, name=name)
+            for block, which in watched(self.pieces)
+            for name in (f"{block}.{which}",)
+        )
+
+    def switching(self, part: Part) -> PartSwitching | None:
+        """The events of a part's mechanisms, as one table; None where they have none."""
+        return part_switching(self.pieces, self.layout, part, self.crossings)
 
 
 def rates_of(pieces: Mapping[str, Piece]) -> list[tuple[str, float, float]]:
@@ -118,6 +134,7 @@ class CompiledDiagram:
     Attributes:
         resolved: Diagram that was compiled.
         parts: A model for each part.
+        actions: The actions of each part's mechanisms; None where their events have none.
         instants: Functions "due_i", "crossed_i", "inputs_i_j".
         reads_accelerations: Whether functions of instants read accelerations and multipliers of that time.
         toolchain: Compiler and its identity.
@@ -127,6 +144,7 @@ class CompiledDiagram:
 
     resolved: Resolved
     parts: tuple[Model, ...]
+    actions: tuple[Actions | None, ...]
     instants: Unit
     reads_accelerations: bool
     toolchain: Toolchain
@@ -137,6 +155,10 @@ class CompiledDiagram:
     def energies(self, name: str) -> Model:
         """A model of a mechanism that has its energies only."""
         return self.resolved.wired.models.energies(name, self.options)
+
+    def impacts(self, name: str) -> Model:
+        """A model of a mechanism that has what tells the impulses of impacts and their energies."""
+        return self.resolved.wired.models.impacts(name, self.options)
 
     def signals(self, sources: Sequence[Source]) -> Kernel:
         """A function of q, v, u, t, a, lam that gives some outputs."""
@@ -178,15 +200,23 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     if toolchain is None:
         raise CompileError(replace(NO_COMPILER, remedy=f"{NO_COMPILER.remedy}, or interpret the diagram"))
     write = fuser(resolved)
-    parts, texts = [], []
+    parts, acting, texts = [], [], []
     for part in resolved.layout.parts:
-        model, text = _model(resolved, write, part, toolchain, options)
+        model, actions, text = _model(resolved, write, part, toolchain, options)
         parts.append(model)
+        acting.append(actions)
         texts.append(text)
     program = run_passes(write.samples(resolved.schedule.sets))
     instants, text = unit_of(program, record_of(resolved, None), toolchain, options)
     return CompiledDiagram(
-        resolved, tuple(parts), instants, reads_accelerations(program), toolchain, options, (*texts, text)
+        resolved,
+        tuple(parts),
+        tuple(acting),
+        instants,
+        reads_accelerations(program),
+        toolchain,
+        options,
+        (*texts, text),
     )
 
 
@@ -196,7 +226,10 @@ def reads_accelerations(program: Program) -> bool:
     return reads(program.graph, edges, ("a", "lam"), program.pre)
 
 
-def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options) -> tuple[Model, str]:
+def _model(
+    resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options
+) -> tuple[Model, Actions | None, str]:
+    """A part as a model, what its events do, and its C text."""
     record = record_of(resolved, part)
     motion = run_passes(write.motion(part))
     unit, text = unit_of(motion, record, toolchain, options)
@@ -210,8 +243,22 @@ def _model(resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, o
         edges = [edge for function in motion.functions for edge in function.edges()]
         return formula_instants(motion, edges, par, t0, t_end)
 
-    beams = partial(part_beams, resolved, part)
-    return Model(record, None, (unit,), np.array(record.par_default), formulas, beams, instants=instants), text
+    beams, switching = partial(part_beams, resolved, part), resolved.switching(part)
+    check = None if switching is None else partial(_problems, resolved, part)
+    par = np.array(record.par_default)
+    model = Model(record, None, (unit,), par, formulas, beams, parameter_check=check, instants=instants)
+    kernel = unit.kernels.get(("actions", ""))
+    return model, None if switching is None or kernel is None else Actions(record, switching.stated, kernel), text
+
+
+def _problems(resolved: Resolved, part: Part, par: Array) -> list[Problem]:
+    """What is wrong with parameters (n, npar) of the mechanisms of a part whose events change some."""
+    models, problems = resolved.wired.models, list[Problem]()
+    for name in part.blocks:
+        if name in resolved.layout.kept:
+            model = resolved.wired.blocks[name].mechanism()
+            problems += models.compilation(model).parameter_problems(resolved.layout.parameters_of(name, model, par))
+    return problems
 
 
 def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam, ...]:
@@ -221,7 +268,7 @@ def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam,
         if name in layout.q:
             model = resolved.pieces[name].block.mechanism()
             q, v = layout.q[name].start - part.q.start, layout.v[name].start - part.v.start
-            for beam in models.compilation(model).beams(par[layout.parameters["", model].slice]):
+            for beam in models.compilation(model).beams(layout.parameters_of(name, model, par)):
                 beams.append(replace(beam, name=f"{name}.{beam.name}", q=beam.q + q, v=beam.v + v))
     return tuple(beams)
 
@@ -249,6 +296,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         if q.start <= segment.q < q.stop
     )
     names = tuple(layout.condition_names[of.conditions])
+    switching = None if part is None else resolved.switching(part)
     stated = repr((resolved.wired.name, layout.q_names, layout.v_names, layout.u_names, layout.par_names))
     return ModelRecord(
         name=resolved.wired.name,
@@ -257,7 +305,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         v_names=tuple(layout.v_names[v]),
         u_names=tuple(layout.u_names),
         par_names=tuple(layout.par_names),
-        frame_names=(),
+        frame_names=() if switching is None else tuple(map(".".join, switching.frames)),
         frame_aliases={},
         u_default=tuple(layout.u0),
         par_default=tuple(layout.par),
@@ -269,6 +317,8 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         constraint_names=names,
         speed_conditions=tuple(name for name in names if name in layout.speed_conditions),
         measures=layout.measures_of(of),
+        switches=() if switching is None else switching.switches,
+        sticking=() if switching is None else switching.sticking,
     )
 
 

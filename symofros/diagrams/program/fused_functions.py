@@ -2,158 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from itertools import islice
+from collections.abc import Iterable, Mapping, Sequence
 
-from symofros.diagrams.block import Values
-from symofros.diagrams.program.layout import Layout, Part, Place
-from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, STATE, Piece, watched
+from symofros.diagrams.program.layout import Layout, Part
+from symofros.diagrams.program.lowered_block import Piece, watched
 from symofros.diagrams.program.model_environment import parameter_group
+from symofros.diagrams.program.point import AFTER, AT, Point, reads
+from symofros.diagrams.program.switching import owners_of
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
-from symofros.errors import DescriptionError, Problem
-from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into, needed_nodes
-
-AT = ("q", "v", "u", "t")
-# What is known once the accelerations of an instant are.
-AFTER = (*AT, "a", "lam")
-
-
-def reads(graph: Graph, edges: Sequence[Edge], groups: Collection[str], given: Collection[int] = ()) -> bool:
-    """Whether the computation of edges reads inputs of some groups.
-
-    Args:
-        graph: The graph.
-        edges: Edges that are computed.
-        groups: Groups of inputs.
-        given: Nodes whose values are available.
-    """
-    nodes = needed_nodes(graph, edges, given)
-    read = {*map(abs, edges), *(abs(arg) for node in nodes for arg in graph.args[node])}
-    return any(slot.group in groups and node in read for node, slot in graph.slot.items())
-
-
-class Point:
-    """Signals at one instant, written into a graph.
-
-    Args:
-        wired: The diagram.
-        pieces: Blocks, lowered to expressions.
-        layout: Layout of states and signals in memory.
-        order: All outputs, each after what it depends on.
-        g: Graph that receives the operations.
-        due: Sampled blocks whose new outputs count; those of the others are held.
-        part: Part whose vectors q, v and lam are read; None: those of the whole diagram.
-        after: Whether accelerations and multipliers of constrained mechanisms are known.
-    """
-
-    def __init__(
-        self,
-        wired: Wired,
-        pieces: Mapping[str, Piece],
-        layout: Layout,
-        order: Sequence[Source],
-        g: Graph,
-        due: frozenset[str] = frozenset(),
-        part: Part | None = None,
-        after: bool = False,
-    ) -> None:
-        self.g = g
-        self._wired, self._pieces, self._layout = wired, pieces, layout
-        self._rank = {source: i for i, source in enumerate(order)}
-        self._due, self._after = due, after
-        read = part or layout.whole
-        self._q, self._v, self._lam, self._nc = read.q.start, read.v.start, read.conditions.start, read.nc
-        self._models = {parameter_group(model): model for model in wired.models.names}
-        self._values: dict[Source, Tensor] = {}
-
-    def input(self, group: str, place: Place, shift: int = 0) -> Tensor:
-        """Entries of an input vector."""
-        return Tensor.inputs(self.g, group, place.shape, place.start - shift)
-
-    def signal(self, source: Source) -> Tensor:
-        """The value of an output."""
-        wanted, stack = set[Source](), [source]
-        while stack:
-            one = stack.pop()
-            if one in self._values or one in wanted:
-                continue
-            wanted.add(one)
-            if self._place(one) is None:
-                stack += self._behind(one)
-        for one in sorted(wanted, key=self._rank.__getitem__):
-            place = self._place(one)
-            piece = self._pieces[one[0]]
-            self._values[one] = self.write(piece, piece.outputs[one[1]]) if place is None else self.input("u", place)
-        return self._values[source]
-
-    def _place(self, source: Source) -> Place | None:
-        """Place of a stored output in u; None for one that is computed."""
-        layout, piece = self._layout, self._pieces[source[0]]
-        if source in layout.samples:
-            return layout.samples[source]
-        return layout.held.get(source) if piece.is_external or source[0] not in self._due else None
-
-    def _behind(self, source: Source) -> list[Source]:
-        name, port = source
-        return self._wired.behind(name, self._pieces[name].needs[port])
-
-    def write(self, piece: Piece, value: Tensor) -> Tensor:
-        """A value of a block's own graph, at this point."""
-        return Tensor.of(self.g, self.edges(piece, value.flat), value.shape)
-
-    def write_all(self, piece: Piece, values: Values) -> dict[str, Tensor]:
-        """Several values at once, by name."""
-        edges = iter(self.edges(piece, [edge for value in values.values() for edge in value.flat]))
-        return {key: Tensor.of(self.g, islice(edges, value.size), value.shape) for key, value in values.items()}
-
-    def edges(self, piece: Piece, edges: Sequence[Edge]) -> list[Edge]:
-        """The same for edges."""
-        groups = piece.groups(edges)
-        for group in groups:
-            if group.startswith(INPUT):
-                self.signal(self._wired.sources[piece.name, group.removeprefix(INPUT)])
-        known = {group: self._group(piece, group) for group in groups}
-        replacement = {
-            node: known[slot.group][slot.index] for node, slot in piece.g.slot.items() if slot.group in known
-        }
-        return copy_into(self.g, piece.g, edges, replacement)
-
-    def _group(self, piece: Piece, group: str) -> list[Edge]:
-        """Edges that replace an input group of a block's own graph."""
-        name, layout = piece.name, self._layout
-        if group == "t":
-            return [self.g.input("t", 0)]
-        if group == "q":
-            return self.input("q", layout.q[name], self._q).flat
-        if group == "v":
-            return self.input("v", layout.v[name], self._v).flat
-        if group == "gains":
-            first = layout.lam[name].start - self._lam
-            rows = [first + i for i in range(piece.nc)]
-            return [self.g.input("gains", i) for i in (*rows, *(self._nc + i for i in rows))]
-        if group in ("a", "lam"):
-            if not self._after:
-                raise DescriptionError(
-                    Problem(
-                        f"block '{name}': accelerations or constraint forces are needed between samples",
-                        f"'{group}'",
-                        "under constraints they are known once the equations of the instant are solved",
-                        "take them through a sampled block (a hold with a period)",
-                    )
-                )
-            place = layout.v[name] if group == "a" else layout.lam[name]
-            return self.input(group, place, self._v if group == "a" else self._lam).flat
-        if group.startswith(INPUT):
-            return self._values[self._wired.sources[name, group.removeprefix(INPUT)]].flat
-        if group.startswith(STATE):
-            return self.input("v", layout.states[name, group.removeprefix(STATE)], self._v).flat
-        if group.startswith(MEMORY):
-            return self.input("u", layout.memory[name, group.removeprefix(MEMORY)]).flat
-        if group.startswith(PARAMETER):
-            return self.input("par", layout.parameters[name, group.removeprefix(PARAMETER)]).flat
-        return self.input("par", layout.parameters["", self._models[group]]).flat
-
+from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into
 
 class Fuser:
     """Writes a diagram's functions.
@@ -188,23 +46,67 @@ class Fuser:
 
     # Motion of a part.
 
-    def motion(self, part: Part) -> Program:
+    def motion(self, part: Part, *, whole: bool = True) -> Program:
         """A part's functions of its motion.
 
         They are forward_dynamics, project and constraint_jacobian where it has constraints, mass_matrix where it has
-        elastic beams, "formulas" where zeros are located.
+        elastic beams, "constraint" and "frame_pose" where events of mechanisms may engage some.
+
+        Args:
+            part: The part.
+            whole: Whether "formulas", whose zeros are located, and "actions" are among them, where there are some.
         """
         g = Graph()
         at = self._at(g, part=part)
         functions = self._constrained(at, part) if part.nc else self._free(at, part)
+        for name in part.blocks:
+            switching = self._pieces[name].switching
+            for frame, pose in (switching.poses if switching is not None else {}).items():
+                p, R = (at.write(self._pieces[name], value) for value in pose)
+                outputs = _vector("p", p.flat), _matrix("R", R.edges, 3)
+                functions.append(Function("frame_pose", f"{name}.{frame}", ("q", "u", "t"), outputs))
+        if whole:
+            functions += [f for f in (self._formulas(at, part), self._actions(at, part)) if f is not None]
+        return self._program(self._wired.name, g, functions, part)
+
+    def located(self, part: Part) -> dict[str, Program]:
+        """A part's "formulas" and "actions" each by itself, under the names "events" and "actions"; absent ones left out."""
+        programs: dict[str, Program] = {}
+        for name, form in (("events", self._formulas), ("actions", self._actions)):
+            g = Graph()
+            function = form(self._at(g, part=part), part)
+            if function is not None:
+                programs[name] = self._program(self._wired.name, g, [function], part)
+        return programs
+
+    def _formulas(self, at: Point, part: Part) -> Function | None:
+        """Values whose zeros are located: of crossings, then of events of mechanisms; None where there are none."""
         values = [
             edge
             for name, which in watched(self._pieces)
             for edge in at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)
         ]
-        if values:
-            functions.append(Function("formulas", "", AT, (_vector("value", values),)))
-        return self._program(self._wired.name, g, functions, part)
+        after = self._at(at.g, part=part, after=True)  # C evaluates accelerations first, where they are read.
+        own = {
+            name: after.edges(self._pieces[name], switching.values.flat)
+            for name in part.blocks
+            if (switching := self._pieces[name].switching) is not None
+        }
+        values += [own[name][i] for name, i in owners_of(self._pieces, part)]
+        if not values:
+            return None
+        inputs = AFTER if reads(at.g, values, ("a", "lam")) else AT
+        return Function("formulas", "", inputs, (_vector("value", values),))
+
+    def _actions(self, at: Point, part: Part) -> Function | None:
+        """Values of the formulas of actions, as StatedActions orders them; None where there are none."""
+        groups: tuple[list[Edge], ...] = ([], [], [])
+        for name in part.blocks:
+            piece = self._pieces[name]
+            for into, values in zip(groups, piece.switching.groups_of_effects if piece.switching else (), strict=False):
+                into += at.edges(piece, values.flat)
+        values = [edge for group in groups for edge in group]
+        return Function("actions", "", AT, (_vector("value", values),)) if owners_of(self._pieces, part) else None
 
     def _judging(self, at: Point, part: Part) -> list[Function]:
         """Functions mass_matrix and beam_stiffness of a part, by which its elastic beams are judged; none without."""
@@ -301,7 +203,11 @@ class Fuser:
         project = Function("project", "", AT, outputs, Solver("project", projected, (move,), measures))
         posture = AT if reads(at.g, terms_of[2].edges, ("v",)) else ("q", "u", "t")
         jacobian = Function("constraint_jacobian", "", posture, (terms_of[2],))
-        return [forward, project, *self._judging(at, part), jacobian]
+        functions = [forward, project, *self._judging(at, part), jacobian]
+        if any(pieces[name].switching is not None for name in part.blocks):
+            inputs = AT if reads(at.g, phi, ("v",)) else ("q", "u", "t")
+            functions.append(Function("constraint", "", inputs, (_vector("phi", phi),)))
+        return functions
 
     def _moved(self, at: Point, part: Part) -> list[Edge]:
         """The configuration that a step along the manifold leads to."""

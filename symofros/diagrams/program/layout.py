@@ -40,6 +40,27 @@ class Place(NamedTuple):
         """The entries."""
         return slice(self.start, self.start + self.size)
 
+    @property
+    def range(self) -> range:
+        """Their indices."""
+        return range(self.start, self.start + self.size)
+
+
+class Kept(NamedTuple):
+    """Run-time parameters that events of a block's mechanism change.
+
+    Attributes:
+        index: Their numbers among those of its model.
+        first: Their places among the diagram's parameters, which they begin with.
+        par: Their places among the parameters of the part that moves it.
+        memory: Where the diagram remembers them, among the inputs.
+    """
+
+    index: tuple[int, ...]
+    first: tuple[int, ...]
+    par: Place
+    memory: Place
+
 
 @dataclass(frozen=True)
 class Part:
@@ -103,6 +124,8 @@ class Layout:
         speed_conditions: Names of the conditions on speeds only.
         driven: Whether some mechanism has prescribed motions.
         measures: Block -> measures of its mechanism's constraint Jacobian.
+        kept: Block -> parameters that events of its mechanism change; the last of par and of u.
+        settable: Number of parameters that a run may be given.
     """
 
     parts: list[Part] = field(default_factory=list)
@@ -130,6 +153,41 @@ class Layout:
     speed_conditions: list[str] = field(default_factory=list)
     driven: bool = False
     measures: dict[str, Measures] = field(default_factory=dict)
+    kept: dict[str, Kept] = field(default_factory=dict)
+    settable: int = 0
+
+    def begun(self, par: Array) -> Array:
+        """First inputs (nu), with what events change as the run-time parameters (npar) have it."""
+        u = np.array(self.u0, dtype=np.float64)
+        for kept in self.kept.values():
+            u[kept.memory.slice] = par[list(kept.first)]
+        return u
+
+    def present(self, par: Array, u: Array) -> Array:
+        """Run-time parameters (..., npar) of parts where inputs and memory are u (..., nu)."""
+        if not self.kept:
+            return par
+        now = np.array(np.broadcast_to(par, (*u.shape[:-1], par.shape[-1])))
+        for kept in self.kept.values():
+            now[..., kept.par.slice] = u[..., kept.memory.slice]
+        return now
+
+    @property
+    def kept_rows(self) -> list[tuple[int, int, int, int]]:
+        """Rows of sym_kept: part, parameter, input, parameter that it begins with."""
+        return [
+            (next(i for i, part in enumerate(self.parts) if block in part.blocks), par, memory, of)
+            for block, kept in self.kept.items()
+            for par, memory, of in zip(kept.par.range, kept.memory.range, kept.first, strict=True)
+        ]
+
+    def parameters_of(self, block: str, model: str, par: Array) -> Array:
+        """Parameters (..., npar) of the model that a block moves, as `present` has those of its part."""
+        own = par[..., self.parameters["", model].slice]
+        if block in self.kept:
+            own = own.copy()
+            own[..., list(self.kept[block].index)] = par[..., self.kept[block].par.slice]
+        return own
 
     def measures_of(self, part: Part) -> Measures:
         """Measures of the constraint Jacobian of a part."""
@@ -194,7 +252,25 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         layout.parameters["", model] = Place(len(layout.par), (len(names),))
         layout.par += wired.models.parameters(model).tolist()
         layout.par_names += [f"{model}.{name}" for name in names]
+    layout.settable = len(layout.par)
+    for name, piece in pieces.items():
+        if piece.switching is not None:
+            _keep(layout, wired, piece, piece.switching.kept)
     return layout
+
+
+def _keep(layout: Layout, wired: Wired, piece: Piece, index: tuple[int, ...]) -> None:
+    """Place the parameters that events of a mechanism change, in the part and in the diagram's memory."""
+    model = piece.block.mechanism()
+    names = [f"{piece.name}.{wired.models.record(model).par_names[i]}" for i in index]
+    values = wired.models.parameters(model)[list(index)].tolist()
+    par, memory = Place(len(layout.par), (len(index),)), Place(len(layout.u0), (len(index),))
+    first = layout.parameters["", model].start
+    layout.kept[piece.name] = Kept(index, tuple(first + i for i in index), par, memory)
+    layout.par += values
+    layout.par_names += names
+    layout.u0 += values
+    layout.u_names += names
 
 
 def _mechanism(layout: Layout, wired: Wired, piece: Piece) -> None:

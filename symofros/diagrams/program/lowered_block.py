@@ -10,6 +10,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Terms, Values
 from symofros.diagrams.external_block import ExternalBlock
+from symofros.diagrams.program.switching import Switching, switching_of
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
 from symofros.errors import DescriptionError, Problem
@@ -37,6 +38,7 @@ class Piece:
         parameters: Run-time parameter -> value.
         q: First configuration of its mechanism.
         v: First speeds.
+        switching: Events of its mechanism; None where there are none.
         needs: Output port -> inputs that it depends on at once.
     """
 
@@ -53,6 +55,7 @@ class Piece:
     parameters: dict[str, Array]
     q: Array
     v: Array
+    switching: Switching | None = None
     needs: dict[str, frozenset[str]] = field(default_factory=dict)
 
     @property
@@ -128,6 +131,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
         parameters,
         q0,
         v0,
+        switching_of(wired.models, block, at, terms),
     )
     _fit(wired, piece)
     if isinstance(block, ExternalBlock):

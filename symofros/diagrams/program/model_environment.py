@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class Models:
         self._diagram = diagram
         self._setups = setups
         self._compilations: dict[str, Compilation] = {}
-        self._energies: dict[tuple[str, str], Model] = {}
+        self._models: dict[tuple[str, str, tuple[str, ...]], Model] = {}
         self._constraints: dict[str, Model] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
@@ -79,7 +80,6 @@ class Models:
         """A model's description, checked and numbered, and what can be formed of it."""
         if name not in self._compilations:
             self._compilations[name] = Compilation(self.system(name))
-            self._compilations[name].record.refuse_sticking(f"diagram '{self._diagram}': model '{name}'")
         return self._compilations[name]
 
     def record(self, name: str) -> ModelRecord:
@@ -130,11 +130,18 @@ class Models:
 
     def energies(self, name: str, options: Options) -> Model:
         """A model of a mechanism that has its energies only."""
-        key = name, options.backend
-        if key not in self._energies:
-            functions = "kinetic_energy", "potential_energy"
-            self._energies[key] = compile_system(self.system(name), replace(options, functions=functions))
-        return self._energies[key]
+        return self._chosen(name, options, "kinetic_energy", "potential_energy")
+
+    def impacts(self, name: str, options: Options) -> Model:
+        """A model of a mechanism that has what tells the impulses of impacts and their energies."""
+        jacobian = ("constraint_jacobian",) if self.record(name).nc else ()
+        return self._chosen(name, options, "kinetic_energy", "potential_energy", "mass_matrix", *jacobian)
+
+    def _chosen(self, name: str, options: Options, *functions: str) -> Model:
+        key = name, options.backend, functions
+        if key not in self._models:
+            self._models[key] = compile_system(self.system(name), replace(options, functions=functions))
+        return self._models[key]
 
     def constraints(self, name: str) -> Model:
         """A model of a mechanism that can close its loops; interpreted, because a start needs no compiler."""
@@ -206,6 +213,26 @@ class Models:
             outputs[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
             at += len(output.edges)
         return outputs
+
+    def formulas(
+        self, g: Graph, model: str, formulas: Sequence[Any], reactions: bool, **groups: Tensor
+    ) -> Tensor:
+        """Formulas over a model's names at a point of a graph (n).
+
+        Args:
+            g: The graph.
+            model: Name of the model.
+            formulas: Numbers and formulas, as `sf.Event` takes them.
+            reactions: Whether they may use multipliers, wrenches and reactions.
+            groups: q, v, u, t, a and lam.
+
+        Raises:
+            UnknownNameError: A formula uses a name that the mechanism lacks, or that it may not use.
+        """
+        program = self.compilation(model).programs.of_formulas(formulas, reactions)
+        stated = program.functions[0]
+        replacement = self._bound(g, model, program, stated.inputs, groups)
+        return Tensor.of(g, copy_into(g, program.graph, stated.edges(), replacement), (len(formulas),))
 
     def solved(self, M: Tensor, r: Tensor) -> Tensor:
         """The x of M x = r for a mass matrix (nv, nv), whose zeros between branches are kept."""

@@ -112,7 +112,8 @@ class Blocks:
         if group.startswith(PARAMETER):
             return self.par[layout.parameters[name, group.removeprefix(PARAMETER)].slice]
         model = next(model for model in wired.models.names if parameter_group(model) == group)
-        return self.par[layout.parameters["", model].slice]
+        mine = piece.block.mechanism() == model
+        return layout.parameters_of(name, model, self.par) if mine else self.par[layout.parameters["", model].slice]
 
     def signals(self, due: frozenset[str] = frozenset(), called: Called | None = None) -> None:
         """Continuous outputs at the present point, in order; those of sampled blocks that are due, too.

@@ -17,11 +17,12 @@ from symofros.diagrams.rates import Schedule
 from symofros.diagrams.run.python_blocks import ExternalCalls
 from symofros.errors import CompileError
 from symofros.runtime.calls import CompiledKernel, NativeMemory, native_library
+from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.stepper import Stepper
 
 # Name of the recording of an instant in a schedule.
 RECORD = "(record)"
-# Rows of records and of crossings in C, which are taken between two calls.
+# Rows of records in C, which are taken between two calls.
 _ROWS = 4096
 _BLOCK_CALLBACK = "int32_t(void *, int32_t, double, const double *, double *)"
 
@@ -110,6 +111,7 @@ class Loop:
         d.q_offset = memory.own("int32_t[]", [part.q.start for part in layout.parts])
         d.v_offset = memory.own("int32_t[]", [part.v.start for part in layout.parts])
         d.c_offset = memory.own("int32_t[]", [part.conditions.start for part in layout.parts])
+        d.n_kept, d.kept = len(layout.kept_rows), memory.own("sym_kept[]", layout.kept_rows)
 
     def _fill_schedule(self, schedule: Schedule, tasks: Sequence[Sequence[Task]]) -> None:
         d, memory = self.diagram, self._memory
@@ -135,10 +137,8 @@ class Loop:
 
     def _fill_records(self) -> None:
         d, memory = self.diagram, self._memory
-        d.capacity = d.event_capacity = _ROWS
+        d.capacity = _ROWS
         self._records = memory.table(d, "record_", _ROWS, t=1, q=d.nq, v=d.nv, u=d.nu)
-        self._event_t, self._event_index = np.zeros(_ROWS), np.zeros(_ROWS, dtype=np.int32)
-        d.event_t, d.event_index = memory.shared(self._event_t), memory.shared(self._event_index)
 
     def _call_block(self, _data: Any, block: int, t: float, inputs: Any, u: Any) -> int:
         """Call an external block and write its outputs into u; its exception is stored and ends the run."""
@@ -237,11 +237,9 @@ class Loop:
         t, q, v, u = (array[:n].copy() for array in self._records)
         return [t[:, 0], q, v, u]
 
-    def take_events(self) -> list[tuple[int, float]]:
-        """(index, t) of the crossings since the last call; their rows are reused."""
-        n = int(self.diagram.n_event_records)
-        self.diagram.n_event_records = 0
-        return [(int(self._event_index[i]), float(self._event_t[i])) for i in range(n)]
+    def take_events(self) -> list[Met]:
+        """The events since the last call; their rows are reused. Where some are located, all that moves is one part."""
+        return [met for stepper in self.parts for met in stepper.take_events()]
 
     @property
     def lateness(self) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,6 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
-from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.starts import Start, changes_of_driven, close_loops, stated_entries
 from symofros.errors import AssemblyError, Problem, SymofrosError
@@ -57,13 +56,9 @@ def place_parts(
         AssemblyError: A first state closes no loop.
     """
     resolved = compiled.resolved
-    layout, pieces, name = resolved.layout, resolved.pieces, resolved.wired.name
-    events = [
-        Event(f"{block}.{which}", pieces[block].crossings[which].direction, True, f"{block}.{which}")
-        for block, which in watched(pieces)
-    ]
+    layout, name, par = resolved.layout, resolved.wired.name, resolved.layout.present(par, begin.u)
     placed = []
-    for part, model in zip(layout.parts, compiled.parts, strict=True):
+    for part, model, acting in zip(layout.parts, compiled.parts, compiled.actions, strict=True):
         settings = settings_of(model)
         if not settings.method.family.batched:
             raise SymofrosError(
@@ -74,7 +69,10 @@ def place_parts(
                     "use rk4, dopri5 or dop853",
                 )
             )
-        stepper = Stepper(model, settings.method, InputPlan(begin.u.copy(), list(layout.signals)), events, par)
+        inputs, switching = InputPlan(begin.u.copy(), list(layout.signals)), resolved.switching(part)
+        events: Sequence[Event] = resolved.crossings if switching is None else switching.events
+        stepper = Stepper(model, settings.method, inputs, events, par, lambda *_, acting=acting: acting)
+        stepper.set_span(settings.span)
         replace(settings, t0=begin.t).apply(stepper)
         stepper.set_stops(begin.t, settings.t_end)  # Of fixed steps, too: the diagram's own loop ends them there.
         if layout.driven:

@@ -13,7 +13,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
-from symofros.diagrams.program.fused_functions import AFTER
+from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.wiring import Source
 from symofros.simulation.results.trajectory import Statistics
 
@@ -102,10 +102,11 @@ class Records:
     def _after(self) -> tuple[Array, Array]:
         """Accelerations (n, nv) and multipliers (n, nc) along the run."""
         parts, layout = self.compiled.parts, self.compiled.resolved.layout
+        par = layout.present(self.par, self.u)
         a, lam = np.zeros((len(self.t), len(layout.v0))), np.zeros((len(self.t), len(layout.condition_names)))
         for part, model in zip(layout.parts, parts, strict=True):
             if model.nc:  # Those of the others are written out in the signals themselves.
                 a[:, part.v], lam[:, part.conditions], _ = model.constrained_dynamics(
-                    self.q[:, part.q], self.v[:, part.v], self.u, par=self.par, t=self.t
+                    self.q[:, part.q], self.v[:, part.v], self.u, par=par, t=self.t
                 )
         return a, lam

@@ -27,7 +27,8 @@ from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
 from symofros.diagrams.run.parts import Placed, place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
-from symofros.diagrams.run.recording import Cost, Crossed, Records
+from symofros.diagrams.run.met import acted, crossings_of, events_of
+from symofros.diagrams.run.recording import Cost, Records
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, parameter_values, part_settings, record_interval
 from symofros.errors import DescriptionError, SymofrosError
@@ -41,6 +42,7 @@ from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded, drive
 from symofros.simulation.stepping.status import Status
 
+NOT_EXAMINED = "the steps of a diagram in which events act are not examined: sf.simulate says more of one mechanism"
 # What external blocks gave, by block and time.
 Given = dict[tuple[str, float], dict[str, Array]]
 
@@ -85,7 +87,7 @@ def run_compiled(
     plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
     task = PlannedRun(compiled, plan, options, t_end, par, threads)
     with begun(resolved.wired) as called:
-        ended = run_from(task, Start.of(resolved, options.t0), called, progress, observer)
+        ended = run_from(task, Start.of(resolved, options.t0, par), called, progress, observer)
         kept = called.kept()
     return examined_run(task, ended, called.given, kept)
 
@@ -101,10 +103,12 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
     """
     resolved, options, par = task.compiled.resolved, task.options, task.par
     bendings = ended.bendings
-    again = _rerun(task, ended.states, given)
+    again = _rerun(task, ended.states, given, acts=acted(ended.recorded.events))
     outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
-    if outcome.kind == "finished" and not options.realtime:
+    if acted(ended.recorded.events):
+        outcome = replace(outcome, notes=(*outcome.notes, NOT_EXAMINED))
+    elif outcome.kind == "finished" and not options.realtime:
         notes = remarks(_examined(task, ended, given), modes)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
     outcome = blamed(outcome, resolved, again)
@@ -143,7 +147,7 @@ class PlannedRun:
 
 def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     """A run as its steps are judged."""
-    layout, parts, par, states = ended.layout, task.compiled.parts, task.par, ended.states
+    layout, parts, states = ended.layout, task.compiled.parts, ended.states
     settings = ended.settings[0] if ended.settings else None
     h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
 
@@ -159,21 +163,24 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
         t, q, v, u = (array[rows] for array in states)
         a = np.zeros_like(v)
         for part, model in zip(layout.parts, parts, strict=True):
-            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=par, t=t)
+            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=ended.par, t=t)
         return np.asarray(a)
 
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))
-    energies = Energies(ended.resolved, par, task.compiled.energies)
+    energies = Energies(ended.resolved, ended.par, task.compiled.energies)
     return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
 
 
-def _rerun(task: PlannedRun, states: Sequence[Array], given: Given) -> Rerun:
-    """Function that repeats a span of a run with other records and steps; it returns None where it can't."""
+def _rerun(task: PlannedRun, states: Sequence[Array], given: Given, *, acts: bool) -> Rerun:
+    """Function that repeats a span of a run with other records and steps; it returns None where it can't.
+
+    acts: whether events have acted, so that a record is not all that a run goes on from.
+    """
     wired = task.compiled.resolved.wired
 
     def again(span: RerunSpan) -> Sequence[Array] | None:
         t = states[0]
-        if not len(t):
+        if not len(t) or acts:
             return None
         i = max(0, int(np.searchsorted(t, span.start, "right")) - 1)
         if not t[i] < span.stop:
@@ -308,6 +315,7 @@ def run_from(
     recorded.interrupted |= isinstance(loop.failure, KeyboardInterrupt)
     settings = [task.settings(part.model) for part in loop.parts]
     notes = tuple(note for part in parts for note in part.notes)
+    par = resolved.layout.present(par, loop.held)
     return Ended(loop, resolved, par, settings, plan.spacing, recorded.arrays(), recorded, spent, notes)
 
 
@@ -319,10 +327,10 @@ def _recorded(
     kept: Mapping[str, Mapping[str, Array]],
 ) -> DiagramRun:
     """The DiagramRun of an ended run: records, outcome, crossings, cost and results of blocks."""
-    d, (seconds, worked), looked_for = ended.loop.diagram, ended.spent, watched(ended.resolved.pieces)
-    crossings = tuple(Crossed(*looked_for[int(which)], when) for which, when in ended.recorded.events)
+    d, (seconds, worked), met = ended.loop.diagram, ended.spent, ended.recorded.events
+    crossings, events = crossings_of(task.compiled, met), events_of(task.compiled, met, ended.par)
     clock = ended.spacing / (float(task.options.realtime) or 1.0)
     counts, late = (int(d.steps), int(d.rejected), int(d.evaluations), 0), ended.loop.lateness
     cost = Cost(task.options.method, *counts, seconds, worked=worked, late=late, spacing=clock)
     t, q, v, u = ended.states
-    return DiagramRun(task.compiled, t, q, v, u, ended.par, outcome, crossings, cost, bendings, kept)
+    return DiagramRun(task.compiled, t, q, v, u, ended.par, outcome, crossings, events, cost, bendings, kept)

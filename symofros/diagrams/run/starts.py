@@ -30,10 +30,11 @@ class Start:
     u: Array
 
     @classmethod
-    def of(cls, resolved: Resolved, t0: float) -> Start:
-        """The first state of a diagram."""
+    def of(cls, resolved: Resolved, t0: float, par: Array) -> Start:
+        """The first state of a diagram at run-time parameters (npar)."""
         layout = resolved.layout
-        return cls(t0, *(np.array(values, dtype=np.float64) for values in (layout.q0, layout.v0, layout.u0)))
+        q, v = (np.array(values, dtype=np.float64) for values in (layout.q0, layout.v0))
+        return cls(t0, q, v, layout.begun(par))
 
 
 def stated_entries(resolved: Resolved, part: Part) -> tuple[list[int], list[int]]:
@@ -67,7 +68,7 @@ def close_loops(resolved: Resolved, part: Part, begin: Start, par: Array) -> tup
         model = models.constraints(name)
         q, v = layout.q[block].slice, layout.v[block].slice
         stated = stated_names(model.names.q, model.names.v, models.setup(name).start)
-        own = par[layout.parameters["", name].slice]
+        own = layout.parameters_of(block, name, par)
         start = closed_start(model, begin.q[q], begin.v[v], *stated, par=own, t=begin.t)
         begin.q[q], begin.v[v] = start.q, start.v
         notes += [f"model '{name}': {note}" for note in start.notes]

@@ -54,15 +54,16 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     """
     layout = resolved.layout
     par = np.array(layout.par, dtype=np.float64)
+    settable = layout.par_names[: layout.settable]
     fields = {f"{block}.{name}": place for (block, name), place in layout.parameters.items() if block}
     for name, value in given.items():
         array = real_array(value)
         if name in fields:
             place = fields[name]
-        elif name in layout.par_names:
-            place = Place(layout.par_names.index(name), ())
+        elif name in settable:
+            place = Place(settable.index(name), ())
         else:
-            known = list(dict.fromkeys([*fields, *layout.par_names]))
+            known = list(dict.fromkeys([*fields, *settable]))
             raise UnknownNameError(
                 Problem(
                     f"diagram: no run-time parameter '{name}'",

@@ -11,7 +11,7 @@ from symofros.compiler import Compilation
 from symofros.errors import ExportError, Problem
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord, SwitchRecord
-from symofros.simulation.actions import Actions, plan_actions
+from symofros.simulation.actions import StatedActions, places_of, plan_actions
 from symofros.simulation.events import Event, events_of
 
 # Targets whose steps look for events.
@@ -55,13 +55,13 @@ def event_plan(
     _refuse(events, target)
     actions = plan_actions(model, events)
     model.formulas([event.formula for event in events], derivatives=False, reactions=True)  # Refuses what is none.
-    sources = {"events": [event.formula for event in events], "actions": actions.formulas if actions else []}
+    sources: dict[str, Sequence[Any]] = {"events": [event.formula for event in events], "actions": actions.stated.formulas if actions else ()}
     files = {
         f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}", reactions=kind == "events")
         for kind, formulas in sources.items()
         if formulas
     }
-    return EventPlan(tuple(_lines(c_name, events, actions, model.record, tuple(files))), files)
+    return planned(c_name, events, actions.stated if actions else None, model.record, files)
 
 
 def _refuse(events: Sequence[Event], target: str) -> None:
@@ -75,14 +75,33 @@ def _refuse(events: Sequence[Event], target: str) -> None:
         raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
 
 
+def planned(
+    name: str,
+    events: Sequence[Event],
+    actions: StatedActions | None,
+    record: ModelRecord,
+    files: Mapping[str, str],
+) -> EventPlan:
+    """The plan of some events.
+
+    Args:
+        name: Prefix of names in C.
+        events: The events, ends of modes last.
+        actions: What they do; None: nothing.
+        record: Names and switches of what moves.
+        files: File name -> C text of their formulas, NAME_events, and of their actions', NAME_actions.
+    """
+    return EventPlan(tuple(_lines(name, events, actions, record, tuple(files))), files)
+
+
 def _lines(
-    name: str, events: Sequence[Event], actions: Actions | None, record: ModelRecord, files: Sequence[str]
+    name: str, events: Sequence[Event], actions: StatedActions | None, record: ModelRecord, files: Sequence[str]
 ) -> list[str]:
     """C of the plan."""
     switches = record.switches
     turning = [switch for switch in switches if switch.rotation]
     sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
-    places = [f"{{{', '.join(map(str, place))}}}" for place in (actions.places if actions else ())]
+    places = [f"{{{', '.join(map(str, place))}}}" for place in (places_of(record, actions) if actions else ())]
     arrays = {
         "direction": [event.sign for event in events],
         "cut": [event.cut for event in events],

@@ -140,42 +140,67 @@ static int32_t sym_execute_instant(sym_diagram *d, double t) {
     return 0;
 }
 
+/* Whether a part was stopped within a span by its own events: its steps then end where they would have. */
+static int32_t sym_goes_on(const sym_run *r, double t) {
+    return r->actions != NULL && r->t > r->t0 && r->t < r->t_end && r->t_end <= t;
+}
+
 /* Integrate one part to time t; steps of fixed length end at instants, too, and begin anew there. Returns SYM_FINISHED or
  * another status. */
 static int32_t sym_advance_part(sym_run *r, double t) {
     int64_t steps = 0;
     int32_t status = SYM_FINISHED;
     while (status == SYM_FINISHED && r->t < t) {
-        r->steps = r->n_from = 0, r->t0 = r->t_from = r->t, r->t_end = r->adaptive ? t : sym_next_stop(r->system, r->t, t);
+        if (!sym_goes_on(r, t)) {
+            r->t0 = r->t_from = r->t, r->t_end = r->adaptive ? t : sym_next_stop(r->system, r->t, t);
+            r->steps = r->n_from = 0;
+        }
         do {
             status = sym_run_advance(r, (int64_t)1 << 40);
         } while (status == SYM_RUNNING);
         steps += r->steps;
+        r->n_from -= r->steps, r->steps = 0; /* a step's number counts from n_from on */
     }
-    r->steps = steps;
+    r->n_from += steps, r->steps = steps;
     return status;
 }
 
 /* Add a part's counters to the diagram's, and clear them. */
 static void sym_add_counters(sym_diagram *d, sym_run *r) {
     d->steps += r->steps, d->rejected += r->rejected, d->evaluations += r->evaluations;
+    r->n_from -= r->steps;
     r->steps = r->rejected = r->evaluations = 0;
 }
 
-/* Events stopped a part, all at the same time: record them, and execute their tasks, which may change inputs and states, one
- * after the other. Returns 0 or a status. */
-static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
-    int32_t i, status;
-    sym_gather_states(d, stopped->t);
-    sym_diagram_record(d);
+/* What actions have set is memory of the diagram's. */
+static void sym_keep_parameters(sym_diagram *d) {
+    int32_t i;
+    for (i = 0; i < d->n_kept; ++i) d->u[d->kept[i].input] = d->parts[d->kept[i].part]->par[d->kept[i].par];
+}
+
+/* Let go of what friction holds in a part, whose modes are chosen anew afterwards. */
+static void sym_let_go_of_part(sym_run *r) {
+    double *par = r->actions->modes;
+    memcpy(par, r->par, (size_t)r->actions->npar * sizeof *par);
+    sym_let_go(r->system, par);
+    sym_run_set_parameters(r, par);
+}
+
+/* Execute the tasks of the crossings that stopped a part, all at the same time, one after the other. They may change inputs
+ * and states. Returns 0 or a status. */
+static int32_t sym_execute_crossings(sym_diagram *d, sym_run *stopped) {
+    const int32_t sticks = stopped->actions != NULL && stopped->system->n_sticking > 0;
+    int32_t i, status, crossed = 0;
+    int64_t row;
+    for (row = stopped->first_met; row < stopped->met_end; ++row) crossed |= stopped->event_index[row] < d->n_crossings;
+    if (!crossed) return 0;
     if (d->reads_accelerations && (status = sym_evaluate_parts(d)) != 0) return status;
-    for (i = 0; i < stopped->n_event_records; ++i) {
-        d->event_t[d->n_event_records] = stopped->t;
-        d->event_index[d->n_event_records++] = stopped->event_index[i];
-        status = sym_execute_tasks(d, &d->crossing_tasks[stopped->event_index[i]], 1);
+    for (row = stopped->first_met; row < stopped->met_end; ++row) {
+        if (stopped->event_index[row] >= d->n_crossings) continue;
+        status = sym_execute_tasks(d, &d->crossing_tasks[stopped->event_index[row]], 1);
         if (status != 0) return status;
     }
-    stopped->n_event_records = 0;
+    if (sticks) sym_let_go_of_part(stopped);
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
         memcpy(r->q, d->q + d->q_offset[i], (size_t)r->system->nq * sizeof(double));
@@ -187,9 +212,32 @@ static int32_t sym_handle_crossing(sym_diagram *d, sym_run *stopped) {
         }
         if ((status = sym_restart_events(r)) != 0) return status;
     }
+    return 0;
+}
+
+/* Events stopped a part, all at the same time: record them, execute the tasks of crossings, then the actions of mechanisms.
+ * Returns 0, SYM_TERMINAL_EVENT where one ends the run, or a status below 0. */
+static int32_t sym_handle_events(sym_diagram *d, int32_t part) {
+    sym_run *stopped = d->parts[part];
+    int32_t status, ends = 0;
     sym_gather_states(d, stopped->t);
     sym_diagram_record(d);
-    return 0;
+    status = sym_execute_crossings(d, stopped);
+    if (status == 0 && stopped->actions != NULL) {
+        const double t_end = stopped->t_end;
+        sym_workspace w = sym_workspace_of(stopped);
+        status = sym_run_act(stopped);
+        ends = status == SYM_TERMINAL_EVENT;
+        if (d->t_end < HUGE_VAL) stopped->t_end = d->t_end; /* of the motion that begins */
+        if (status >= 0) status = sym_begin_motion_anew(stopped, &w);
+        stopped->t_end = t_end;
+        if (status != 0) d->failed_part = part;
+        sym_keep_parameters(d);
+    }
+    if (status != 0) return status;
+    sym_gather_states(d, stopped->t);
+    sym_diagram_record(d);
+    return ends ? SYM_TERMINAL_EVENT : 0;
 }
 
 /* Integrate all parts to time t, handling crossings on the way. Returns SYM_FINISHED or another status. */
@@ -199,14 +247,15 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
     for (i = 0; i < d->n_parts && status == SYM_FINISHED; ++i) {
         sym_run *r = d->parts[i];
         do {
-            if (d->event_capacity - d->n_event_records < d->n_crossings || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+            if (r->event_capacity - r->n_event_records < r->system->n_events || d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
             status = sym_advance_part(r, t);
             sym_add_counters(d, r);
             if (status == SYM_TERMINAL_EVENT) {
-                const int32_t fault = sym_handle_crossing(d, r);
+                const int32_t fault = sym_handle_events(d, i);
                 if (fault != 0) return fault;
             }
         } while (status == SYM_TERMINAL_EVENT);
+        if (status == SYM_RECORDS_FULL) return status;
         if (status != SYM_FINISHED) d->failed_part = i;
     }
     return status;
@@ -217,8 +266,9 @@ SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
     d->finished = d->failed_part = 0;
     d->engaged = -1, d->engaged_gap = d->engaged_t = 0.0;
     d->steps = d->rejected = d->evaluations = 0;
-    d->n_records = d->n_event_records = d->n_lateness = 0;
+    d->n_records = d->n_lateness = 0;
     d->clock_start = d->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
+    sym_keep_parameters(d);
     sym_gather_states(d, d->t0);
     return 0;
 }

@@ -32,37 +32,21 @@ static void sym_program_bind_tasks(sym_program_instance *instance, sym_arena *ar
     }
 }
 
-/* One part: its instance, which reads the diagram's inputs, and memory for the crossings that stop it. */
+/* One part: its instance, which reads the diagram's inputs. Its events are handled by the diagram. */
 static void sym_program_allocate_part(sym_program_instance *instance, sym_arena *arena, int32_t i) {
     const sym_program *p = instance->program;
     const sym_plant *plant = p->parts[i]();
-    const sym_model *model = plant->model();
-    const size_t size = sym_instance_size(plant), n = (size_t)p->n_crossings;
+    const size_t size = sym_instance_size(plant);
     void *memory = sym_allocate_bytes(arena, size);
-    sym_instance draft; /* while the arena only counts */
-    sym_instance *part = arena->base == NULL ? &draft : sym_instance_init(memory, size, plant);
-    sym_run *r;
-    sym_system *s;
-    sym_point point;
-    if (arena->base != NULL) instance->parts[i] = part;
+    sym_instance *part;
+    if (arena->base == NULL) return;
+    part = instance->parts[i] = sym_instance_init(memory, size, plant);
     if (part == NULL) return;
-    if (arena->base == NULL) memset(&draft, 0, sizeof draft);
-    r = &part->run, s = &part->system;
-    if (arena->base != NULL) instance->diagram.parts[i] = r;
-    s->u_constant = instance->diagram.u, s->n_signals = p->n_signals, s->signals = p->signals;
-    r->project = part->project, r->h = plant->h;
-    if (n == 0) return;
-    point = sym_system_point(s);
-    s->n_events = sym_bind_function(arena, &s->events, sym_find(model, "formulas", NULL), part->pre, part->work, &point)
-                      ? p->n_crossings
-                      : 0;
-    s->event_direction = p->directions;
-    s->event_terminal = sym_allocate_bytes(arena, n * sizeof *s->event_terminal);
-    if (arena->base != NULL) memcpy(s->event_terminal, p->terminal, n * sizeof *s->event_terminal);
-    r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n), r->event_capacity = p->n_crossings;
-    r->event_t = sym_allocate(arena, n), r->event_q = sym_allocate(arena, n * (size_t)model->nq);
-    r->event_v = sym_allocate(arena, n * (size_t)model->nv);
-    r->event_index = sym_allocate_bytes(arena, n * sizeof *r->event_index);
+    instance->diagram.parts[i] = &part->run;
+    part->system.u_constant = instance->diagram.u;
+    part->system.n_signals = p->n_signals, part->system.signals = p->signals;
+    part->run.project = part->project, part->run.h = plant->h, part->run.acts = 0;
+    part->actions.at_once = SYM_AT_ONCE * plant->h;
 }
 
 /* Lay out every array and struct. */
@@ -92,12 +76,10 @@ static void sym_program_allocate(sym_program_instance *instance, sym_arena *aren
     instance->task_sets = sym_allocate_bytes(arena, (size_t)p->n_sets * sizeof *instance->task_sets);
     instance->crossing_tasks = sym_allocate_bytes(arena, (size_t)p->n_crossings * sizeof *instance->crossing_tasks);
     d->task_sets = instance->task_sets, d->crossing_tasks = instance->crossing_tasks;
-    d->capacity = SYM_PROGRAM_RECORDS, d->event_capacity = p->n_crossings;
+    d->capacity = SYM_PROGRAM_RECORDS, d->n_kept = p->n_kept, d->kept = p->kept;
     d->record_t = sym_allocate(arena, SYM_PROGRAM_RECORDS), d->record_q = sym_allocate(arena, SYM_PROGRAM_RECORDS * nq);
     d->record_v = sym_allocate(arena, SYM_PROGRAM_RECORDS * nv);
     d->record_u = sym_allocate(arena, SYM_PROGRAM_RECORDS * nu);
-    d->event_t = sym_allocate(arena, (size_t)p->n_crossings);
-    d->event_index = sym_allocate_bytes(arena, (size_t)p->n_crossings * sizeof *d->event_index);
     sym_program_bind_tasks(instance, arena);
     memset(&instance->outputs, 0, sizeof instance->outputs);
     sym_program_bind(instance, arena, &instance->outputs, "signals");
@@ -115,11 +97,14 @@ SYM_EXPORT size_t sym_program_size(const sym_program *program) {
 }
 
 SYM_EXPORT int32_t sym_program_prepare(sym_program_instance *instance) {
-    int32_t i, status = 0;
+    const sym_kept *kept = instance->program->kept;
+    int32_t i, k, status = 0;
     instance->program->instants()->init(instance->par, instance->pre);
     for (i = 0; i < instance->program->n_parts; ++i) {
         sym_instance *part = instance->parts[i];
         memcpy(part->par, instance->par, (size_t)part->model->npar * sizeof(double));
+        for (k = 0; k < instance->program->n_kept; ++k)
+            if (kept[k].part == i) part->par[kept[k].par] = instance->diagram.u[kept[k].input];
         if (sym_instance_prepare(part) != 0) status = SYM_PARAMETERS_REFUSED;
         part->run.slope_valid = 0;
     }
@@ -144,8 +129,12 @@ SYM_EXPORT int32_t sym_program_evaluate(sym_program_instance *instance) {
 }
 
 SYM_EXPORT int32_t sym_program_start(sym_program_instance *instance) {
-    int32_t i, status = sym_program_prepare(instance);
+    const sym_program *p = instance->program;
+    int32_t i, status;
+    for (i = 0; i < p->n_kept; ++i) instance->diagram.u[p->kept[i].input] = instance->par[p->kept[i].from];
+    status = sym_program_prepare(instance);
     for (i = 0; i < instance->program->n_parts && status == 0; ++i) {
+        sym_instance_forget_events(instance->parts[i]);
         if (instance->parts[i]->project) status = sym_instance_project(instance->parts[i]);
         if (status == 0) status = sym_run_start(&instance->parts[i]->run);
         if (status > 0) status = 0; /* it runs */
@@ -200,14 +189,16 @@ SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t)
     for (i = 0; i < instance->program->n_parts; ++i) {
         if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
         if (instance->program->n_inputs > 0) instance->parts[i]->run.slope_valid = 0; /* they may have changed */
+        instance->parts[i]->run.n_event_records = 0;
     }
     do {
         d->t_end = sym_program_find_stops(instance, t), d->finished = 0;
         do {
-            d->n_records = d->n_event_records = 0;
+            d->n_records = 0;
+            for (i = 0; i < instance->program->n_parts; ++i) sym_instance_make_room(&instance->parts[i]->run);
             status = sym_diagram_advance(d, 1);
         } while (status == SYM_RUNNING || status == SYM_RECORDS_FULL);
-        d->n_records = d->n_event_records = 0;
+        d->n_records = 0;
     } while (status == SYM_FINISHED && d->t_end < t);
     if (status != SYM_FINISHED) return status;
     status = sym_program_evaluate(instance);

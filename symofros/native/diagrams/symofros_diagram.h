@@ -16,6 +16,11 @@ typedef struct sym_task_set { /* what is due at one instant */
     const sym_task *tasks;
 } sym_task_set;
 
+typedef struct sym_kept { /* a parameter that actions of events change, which tasks read as memory */
+    int32_t part, par, input; /* whose; its index in par of the parts, in u */
+    int32_t from;             /* index in par of what it begins with */
+} sym_kept;
+
 typedef struct sym_diagram {
     int32_t n_parts, n_signals, n_crossings;
     int32_t reads_accelerations; /* whether tasks read a and lam */
@@ -27,6 +32,8 @@ typedef struct sym_diagram {
     const int32_t *lock_inputs; /* (n_locks) entries of u that engage constraints: a change projects the parts */
     double *lock_values;        /* (n_locks) their last values */
     int32_t engaged;            /* the lock that engaged last, -1: none */
+    int32_t n_kept;
+    const sym_kept *kept;       /* (n_kept) */
     double engaged_gap, engaged_t; /* largest |phi| by weight that engaging has closed, and when; of the last, if it failed */
     /* The point at which tasks are evaluated. */
     double *q, *v, *u, *t, *a, *lam;
@@ -36,7 +43,8 @@ typedef struct sym_diagram {
     const int64_t *instant_tick; /* (n_instants) ticks from the start of a cycle */
     const int32_t *instant_set;  /* (n_instants) index of the set that is due */
     const sym_task_set *task_sets;
-    const sym_task *crossing_tasks; /* (n_crossings) executed where an event of that index ends a part's motion */
+    const sym_task *crossing_tasks; /* (n_crossings) executed where an event of that index ends a part's motion; those
+                                     * after them are events of mechanisms */
     /* A block of the caller's at an instant: reads its inputs, writes its outputs into u; not 0 stops the run. */
     int32_t (*callback)(void *data, int32_t block, double t, const double *inputs, double *u);
     void *data;
@@ -45,12 +53,9 @@ typedef struct sym_diagram {
     int32_t finished;
     int32_t failed_part; /* whose integration ended the run */
     int64_t steps, rejected, evaluations;
-    /* Records, row after row; events that ended a part's motion. */
+    /* Records, row after row. Events are recorded by their parts. */
     int64_t capacity, n_records;
     double *record_t, *record_q, *record_v, *record_u;
-    int64_t event_capacity, n_event_records;
-    double *event_t;
-    int32_t *event_index;
     /* Real time: seconds of clock per second of simulated time, 0: as fast as possible; how late instants began [s]. */
     double realtime_scale, clock_start;
     int64_t lateness_capacity, n_lateness;

@@ -29,7 +29,6 @@ typedef struct sym_program {
     int32_t n_signals, n_locks, n_crossings, reads_accelerations;
     const sym_signal *signals;                    /* inputs by samples over time */
     const int32_t *lock_inputs;                   /* (n_locks) entries of u that engage constraints */
-    const int32_t *directions, *terminal;         /* (n_crossings) 1 rising, -1 falling, 0 both; ones */
     double base_numerator, base_denominator;      /* instants: multiples of this fraction of a second */
     int64_t cycle_ticks, n_instants;
     const int64_t *instant_tick;                  /* (n_instants) from the start of a cycle */
@@ -40,6 +39,8 @@ typedef struct sym_program {
     const char *const *output_units;              /* (n_outputs) "" for none */
     int32_t n_inputs;
     const char *const *input_names, *const *input_units; /* (n_inputs) of the entries of `inputs` */
+    int32_t n_kept;
+    const sym_kept *kept;                         /* (n_kept) parameters that actions of events change */
 } sym_program;
 
 typedef struct sym_program_instance {
@@ -65,7 +66,8 @@ sym_program_instance *sym_program_init(void *memory, size_t size, const sym_prog
 int32_t sym_program_prepare(sym_program_instance *instance);
 /* Integrate to time t, executing instants on the way, that of t included: blocks sampled there read the inputs as they are
  * now, and sym_program_advance(instance, 0.0) executes those of the start. Steps end where formulas of time bend, jump or
- * change fast. Returns SYM_FINISHED or a status below zero. */
+ * change fast. Events of mechanisms act on the way; those of the call are the rows of the run of their part, as
+ * sym_instance_advance has them. Returns SYM_FINISHED, SYM_TERMINAL_EVENT where one ends the motion, or a status below zero. */
 int32_t sym_program_advance(sym_program_instance *instance, double t);
 /* signals <- outputs at the present time, of the inputs as they are now, while what is sampled holds. Returns 0 or a status
  * below zero. */

@@ -23,14 +23,19 @@ _RANK = 1e-12
 
 
 def found_of(run: BoundRun, met: Met) -> Found:
-    """An event that was met, with what its action did."""
-    event, done = run.events[met.which], met.done
+    """An event that a run has met, with what its action did."""
+    return found_event(run.events[met.which], run.model, met)
+
+
+def found_event(event: Event, model: Model, met: Met) -> Found:
+    """An event that was met, with what its action did; energies and impulse as far as the model has functions for them."""
+    done = met.done
     found = Found(event.name, met.t, met.q, met.v)
     if done is None or done.status != Status.FINISHED:
         return found
     if isinstance(event, ModeEvent):
         found = found._replace(name=event.said(done.par_set))
-    return found._replace(v_after=done.v_after, **_effects(run.model, met, done))
+    return found._replace(v_after=done.v_after, **_effects(model, met, done))
 
 
 def notes_of(met: Met) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
 from symofros.runtime.record import HELD
-from symofros.simulation.actions import plan_actions
+from symofros.simulation.actions import Actions, plan_actions
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
@@ -36,6 +36,7 @@ class BoundRun:
         inputs: The inputs by how they are evaluated.
         events: Zero crossings to locate.
         par: Run-time parameters (npar).
+        plan: Gives the actions of events.
 
     Attributes:
         memory: Arrays that C points to.
@@ -53,7 +54,15 @@ class BoundRun:
         SymofrosError: The model is interpreted, or an action can't be done.
     """
 
-    def __init__(self, model: Model, method: Method, inputs: InputPlan, events: Sequence[Event], par: Array) -> None:
+    def __init__(
+        self,
+        model: Model,
+        method: Method,
+        inputs: InputPlan,
+        events: Sequence[Event],
+        par: Array,
+        plan: Callable[[Model, Sequence[Event]], Actions | None] = plan_actions,
+    ) -> None:
         self.native, self.memory = native_library(), NativeMemory()
         self.ffi = self.memory.ffi
         self.model, self.method, self.events, self.par = model, method, events, par
@@ -73,7 +82,7 @@ class BoundRun:
         self._bind_functions()
         self._fill_method()
         self.run.system = self.system
-        self._fill_actions()
+        self._fill_actions(plan(model, events))
 
     def _fill_system(self) -> None:
         """Sizes, segments, and the evaluation point."""
@@ -169,9 +178,9 @@ class BoundRun:
             needs_inputs = system.events_of_reactions or any(name in written for name in {*names.u} - {*names.q})
             system.events_free_of_inputs = int(not needs_inputs)
 
-    def _fill_actions(self) -> None:
+    def _fill_actions(self, actions: Actions | None) -> None:
         """What events do: native/stepping/actions.c."""
-        self.actions = actions = plan_actions(self.model, self.events)
+        self.actions = actions
         if actions is None:
             return
         run, memory, model, events = self.run, self.memory, self.model, self.events
@@ -185,7 +194,7 @@ class BoundRun:
         plan.restitution = memory.doubles([event.coefficient for event in events])
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
         plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
-        plan.first_mode, plan.modes = actions.first_mode, memory.zeros(model.npar + 2 * sticking)
+        plan.first_mode, plan.modes = actions.stated.first_mode, memory.zeros(model.npar + 2 * sticking)
         self._bind_call(plan, "values", actions.kernel)
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))

@@ -20,6 +20,7 @@ from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
 from symofros.simulation.analysis.kinematics.postures import MAX_BETWEEN
 from symofros.simulation.events import event_notes
+from symofros.simulation.results.acted import failure_of, notes_of
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
 from symofros.simulation.results.examination.constraint_faults import constraint_notes
@@ -94,7 +95,12 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tup
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
     closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
     postures = _posture_notes(ended, again)
-    notes = (*postures, *bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
+    gaps = [note for met in ended.recorded.events for note in notes_of(met)]
+    notes = (*postures, *gaps, *bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
+    failed_at = ((part, met) for part in loop.parts for met in reversed(ended.recorded.events))
+    failure = next((found for part, met in failed_at if (found := failure_of(part, met)) is not None), None)
+    if status < 0 and failure is not None:
+        return replace(failure, notes=(*failure.notes, *notes)), Resolution()
     if status == Status.ENGAGED_APART:
         names, which = ended.layout.lock_names, int(loop.diagram.engaged)
         name = names[which] if which >= 0 else ", ".join(names)
@@ -157,7 +163,8 @@ def _posture_notes(ended: Ended, again: Rerun) -> list[str]:
     Where constraints engage or release on the way, their rank changes at any posture: nothing is said.
     """
     t, q, v, u = ended.states
-    locks = u[:, ended.layout.lock_inputs]
+    kept = [i for of in ended.layout.kept.values() for i in of.memory.range]
+    locks = u[:, [*ended.layout.lock_inputs, *kept]]
     if not len(t) or (locks != locks[0]).any():
         return []
     notes: list[str] = []

@@ -70,7 +70,7 @@ class Energies:
     def of(self, name: str, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
         """Kinetic and total energy (n) [J] of a block's mechanism at states of the diagram (n, nq), (n, nv)."""
         layout, mechanism = self.resolved.layout, self.resolved.pieces[name].block.mechanism()
-        model, par = self.model_of(mechanism), self.par[layout.parameters["", mechanism].slice]
+        model, par = self.model_of(mechanism), layout.parameters_of(name, mechanism, self.par)
         q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
         kinetic = model.kinetic_energy(q, v, par=par)
         return kinetic, kinetic + model.potential_energy(q, par=par, t=t)
