@@ -143,7 +143,7 @@ class Simulation:
             observer: Receiver of the records while the run goes on, which may stop it by time.
 
         Raises:
-            SymofrosError: The method is implicit or adaptive, or the diagram has crossings.
+            SymofrosError: The method is implicit or adaptive, or the diagram has crossings or events of mechanisms.
         """
         resolved = self._given(inputs)
         if not (math.isfinite(dt) and dt > 0.0):
@@ -158,15 +158,10 @@ class Simulation:
                     "use run",
                 )
             )
-        if any(piece.crossings for piece in resolved.pieces.values()):
-            raise SymofrosError(
-                Problem(
-                    f"diagram '{resolved.wired.name}': crossings",
-                    "an interpreted run",
-                    "it does not locate crossings",
-                    "use run",
-                )
-            )
+        if any(piece.crossings or piece.switching for piece in resolved.pieces.values()):
+            what = f"diagram '{resolved.wired.name}': crossings, or events of mechanisms"
+            rule = "it does not locate crossings, nor events and modes of friction that sticks"
+            raise SymofrosError(Problem(what, "an interpreted run", rule, "use run"))
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         interval = record_interval(record, t0, t_end, dt)

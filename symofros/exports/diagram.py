@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from string import Template
@@ -23,10 +23,10 @@ from symofros.diagrams.program.compiled import (
     resolve,
 )
 from symofros.diagrams.program.fused_functions import Fuser
-from symofros.diagrams.program.lowered_block import watched
+from symofros.diagrams.program.layout import Part
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
-from symofros.exports.c.event_plan import EventPlan
+from symofros.exports.c.event_plan import EventPlan, planned
 from symofros.exports.c.parameter_check import Judged
 from symofros.exports.c.plant import plant_text
 from symofros.exports.diagram_interface import Interface, default_outputs, entry_names, entry_units, table
@@ -40,7 +40,6 @@ from symofros.native import amalgamated, header_files, native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 
-_DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
 PROGRAM_HEADERS = (*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
 # Of the self-test, whose signals are those of the same run from Python.
 _TOLERANCE = "1e-9"
@@ -191,10 +190,13 @@ def _part_files(
         stepping: How it steps.
         generator: Name and version.
     """
-    layout, models, part = resolved.layout, resolved.wired.models, resolved.layout.parts[number]
+    layout, part = resolved.layout, resolved.layout.parts[number]
     record, c_name = record_of(resolved, part), f"{identifier(resolved.wired.name)}_part{number}"
-    stated = [(model, place) for (block, model), place in layout.parameters.items() if not block]
     q, v = start
+    located = {
+        kind: model_source(run_passes(program), record, generator, None, f"{c_name}_{kind}")
+        for kind, program in write.located(part).items()
+    }
     material = PartMaterial(
         c_name,
         record,
@@ -203,11 +205,38 @@ def _part_files(
         tuple(q.tolist()),
         tuple(v.tolist()),
         part_beams(resolved, part, np.array(layout.par)),
-        tuple(Judged(models.system(model), models.record(model).par_names, place.start) for model, place in stated),
+        _judged(resolved, part),
         generator,
+        _event_plan(resolved, part, c_name, {f"{c_name}_{kind}.inc": text for kind, text in located.items()}),
     )
-    text = model_source(run_passes(with_instants(write.motion(part))), record, generator, c_name=c_name)
-    return {f"{c_name}.c": text, f"{c_name}.h": _part_header(c_name), f"{c_name}_plant.c": plant_text(material)}
+    motion = run_passes(with_instants(write.motion(part, whole=False)))
+    files = {f"{c_name}.c": model_source(motion, record, generator, c_name=c_name), f"{c_name}.h": _part_header(c_name)}
+    return (
+        files | {f"{c_name}_plant.c": plant_text(material)} | (dict(material.events.files) if material.events else {})
+    )
+
+
+def _judged(resolved: Resolved, part: Part) -> tuple[Judged, ...]:
+    """The descriptions of all models, and once more of those with parameters of their own that events change."""
+    layout, models = resolved.layout, resolved.wired.models
+    judged = []
+    for model in models.names:
+        places = list(layout.parameters["", model].range)
+        judged.append(Judged(models.system(model), models.record(model).par_names, tuple(places)))
+    for name in part.blocks:
+        if name in layout.kept:
+            model = resolved.wired.blocks[name].mechanism()
+            places = layout.places_of(name, model)
+            judged.append(Judged(models.system(model), models.record(model).par_names, tuple(places)))
+    return tuple(judged)
+
+
+def _event_plan(resolved: Resolved, part: Part, c_name: str, files: Mapping[str, str]) -> EventPlan | None:
+    """The events that stop a part, crossings of blocks first; None where there are none."""
+    switching = resolved.switching(part)
+    if switching is not None:
+        return planned(c_name, switching.events, switching.stated, record_of(resolved, part), files)
+    return planned(c_name, resolved.crossings, None, record_of(resolved, part), files) if resolved.crossings else None
 
 
 def _header(name: str, title: str, interface: Interface, generator: str) -> str:
@@ -255,9 +284,7 @@ def _program(resolved: Resolved, name: str, interface: Interface, back: bool, ge
     """NAME_program.c: the constants of symofros_program.h."""
     wired, layout, plan = resolved.wired, resolved.layout, resolved.schedule
     parts = layout.parts
-    directions = [
-        _DIRECTIONS[resolved.pieces[block].crossings[which].direction] for block, which in watched(resolved.pieces)
-    ]
+    kept = [f"{{{', '.join(map(str, row))}}}" for row in layout.kept_rows]
     lines = [
         f"/* {comment(wired.name)} as a program. Generated by {generator}. */",
         "#include <math.h>",
@@ -281,8 +308,7 @@ def _program(resolved: Resolved, name: str, interface: Interface, back: bool, ge
         ),
         _array("const double", "u_start", doubles(layout.u0)),
         *_signals(layout.signals),
-        _array("const int32_t", "directions", integers(directions)),
-        _array("const int32_t", "terminal", integers([1] * len(directions))),
+        _array("const sym_kept", "kept", ", ".join(kept) or "{0, 0, 0, 0}"),
         _array("const int64_t", "instant_tick", integers(k for k, _ in plan.instants)),
         _array("const int32_t", "instant_set", integers(which for _, which in plan.instants)),
         _array("const char *const", "set_functions", strings(f"due_{i}" for i in range(len(plan.sets)))),
@@ -298,12 +324,12 @@ def _program(resolved: Resolved, name: str, interface: Interface, back: bool, ge
         f"static const sym_program {name}_program_struct = {{",
         f"    {c_string(wired.name)}, {name}_instants_model,",
         f"    {len(parts)}, parts, q_offset, v_offset, c_offset, u_start,",
-        f"    {len(layout.signals)}, {len(layout.lock_inputs)}, {len(directions)}, {int(back)},",
-        "    signals, lock_inputs, directions, terminal,",
+        f"    {len(layout.signals)}, {len(layout.lock_inputs)}, {len(resolved.crossings)}, {int(back)},",
+        "    signals, lock_inputs,",
         f"    {float(plan.base.numerator)!r}, {float(plan.base.denominator)!r}, {plan.cycle}, {len(plan.instants)},",
         f"    instant_tick, instant_set, {len(plan.sets)}, {len(entry_names(interface.outputs))},",
         f"    set_functions, output_names, output_units, {len(entry_names(interface.inputs))},",
-        "    input_names, input_units",
+        f"    input_names, input_units, {len(kept)}, kept",
         "};",
         "",
         f"const sym_program *{name}_program(void) {{ return &{name}_program_struct; }}",

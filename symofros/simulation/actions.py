@@ -131,11 +131,12 @@ def plan_actions(model: Model, events: Sequence[Event]) -> Actions | None:
 
 def _wrong_formulas(model: Model, events: Sequence[Event]) -> Iterator[SymofrosError]:
     """What is wrong with a formula of an action, said of the event."""
-    for event, name in ((event, name) for event in events for name in event.action or {}):
+    stated = [(event.name, name, formula) for event in events for name, formula in (event.action or {}).items()]
+    for event, name, formula in stated:
         try:
-            model.formulas([(event.action or {})[name]], derivatives=False)
+            model.formulas([formula], derivatives=False)
         except SymofrosError as error:
-            of = f"event '{event.name}', what its action sets '{name}' to"
+            of = f"event '{event}', what its action sets '{name}' to"
             yield type(error)([replace(problem, what=f"{of}: {problem.what}") for problem in error.problems])
 
 
@@ -145,7 +146,9 @@ def _target(record: ModelRecord, event: Event, name: str) -> tuple[str, int]:
         index = record.par_names.index(found)
         _refuse_held(record, event, found, index)
         return "par", index
-    if name in record.q_names:  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
+    if (
+        name in record.q_names
+    ):  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
         what, rule = f"event '{event.name}': its action sets the coordinate '{name}'", "an action moves nothing at once"
         speed = f"its speed, '{speed_column(name, record.q_names)}'" if name in record.v_names else "speeds"
         remedy = f"set {speed}, or a parameter"

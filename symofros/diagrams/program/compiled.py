@@ -19,8 +19,8 @@ from symofros.diagrams.order import groups_in_motion, order_of
 from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.layout import Layout, Part, lay_out
 from symofros.diagrams.program.lowered_block import Piece, piece_of, watched
+from symofros.diagrams.program.part_switching import CrossingEvent, PartSwitching, part_switching
 from symofros.diagrams.program.point import reads
-from symofros.diagrams.program.switching import CrossingEvent, PartSwitching, part_switching
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem

@@ -7,11 +7,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.program.lowered_block import Piece, watched
 from symofros.diagrams.program.model_environment import parameter_group
+from symofros.diagrams.program.part_switching import owners_of
 from symofros.diagrams.program.point import AFTER, AT, Point, reads
-from symofros.diagrams.program.switching import owners_of
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.expr import ONE, ZERO, Edge, Function, Graph, Output, Program, Solver, copy_into
+
 
 class Fuser:
     """Writes a diagram's functions.
@@ -63,14 +64,14 @@ class Fuser:
             switching = self._pieces[name].switching
             for frame, pose in (switching.poses if switching is not None else {}).items():
                 p, R = (at.write(self._pieces[name], value) for value in pose)
-                outputs = _vector("p", p.flat), _matrix("R", R.edges, 3)
+                outputs = _vector("p", p.flat), Output("R", (3, 3), tuple(R.flat))
                 functions.append(Function("frame_pose", f"{name}.{frame}", ("q", "u", "t"), outputs))
         if whole:
             functions += [f for f in (self._formulas(at, part), self._actions(at, part)) if f is not None]
         return self._program(self._wired.name, g, functions, part)
 
     def located(self, part: Part) -> dict[str, Program]:
-        """A part's "formulas" and "actions" each by itself, under the names "events" and "actions"; absent ones left out."""
+        """A part's "formulas" and "actions" as programs of their own, "events" and "actions"; those that there are."""
         programs: dict[str, Program] = {}
         for name, form in (("events", self._formulas), ("actions", self._actions)):
             g = Graph()
@@ -87,11 +88,11 @@ class Fuser:
             for edge in at.edges(self._pieces[name], self._pieces[name].crossings[which].value.flat)
         ]
         after = self._at(at.g, part=part, after=True)  # C evaluates accelerations first, where they are read.
-        own = {
-            name: after.edges(self._pieces[name], switching.values.flat)
-            for name in part.blocks
-            if (switching := self._pieces[name].switching) is not None
-        }
+        own: dict[str, list[Edge]] = {}
+        for name in part.blocks:
+            switching = self._pieces[name].switching
+            if switching is not None:
+                own[name] = after.edges(self._pieces[name], switching.values.flat)
         values += [own[name][i] for name, i in owners_of(self._pieces, part)]
         if not values:
             return None
@@ -103,8 +104,9 @@ class Fuser:
         groups: tuple[list[Edge], ...] = ([], [], [])
         for name in part.blocks:
             piece = self._pieces[name]
-            for into, values in zip(groups, piece.switching.groups_of_effects if piece.switching else (), strict=False):
-                into += at.edges(piece, values.flat)
+            effects = piece.switching.groups_of_effects if piece.switching is not None else ()
+            for into, formulas in zip(groups, effects, strict=False):
+                into += at.edges(piece, formulas.flat)
         values = [edge for group in groups for edge in group]
         return Function("actions", "", AT, (_vector("value", values),)) if owners_of(self._pieces, part) else None
 

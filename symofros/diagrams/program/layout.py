@@ -50,13 +50,13 @@ class Kept(NamedTuple):
     """Run-time parameters that events of a block's mechanism change.
 
     Attributes:
-        index: Their numbers among those of its model.
+        numbers: Theirs among those of its model.
         first: Their places among the diagram's parameters, which they begin with.
         par: Their places among the parameters of the part that moves it.
         memory: Where the diagram remembers them, among the inputs.
     """
 
-    index: tuple[int, ...]
+    numbers: tuple[int, ...]
     first: tuple[int, ...]
     par: Place
     memory: Place
@@ -181,13 +181,17 @@ class Layout:
             for par, memory, of in zip(kept.par.range, kept.memory.range, kept.first, strict=True)
         ]
 
+    def places_of(self, block: str, model: str) -> list[int]:
+        """Where the parameters of the model that a block moves lie among those of its part."""
+        places = list(self.parameters["", model].range)
+        if block in self.kept:
+            for i, place in zip(self.kept[block].numbers, self.kept[block].par.range, strict=True):
+                places[i] = place
+        return places
+
     def parameters_of(self, block: str, model: str, par: Array) -> Array:
         """Parameters (..., npar) of the model that a block moves, as `present` has those of its part."""
-        own = par[..., self.parameters["", model].slice]
-        if block in self.kept:
-            own = own.copy()
-            own[..., list(self.kept[block].index)] = par[..., self.kept[block].par.slice]
-        return own
+        return np.asarray(par[..., self.places_of(block, model)])
 
     def measures_of(self, part: Part) -> Measures:
         """Measures of the constraint Jacobian of a part."""
@@ -253,7 +257,7 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         layout.par += wired.models.parameters(model).tolist()
         layout.par_names += [f"{model}.{name}" for name in names]
     layout.settable = len(layout.par)
-    for name, piece in pieces.items():
+    for piece in pieces.values():
         if piece.switching is not None:
             _keep(layout, wired, piece, piece.switching.kept)
     return layout

@@ -131,7 +131,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
         parameters,
         q0,
         v0,
-        switching_of(wired.models, block, at, terms),
+        switching_of(wired.models, block, at),
     )
     _fit(wired, piece)
     if isinstance(block, ExternalBlock):

@@ -214,9 +214,7 @@ class Models:
             at += len(output.edges)
         return outputs
 
-    def formulas(
-        self, g: Graph, model: str, formulas: Sequence[Any], reactions: bool, **groups: Tensor
-    ) -> Tensor:
+    def formulas(self, g: Graph, model: str, formulas: Sequence[Any], reactions: bool, **groups: Tensor) -> Tensor:
         """Formulas over a model's names at a point of a graph (n).
 
         Args:

@@ -154,8 +154,10 @@ class Point:
             return self.input("par", layout.parameters[name, group.removeprefix(PARAMETER)]).flat
         own = self.input("par", layout.parameters["", self._models[group]]).flat
         kept = layout.kept.get(name)
-        if kept is not None and self._models[group] == self._pieces[name].block.mechanism():  # A part has those of its own, which actions change; between parts they are memory.
+        if (
+            kept is not None and self._models[group] == self._pieces[name].block.mechanism()
+        ):  # A part has those of its own, which actions change; between parts they are memory.
             now = self.input("u", kept.memory) if self._part is None else self.input("par", kept.par)
-            for i, edge in zip(kept.index, now.flat, strict=True):
+            for i, edge in zip(kept.numbers, now.flat, strict=True):
                 own[i] = edge
         return own

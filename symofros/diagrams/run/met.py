@@ -51,9 +51,16 @@ def acted(met: Sequence[Met]) -> bool:
 def _found(compiled: CompiledDiagram, part: Part, block: str, number: int, met: Met, par: Array) -> Found:
     """An event of a mechanism, in the mechanism's own numbers."""
     resolved = compiled.resolved
-    layout, switching, model = resolved.layout, resolved.pieces[block].switching, resolved.wired.blocks[block].mechanism()
+    layout, switching, model = (
+        resolved.layout,
+        resolved.pieces[block].switching,
+        resolved.wired.blocks[block].mechanism(),
+    )
     assert switching is not None
-    q, v = (slice(at.start - of.start, at.start - of.start + at.size) for at, of in ((layout.q[block], part.q), (layout.v[block], part.v)))
+    q, v = (
+        slice(at.start - of.start, at.start - of.start + at.size)
+        for at, of in ((layout.q[block], part.q), (layout.v[block], part.v))
+    )
     own = Met(number, met.t, met.q[q], met.v[v])
     if met.done is not None:
         done = met.done
@@ -70,5 +77,5 @@ def _inputs(compiled: CompiledDiagram, block: str, met: Met, par: Array) -> Arra
     source = wired.sources.get((block, "u"))
     if source is None or met.done is None:
         return np.array(wired.models.record(wired.blocks[block].mechanism()).u_default)
-    at = (array[np.newaxis] for array in (np.array(met.t), met.q, met.v, met.done.u))
-    return np.array(Records(compiled, *at, par)[".".join(source)][0]).reshape(-1)
+    t, q, v, u = (array[np.newaxis] for array in (np.array(met.t), met.q, met.v, met.done.u))
+    return np.array(Records(compiled, t, q, v, u, par)[".".join(source)][0]).reshape(-1)

@@ -25,9 +25,9 @@ from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
+from symofros.diagrams.run.met import acted, crossings_of, events_of
 from symofros.diagrams.run.parts import Placed, place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
-from symofros.diagrams.run.met import acted, crossings_of, events_of
 from symofros.diagrams.run.recording import Cost, Records
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, parameter_values, part_settings, record_interval

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -55,7 +55,10 @@ def event_plan(
     _refuse(events, target)
     actions = plan_actions(model, events)
     model.formulas([event.formula for event in events], derivatives=False, reactions=True)  # Refuses what is none.
-    sources: dict[str, Sequence[Any]] = {"events": [event.formula for event in events], "actions": actions.stated.formulas if actions else ()}
+    sources: dict[str, Sequence[Any]] = {
+        "events": [event.formula for event in events],
+        "actions": actions.stated.formulas if actions else (),
+    }
     files = {
         f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}", reactions=kind == "events")
         for kind, formulas in sources.items()
@@ -69,8 +72,18 @@ def _refuse(events: Sequence[Event], target: str) -> None:
         what, rule = f"export: '{target}' looks for no events", f"events are of {', '.join(_TARGETS)}"
         remedy = "leave `events` out, and look for them in the host; or take one of these targets"
         raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
+    if target != "c":
+        refuse_ends(events)
+
+
+def refuse_ends(events: Iterable[Event]) -> None:
+    """Refuse events that end the motion of an FMU.
+
+    Raises:
+        ExportError: One does.
+    """
     ending = [event.name for event in events if event.terminal]
-    if ending and target != "c":
+    if ending:
         what, rule = f"export: event '{ending[0]}' ends the motion", "importers decide when the motion of an FMU ends"
         raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
 

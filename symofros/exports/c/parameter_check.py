@@ -20,12 +20,12 @@ class Judged(NamedTuple):
     Attributes:
         system: A sound system.
         names: Run-time parameters, in the order of their values.
-        first: Index of the first one among all parameters in C.
+        places: Their indices among all parameters in C; None: the same.
     """
 
     system: System
     names: tuple[str, ...]
-    first: int = 0
+    places: tuple[int, ...] | None = None
 
 
 def parameter_check_text(name: str, judged: Sequence[Judged]) -> list[str]:
@@ -55,9 +55,9 @@ def parameter_check_text(name: str, judged: Sequence[Judged]) -> list[str]:
 
 def _conditions_text(judged: Judged, offset: int) -> tuple[list[str], list[str]]:
     """Lines that judge one description, whose conditions are numbered from an offset on, and what each asks for."""
-    system, names, first = judged
+    system, names, places_in_c = judged
     conditions = RunTimeCheck(system, names).conditions
-    known = {name: f"par[{i}]" for i, name in enumerate(names, first)}
+    known = {name: f"par[{i}]" for name, i in zip(names, places_in_c or range(len(names)), strict=True)}
     fixed = {name: value for name, value in system.parameter_values().items() if name not in known}
     lines = [f"    if (!isfinite({place})) return {offset};" for place in known.values()]
     places: list[str] = []

@@ -19,6 +19,7 @@ from symofros.diagrams.diagram import Diagram
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.compiling import shared_library
+from symofros.exports.c.event_plan import refuse_ends
 from symofros.exports.c.unity import MODEL_LOOP, unity
 from symofros.exports.diagram import PROGRAM_HEADERS, DiagramProgram, diagram_program
 from symofros.exports.fmi.fmu_description import Unit, build_xml, description_xml
@@ -102,6 +103,8 @@ def write_diagram_fmu3(
 
 def _write_diagram(program: DiagramProgram, folder: Path, stepping: Stepping, generator: str, version: int) -> Exported:
     name, title, shown = program.name, program.resolved.wired.name, program.interface
+    for switching in map(program.resolved.switching, program.resolved.layout.parts):
+        refuse_ends(() if switching is None else switching.events)
     sources = {**program.files, **header_files(*PROGRAM_HEADERS)}
     sources["symofros_diagram.c"] = amalgamated(_DIAGRAM_LOOP)
     token = _token([*sources.values()], version)

@@ -28,7 +28,7 @@ def found_of(run: BoundRun, met: Met) -> Found:
 
 
 def found_event(event: Event, model: Model, met: Met) -> Found:
-    """An event that was met, with what its action did; energies and impulse as far as the model has functions for them."""
+    """An event that was met, with what its action did: energies and impulse where the model has functions for them."""
     done = met.done
     found = Found(event.name, met.t, met.q, met.v)
     if done is None or done.status != Status.FINISHED:

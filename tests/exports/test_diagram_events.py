@@ -1,0 +1,41 @@
+"""Programs of diagrams whose mechanisms have events that act, and friction that sticks: they do what the run does."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.diagrams.run.test_switching import CASES, diagram
+from tests.exports.cases import build
+
+
+def driven(of: sf.Diagram, folder: Path, times: np.ndarray, *words: str, **options: Any) -> np.ndarray:
+    """What the program of a diagram gives at some times, line by line."""
+    name = sf.export(of, "c", folder, outputs=["plant.q", "plant.v"], **options).name
+    text = Path(__file__).with_name("drive.c").read_text().replace("PROGRAM(", f"{name}_program(")
+    (folder / "main.c").write_text(text)
+    shutil.rmtree(folder / "build", ignore_errors=True)
+    given = "\n".join(map(float.hex, times.tolist()))
+    done = subprocess.run([build(folder, "driven"), *words], input=given, capture_output=True, text=True)
+    assert done.returncode == 0, done.returncode
+    return np.array([[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()])
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_program_does_the_actions_of_the_run(case: str, tmp_path: Path) -> None:
+    """To rounding, by the shipped flags, at every record."""
+    stated = CASES[case]
+    of = diagram(stated)
+    t = np.linspace(0.0, stated.t_end, 21)
+    found = driven(of, tmp_path / "c", t, method="rk4", dt=1e-3)
+    run = sf.Simulation(of).run(stated.t_end, method="rk4", dt=1e-3, record=stated.t_end / 20)
+    assert run.events["plant"], "nothing acts"
+    last = np.array([np.flatnonzero(run.t <= at + 1e-12)[-1] for at in t])
+    wanted = np.column_stack([run["plant.q"], run["plant.v"]])[last]
+    assert np.abs(found - wanted).max() <= 1e-9 * max(1.0, np.abs(wanted).max())
