@@ -25,7 +25,7 @@ Matrix = tuple[Row, Row, Row]
 
 def two_arms() -> sf.System:
     """Six springs, a rolling trunk, two arms of seven joints, a payload; a closure that holds the left hand."""
-    bodies = [*_mount(), *two_arm_bodies("mount", None)]
+    bodies = [*mount(), *two_arm_bodies("mount", None)]
     payload = sf.RigidBody(
         "payload",
         sf.Joint("grip", "fixed", "spdm_right_link7", "end"),
@@ -49,7 +49,7 @@ def two_arms_guess(names: tuple[str, ...]) -> list[float]:
     ]
 
 
-def _mount() -> list[sf.RigidBody]:
+def mount() -> list[sf.RigidBody]:
     """Three sliding and three turning joints with springs; all mass in the last body."""
     bodies: list[sf.RigidBody] = []
     parent = "station"

@@ -16,10 +16,10 @@ from ..rigid.station import spdm
 # The arm takes its time: the sway that it leaves in the mount decays slowly, and a grip closes gaps of a millimetre.
 REACHED, GRIPPED, LIFTED, PLACED, T_END = 16.0, 18.0, 19.0, 25.0, 30.0
 # What each joint moves, alone, as the arms stand at the start [kg m^2]: trunk, left arm, right arm with its payload.
-_INERTIAS = (5500.0, 100.0, 540.0, 510.0, 300.0, 12.0, 5.0, 0.2, 200.0, 2500.0, 2200.0, 1360.0, 245.0, 185.0, 30.0)
+INERTIAS = (5500.0, 100.0, 540.0, 510.0, 300.0, 12.0, 5.0, 0.2, 200.0, 2500.0, 2200.0, 1360.0, 245.0, 185.0, 30.0)
 FREQUENCY, DAMPING = 4.0, 0.8  # Of each joint under its PD [rad/s], and its share of critical damping.
-KP = tuple(FREQUENCY**2 * inertia for inertia in _INERTIAS)  # N m/rad
-KD = tuple(2.0 * DAMPING * FREQUENCY * inertia for inertia in _INERTIAS)  # N m s/rad
+KP = tuple(FREQUENCY**2 * inertia for inertia in INERTIAS)  # N m/rad
+KD = tuple(2.0 * DAMPING * FREQUENCY * inertia for inertia in INERTIAS)  # N m s/rad
 LOCKED = 10.0  # How much stiffer the arm that holds on becomes.
 
 
