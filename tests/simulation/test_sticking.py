@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.description.yaml.yaml_writer import write_yaml
 from tests.exports.cases import build, sources
 from tests.exports.cases import run as run_program
 
@@ -222,6 +223,23 @@ def test_a_brake_holds_and_slips_above_its_torque() -> None:
     assert run.a[after, 0] == pytest.approx((10.0 - 1.5 * _G) / 1.6, rel=1e-2)
     shut = sf.simulate(model, t_end=3.0, par={"torque": 15.0}, events={"load": events["load"]}, **_ACCURATE)
     assert not shut.q.any() and not shut.v.any() and shut.lam[-1, 0] == pytest.approx(1.5 * _G, rel=1e-12)
+
+
+def test_a_brake_of_a_file_is_that_of_python(tmp_path: Any) -> None:
+    """Its torque and share are formulas; what is written is read as the same friction."""
+    text = "symofros: 1\nsystem: {name: b}\nparameters: {torque: 12, shut: 1}\nbodies:\n  arm:\n    joint: {name: q"
+    text += ", kind: revolute, axis: [0, -1, 0], elements: [{brake: BRAKE}]}\n"
+    text += "    inertia: {mass: 2, moments: [0.1, 0.1, 0.1]}\n"
+    path = tmp_path / "brake.yaml"
+    for stated, brake in (("{torque: 2*torque, engaged: shut}", ("2*torque", "shut")), ("{torque: 3}", (3.0,))):
+        path.write_text(text.replace("BRAKE", stated))
+        system = sf.load(path)
+        assert system.bodies[0].joint is not None and system.bodies[0].joint.elements == (sf.Brake(*brake),)
+        path.write_text(write_yaml(system))
+        assert sf.load(path).bodies == system.bodies
+    path.write_text(text.replace("BRAKE", "{engaged: shut}"))
+    with pytest.raises(sf.DescriptionError, match="torque"):
+        sf.load(path)
 
 
 def test_an_impact_sets_a_held_joint_moving() -> None:

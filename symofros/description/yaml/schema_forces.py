@@ -8,9 +8,9 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from symofros.description.contacts import Contact
-from symofros.description.forces import Connection, Damper, Friction, JointElement, Load, Rotor, Spring, Stop
+from symofros.description.forces import Brake, Connection, Damper, Friction, JointElement, Load, Rotor, Spring, Stop
 from symofros.description.yaml.derived import NounEntry
-from symofros.description.yaml.fields import PartEntry, Three, fault
+from symofros.description.yaml.fields import Formula, PartEntry, Three, fault
 from symofros.errors import DescriptionError, Problem
 
 Coordinate = Annotated[int, Field(ge=0, le=5)]
@@ -32,6 +32,22 @@ class FrictionEntry(NounEntry, noun=Friction):
     coordinate: Coordinate = 0
 
 
+class BrakeEntry(PartEntry):
+    """A brake: friction that sticks, up to a torque at which it slips, while it is engaged."""
+
+    torque: Formula
+    """Torque or force at which it slips [N m or N]: number or formula of parameters."""
+    engaged: Formula = 1.0
+    """Formula of parameters that is 1 where the brake is shut and 0 where it is open; what lies between is partly shut."""
+    coordinate: Coordinate = 0
+    """Index of the speed of the joint, from 0."""
+
+    def build(self) -> Friction:
+        """The brake."""
+        return Brake(self.torque, self.engaged, self.coordinate)
+
+
+# Elements by what files call them; one that is written goes by its class, a brake as friction that sticks.
 ELEMENTS: dict[str, type[NounEntry]] = {
     "spring": SpringEntry,
     "damper": DamperEntry,
@@ -41,7 +57,7 @@ ELEMENTS: dict[str, type[NounEntry]] = {
 
 
 class ElementEntry(PartEntry):
-    """One element on a joint's coordinate: exactly one of spring, damper, stop, friction."""
+    """One element on a joint's coordinate: exactly one of spring, damper, stop, friction, brake."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
@@ -49,16 +65,17 @@ class ElementEntry(PartEntry):
     damper: DamperEntry | None = None
     stop: StopEntry | None = None
     friction: FrictionEntry | None = None
+    brake: BrakeEntry | None = None
 
     @property
-    def given(self) -> list[NounEntry]:
+    def given(self) -> list[NounEntry | BrakeEntry]:
         """The elements that are stated."""
-        return [entry for name in ELEMENTS if (entry := getattr(self, name)) is not None]
+        return [entry for name in (*ELEMENTS, "brake") if (entry := getattr(self, name)) is not None]
 
     @model_validator(mode="after")
     def _one(self) -> Self:
         if len(self.given) != 1:
-            rule = "each element is exactly one of spring, damper, stop, friction"
+            rule = "each element is exactly one of spring, damper, stop, friction, brake"
             raise fault(
                 Problem("not exactly one element", f"{len(self.given)} of them", rule, "make a list of elements")
             )

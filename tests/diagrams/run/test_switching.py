@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -303,3 +303,22 @@ def test_events_stand_in_files(tmp_path: Any) -> None:
     assert again.blocks["plant"].events == of.blocks["plant"].events
     one, other = (sf.Simulation(each).run(1.0, dt=1e-2) for each in (of, again))
     assert np.array_equal(one["plant.q"], other["plant.q"]) and one.events["plant"]
+
+
+def test_a_sampled_signal_drives_a_brake_by_shares() -> None:
+    """Each sample that differs sets the share, as events by the clock do."""
+    stated = CASES["brake"]
+    share = {"share": sf.Event("abs(command - shut) - 1e-9", "rising", action={"shut": "command"})}
+    system = replace(stated.system, inputs=(sf.Input("command"),))
+    of = diagram(replace(stated, system=system), events=share)
+    orders = ((0.0, 1.0), (0.1, 0.0), (0.3, 0.7), (0.35, 0.9), (0.8, 0.1))
+    of.add(Sequence(name="orders", t=[t for t, _ in orders], values=[[y] for _, y in orders], kind="hold"))
+    of.add(Hold(name="sampled", period=0.05), u="orders")
+    of.connect("sampled.y", "plant.u")
+    run = sf.Simulation(of).run(1.0, dt=1e-3)
+    clock = {f"{t}": sf.Event(f"t - {t}", action={"shut": y}) for t, y in orders[1:]}
+    alone = simulated(replace(stated, events=clock), dt=1e-3)
+    ours, theirs = run.events["plant"], alone.events
+    assert [one.name for one in ours if one.name != "share"] == [one.name for one in theirs if one.name not in clock]
+    np.testing.assert_allclose([one.t for one in ours], [one.t for one in theirs], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(run["plant.q"][-1], alone.q[-1], rtol=0, atol=1e-9)

@@ -14,6 +14,8 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
+from tests.diagrams.run.test_switching import CASES
+from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import Unit
 from tests.exports.test_controller import inside, rates
@@ -95,3 +97,32 @@ def test_a_unit_refuses_in_words(version: int, tmp_path: Path) -> None:
         with heard() as (logger, log), pytest.raises(FMICallException):
             fmpy.simulate_fmu(str(path), stop_time=2.0, logger=logger, **options)
         assert words in "".join(log), log
+
+
+@pytest.mark.parametrize(("version", "case"), [(2, "brake"), (3, "bounce"), (3, "grasp")])
+def test_a_unit_does_the_actions_of_the_run(version: int, case: str, tmp_path: Path) -> None:
+    """From a state that was saved before them, too: what they set belongs to it."""
+    stated = CASES[case]
+    of, steps = alone(stated), 10
+    h = stated.t_end / steps
+    path = sf.export(of, f"fmu{version}", tmp_path / "fmu", outputs=["plant.q"], dt=1e-3).files[0]  # type: ignore[arg-type]
+    unit = Unit(path, version, True, tmp_path / "unit")
+    run = sf.Simulation(of).run(stated.t_end, dt=1e-3, record=h)
+    last = [np.flatnonzero(run.t <= k * h + 1e-12)[-1] for k in range(1, steps + 1)]
+    wanted, names = run["plant.q"][last], [f"plant.q[{i}]" for i in range(run["plant.q"].shape[1])]
+    unit.start()
+    saved = unit.fmu.getFMUState() if version == 3 else unit.fmu.getFMUstate()
+    for attempt in range(2):
+        found = []
+        for k in range(steps):
+            unit.fmu.doStep(k * h, h)
+            found.append(unit.get(*names))
+        np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-10)
+        if attempt == 0:
+            (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
+
+
+def test_a_unit_does_not_end(tmp_path: Path) -> None:
+    ends = alone(CASES["bounce"], events={"down": sf.Event("z", "falling", terminal=True)})
+    with pytest.raises(sf.SymofrosError, match=r"event 'plant\.down' ends the motion"):
+        sf.export(ends, "fmu3", tmp_path / "fmu")
