@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from symofros.blocks.checks import refuse
+from symofros.blocks.model_function import OFFERED, told_ports
 from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.simulation.events import Event
 
 
@@ -26,12 +28,24 @@ class ForwardDynamics(Block):
             then more than 1e-3 m or rad apart ends the run.
         events: Events of the mechanism, as `sf.simulate` takes them: name -> formula, or sf.Event with what it sets. In
             place of `engaged`, for constraints with switches; inputs are those of `u`.
+        tells: Functions of the model that are outputs, too, at the present motion and parameters, such as
+            "kinetic_energy", "closure_wrenches", "joint_wrenches", "contact_forces" or "centroidal_momentum": an output
+            of that name; where one has several, FUNCTION_OUTPUT each ("contact_forces_gap").
     """
 
     model: str
     perturbed: tuple[str, ...] = ()
     engaged: bool = False
     events: Mapping[str, Event | str] = field(default_factory=dict)
+    tells: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse what is no function at a motion."""
+        for name in self.tells:
+            if name not in OFFERED or OFFERED[name].of_frame:
+                known = [offered for offered, row in OFFERED.items() if not row.of_frame]
+                rule = f"functions of the whole model at a motion: {', '.join(known)}"
+                raise refuse(self.name, f"tells '{name}'", name, rule, did_you_mean(name, known) or "leave it out")
 
     def mechanism(self) -> str:
         """The model."""
@@ -70,7 +84,11 @@ class ForwardDynamics(Block):
             motion_port("a", record, "a"),
             motion_port("friction", record, "effort"),
         ]
-        return Ports(tuple(inputs), (*outputs, Port("lam", (record.nc,))) if record.nc else tuple(outputs))
+        outputs += [Port("lam", (record.nc,))] if record.nc else []
+        for function in self.tells:
+            told = told_ports(self.name, function, record)
+            outputs += [replace(port, name=name) for port, name in zip(told, _told(function), strict=True)]
+        return Ports(tuple(inputs), tuple(outputs))
 
     def motion(self, context: EvaluationContext) -> Terms:
         """M v' = r + G^T lam."""
@@ -122,7 +140,14 @@ class ForwardDynamics(Block):
         record = context.environment.model(self.model)
         effort = friction(context, self.model, context.q, context.v)
         signals = {"q": context.q, "v": context.v, "a": context.a, "friction": effort}
-        return signals | ({"lam": context.lam} if record.nc else {})
+        signals |= {"lam": context.lam} if record.nc else {}
+        given = {"q": context.q, "v": context.v, "a": context.a, "u": context.inputs["u"], "t": context.t}
+        for function in self.tells:
+            values = context.call(self.model, function, lam=context.lam, **given)
+            signals |= {
+                name: values[of.name] for name, of in zip(_told(function), OFFERED[function].outputs, strict=True)
+            }
+        return signals
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,6 +182,12 @@ def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor) -> Te
         return context.numbers([0.0] * len(has_friction))
     force = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
     return force * [float(rubs) for rubs in has_friction]
+
+
+def _told(function: str) -> list[str]:
+    """Names of the ports of a function's outputs."""
+    outputs = OFFERED[function].outputs
+    return [function] if len(outputs) == 1 else [f"{function}_{output.name}" for output in outputs]
 
 
 def _constraints(names: tuple[str, ...]) -> list[str]:

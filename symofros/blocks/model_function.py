@@ -53,16 +53,10 @@ class ModelFunction(Block):
         record, row = environment.model(self.model), OFFERED[self.function]
         if self.frame:
             environment.frame(self.model, self.frame)
-        if row.constrained_only and not record.nc:
-            rule, remedy = "it is a function of constraints", "choose a model with constraints"
-            raise refuse(self.name, f"'{self.function}' of a tree", self.model, rule, remedy)
-        outputs = {output.name: output.sizes(_sizes(record)) for output in row.outputs}
-        if not any(prod(shape) for shape in outputs.values()):
-            rule, remedy = "what it tells of is in the model", "choose a model that has some"
-            raise refuse(self.name, f"'{self.function}' has no entries", self.model, rule, remedy)
+        outputs = told_ports(self.name, self.function, record)
         groups = [*row.inputs, *(["u"] if record.driven and "u" not in row.inputs else [])]
         inputs = [_input(group, record) for group in groups if group != "t" and _entries(group, record)]
-        return Ports(tuple(inputs), tuple(Port(name, shape) for name, shape in outputs.items()))
+        return Ports(tuple(inputs), outputs)
 
     def compute(self, context: EvaluationContext) -> Values:
         """The function at the inputs."""
@@ -72,6 +66,28 @@ class ModelFunction(Block):
         given |= {"t": context.t, **context.inputs}
         outputs = context.call(self.model, self.function, self.frame, **given)
         return {output.name: outputs[output.name] for output in OFFERED[self.function].outputs}
+
+
+def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
+    """Ports of the outputs of an offered function.
+
+    Args:
+        block: Name of the block.
+        function: Name of the function.
+        record: Sizes of the model.
+
+    Raises:
+        DescriptionError: The model has nothing that the function tells of.
+    """
+    row = OFFERED[function]
+    if row.constrained_only and not record.nc:
+        rule, remedy = "it is a function of constraints", "choose a model with constraints"
+        raise refuse(block, f"'{function}' of a tree", record.name, rule, remedy)
+    outputs = tuple(Port(output.name, output.sizes(_sizes(record))) for output in row.outputs)
+    if not any(prod(port.shape or ()) for port in outputs):
+        rule, remedy = "what it tells of is in the model", "choose a model that has some"
+        raise refuse(block, f"'{function}' has no entries", record.name, rule, remedy)
+    return outputs
 
 
 def _entries(group: str, record: ModelRecord) -> int:

@@ -8,6 +8,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import Constant, ForwardDynamics
+from tests.diagrams.run.test_switching import CASES, diagram, simulated
 
 WRENCH = [1.0, 0.0, -2.0, 0.0, 0.3, 0.0]
 
@@ -38,3 +39,34 @@ def test_two_frames_of_one_port_are_refused() -> None:
     d.add(ForwardDynamics(name="b", model="bars", perturbed=("coupler.end", "coupler.end")))
     with pytest.raises(sf.DescriptionError, match="two frames have one port"):
         sf.Simulation(d)
+
+
+def test_a_mechanism_tells_functions_of_its_motion() -> None:
+    """Those of the model along the run, at the parameters that an event has set by then."""
+    gripper = CASES["grasp"]
+    told = ("kinetic_energy", "closure_wrenches", "joint_wrenches", "centroidal_momentum")
+    run = sf.Simulation(diagram(gripper, tells=told)).run(gripper.t_end, dt=1e-2)
+    alone = simulated(gripper, dt=1e-2)
+    model, after = alone.model, alone.par_over_time[-1]
+    (q, v), a, lam, t = run.motion("plant"), run["plant.a"], run["plant.lam"], run.t
+    last = t >= 0.8 + 1e-9
+    given = {"par": after, "t": t[last]}
+    np.testing.assert_allclose(run["plant.kinetic_energy"][last], model.kinetic_energy(q[last], v[last], par=after))
+    wrenches = model.joint_wrenches(q[last], v[last], a[last], np.zeros((last.sum(), 0)), lam[last], **given)
+    np.testing.assert_allclose(run["plant.joint_wrenches"][last], wrenches, atol=1e-9)
+    held = (t > run.events["plant"][0].t) & (t < 0.4)
+    names = run["plant.closure_wrenches_on_second"]
+    assert np.abs(names[held]).max() > 1e-3 and not names[last].any()
+    # What holds acts on both alike: the momentum of all that moves changes by the ground's joint alone.
+    on_first = run["plant.closure_wrenches_on_first"]
+    np.testing.assert_allclose(on_first[held][:, 0, :3], -names[held][:, 0, :3], atol=1e-9)
+    momentum = run["plant.centroidal_momentum"]
+    assert momentum.shape == (len(t), 6)
+    np.testing.assert_allclose(momentum[last], model.centroidal_momentum(q[last], v[last], par=after), atol=1e-12)
+
+
+def test_what_a_mechanism_can_not_tell_is_refused() -> None:
+    with pytest.raises(sf.DescriptionError, match="tells 'kinetic'"):
+        ForwardDynamics(name="b", model="bars", tells=("kinetic",))
+    with pytest.raises(sf.DescriptionError, match="'contact_forces' has no entries"):
+        sf.Simulation(diagram(CASES["grasp"], tells=("contact_forces",)))

@@ -38,7 +38,7 @@ class BrakeEntry(PartEntry):
     torque: Formula
     """Torque or force at which it slips [N m or N]: number or formula of parameters."""
     engaged: Formula = 1.0
-    """Formula of parameters that is 1 where the brake is shut and 0 where it is open; what lies between is partly shut."""
+    """Formula of parameters: 1 where the brake is shut, 0 where it is open; what lies between is partly shut."""
     coordinate: Coordinate = 0
     """Index of the speed of the joint, from 0."""
 
