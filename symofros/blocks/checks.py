@@ -138,3 +138,26 @@ def known_name(name: str, what: str, value: object, known: Collection[str]) -> s
             did_you_mean(str(value), known) or "see model.names",
         )
     return str(value)
+
+
+def weights(name: str, field: str, values: Any, size: int, *, positive: bool = False) -> Array:
+    """Weights, or covariances, as a matrix (size, size).
+
+    Args:
+        name: Name of the block.
+        field: Field of the block.
+        values: One number, one an entry, or a matrix.
+        size: Entries.
+        positive: Whether zero is none.
+
+    Raises:
+        DescriptionError: They are not symmetric, or negative.
+    """
+    given = np.asarray(values, dtype=np.float64)
+    numbers(name, field, given, ((), (size,), (size, size))[min(given.ndim, 2)])
+    matrix = given if given.ndim == 2 else np.diag(np.broadcast_to(given, size))
+    least = np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min(initial=np.inf)
+    if not np.allclose(matrix, matrix.T) or least < 0.0 or (positive and least == 0.0):
+        rule = f"symmetric and {'positive' if positive else 'not negative'}"
+        raise refuse(name, f"{field} are not weights", f"least eigenvalue {least:g}", rule, "choose others")
+    return matrix

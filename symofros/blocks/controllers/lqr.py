@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.blocks.checks import numbers, refuse
+from symofros.blocks.checks import numbers, refuse, weights
 from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
 from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import entry_units, motion_port, with_units
@@ -50,8 +50,8 @@ class LQR(Block):
             )
         if self.nominal is not None:
             numbers(self.name, "nominal", self.nominal, (nu,))
-        self._weights("state_weights", 2 * nv)
-        self._weights("input_weights", nu)
+        weights(self.name, "state_weights", self.state_weights, 2 * nv)
+        weights(self.name, "input_weights", self.input_weights, nu, positive=True)
         q0, v0 = environment.start(self.model)
         inputs = (
             motion_port("q", record, "q"),
@@ -64,21 +64,6 @@ class LQR(Block):
         x = with_units(Port("x", (2 * nv,)), (*turns, *entry_units(record, "v")))
         return Ports(inputs, (motion_port("u", record, "u"), x))
 
-    def _weights(self, field: str, size: int) -> Array:
-        given = np.asarray(getattr(self, field), dtype=np.float64)
-        numbers(self.name, field, given, ((), (size,), (size, size))[min(given.ndim, 2)])
-        whole = given if given.ndim == 2 else np.diag(np.broadcast_to(given, size))
-        least = np.linalg.eigvalsh(0.5 * (whole + whole.T)).min(initial=np.inf)
-        if not np.allclose(whole, whole.T) or least < 0.0 or (field == "input_weights" and least == 0.0):
-            raise refuse(
-                self.name,
-                f"{field} are not weights",
-                f"least eigenvalue {least:g}",
-                "symmetric; state weights are not negative, input weights positive",
-                "choose others",
-            )
-        return whole
-
     def _nominal(self, environment: Environment) -> Array:
         given = environment.model(self.model).u_default if self.nominal is None else self.nominal
         return np.asarray(given, dtype=np.float64)
@@ -90,7 +75,8 @@ class LQR(Block):
             DescriptionError: Nothing stabilises the model.
         """
         linear = environment.linear(self.model, self._nominal(environment))
-        Q, R = self._weights("state_weights", len(linear.basis)), self._weights("input_weights", linear.B.shape[1])
+        Q = weights(self.name, "state_weights", self.state_weights, len(linear.basis))
+        R = weights(self.name, "input_weights", self.input_weights, linear.B.shape[1], positive=True)
         Q = linear.basis.T @ Q @ linear.basis
         if self.period is None:
             K = continuous_gain(linear.A, linear.B, Q, R)

@@ -46,6 +46,26 @@ def sampled_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
     return K if bool(np.all(np.abs(np.linalg.eigvals(A - B @ K)) < 1.0)) else None
 
 
+def filter_gain(A: Array, C: Array, Q: Array, R: Array) -> Array | None:
+    """L = P C^T (C P C^T + R)^-1 (n, p) with the covariance P of predictions of x[k + 1] = A x[k] + w[k], y = C x + e.
+
+    Args:
+        A: (n, n).
+        C: (p, n).
+        Q: Covariance of w (n, n).
+        R: Covariance of e (p, p).
+
+    Returns:
+        None where no estimate settles.
+    """
+    try:
+        P = _doubled(A.T, C.T @ np.linalg.solve(R, C), Q)
+    except np.linalg.LinAlgError:
+        return None
+    L = np.asarray(np.linalg.solve(C @ P @ C.T + R, C @ P).T, dtype=np.float64)
+    return L if bool(np.all(np.abs(np.linalg.eigvals(A - A @ L @ C)) < 1.0)) else None
+
+
 def _doubled(A: Array, G: Array, H: Array) -> Array:
     """The limit of H."""
     one = np.eye(len(A))

@@ -7,9 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.blocks.checks import choice, increasing, numbers, refuse
 from symofros.blocks.quantities import common_shape, passed_units, passing, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
+from symofros.diagrams.tensor import Tensor, joined
 
 # Of a table, whose formula grows with its points.
 MAX_POINTS = 1000
@@ -192,11 +194,68 @@ class LookupTable(Block):
         """Piecewise linear interpolation: the first value plus the increment over each interval."""
         x, y = np.asarray(self.x, dtype=np.float64), np.asarray(self.y, dtype=np.float64)
         total = context.numbers(y[0])
-        for i in range(len(x) - 1):
-            h, along = float(x[i + 1] - x[i]), context.inputs["u"] - float(x[i])
-            if self.outside == "hold" or i > 0:
-                along = along.apply("max", 0.0)
-            if self.outside == "hold" or i < len(x) - 2:
-                along = along.apply("min", h)
-            total = total + along * ((y[i + 1] - y[i]) / h)
+        for i, along in enumerate(_along(context.inputs["u"], x, self.outside)):
+            total = total + along * ((y[i + 1] - y[i]) / float(x[i + 1] - x[i]))
         return {"y": total}
+
+
+def _along(u: Tensor, x: Array, outside: str) -> list[Tensor]:
+    """How far a scalar has come along each interval between points (n - 1)."""
+    parts = []
+    for i in range(len(x) - 1):
+        along = u - float(x[i])
+        if outside == "hold" or i > 0:
+            along = along.apply("max", 0.0)
+        if outside == "hold" or i < len(x) - 2:
+            along = along.apply("min", float(x[i + 1] - x[i]))
+        parts.append(along)
+    return parts
+
+
+@dataclass(frozen=True, kw_only=True)
+class LookupTable2D(Block):
+    """y(u1, u2), linear in each of both between the points of a grid.
+
+    With the shares a_i of u1 along intervals of x1, a_0 = 1, and b_k of u2 alike, y = sum a_i D_ik b_k: D are first
+    values, differences along an edge, and second differences within.
+
+    Attributes:
+        x1: Positions along u1 (n), increasing.
+        x2: Positions along u2 (m), increasing.
+        y: Values there (n, m).
+        outside: "hold" the values at the edge, or "extend" the cells there.
+        unit_in: Unit of u1 and u2.
+        unit_out: Unit of y.
+    """
+
+    x1: Any
+    x2: Any
+    y: Any
+    outside: str = "hold"
+    unit_in: str = ""
+    unit_out: str = ""
+
+    def __post_init__(self) -> None:
+        """Increasing points, a value for each of the grid's."""
+        n, m = (len(increasing(self.name, field, getattr(self, field))) for field in ("x1", "x2"))
+        if numbers(self.name, "y", self.y, (n, m)).size > MAX_POINTS:
+            raise refuse(self.name, "too many points", (n, m), f"at most {MAX_POINTS}", "leave some out")
+        choice(self.name, "outside", self.outside, ("hold", "extend"))
+
+    def ports(self, environment: Environment) -> Ports:
+        """Inputs u1, u2, scalars; output y."""
+        inputs = (Port("u1", (), self.unit_in), Port("u2", (), self.unit_in))
+        return Ports(inputs, (Port("y", (), self.unit_out),))
+
+    def compute(self, context: EvaluationContext) -> Values:
+        """Interpolation, linear in each input."""
+        shares = []
+        for key, field in (("u1", "x1"), ("u2", "x2")):
+            x = np.asarray(getattr(self, field), dtype=np.float64)
+            along = _along(context.inputs[key], x, self.outside)
+            shares.append([part * (1.0 / h) for part, h in zip(along, np.diff(x).tolist(), strict=True)])
+        y = np.asarray(self.y, dtype=np.float64)
+        rows = np.vstack([y[:1], np.diff(y, axis=0)])
+        D = np.hstack([rows[:, :1], np.diff(rows, axis=1)])
+        a, b = (joined([context.numbers(1.0), *parts]) for parts in shares)
+        return {"y": a @ (context.numbers(D) @ b)}

@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import Constant, Derivative, Integrator, Ramp, Sine, StateSpace, TransferFunction
+from symofros.blocks import (
+    Constant,
+    Derivative,
+    Gain,
+    Integrator,
+    KalmanFilter,
+    Notch,
+    Ramp,
+    Sine,
+    StateSpace,
+    TransferFunction,
+    TransportDelay,
+)
 from tests.blocks.support import STEP, run, run_each
 from tests.late import late
 
@@ -99,3 +112,88 @@ def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int])
     assert found == pytest.approx(expected, abs=1e-12)
     limited = run(Integrator(name="x", high=1.5, period=STEP), {"u": [100.0] * 3 + [-100.0] * 2})["y"]
     assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
+
+
+def test_a_notch_takes_its_frequency_out_and_leaves_the_rest() -> None:
+    """Gains of the steady state: depth at the frequency, that of the formula beside it, one far off; sampled alike."""
+    t, h = np.arange(4001) * 1e-3, 1e-3
+    for frequency, depth in ((5.0, 0.0), (5.0, 0.25), (2.0, 0.0)):
+        u = np.sin(2.0 * np.pi * frequency * t)
+        s = 1j * 2.0 * np.pi * frequency
+        w = 2.0 * np.pi * 5.0
+        gain = abs((s * s + 2 * depth * 0.4 * w * s + w * w) / (s * s + 2 * 0.4 * w * s + w * w))
+        smooth, sampled = run_each(
+            [
+                (Notch(name="c", frequency=5.0, damping=0.4, depth=depth), {"u": u}),
+                (Notch(name="d", frequency=5.0, damping=0.4, depth=depth, period=h), {"u": u}),
+            ],
+            dt=h,
+            kind="linear",
+            compare=0.0,
+        )
+        last = slice(-1000, None)
+        assert np.abs(sampled["y"][last]).max() == pytest.approx(gain, abs=2e-3)
+        assert np.abs(smooth["y"][last]).max() == pytest.approx(gain, abs=2e-3)
+
+
+def _settled(A: np.ndarray, C: np.ndarray, Q: np.ndarray, R: np.ndarray) -> np.ndarray:
+    """The gain of the filter by its recursion from a large first covariance."""
+    P = 10.0 * np.eye(len(A))
+    for _ in range(2000):
+        L = P @ C.T @ np.linalg.inv(C @ P @ C.T + R)
+        P = A @ (P - L @ C @ P) @ A.T + Q
+    return P @ C.T @ np.linalg.inv(C @ P @ C.T + R)
+
+
+def test_a_sampled_kalman_filter_is_the_recursion_that_has_settled() -> None:
+    rng = np.random.default_rng(4)
+    A, B, C = np.array([[1.0, 0.01], [-0.05, 0.98]]), np.array([[0.0], [0.01]]), np.array([[1.0, 0.0]])
+    Q, R = np.array([[1e-6, 0.0], [0.0, 1e-3]]), np.array([[1e-2]])
+    u, y = rng.standard_normal((60, 1)), rng.standard_normal((60, 1))
+    block = KalmanFilter(name="k", A=A, B=B, C=C, Q=Q, R=R, start=[0.5, -1.0], period=0.01)
+    found = run_each([(block, {"u": u, "y": y})], dt=0.01)[0]["x"]
+    L, x, expected = _settled(A, C, Q, R), np.array([0.5, -1.0]), []
+    for k in range(len(u)):
+        x = x + L @ (y[k] - C @ x)
+        expected.append(x)
+        x = A @ x + B @ u[k]
+    np.testing.assert_allclose(found[: len(u)], expected, rtol=1e-9, atol=1e-12)
+
+
+def test_a_continuous_kalman_filter_finds_a_state_and_weighs_noise() -> None:
+    """Of x' = w, y = x + e the gain is sqrt(Q/R); without noise an estimate comes to the state that it does not see."""
+    assert KalmanFilter(name="k", A=[[0.0]], B=[[0.0]], C=[[1.0]], Q=4.0, R=0.25)._gain()[0, 0] == pytest.approx(4.0)
+    A, C = [[0.0, 1.0], [-9.0, 0.0]], [[1.0, 0.0]]
+    diagram = sf.Diagram("seen")
+    diagram.add(Constant(name="none", value=[0.0]))
+    diagram.add(StateSpace(name="plant", A=A, B=[[0.0], [0.0]], C=C, start=[1.0, 0.0]), u="none.y")
+    diagram.add(KalmanFilter(name="k", A=A, B=[[0.0], [0.0]], C=C, Q=[0.0, 1e5], R=0.1), u="none.y", y="plant.y")
+    found = sf.Simulation(diagram).run(4.0, dt=1e-3)
+    np.testing.assert_allclose(found["k.x"][-1], [np.cos(12.0), -3.0 * np.sin(12.0)], atol=1e-6)
+    with pytest.raises(sf.DescriptionError, match="no estimate that settles"):
+        KalmanFilter(name="k", A=np.diag([1.0, 2.0]), B=np.zeros((2, 1)), C=C, Q=1.0, R=1.0)
+    with pytest.raises(sf.DescriptionError, match="R are not weights"):
+        KalmanFilter(name="k", A=A, B=np.zeros((2, 1)), C=C, Q=1.0, R=0.0)
+
+
+def test_a_transport_delay_is_late_by_its_time() -> None:
+    """By whole samples exactly, between them by straight lines; it breaks a loop where it is a period or more."""
+    u = np.random.default_rng(5).standard_normal((30, 2))
+    before = np.vstack([np.full((4, 2), 0.5), u])
+    cases = {0.02: 2.0, 0.025: 2.5, 0.004: 0.4, 0.01: 1.0}
+    fed: list[Any] = [
+        (TransportDelay(name=f"d{i}", delay=delay, start=0.5, period=0.01), {"u": u}) for i, delay in enumerate(cases)
+    ]
+    for found, samples in zip(run_each(fed, dt=0.01), cases.values(), strict=True):
+        whole, share = int(samples), samples - int(samples)
+        rows = np.arange(len(u)) + 4 - whole
+        np.testing.assert_allclose(
+            found["y"][: len(u)], (1 - share) * before[rows] + share * before[rows - 1], atol=1e-13
+        )
+    with pytest.raises(sf.DescriptionError, match="delay is too long"):
+        TransportDelay(name="d", delay=100.0, period=0.01)
+    ring = sf.Diagram("ring")
+    ring.add(TransportDelay(name="d", delay=0.03, start=[1.0], period=0.01), u="half.y")
+    ring.add(Gain(name="half", gain=0.5), u="d.y")
+    found = sf.Simulation(ring).run(0.07, dt=0.01, record=0.01)["d.y"]
+    assert found[:, 0].tolist() == [1, 1, 1, 0.5, 0.5, 0.5, 0.25, 0.25]

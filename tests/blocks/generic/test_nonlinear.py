@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import DeadZone, LookupTable, Quantizer, RateLimit, Relay, Saturation, Sine, Switch
+from symofros.blocks import DeadZone, LookupTable, LookupTable2D, Quantizer, RateLimit, Relay, Saturation, Sine, Switch
 from tests.blocks.support import STEP, run
+from tests.late import late
+
+interpolate = late("scipy.interpolate")
 
 U = np.linspace(-3, 3, 25)
 X, Y = [-1.0, 0.5, 2.0], [3.0, -1.0, 0.0]
@@ -59,3 +62,18 @@ def test_rates_are_limited_in_both_directions() -> None:
     u = np.array([[1.0, 0.0], [3.0, 0.0], [3.0, -9.0], [3.0, -9.0], [0.0, 5.0]])
     found = run(RateLimit(name="r", rising=[100.0, 50.0], falling=[50.0, 200.0], period=STEP), {"u": u})["y"]
     np.testing.assert_allclose(found, [[1, 0], [2, 0], [3, -2], [3, -4], [2.5, -3.5]], atol=1e-12)
+
+
+@pytest.mark.parametrize("outside", ["hold", "extend"])
+def test_a_table_of_two_is_linear_in_each_input(outside: str) -> None:
+    """By SciPy within the grid; beyond it the edge, or the cell there."""
+    rng = np.random.default_rng(6)
+    x1, x2 = np.array([-1.0, 0.5, 2.0]), np.array([0.0, 1.0, 1.5, 4.0])
+    y, u = rng.standard_normal((3, 4)), rng.uniform(-2.0, 5.0, (60, 2))
+    table = LookupTable2D(name="b", x1=x1, x2=x2, y=y, outside=outside)
+    found = run(table, {"u1": u[:, 0], "u2": u[:, 1]})["y"]
+    at = np.clip(u, [-1.0, 0.0], [2.0, 4.0]) if outside == "hold" else u
+    wanted = interpolate.RegularGridInterpolator((x1, x2), y, bounds_error=False, fill_value=None)(at)
+    np.testing.assert_allclose(found, wanted, atol=1e-12)
+    with pytest.raises(sf.DescriptionError, match=r"y has the wrong shape"):
+        LookupTable2D(name="b", x1=x1, x2=x2, y=y.T)
