@@ -224,6 +224,10 @@ def _steps() -> dict[str, Function]:
         "dampers_implicit": ("M + h D in place of M, D of the joints' dampers", single("dampers")),
         "semi_implicit_straight": ("the same with q+ = q + h N(q) v+", single("nothing", steps.straight)),
         "dampers_implicit_straight": ("the same with q+ = q + h N(q) v+", single("dampers", steps.straight)),
+        "semi_implicit_normalized": (
+            "v+ = v + h M^-1 f, q+ = q + h N(q) v+ with quaternions brought to unit length",
+            single("nothing", steps.normalized),
+        ),
         "forces_implicit": ("M + h D in place of M, D = -dQ/dv, for lone free bodies -df/dv", single("forces")),
         "velocities_implicit": ("M + h D in place of M, D = -df/dv", single("velocities")),
         "stiffness_implicit": ("v+ = v + h (M + h D + h^2 K)^-1 (f - h K v)", single("stiffness")),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from decimal import Decimal
 
 import mpmath
@@ -10,7 +11,8 @@ import numpy as np
 import pytest
 import sympy
 
-from validation.engines.interface import Joint, Link, Slot, Tree
+from validation.engines.functions import FUNCTIONS
+from validation.engines.interface import STEP, Joint, Link, Slot, State, Tree
 from validation.engines.models.kinds import tree_of
 from validation.engines.proving.pieces import Layout
 from validation.engines.proving.shrink import Case, size, smallest
@@ -21,6 +23,7 @@ from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.oracle import kane
 from validation.truth_data.descriptions import system
 
+_UNIT_INERTIA = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 HINGES = Layout(3, 3, tuple((Slot("angle", (k,), (k,)),) for k in range(3)))
 
 
@@ -35,6 +38,34 @@ def test_sine_and_cosine_have_all_digits() -> None:
 def test_differences_refuse_to_be_taken_in_few_digits() -> None:
     with pytest.raises(ArithmeticError):
         rate(lambda x: x * x, exact([1.0]), exact([1.0]))
+
+
+def test_derivatives_are_in_proportion_to_the_direction_however_long_it_is() -> None:
+    """Tiny bodies reach speeds of 1e14, at which points of a fixed step are far from each other."""
+    with many_digits():
+        at, along, long = exact([0.5]), exact([1.0]), Decimal(10) ** 14
+        slope = rate(lambda x: cos_sin(x[0])[0], at, along)
+        assert abs(rate(lambda x: cos_sin(x[0])[0], at, long * along) / (long * slope) - 1) < Decimal("1e-30")
+        assert abs(slope + cos_sin(at[0])[1]) < Decimal("1e-30")
+
+
+@pytest.mark.parametrize("speed", [1.0, 100.0])
+def test_a_step_along_the_rate_of_a_quaternion_turns_by_the_arc_tangent(speed: float) -> None:
+    """q (+) h w of unit length: tan(angle / 2) = h |w| / 2, where the step along the manifold turns by h |w|."""
+    tree = replace(tree_of("ball"), links=tree_of("ball").links[:1], gravity=(0.0, 0.0, 0.0))
+    tree = replace(tree, links=(replace(tree.links[0], com=(0.0, 0.0, 0.0), inertia=_UNIT_INERTIA),))
+    ball = Layout(4, 3, ((Slot("quaternion xyzw, parent speeds", (0, 1, 2, 3), (0, 1, 2)),),))
+    state = State(np.array([0.0, 0.0, 0.0, 1.0]), np.array([0.0, 0.0, speed]), *np.zeros((2, 3)), *np.zeros((2, 3)))
+    with many_digits():
+        ends = [
+            digits(FUNCTIONS[f"step_{name}"].truth(Truth(tree, ball), Point.of(state)))
+            for name in ("semi_implicit_normalized", "semi_implicit", "semi_implicit_straight")
+        ]
+    half = STEP * speed / 2.0
+    cosine = 1.0 / math.hypot(1.0, half)
+    np.testing.assert_allclose(ends[0][[2, 3]], [half * cosine, cosine], rtol=1e-15)
+    np.testing.assert_allclose(ends[1][[2, 3]], [math.sin(half), math.cos(half)], rtol=1e-15)
+    np.testing.assert_allclose(ends[2][[2, 3]], [half, 1.0], rtol=1e-15)
 
 
 def test_a_double_pendulum_has_the_mass_matrix_of_textbooks() -> None:

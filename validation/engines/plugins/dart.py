@@ -245,7 +245,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         "if s is None: raise ValueError('no skeleton: see the log')",
         *([] if form == "mjcf" else _gravity(tree)),
     ]
-    links = f"links = [s.getBodyNode(name) for name in {names!r}]"
+    # A body that it has not read has no pose to answer with.
+    links = f"links = [b for name in {names!r} if (b := s.getBodyNode(name))]"
     return Source(tuple(lines), slots, count, count, {"links": (links,)})
 
 

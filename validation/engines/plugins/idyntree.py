@@ -12,7 +12,7 @@ loader = iDynTree.ModelLoader()
 options = loader.parsingOptions()
 options.addSensorFramesAsAdditionalFrames = False
 loader.setParsingOptions(options)
-assert loader.loadReducedModelFromString({text!r}, {joints})
+if not loader.loadReducedModelFromString({text!r}, {joints}): raise ValueError('no model: see the log')
 robot = iDynTree.KinDynComputations()
 assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
@@ -197,5 +197,7 @@ PLUGIN = SourcePlugin(
     write=through_reader(read),
     formats=("urdf",),
     write_reading=of_files(read),
+    # Its reader returns no model, and writes why to the log.
+    refusals=("no model: see the log",),
     statements=(UNIT_AXIS,),
 )

@@ -56,7 +56,7 @@ WAYS = {
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
     ),
 }
-WAYS["step_semi_implicit"] = Way(
+WAYS["step_semi_implicit_normalized"] = Way(
     "SolverFeatherstone",
     f"""solver, after, control = newton.solvers.SolverFeatherstone(m, angular_damping=0.0), m.state(), m.control()
 {_QV}control.joint_f.assign(tau.astype(np.float32))
@@ -222,6 +222,7 @@ PLUGIN = SourcePlugin(
         Convention("quaternion", "scalar last"),
         Convention("ball joint", "angular velocity along the axes before the joint"),
         Convention("twists and Jacobians of links", "linear velocity of the mass centre, then angular, in the world"),
+        Convention("step", "quaternions along their rate at the beginning, then brought to unit length"),
         Convention("armature", "an argument of the joint; 0.01 unless stated"),
         Convention(
             "free joint", "linear velocity of the mass centre: a speed that depends on the body; not asked here"

@@ -23,7 +23,7 @@ import numpy as np
 
 from ..interface import STEP
 from . import derived
-from .arithmetic import Exact, eye, rate, solve, stack, zeros
+from .arithmetic import Exact, eye, rate, root, solve, stack, zeros
 from .derived import TruthOf, to_tangent
 from .dynamics import Point, Truth
 
@@ -75,6 +75,16 @@ def along(t: Truth, q: Exact, u: Exact) -> Exact:
 def straight(t: Truth, q: Exact, u: Exact) -> Exact:
     """Coordinates q + N(q) u, which leave the manifold of quaternions."""
     return q + t.kinematics.rates(q) @ u
+
+
+def normalized(t: Truth, q: Exact, u: Exact) -> Exact:
+    """Coordinates q + N(q) u, of which the quaternions of balls are brought back to their manifold."""
+    end = straight(t, q, u)
+    for slot in (slot for own in t.kinematics.slots for slot in own):
+        if "quaternion" in slot.chart and len(slot.q) == 4:
+            places = list(slot.q)
+            end[places] = end[places] / root(end[places] @ end[places])
+    return end
 
 
 def _metrics(t: Truth, s: Point, implicit: Implicit) -> tuple[Exact, Exact]:
