@@ -17,6 +17,23 @@ _FEW = 3
 Ask = Callable[[Opened], Sequence[Cell]]
 
 
+@dataclass(frozen=True)
+class Span:
+    """The releases between which something is red.
+
+    Attributes:
+        first: The first red one that is known.
+        before: The one before it that is not; "" where none before it answers.
+        last: The last red one that is known.
+        good: The first after it that is not; "" where none after it answers.
+    """
+
+    first: str
+    before: str
+    last: str
+    good: str
+
+
 @dataclass
 class Search:
     """Releases of an engine, and what is known of them.
@@ -59,6 +76,13 @@ class Search:
             else:
                 good = place
         return self._halved(last, good, step) if good is not None else (last, None)
+
+    def span(self, bad: int) -> Span:
+        """The red releases around one that is red, the place of which is given."""
+        first, before = self.change(bad, -1)
+        last, good = self.change(bad, 1)
+        names = ("" if place is None else self.releases[place] for place in (first, before, last, good))
+        return Span(*names)
 
     def _halved(self, last: int, good: int, step: int) -> tuple[int, int]:
         """The same, between a red release and one that is not."""
@@ -108,30 +132,35 @@ def history(
         return found.verdict in RED
 
     search = Search(listed, asked)
-    bad = listed.index(stated.version) if stated.version in listed else len(listed) - 1
-    if search.at(bad) is not True:
-        said = search.at(bad) or "is right"
-        raise NotAskedError(
-            f"{cell}: {plugin.package} {listed[bad]}: {said}; state a red release by --at NAME==VERSION"
-        )
+    bad = red_place(search, stated.version, f"{cell}: {plugin.package}")
     yield f"{cell}: red at {plugin.package} {listed[bad]}"
-    yield from _found(search, bad, plugin.package)
+    yield from told(search, search.span(bad), plugin.package)
+
+
+def red_place(search: Search, version: str, what: str) -> int:
+    """The place of a red release: the stated one, or the newest.
+
+    Raises:
+        NotAskedError: It is not red.
+    """
+    listed = search.releases
+    bad = listed.index(version) if version in listed else len(listed) - 1
+    if search.at(bad) is not True:
+        raise NotAskedError(f"{what} {listed[bad]}: {search.at(bad) or 'is right'}; state a red release by --at")
+    return bad
+
+
+def told(search: Search, span: Span, package: str) -> Iterator[str]:
+    """Lines that say what was found, and which releases said nothing."""
+    listed = search.releases
+    yield f"first bad: {package} {span.first}" + ("" if span.before else ", or one before: none of those answers")
+    yield "first good: " + (f"{package} {span.good}" if span.good else f"none that answers; {span.last} is still red")
     yield from _silent(search.said)
     yield f"{len(search.said)} of {len(listed)} releases were asked; one change before and one after is assumed."
-
-
-def _found(search: Search, bad: int, package: str) -> Iterator[str]:
-    """The first bad release and the first good one after it."""
-    listed = search.releases
-    first, before = search.change(bad, -1)
-    yield f"first bad: {package} {listed[first]}" + (", or one before: none of those answers" if before is None else "")
-    last, good = search.change(bad, 1)
-    none = f"none that answers; {listed[last]} is still red"
-    yield f"first good: {none if good is None else f'{package} {listed[good]}'}"
 
 
 def _silent(said: Mapping[str, bool | str]) -> Iterator[str]:
     """Releases that said nothing, and why."""
     for version, answer in said.items():
         if isinstance(answer, str):
-            yield f"passed over: {version}: {answer.splitlines()[0]}"
+            yield f"passed over: {version}: {' '.join(answer.splitlines()[:2])}"

@@ -156,7 +156,8 @@ def _first(data: Data, found: _Found) -> Iterator[str]:
         if own := found.by(name):
             heaviest = own[0]
             link, causes = f"[{name}](engines.html#engine-{name})", counted(len(own), "cause")
-            said = f"{shown.what(heaviest)} Shows in: {shown.where(heaviest)}. Thread: {shown.thread(heaviest)}"
+            since = f" Releases: {heaviest.cause.releases}." if heaviest.cause else ""
+            said = f"{shown.what(heaviest)} Shows in: {shown.where(heaviest)}.{since} Thread: {shown.thread(heaviest)}"
             yield f"**{link}**, {causes}{', first' if len(own) > 1 else ''}: {said}."
 
 

@@ -21,6 +21,7 @@ from ..worker_process import WorkerProcess
 from . import changes, parts, releases
 from .bisection import history
 from .causes.grouping import by_function, causes_of, without_their_causes
+from .causes.history import histories, named
 from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
@@ -176,6 +177,12 @@ def measure(
     bisect: Annotated[
         str | None, typer.Option(metavar="ENGINE/TREE/FUNCTION", help="First bad and first good release of this cell.")
     ] = None,
+    since: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--releases", metavar="ENGINE[/CAUSE]", help="First and last release of a cause, by its script; stored."
+        ),
+    ] = None,
 ) -> Data:
     """Hold engines against thirty digits of truth: every kind of joint, every function that they offer.
 
@@ -185,6 +192,8 @@ def measure(
     at = releases.newest() if newest else at or []
     if bisect:
         raise typer.Exit(_bisected(bisect, at, requires or (), environments))
+    if since:
+        raise typer.Exit(_dated(since, run.folder / "engines.json", requires or (), environments))
     try:
         stored, before = parts.load(part or ()), changes.load(baseline)
         pairs = [pair for text in at for pair in releases.stated(text, requires or ())]
@@ -252,6 +261,17 @@ def _bisected(cell: str, at: Sequence[str], requires: Sequence[str], environment
     except NotAskedError as error:
         typer.echo(str(error))
         return Exit.MISSED
+    return Exit.GOOD
+
+
+def _dated(names: Sequence[str], report: Path, requires: Sequence[str], environments: Path | None) -> Exit:
+    """Print which releases have causes, by the scripts of a stored report; the exit code."""
+    try:
+        chosen, data = named(names), changes.load(report)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--releases") from None
+    for line in histories(chosen, data or {}, requires, environments):
+        typer.echo(line)
     return Exit.GOOD
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import venv
 from collections.abc import Sequence
+from datetime import date, timedelta
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -35,24 +37,25 @@ def default_folder() -> Path:
     return cache_folder() / "releases"
 
 
-def kept(folder: Path, requirements: Sequence[str]) -> Path:
+def kept(folder: Path, requirements: Sequence[str], until: str = "") -> Path:
     """The Python of an environment that is kept in a folder, made where it is not there yet.
 
     Args:
         folder: Folder of environments; what is missing of it is made for this user alone.
         requirements: As pip takes them.
+        until: See `make`.
 
     Raises:
         NotAskedError: The requirements can't be installed here, with the installer's last words.
     """
     create_cache_folder(folder)
-    stated = "\n".join([*sorted(requirements), sys.version])
+    stated = "\n".join([*sorted(requirements), *filter(None, [until]), sys.version])
     name = "".join(letter if letter.isalnum() or letter in ".-" else "-" for letter in requirements[0])
     place = folder / f"{name}-{hashlib.sha256(stated.encode()).hexdigest()[:12]}"
     if not (place / _WHOLE).is_file():
         # Made beside and then renamed: of processes that make it at once, the first has it.
         with tempfile.TemporaryDirectory(dir=folder, prefix=".making-") as made:
-            make(Path(made) / "environment", list(requirements))
+            make(Path(made) / "environment", list(requirements), until)
             (Path(made) / "environment" / _WHOLE).write_text(stated, encoding="utf-8")
             if place.exists() and not (place / _WHOLE).is_file():
                 shutil.rmtree(place)
@@ -66,12 +69,13 @@ def python_of(environment: Path) -> Path:
     return environment / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
-def make(folder: Path, requirements: list[str]) -> Path:
+def make(folder: Path, requirements: list[str], until: str = "") -> Path:
     """Make a virtual environment of wheels alone, by uv or the pip of this environment where they are installed.
 
     Args:
         folder: Where; it must not exist.
         requirements: As pip takes them.
+        until: Day, as 2025-12-31, after which nothing that uv installs was published; "" for what is newest.
 
     Returns:
         Its Python.
@@ -88,7 +92,8 @@ def make(folder: Path, requirements: list[str]) -> Path:
         installer = [sys.executable, "-m", "pip", "--python", str(python), "install"]
     else:
         installer = [str(python), "-m", "pip", "install"]
-    command = [*installer, "--quiet", "--only-binary", ":all:", *requirements]
+    dated = [f"--exclude-newer={until}"] if uv and until else []
+    command = [*installer, "--quiet", "--only-binary", ":all:", *dated, *requirements]
     done = subprocess.run(command, capture_output=True, text=True, timeout=INSTALL_SECONDS)
     if done.returncode:
         rule = f"a release has wheels for Python {sys.version_info.major}.{sys.version_info.minor} and this system"
@@ -110,6 +115,21 @@ def published(package: str) -> list[str]:
         rule, remedy = "pip lists the releases of a package", "install pip into this environment, or state a release"
         raise NotAskedError(str(sf.Problem(f"releases of {package}", _last_words(done.stderr), rule, remedy)))
     return [one.strip() for one in listed.partition(":")[2].split(",")][::-1]
+
+
+def day_of(requirement: str) -> str:
+    """The day after a release was published, by the lock file that uv writes; "" where it can't be told.
+
+    Args:
+        requirement: The release, as NAME==VERSION.
+    """
+    uv = shutil.which("uv")
+    if not uv:
+        return ""
+    command = [uv, "pip", "compile", "--format=pylock.toml", "--no-deps", "--only-binary=:all:", "-"]
+    done = subprocess.run(command, input=requirement, capture_output=True, text=True, timeout=INSTALL_SECONDS)
+    days = re.findall(r"upload-time = (\d+-\d+-\d+)", done.stdout)
+    return str(date.fromisoformat(max(days)) + timedelta(days=1)) if days else ""
 
 
 def printed(python: Path, script: str) -> float:

@@ -158,12 +158,23 @@ def test_cells_in_this_process_do_not_raise_either(monkeypatch: pytest.MonkeyPat
         assert {cell.verdict for cell in found} <= {"wrong", "plug-in"} and len(found) == 2
 
 
+# How scripts of red cells end.
+ASSERTED = 'value, expected = 1.0, 2.0\nassert abs(value - expected) <= 1e-3, f"{value = }, {expected = }"'
+
+
 def test_a_script_that_does_not_end_proves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(scripts, "_TIME", 0.5)
     path = tmp_path / "endless.py"
     path.write_text("while True: pass\n")
     output, failed = scripts.fails(path)
     assert not failed and "no end in 0.5 s" in output
+
+
+def test_an_assertion_as_a_tree_is_built_proves_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "script.py"
+    for text, proven in (("assert False", False), ("assert False, 'no such link'", False), (ASSERTED, True)):
+        path.write_text(text)
+        assert scripts.fails(path)[1] is proven
 
 
 def test_a_plug_in_that_raises_fails_its_test_in_pytest(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -40,7 +40,7 @@ class Cause:
         documented: Where the engine says so itself; "" where it does not.
         thread: Public thread; "none found".
         searched: Day on which threads were searched for.
-        first: First release that has it; "" where it was not bisected.
+        first: First release that has it, with " or before" where none before it answers; "" where it was not bisected.
         last: Last release that has it; "" where none is right yet, or it was not bisected.
         correction: Name of a correction in `corrections.CORRECTIONS`, which takes the cause out of an answer.
     """
@@ -83,7 +83,8 @@ class Cause:
     def releases(self) -> str:
         """The first and last release that have it, as far as they are known."""
         if self.first:
-            return f"{self.first} to {self.last}" if self.last else f"{self.first} on; none is right yet"
+            since = f"{self.first}," if " " in self.first else self.first
+            return f"{since} to {self.last}" if self.last else f"{since} on; none is right yet"
         wrong = _entry(self.fault).get("wrong")
         return f"not bisected; {wrong} has it" if wrong else "not bisected"
 

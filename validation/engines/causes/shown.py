@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from operator import itemgetter
 from typing import Any
 
 from ...reporting.numbers import counted
@@ -62,14 +63,9 @@ def fold(group: Group, place: int, groups: Sequence[Group], proofs: Sequence[Map
         groups: All causes.
         proofs: Proofs of the report.
     """
-    places = {(cell.engine, cell.function, cell.model) for cell in group.cells}
+    places = _places(group)
     own = [proof for proof in proofs if (proof["engine"], proof["function"], proof["model"]) in places]
-    # What shows another cause, too, when this one is taken out, is no plain proof.
-    both = {(cell.engine, cell.function, cell.model) for other in groups for cell in other.hidden}
-    scripts = sorted(
-        (proof for proof in own if proof["proven"] and proof["text"]),
-        key=lambda one: ((one["engine"], one["function"], one["model"]) in both, len(one["text"])),
-    )
+    scripts = scripts_of(group, groups, proofs)
     blocks: list[Block] = [Bullets(tuple(_stated(group, groups)))]
     if scripts:
         first = scripts[0]
@@ -84,6 +80,26 @@ def fold(group: Group, place: int, groups: Sequence[Group], proofs: Sequence[Map
     number = counted(len(group.cells), "cell") + (f" and {len(group.hidden)} hidden" if group.hidden else "")
     title = f"{place}. {what(group)} Shows in: {where(group)} ({verdicts}; {number})"
     return Section(title, tuple(blocks), anchor(group))
+
+
+def _places(group: Group) -> set[tuple[str, str, str]]:
+    return {(cell.engine, cell.function, cell.model) for cell in group.cells}
+
+
+def scripts_of(group: Group, groups: Sequence[Group], proofs: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """Proofs of a cause by scripts, the shortest first; what shows another cause, too, comes last.
+
+    Args:
+        group: The cause and its cells.
+        groups: All causes.
+        proofs: Proofs of the report.
+    """
+    places = _places(group)
+    # What shows another cause, too, when this one is taken out, is no plain proof.
+    both = {(cell.engine, cell.function, cell.model) for other in groups for cell in other.hidden}
+    named_by = itemgetter("engine", "function", "model")
+    own = (one for one in proofs if named_by(one) in places and one["proven"] and one["text"])
+    return sorted(own, key=lambda one: (named_by(one) in both, len(one["text"])))
 
 
 def _stated(group: Group, groups: Sequence[Group]) -> Iterator[str]:

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -28,6 +29,8 @@ _TIME = 120.0
 _SHAPES = re.compile(r" \((?:10 )?(?:\d+|L|m|n[qv])(?: \+ m|, (?:10 )?(?:\d+|L|m|n[qv])(?: \+ m)?)*\)")
 # Time to shrink one fault: cases of loops, and digits that are lost, take long to judge.
 _PATIENCE = 60.0
+# How the assertion ends that a script ends with (`text`); others are of the text that builds the tree.
+_ASSERTED = r"^AssertionError: (value = |\()"
 # What is said in place of the output of a script where the plug-in has none (`EngineModel.script`).
 NO_SCRIPT = "no script: the plug-in states none"
 
@@ -248,21 +251,24 @@ def _exception(red: Judged) -> str:
     return red.cell.words.partition(":")[0] if red.cell.verdict == "raises" else ""
 
 
-def fails(path: Path, exception: str = "", python: str = sys.executable) -> tuple[str, bool]:
+def fails(
+    path: Path, exception: str = "", python: str = sys.executable, variables: Mapping[str, str] | None = None
+) -> tuple[str, bool]:
     """Run a script in a fresh process: what it says, and whether it fails as it must.
 
     Args:
         path: The script.
         exception: Type of the exception that it must end in; "" for its assertion or a crash.
         python: The interpreter that runs it.
+        variables: Variables of its process; None: those of this one.
     """
     try:
-        done = subprocess.run([python, str(path)], capture_output=True, text=True, timeout=_TIME)
+        done = subprocess.run([python, str(path)], capture_output=True, text=True, timeout=_TIME, env=variables)
     except subprocess.TimeoutExpired:
         return f"no end in {_TIME:g} s, which proves nothing", False
     said = done.stdout + done.stderr.replace(str(path.absolute()), path.name).replace(str(path), path.name)
     said = re.sub(r"\S*/site-packages/", "", said)  # Warnings of engines name where they are installed here.
     said = said.replace(str(Path.home()), "~")  # Banners of engines name their caches.
-    ending = re.compile(rf"^(\w+\.)*{exception or 'AssertionError'}\b", re.MULTILINE)
+    ending = re.compile(rf"^(\w+\.)*{exception}\b" if exception else _ASSERTED, re.MULTILINE)
     failed = done.returncode != 0 and (done.returncode < 0 or ending.search(done.stderr) is not None)
     return f"{said.strip()}\nexit code {done.returncode}", failed
