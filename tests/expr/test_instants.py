@@ -42,6 +42,17 @@ def test_narrow_pulses_are_bracketed(model: sf.Model, formula: str, width: float
     assert 0.4 * width < gaps.min() <= width and found[0] < 4.2 - 7 * width and found[-1] > 4.2 + 7 * width
 
 
+@pytest.mark.parametrize("width", [1e-1, 1e-3])
+@pytest.mark.parametrize(
+    "formula", ["exp(-({0} + 0.3*{0}^2)^2)", "exp(-({0} + exp({0})/8)^2)", "1/(1 + ({0} + {0}^4)^2)"]
+)
+def test_instants_of_a_formula_that_runs_backwards_are_mirrored(model: sf.Model, formula: str, width: float) -> None:
+    """Narrow parts that are steeper on one side."""
+    forth, back = (instants(model, formula.format(f"({sign}*(t - 5)/{width})")) for sign in ("1", "-1"))
+    assert len(forth) >= 8
+    np.testing.assert_allclose(np.sort(10.0 - back), forth, rtol=0, atol=1e-6 * width)
+
+
 def test_every_kink_of_a_wave_is_found(model: sf.Model) -> None:
     found = instants(model, "abs(sin(20*t))")
     zeros = np.arange(1, 64) * np.pi / 20

@@ -28,7 +28,7 @@ from symofros.simulation.analysis.states import given_configuration, given_input
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
 _BLAMED = 0.05
-# Speeds at which friction is looked at [rad/s or m/s]; joints shown that would creep.
+# Changes of speed over which friction is looked at [rad/s or m/s]; joints shown that would creep.
 _FRICTION_SPEEDS = np.concatenate([[0.0], np.geomspace(1e-9, 1e3, 193)])
 _SHOWN = 6
 
@@ -159,7 +159,8 @@ def _creeping(balance: Balance, end: Search, tolerance: float) -> list[tuple[str
         if not np.isfinite(load) or load <= tolerance * end.scale or len(creeping) == _SHOWN:
             continue
         state = (end.q, balance.v, np.asarray(balance.u))
-        curve = friction_curve(model, i, balance.v[i] + _FRICTION_SPEEDS, state, balance.par, balance.t)
+        driven = balance.v[i] - np.sign(end.R[i]) * _FRICTION_SPEEDS  # As the imbalance accelerates it.
+        curve = friction_curve(model, i, driven, state, balance.par, balance.t)
         if curve is not None and load < curve.reached:
             creeping.append((model.names.v[i], load, curve.reached))
     return creeping

@@ -20,7 +20,7 @@ class FrictionCurve(NamedTuple):
     """Forces against the motion of one speed.
 
     Attributes:
-        carried: Force at each speed looked at, less that at rest (n) [N m or N].
+        carried: Force at each speed looked at, less that at the first (n) [N m or N].
         flat: Index of the first speed from which on the force hardly grows.
         reached: Largest force about there [N m or N].
     """
@@ -38,7 +38,7 @@ def friction_curve(
     Args:
         model: The model.
         i: Index of the speed.
-        speeds: What it changes to (n), from zero on; those that follow grow by a ratio [rad/s or m/s].
+        speeds: What it changes to (n), from the present one on, whose distances from it grow by a ratio [rad/s or m/s].
         state: q (nq), v (nv), u (nu); entry i of v does not count.
         par: Run-time parameters.
         t: Time [s].
@@ -56,5 +56,6 @@ def friction_curve(
     if not len(found):
         return None
     flat = int(found[0])
-    near = np.abs(speeds) <= _PEAK * abs(speeds[flat])
+    change = np.abs(speeds - speeds[0])
+    near = change <= _PEAK * change[flat]
     return FrictionCurve(carried, flat, float(carried[near].max()))

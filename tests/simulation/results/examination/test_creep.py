@@ -78,6 +78,23 @@ def test_failed_equilibria_with_friction_are_explained(load: float, v0: float) -
     assert sf.equilibrium(m, u=[load], held=["x"]).efforts == pytest.approx({"x": -load})
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+@pytest.mark.parametrize(("load", "begun"), [(0.9, 0.3), (0.9, -0.3), (-0.9, 0.3), (0.4, 0.0)])
+def test_friction_about_a_motion_is_what_a_change_of_speed_adds(side: float, load: float, begun: float) -> None:
+    """From the speed of the motion on, the way the imbalance accelerates it; the same for the mirrored motion."""
+    v0, m = 1e-3, block().with_parameters(v0=1e-3)
+    at, away = side * begun * v0, side * load
+
+    def friction(speed: float) -> float:
+        return float(m.dynamics([0.0], [speed], [0.0])[2][0])
+
+    imbalance = friction(at) + away
+    with pytest.raises(sf.EquilibriumError) as refused:
+        sf.equilibrium(m, v=[at], u=[away])
+    most = 1.2 + np.sign(imbalance) * friction(at)  # The peak against it, less what there is.
+    assert f"friction of 'x' carries {abs(imbalance):.3g} in motion only, up to {most:.3g}" in str(refused.value)
+
+
 def test_imbalance_beyond_static_friction_is_not_attributed_to_friction() -> None:
     """Beyond static friction, and with a place of rest."""
     with pytest.raises(sf.EquilibriumError) as refused:

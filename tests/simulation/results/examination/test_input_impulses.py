@@ -85,6 +85,16 @@ def test_missed_impulses_of_small_effect_are_not_noted() -> None:
     assert not noted(by_state.outcome)
 
 
+@pytest.mark.parametrize("start", [-3.0, -1.0, 0.5, 1.0, 3.0])
+def test_a_formula_of_the_speed_is_no_formula_of_time_at_any_start(start: float) -> None:
+    """Nor one of the coordinate: what a step makes of it is no matter of its impulse."""
+    cart = sf.compile(CART)
+    for state in ("dx", "x"):
+        law = f"{state}*({push('formula', 3.0013, 0.003)})/{start}"
+        run = sf.simulate(cart, [start - 3.0 * start], [start], 4.0, u={"x": law}, method="rk4", dt=STEP)
+        assert not noted(run.outcome), (state, run.outcome)
+
+
 @pytest.mark.parametrize(("begin", "said"), [(0.5013, True), (15.0013, False)])
 def test_an_effect_is_judged_where_the_impulse_is_missed(begin: float, said: bool) -> None:
     """A push that acts less the farther the cart has come: e^-x of it."""
