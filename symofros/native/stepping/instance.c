@@ -283,7 +283,8 @@ static void sym_instance_load_state(sym_instance *instance) {
 }
 
 /* Times the plant's step that instants are sought ahead at least, since a search over each short span of its own would cost
- * more than its steps; in the second half, a narrow part may begin before the middle that tells of it. */
+ * more than its steps; in the second half, a narrow part may begin before the middle that tells of it, and half as long
+ * before, one may end behind its middle. */
 #define SYM_AHEAD 1024.0
 /* Share of a span that is no span of its own. */
 #define SYM_AHEAD_REST 1e-6
@@ -300,12 +301,12 @@ static double sym_instance_span(const sym_instance *instance, double t, double t
 
 /* Find the instants of the model's formulas from t on, to t_end if memory holds them. Returns up to when they are known. */
 static double sym_instance_find_stops(sym_instance *instance, double t, double t_end) {
-    double span = sym_instance_span(instance, t, t_end), known = t + 0.5 * span;
+    double span = sym_instance_span(instance, t, t_end), known = t_end;
     int32_t n = -1, halvings;
     if (instance->operands.function == NULL || (t >= instance->stops_begin && t_end <= instance->stops_end)) return t_end;
     sym_evaluate(&instance->operands); /* their kinds */
     for (halvings = 0; halvings <= SYM_AHEAD_HALVINGS && n < 0; ++halvings, span *= 0.5) {
-        n = sym_find_instants(&instance->instants, t, t + span, instance->stops);
+        n = sym_find_instants(&instance->instants, t - 0.5 * span, t + span, instance->stops);
         known = t + 0.5 * span;
         if ((halvings == 0 || t_end - known < SYM_AHEAD_REST * span) && known < t_end) known = t_end;
     }

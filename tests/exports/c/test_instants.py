@@ -20,22 +20,23 @@ CALLS = (END, 0.1, 0.0130723)
 MAIN = Path(__file__).with_name("instants.c").read_text()
 
 
-Speeds = Callable[[str, str, float, list[tuple[float, float]]], list[float]]
+Speeds = Callable[..., list[float]]
 
 
 @pytest.fixture(scope="module")
 def speeds(tmp_path_factory: pytest.TempPathFactory) -> Speeds:
     """Last speeds of a package of a force and a method, by length of a call and pulses; each package is built once."""
-    built: dict[tuple[str, str], Path] = {}
+    built: dict[tuple[str, str, float], Path] = {}
 
-    def last(force: str, method: str, span: float, pulses: list[tuple[float, float]]) -> list[float]:
-        if (force, method) not in built:
+    def last(force: str, method: str, span: float, pulses: list[tuple[float, float]], dt: float = 0.01) -> list[float]:
+        key = force, method, dt
+        if key not in built:
             folder = tmp_path_factory.mktemp("cart") / "c"
-            sf.export(cart(force), "c", folder, method=method, dt=0.01, functions=["dynamics"])
+            sf.export(cart(force), "c", folder, method=method, dt=dt, functions=["dynamics"])
             (folder / "main.c").write_text(MAIN)
-            built[force, method] = build(folder, "../cart", *sources(folder))
+            built[key] = build(folder, "../cart", *sources(folder))
         words = [repr(number) for pulse in pulses for number in pulse]
-        lines = run(built[force, method], repr(span), *words, cwd=built[force, method].parent).splitlines()
+        lines = run(built[key], repr(span), *words, cwd=built[key].parent).splitlines()
         assert all(line.split()[0] == "1" for line in lines)
         return [float(line.split()[1]) for line in lines]
 
@@ -51,6 +52,14 @@ def test_a_pulse_gives_its_impulse_in_calls_of_any_length(speeds: Speeds, shape:
     for span in CALLS:
         for pulse, speed in zip(pulses, speeds(force, method, span, pulses), strict=True):
             assert speed == pytest.approx(impulse, rel=BOUND[method]), (span, pulse)
+
+
+def test_a_pulse_at_the_end_of_a_search_gives_its_impulse_in_calls_of_a_step(speeds: Speeds) -> None:
+    """Instants are sought 1024 steps ahead: one whose middle lies just behind has begun before."""
+    force, impulse = SHAPES["bell"]
+    dt, width = 1e-3, 1e-4
+    pulses = [(512 * k * dt + side * width, width) for k in range(2, 6) for side in (-0.5, 0.3, 1.5)]
+    np.testing.assert_allclose(speeds(force, "rk4", dt, pulses, dt), impulse, rtol=BOUND["rk4"])
 
 
 def test_more_instants_than_memory_holds_shorten_the_search(speeds: Speeds) -> None:

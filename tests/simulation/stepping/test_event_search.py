@@ -16,12 +16,12 @@ Function = Callable[[float], float]
 def searched(functions: list[Function], h: float) -> tuple[list[float], int]:
     """Zeros over steps, in steps, and how often the functions, one a step over [0, 1], were evaluated."""
     native, memory, known = native_library(), NativeMemory(), constants()
-    values, evaluated, step = np.zeros((known["SYM_EVENT_ROWS"], 1)), 0, functions[0]
+    values, evaluated, k = np.zeros((known["SYM_EVENT_ROWS"], 1)), 0, 0
 
     def evaluate(_: Any, x: float, value: Any) -> int:
         nonlocal evaluated
         evaluated += 1
-        value[0] = step(x)
+        value[0] = functions[k](x)
         return 0
 
     search = memory.own("sym_event_search[]", 1)
@@ -29,7 +29,7 @@ def searched(functions: list[Function], h: float) -> tuple[list[float], int]:
     search[0].evaluate = memory.callback("int32_t(void *, double, double *)", evaluate)
     values[0], values[known["SYM_EVENT_EARLIER"]] = functions[0](0.0), np.nan
     which, x, found = memory.own("int32_t[]", 1), memory.own("double[]", 1), list[float]()
-    for k, step in enumerate(functions):
+    for k in range(len(functions)):
         native.sym_event_search_set_step(search, h, 0.01, k + 1)
         assert native.sym_event_search_begin(search) == 0
         while native.sym_event_search_next(search, which, x) == 0 and which[0] >= 0:
