@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ FUNCTIONS = ("constraint", "constraint_rate", "constraint_jacobian", "constraint
 A, B = ("one", "e"), ("two", "e")
 
 
-def tree(*constraints: sf.Constraint, beam: bool = False) -> sf.System:
+def tree(*constraints: sf.Constraint, beam: bool = False, **more: Any) -> sf.System:
     """A floating body with an arm, a second arm on the ground, each with a turned frame at its end."""
     turned = (sf.Frame("e", (0.4, 0.1, -0.2), sf.Rotation.rpy(0.3, -0.5, 0.7)),)
     bodies: list[sf.Body] = [
@@ -27,7 +28,13 @@ def tree(*constraints: sf.Constraint, beam: bool = False) -> sf.System:
         root = sf.Joint("hub", "revolute", axis=(0, 0, 1))
         section = {"EI_z": 4.0, "EI_y": 3.0, "GJ": 2.0, "rhoJ": 0.01}
         bodies.append(sf.Beam("rod", root, 1.2, 0.8, **section, bend_y=2, bend_z=1, twist=1))
-    return sf.System("s", tuple(bodies), constraints=constraints)
+    return sf.System("s", tuple(bodies), constraints=constraints, **more)
+
+
+def switched(*constraints: sf.Constraint, pose: Literal["stated", "moment"] = "stated") -> sf.System:
+    """All of them engaged by a parameter."""
+    switches = tuple(sf.Switch(constraint.name, "engaged", pose) for constraint in constraints)
+    return tree(*constraints, parameters=(sf.Parameter("engaged", 1.0),), switches=switches)
 
 
 ROTATIONS = ("x", "y", "z", "xy", "xz", "yz", "xyz")
@@ -43,6 +50,10 @@ CASES: dict[str, sf.System] = {
     "coupling": tree(sf.Coupling("k", "s*sin(c.length) + float.qx*cos(c.angle) - 0.2*float.px^2")),
     "formula": tree(sf.Nonholonomic("k", {"ds": "sin(c.angle)*s", "dc.length": "1 + c.length^2"}, "cos(s)")),
     "two at once": tree(sf.Closure("k", A, B), sf.Rod("l", ("base", None), B, 1.0)),
+    "switched closure": switched(sf.Closure("k", A, B, ("x", "y", "z"), ("x", "y", "z"))),
+    "switched rod and coupling, as they are": switched(
+        sf.Rod("k", A, B, 0.7), sf.Coupling("l", "s*sin(c.length)"), pose="moment"
+    ),
     "a beam's tip": tree(sf.Closure("k", ("rod", "tip"), B, ("x", "y", "z"), ("x", "y", "z")), beam=True),
 }
 
@@ -164,3 +175,21 @@ class TestMultipliers:
 
 
 _SOLVED = (*FUNCTIONS, "forward_dynamics", "mass_matrix", "bias", "generalized_force")
+
+
+@pytest.mark.parametrize("engaged", [0.0, 1.0])
+def test_rows_of_a_switched_constraint_are_shares_of_its_own(engaged: float) -> None:
+    """None of it where it is released, all of it where it holds; conditions that are not switched stay whole."""
+    closure, other = sf.Closure("k", A, B), sf.Rod("l", ("base", None), B, 1.0)
+    switch = (sf.Switch("k", "engaged"),)
+    rows = []
+    for switches in ((), switch):
+        system = tree(closure, other, parameters=(sf.Parameter("engaged", engaged),), switches=switches)
+        m = sf.compile(system, sf.Options(functions=FUNCTIONS, backend="interpreter"))
+        rng = np.random.default_rng(5)
+        q = m.normalized(rng.uniform(-1.0, 1.0, m.nq))
+        v = rng.uniform(-1.0, 1.0, m.nv)
+        rows.append([m.evaluate(name, q=q, v=v)[0] for name in FUNCTIONS])
+    share = np.where(np.arange(rows[0][0].shape[0]) < len(closure.conditions), engaged, 1.0)
+    for whole, part in zip(*rows, strict=True):
+        np.testing.assert_allclose(part, (whole.T * share).T, rtol=0, atol=1e-14)
