@@ -8,6 +8,7 @@ from symofros.blocks.controllers.computed_torque import ComputedTorque as Comput
 from symofros.blocks.controllers.joint import JointPD as JointPD
 from symofros.blocks.controllers.joint import JointPID as JointPID
 from symofros.blocks.controllers.lqr import LQR as LQR
+from symofros.blocks.controllers.observer import MomentumObserver as MomentumObserver
 from symofros.blocks.dynamics import ForwardDynamics as ForwardDynamics
 from symofros.blocks.dynamics import InverseDynamics as InverseDynamics
 from symofros.blocks.fmu.functional_mockup_unit import FMU as FMU

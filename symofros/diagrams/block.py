@@ -96,6 +96,10 @@ class Environment(Protocol):
         """A model linearised about its first state and inputs u (nu), on its constraints."""
         ...
 
+    def momentum(self, name: str) -> Array:
+        """The momentum M v (nv) of a model at its first state."""
+        ...
+
     def system(self, name: str) -> System:
         """The description of a model."""
         ...

@@ -44,6 +44,10 @@ class Surroundings:
         """A model linearised about its first state and inputs u (nu)."""
         return self._models.linear(name, u)
 
+    def momentum(self, name: str) -> Array:
+        """The momentum M v (nv) of a model at its first state."""
+        return self._models.momentum(name)
+
     def system(self, name: str) -> System:
         """The description of a model."""
         return self._models.system(name)

@@ -163,6 +163,12 @@ class Models:
         start = closed_start(model, q, v, *stated, u=u, par=par)
         return state_space(model, start.q, start.v, u, par=par)
 
+    def momentum(self, name: str) -> Array:
+        """The momentum M v (nv) of a model at its first state."""
+        model = compile_system(self.system(name), Options(("mass_matrix",), backend="interpreter"))
+        q, v = self.start(name)
+        return np.asarray(model.mass_matrix(q, par=self.parameters(name)) @ v)
+
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
         if name not in known:
             raise DescriptionError(
