@@ -27,6 +27,7 @@ def check(
     seed: int = 0,
     engines: Sequence[str] | None = None,
     floating_base: bool = False,
+    full: bool = False,
 ) -> CheckResult:
     """Compare the generated code of one model with every engine that can represent it.
 
@@ -37,6 +38,7 @@ def check(
         seed: Seed of the states.
         engines: Names of the engines to compare with, of plug-ins too; None: all that take part unasked.
         floating_base: Whether what stands on the ground goes onto a free joint; not of native files.
+        full: Also ask what takes long on large models: every relation, and derivatives, whatever the number of speeds.
 
     Returns:
         What was compared. It is true if an independent engine was asked and everything agrees; printed, it is a table.
@@ -48,6 +50,6 @@ def check(
     """
     # The engines take seconds to load: not before they are asked.
     result: CheckResult = import_module(".cross_check.result", __name__).check_model(
-        model, states=states, seed=seed, engines=engines, floating_base=floating_base
+        model, states=states, seed=seed, engines=engines, floating_base=floating_base, full=full
     )
     return result

@@ -55,7 +55,13 @@ class CheckResult:
 
 
 def check_model(
-    model: sf.System | str | Path, *, states: int, seed: int, engines: Sequence[str] | None, floating_base: bool
+    model: sf.System | str | Path,
+    *,
+    states: int,
+    seed: int,
+    engines: Sequence[str] | None,
+    floating_base: bool,
+    full: bool = False,
 ) -> CheckResult:
     """The check of one model; arguments are those of `check` of this package."""
     if states < 1:
@@ -67,7 +73,7 @@ def check_model(
     except LookupError as error:
         said, _, known = str(error.args[0]).partition("; there are ")
         raise sf.UnknownNameError(sf.Problem(f"check: {said}", said, known, "name one of these")) from None
-    settings = Settings(states, seed, None if engines is None else tuple(engines))
+    settings = Settings(states, seed, None if engines is None else tuple(engines), full=full)
     return CheckResult(settings, check(_subject(model, floating_base), settings))
 
 

@@ -17,6 +17,7 @@ SAME, ROUNDING = 0.5, 1e-11
 STEP, STEPS = 0.01, 12
 # Motions stepped together: whole vectors of any width, and some behind them.
 MOTIONS = 11
+TURNS = 90
 # Newton's method of an implicit step stops at some 1e-10 of its length.
 REVERSED = 1e-7
 
@@ -35,13 +36,15 @@ def stepped(scene: Scene) -> Iterator[Cell]:
     for method in ("euler", "rk4"):
         stepper = sf.Stepper(model, method=method, dt=STEP)
         several = sf.Steppers(model, MOTIONS, method=method, dt=STEP)
-        differing, error = 0, 0.0
+        differing, error, told = 0, 0.0, 0.0
         for k in (2, 5):  # The second time after another motion.
             stepper.reset(scene.q, v[k])
             for row in u[k]:
                 stepper.step(row)
             wanted = run(k, method)
             differing += int(np.sum(stepper.q != wanted.q[-1]) + np.sum(stepper.v != wanted.v[-1]))
+            made = stepper.trajectory()
+            told = max(told, off(made.t, wanted.t), off(made.q, wanted.q), off(made.u[:-1], wanted.u[:-1]))
         several.reset(scene.q, v)
         for i in range(0, STEPS, 3):
             several.step(u[:, i], 1)
@@ -51,6 +54,7 @@ def stepped(scene: Scene) -> Iterator[Cell]:
             wanted = run(k, method)
             error = max(error, off(several.q[k], wanted.q[-1]), off(several.v[k], wanted.v[-1]))
         yield Cell(f"steps by hand, {method}", float(differing), SAME, "entries of other bits")
+        yield Cell(f"trajectory of steps by hand, {method}", told, ROUNDING)
         yield Cell(f"steps of {MOTIONS} motions by hand, {method}", error, ROUNDING)
     adaptive = sf.Stepper(model, method="dopri5", dt=0.05, rtol=1e-10, atol=1e-12)
     adaptive.reset(scene.q, scene.v)
@@ -131,13 +135,34 @@ def reversed_motion(scene: Scene) -> Iterator[Cell]:
 def along(scene: Scene) -> Iterator[Cell]:
     """Integration along the manifold of q by matrix exponentials, and the way back; of several states at once, too."""
     model, rng = scene.model, np.random.default_rng(11)
-    steps = rng.uniform(-0.9, 0.9, (MOTIONS, model.nv)) * np.logspace(-6, 0, MOTIONS)[:, None]
+    sizes = np.logspace(-6, 0, TURNS)  # Series hold below, closed forms above.
+    steps = rng.uniform(-0.9, 0.9, (TURNS, model.nv)) * sizes[:, None]
     wanted = np.array([scene.manifold.retract(scene.q, step, twist=True) for step in steps])
     found = np.asarray(model.integrate(scene.q, steps))
-    yield Cell("integrate", off(scene.manifold.same_sign(found, wanted), wanted), ROUNDING)
+    moved = np.abs(scene.manifold.same_sign(found, wanted) - wanted).max(axis=1)
+    yield Cell("integrate", float((moved / np.maximum(sizes, 1e-3)).max()), ROUNDING)
     back = np.asarray(model.difference(scene.q, wanted))
     yield Cell("difference", max(off(one, step) for one, step in zip(back, steps, strict=True)), 1e-8)
     yield Cell("difference, of the largest", off(back, steps), ROUNDING)
+
+
+def sampled_finely(scene: Scene) -> Iterator[Cell]:
+    """Lines through many samples of a smooth input are that input: no step ends at each; corners are seen."""
+    model, name, n = scene.model, scene.model.names.u[0], 4001
+    t = np.linspace(0.0, 0.5, n)
+    given: dict[str, Any] = {"method": "dopri5", "rtol": 1e-8, "atol": 1e-9}
+    exact = sf.simulate(model, scene.q, scene.v, 0.5, u={name: "2*sin(9*t)"}, **given)
+    run = sf.simulate(model, scene.q, scene.v, 0.5, u={name: sf.Signal(t, 2 * np.sin(9 * t))}, **given)
+    error = max(off(run.q[-1], exact.q[-1]), off(run.v[-1], exact.v[-1]))
+    yield Cell("an input sampled finely", error, 1e-5)
+    most = 8.0 * exact.statistics.steps
+    yield Cell("its steps", float(run.statistics.steps > most), SAME, f"{run.statistics.steps} steps, at most {most:g}")
+    jagged = np.interp(t, [0.0, 0.11, 0.1100625, 0.3, 0.5], [0.0, 0.0, 40.0, 40.0, -40.0])
+    runs = [
+        sf.simulate(model, scene.q, scene.v, 0.5, u={name: sf.Signal(t, jagged)}, max_step=most_step, **given)
+        for most_step in (np.inf, 1.25e-4)
+    ]
+    yield Cell("an input with corners", max(off(runs[0].q[-1], runs[1].q[-1]), off(runs[0].v[-1], runs[1].v[-1])), 1e-6)
 
 
 def acted(scene: Scene) -> Iterator[Cell]:

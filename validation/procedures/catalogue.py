@@ -21,13 +21,20 @@ from . import (
     beams,
     by_hand,
     diagrams,
+    differences,
+    exchanged,
     exported,
     files,
     forces,
     identities,
+    library,
+    machines,
+    notes,
     reactions,
     runs,
+    switching,
     touching,
+    zeros,
 )
 from .scene import Cell, Manifold, Scene
 
@@ -75,6 +82,38 @@ def _oscillations(_: Scene) -> Iterator[Cell]:
 
 
 _MOVED: tuple[Procedure, ...] = (runs.fixed_steps, runs.chosen_steps, analyses.linearised, analyses.differentiated)
+_TAKEN_OTHERWISE: tuple[Procedure, ...] = (
+    machines.taped,
+    machines.laid_out,
+    machines.parameterised,
+    machines.resumed,
+    machines.rolled_out,
+)
+# What needs no reference model: small ones of their own.
+_OF_THEIR_OWN: tuple[Procedure, ...] = (
+    forces.formulas,
+    forces.applied,
+    forces.each_coordinate,
+    forces.rods,
+    beams.in_a_plane,
+    touching.contacts,
+    files.read,
+    differences.told,
+    switching.engaged,
+    switching.grasped,
+    switching.struck,
+    switching.stuck,
+    zeros.of_time,
+    zeros.of_motions,
+    notes.on_steps,
+    notes.on_inputs,
+    notes.on_motions,
+    library.timed,
+    exchanged.by_mujoco,
+    exchanged.by_pinocchio,
+    exchanged.noted,
+    exported.planned,
+)
 _DIFFERENTIATED: tuple[Procedure, ...] = (identities.transposed, identities.twice_differentiated, identities.momenta)
 PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "double_pendulum": (
@@ -90,6 +129,9 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         by_hand.instants,
         by_hand.reversed_motion,
         by_hand.acted,
+        by_hand.sampled_finely,
+        lambda scene: library.computed(scene.system),
+        lambda scene: library.fed(scene.system),
         by_hand.told,
         exported.in_casadi,
         batches.trajectories,
@@ -99,6 +141,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         analyses.differentiated,
         analyses.identified,
         *_DIFFERENTIATED,
+        *_TAKEN_OTHERWISE,
         lambda scene: analyses.at_rest(scene, scene.q),
         lambda scene: analyses.at_rest(scene, scene.q, ("q2",)),
         lambda scene: analyses.driven(scene, ("q1", "q2")),
@@ -106,6 +149,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "heavy_top": (
         *_MOVED,
         *_DIFFERENTIATED,
+        *_TAKEN_OTHERWISE,
         runs.small_turns,
         runs.implicit_steps,
         by_hand.reversed_motion,
@@ -114,7 +158,13 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         exported.in_casadi,
         batches.trajectories,
     ),
-    "torque_free_body": (*_MOVED, identities.twice_differentiated, identities.momenta, runs.implicit_steps),
+    "torque_free_body": (
+        *_MOVED,
+        *_TAKEN_OTHERWISE,
+        identities.twice_differentiated,
+        identities.momenta,
+        runs.implicit_steps,
+    ),
     "four_bar": (
         *_MOVED,
         identities.transposed,
@@ -130,6 +180,9 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         identities.weighted_curvature,
         by_hand.stepped,
         by_hand.balanced,
+        library.begun,
+        machines.taped,
+        machines.resumed,
         exported.packages,
     ),
     "space_arm": (identities.momenta, by_hand.drifting, by_hand.along),
@@ -148,15 +201,11 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     ),
     "stanford_arm": (lambda scene: analyses.reached(scene, scene.model.names.frames[-1]),),
     "pendulum": (
-        forces.formulas,
-        forces.applied,
-        forces.rods,
+        *_OF_THEIR_OWN,
         reactions.of_drives,
-        touching.contacts,
         _oscillations,
         lambda _: diagrams.switched(),
         lambda _: diagrams.sampled(),
-        files.read,
     ),
     "cart_pole": (
         lambda scene: diagrams.looped(scene.system),

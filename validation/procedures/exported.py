@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import subprocess
 import tempfile
 from collections.abc import Callable, Iterator
@@ -42,6 +43,7 @@ def packages(scene: Scene) -> Iterator[Cell]:
     for target in targets:
         with tempfile.TemporaryDirectory() as folder:
             unit = sf.export(scene.system, target, folder, start=start, method="rk4", dt=STEP).files[0]
+            yield Cell(f"{target}, derivatives", _misdirected(unit, target, Path(folder, "unit")), 1e-6)
             for kind, tolerance in (("CoSimulation", SAME), ("ModelExchange", CHOSEN)):
                 yield Cell(f"{target}, {kind}", off(_by_fmpy(str(unit), kind, model), wanted), tolerance)
 
@@ -62,6 +64,78 @@ def printed(folder: Path, *arguments: str) -> str:
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
     done = subprocess.run(["./program", *arguments], cwd=folder, check=True, capture_output=True, text=True)
     return done.stdout
+
+
+def _misdirected(unit: Path, target: str, folder: Path) -> float:
+    """Largest error of directional derivatives of a unit's rates and outputs, against differences of its answers."""
+    fmpy, version = import_module("fmpy"), int(target[-1])
+    fmpy.extract(str(unit), str(folder))
+    description = fmpy.read_model_description(str(unit))
+    kind = getattr(import_module(f"fmpy.fmi{version}"), f"FMU{version}Model")
+    it = kind(
+        guid=description.guid,
+        unzipDirectory=str(folder),
+        instanceName="unit",
+        modelIdentifier=description.modelExchange.modelIdentifier,
+    )
+    it.instantiate()
+    if version == 2:
+        it.setupExperiment(startTime=0.0)
+    it.enterInitializationMode()
+    it.exitInitializationMode()
+    it.newDiscreteStates() if version == 2 else it.updateDiscreteStates()
+    it.enterContinuousTimeMode()
+    places = {one.name: one.valueReference for one in description.modelVariables}
+    read, write = (it.getReal, it.setReal) if version == 2 else (it.getFloat64, it.setFloat64)
+    known = [[places[name] for name in places if name.startswith(group)] for group in (("q.", "v."), "u.")]
+    unknown = [places[name] for name in places if name.startswith(("der(", "p."))]
+    rng = np.random.default_rng(22)
+    x, u = (np.array(read(some)) if some else np.zeros(0) for some in known)
+    x = x + 0.1 * rng.standard_normal(len(x))
+    dx, du = rng.standard_normal(len(x)), rng.standard_normal(len(u))
+
+    def answers(h: float) -> Array:
+        moved = x + h * dx
+        it.setContinuousStates((ctypes.c_double * len(x))(*moved), len(x))
+        for place, value in zip(known[1], u + h * du, strict=True):
+            write([place], [value])
+        return np.array(read(unknown))
+
+    h = 1e-6
+    wanted = (answers(h) - answers(-h)) / (2 * h)
+    answers(0.0)
+    found = np.array(it.getDirectionalDerivative(unknown, known[0] + known[1], [*dx, *du]))
+    it.terminate()
+    it.freeInstance()
+    return off(found, wanted)
+
+
+def planned(_: Scene) -> Iterator[Cell]:
+    """A plan of events with actions in a package of C and in units: the same as in a run."""
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(sf.formula("m")))
+    system = sf.System("bouncing", (ball,), (sf.Parameter("m", 2.0),), gravity=(0, 0, -10))
+    events = {
+        "floor": sf.Event("z", "falling", action={"dz": "-0.5*dz", "m": "m/2"}),
+        "top": sf.Event("dz", "falling", once=True, action={"dz": 0.5}),
+    }
+    start = {"z": 0.8}
+    model = sf.compile(system, sf.Options(backend="tape"))
+    run = sf.simulate(model, [0.8], t_end=0.9, events=events, dt=STEP, method="rk4")
+    wanted = np.r_[run.q[-1], run.v[-1]]
+    with tempfile.TemporaryDirectory() as folder:
+        sf.export(system, "c", folder, start=start, method="rk4", dt=STEP, events=events)
+        said = printed(Path(folder), "0.9", str(STEP), "--fast")
+        lines = {words[0]: words[1:] for line in said.splitlines() if (words := line.split())}
+        found = np.array([float(lines[key][0]) for key in ("q", "v")])
+        yield Cell("events in a package of C", off(found, wanted), 1e-8)
+    if util.find_spec("fmpy") is None:
+        yield Cell("events in FMUs", 0.0, SAME, absent="FMPy runs FMUs; pip install fmpy")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        unit = sf.export(system, "fmu3", folder, start=start, method="rk4", dt=STEP, events=events).files[0]
+        simulate = import_module("fmpy").simulate_fmu
+        done = simulate(str(unit), fmi_type="CoSimulation", stop_time=0.9, output_interval=0.01)
+        yield Cell("events in an FMU", off(np.array([done["q.z"][-1], done["v.z"][-1]]), wanted), 1e-8)
 
 
 def _by_fmpy(unit: str, kind: str, model: sf.Model) -> Array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -160,6 +161,31 @@ def applied(_: Scene) -> Iterator[Cell]:
         off(np.hstack([by_q, by_v]), derivative(inverse, np.concatenate([still, still]))),
         DIFFERENCED,
     )
+
+
+def each_coordinate(_: Scene) -> Iterator[Cell]:
+    """Springs, dampers, friction and stops on every coordinate of joints that have several."""
+    kinds = {"universal": 2, "cylindrical": 2, "planar": 3}
+    bodies, wanted = [], []
+    rng = np.random.default_rng(23)
+    for kind, count in kinds.items():
+        numbers = rng.uniform(0.5, 3.0, (count, 6))
+        elements: list[Any] = []
+        for k, (stiffness, damping, force, rest, soft, wall) in enumerate(numbers):
+            elements += [
+                sf.Spring(stiffness, rest=rest, coordinate=k),
+                sf.Damper(damping, coordinate=k),
+                sf.Friction(force, viscous=soft, minimum_velocity=1e-3, coordinate=k),
+                sf.Stop(wall, upper=-4.0, coordinate=k),
+            ]
+        joint = sf.Joint(kind[0], kind, elements=tuple(elements))  # type: ignore[arg-type]
+        bodies.append(sf.RigidBody(kind, joint, sf.Inertia(1.0, moments=(0.1, 0.1, 0.1))))
+        wanted.append(numbers)
+    model = sf.compile(sf.System("several", tuple(bodies)), sf.Options(backend="interpreter"))
+    q, v = rng.uniform(-1.0, 1.0, (2, model.nv))
+    stiffness, damping, force, rest, soft, wall = np.concatenate(wanted).T
+    efforts = -stiffness * (q - rest) - (damping + soft) * v - force * np.sign(v) - wall * (q + 4.0)
+    yield Cell("forces on every coordinate", off(model.generalized_force(q, v, []), efforts), ROUNDING)
 
 
 def rods(_: Scene) -> Iterator[Cell]:

@@ -48,7 +48,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
         )
     if thin:
         notes.append(f"moments of inertia near zero raised to {_LEAST:g}: " + ", ".join(thin))
-    bodies = gathered(_parents_first(links[1:], links[0].name), _attached(system))
+    bodies = gathered(links[1:], _attached(system))
     for body in bodies:
         assert body.link.parent is not None
         elements[body.link.name] = _body(elements[body.link.parent], body, numbers)
@@ -66,16 +66,6 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     called = identifier(name or system.name)
     text = Tree.tostring(root, encoding="unicode") + "\n"
     return write_folder(folder, "mjcf", called, {f"{called}.xml": text}, generator, tuple(notes))
-
-
-def _parents_first(links: list[RigidLink], root: str) -> list[RigidLink]:
-    placed, waiting, ordered = {root}, list(links), []
-    while waiting:
-        ready = [link for link in waiting if link.parent in placed]
-        placed |= {link.name for link in ready}
-        ordered += ready
-        waiting = [link for link in waiting if link.name not in placed]
-    return ordered
 
 
 def _attached(system: System) -> set[str]:

@@ -109,7 +109,24 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"] | None) -> tuple[l
     for body in system.bodies:
         parent = None if body.joint is None else root if body.joint.parent in base else body.joint.parent
         rigid.append(_link(body, parent, system, numbers, names))
-    return rigid, list(_lost(system))
+    return _parents_first(rigid), list(_lost(system))
+
+
+def _parents_first(links: list[RigidLink]) -> list[RigidLink]:
+    """Links in an order in which none comes before its parent: their own, where that is one."""
+    ordered: list[RigidLink] = []
+    waiting: dict[str | None, list[RigidLink]] = {}
+    known: set[str | None] = {None}
+    for link in links:
+        if link.parent not in known:
+            waiting.setdefault(link.parent, []).append(link)
+            continue
+        ready = [link]
+        while ready:
+            ordered.append(ready.pop(0))
+            known.add(ordered[-1].name)
+            ready = waiting.pop(ordered[-1].name, []) + ready
+    return ordered
 
 
 def _representable(joint: Joint, form: Literal["URDF", "MJCF"] | None) -> bool:

@@ -161,3 +161,10 @@ def test_what_is_not_compared_is_noted(tmp_path: Path) -> None:
     assert sf.diff(tmp_path / "plain.xml", tmp_path / "plain.xml").notes == ()
     robot, ignored = sf.load(tmp_path / "plain.xml"), "API schema NewtonMimicAPI ignored: 1 joint (j)"
     assert sf.diff(robot, replace(robot, notes=(ignored,))).notes == (f"plain: {ignored}",)
+
+
+@pytest.mark.parametrize("robot", ["ur5", "go2"])
+def test_bodies_that_are_stated_before_their_parents_change_nothing(robot: str) -> None:
+    system = replace(read_original(robot), constraints=())
+    found = sf.diff(system, replace(system, bodies=system.bodies[::-1]))
+    assert found.same and found.identical and max(found.errors.values()) < 1e-12, str(found)

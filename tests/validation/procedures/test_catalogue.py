@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from pathlib import Path
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -12,7 +14,19 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
 from validation.mechanics.assembly import assemble
-from validation.procedures import analyses, batches, catalogue, identities, reactions, runs, steps
+from validation.procedures import (
+    analyses,
+    batches,
+    catalogue,
+    differences,
+    files,
+    identities,
+    reactions,
+    runs,
+    steps,
+    switching,
+    zeros,
+)
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
 from validation.procedures.scene import Cell, Scene
 
@@ -112,3 +126,57 @@ def test_reactions_that_are_wrong_by_a_millionth_show(monkeypatch: pytest.Monkey
         monkeypatch.setattr(sf.Model, name, lambda *given, right=right, **more: (1 + 1e-6) * right(*given, **more))
     assert wrong(reactions.of_constraints(four_bar)) == ["wrenches of constraints"]
     assert wrong(reactions.of_drives(four_bar)) == ["power of drives"]
+
+
+def test_a_conditions_share_that_is_dropped_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of what is released: in the rows of a switched closure."""
+    kind, jacobian = sf.Model, sf.Model.constraint_jacobian
+    monkeypatch.setattr(kind, "constraint_jacobian", lambda model, q, **given: jacobian(model, q, **given) + 1e-6)
+    assert wrong(switching.engaged(scene("pendulum"))) == ["switched constraint jacobian"]
+
+
+def test_a_difference_without_its_entry_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where `diff` calls everything the same, each planted difference does."""
+    monkeypatch.setattr(sf, "diff", lambda one, other, diff=sf.diff: diff(one, one))
+    found = wrong(differences.told(scene("pendulum")))
+    assert {f"diff of {what}" for what in differences.CHANGED} <= {*found}
+
+
+def test_a_reader_that_halves_damping_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    def halved(path: Path, **options: Any) -> sf.System:
+        system = load(path, **options)
+        bodies: list[Any] = []
+        for body in system.bodies:
+            joint: Any = body.joint
+            if joint is not None:
+                dampers = [isinstance(one, sf.Damper) for one in joint.elements]
+                halves = [
+                    replace(x, coefficient=0.5 * cast(float, x.coefficient))
+                    for x in joint.elements
+                    if isinstance(x, sf.Damper)
+                ]
+                elements = [halves.pop(0) if damps else x for damps, x in zip(dampers, joint.elements, strict=True)]
+                body = replace(cast(Any, body), joint=replace(joint, elements=tuple(elements)))
+            bodies.append(body)
+        return replace(system, bodies=tuple(bodies))
+
+    load: Callable[..., sf.System] = sf.load
+    monkeypatch.setattr(sf, "load", halved)
+    names = wrong(files.read(scene("pendulum")))
+    assert [name.removeprefix("an arm read from ") for name in names] == [
+        "URDF, losses and mimicry",
+        "URDF, stops",
+        "MJCF, losses",
+        "MJCF, viscous",
+    ]
+
+
+def test_an_event_that_is_lost_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulate: Callable[..., sf.Trajectory] = sf.simulate
+
+    def lossy(*given: Any, **stated: Any) -> sf.Trajectory:
+        run = simulate(*given, **stated)
+        return replace(run, events=run.events[1:])
+
+    monkeypatch.setattr(sf, "simulate", lossy)
+    assert len(wrong(zeros.of_time(scene("pendulum")))) >= 7
