@@ -21,7 +21,9 @@ def readings(text: str, symbols: Iterable[str]) -> list[tuple[str, str]]:
         text: Formula as it was written: "2*a-b".
         symbols: Symbols that exist; a symbol a-b gives the reading "2*`a-b`".
     """
-    found = []
+    found: list[tuple[str, str]] = []
+    if text.isidentifier():
+        return found  # It holds no operation.
     for symbol in needs_quotes(symbol for symbol in symbols if symbol in text and _is_operation(symbol)):
         start = text.find(symbol)
         while start >= 0:

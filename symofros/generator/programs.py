@@ -12,6 +12,7 @@ from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
 from symofros.base.routes import ROUTES, Choice, choose, taken
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.expr.garbage import without_collection
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen.effort import effort
@@ -109,6 +110,7 @@ class ProgramBuilder:
         function = Function("retraction", "", tuple(sizes), (Output("q", (len(edges),), edges),))
         return Program(self.tree.system.name, kinematics.g, sizes, (function,))
 
+    @without_collection()
     def _formed(self, requests: tuple[Request, ...]) -> Program:
         if _FORWARD not in requests:
             return self._optimised(requests, Methods().trees)

@@ -20,17 +20,21 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
         edges: Edges to evaluate.
         given: Nodes whose values are available.
     """
-    args = graph.args
-    seen = {abs(edge) for edge in edges}
-    stack = list(seen.difference(given))
-    while stack:
-        for arg in args[stack.pop()]:
-            node = abs(arg)
-            if node not in seen:
-                seen.add(node)
-                if node not in given:
-                    stack.append(node)
-    return sorted(node for node in seen.difference(given) if args[node])  # Inputs and numbers have no operands.
+    args, nodes = graph.args, []
+    needed = {abs(edge) for edge in edges}
+    marks = bytearray(1 + max(needed, default=0))
+    for node in needed:
+        marks[node] = 1
+    # Operands have smaller numbers than results, so one way down meets all, in order.
+    node = marks.rfind(1)
+    while node > 0:
+        if args[node] and node not in given:  # Inputs and numbers have no operands.
+            nodes.append(node)
+            for arg in args[node]:
+                marks[arg if arg > 0 else -arg] = 1
+        node = marks.rfind(1, 0, node)
+    nodes.reverse()
+    return nodes
 
 
 class Evaluation:

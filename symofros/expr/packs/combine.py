@@ -75,7 +75,25 @@ def with_exact_lanes(g: Graph, pack: Pack, candidates: Collection[int]) -> Pack:
 def is_sum(g: Graph, edge: Edge, products: Sequence[tuple[Edge, Edge]]) -> bool:
     """Whether an edge is the sum of products (factor, operand) from the left, rounded as a vector rounds it."""
     products = [product for product in products if product[0] and product[1]]
-    return _is_sum(g, edge, products) if products else edge == ZERO
+    if not products:
+        return edge == ZERO
+    return _is_chain(g, edge, products) or _is_sum(g, edge, products)
+
+
+def _is_chain(g: Graph, edge: Edge, products: Sequence[tuple[Edge, Edge]]) -> bool:
+    """Whether the graph states the sum of products by one addition each, as it does wherever nothing folds."""
+    for factor, operand in products[:0:-1]:
+        node = abs(edge)
+        if g.op[node] != ADD:
+            return False
+        a, b = g.args[node] if edge > 0 else (-g.args[node][0], -g.args[node][1])
+        if is_product(g, b, factor, operand):
+            edge = a
+        elif is_product(g, a, factor, operand):
+            edge = b
+        else:
+            return False
+    return is_product(g, edge, *products[0])
 
 
 def _is_sum(g: Graph, edge: Edge, products: Sequence[tuple[Edge, Edge]]) -> bool:

@@ -13,6 +13,7 @@ from symofros.base.c_text import c_string, comment, strings
 from symofros.base.names import identifier
 from symofros.base.routes import Choice
 from symofros.expr.edges import Edge
+from symofros.expr.garbage import without_collection
 from symofros.expr.numerics.evaluate import needed_nodes
 from symofros.expr.program import Function, Output, Program
 from symofros.generator.codegen import lanes, trigonometry
@@ -57,6 +58,7 @@ def model_source(
     return model_text(program, record, generator, in_lanes, c_name, packs).code
 
 
+@without_collection()
 def model_text(
     program: Program,
     record: ModelRecord,

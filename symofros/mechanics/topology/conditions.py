@@ -64,20 +64,23 @@ class Formulas:
         ]
 
     def _place(self, formula: Value) -> int:
-        """The place of a formula among the steps."""
-        if not isinstance(formula, Expression) or formula.kind == "number":
-            key: float | str = formula.number if isinstance(formula, Expression) else formula
-        elif formula.kind == "symbol":
-            key = CONSTANTS.get(formula.name, formula.name)
-        else:
-            key = f"operation {id(formula)}"
-        if key not in self._places:
+        """The place of a formula among the steps; without recursion, as sums over a mechanism are nested deeply."""
+        pending = [formula]
+        while pending:
+            stated = pending.pop()
+            key = _key(stated)
+            if key in self._places:
+                continue
             step: Step = key
-            if isinstance(formula, Expression) and formula.args:
-                step = formula.kind, [self._place(arg) for arg in formula.args]
+            if isinstance(stated, Expression) and stated.args:
+                missing = [arg for arg in stated.args if _key(arg) not in self._places]
+                if missing:
+                    pending += [stated, *missing]
+                    continue
+                step = stated.kind, [self._places[_key(arg)] for arg in stated.args]
             self._places[key] = len(self.steps)
             self.steps.append(step)
-        return self._places[key]
+        return self._places[_key(formula)]
 
     @property
     def symbols(self) -> frozenset[str]:
@@ -98,6 +101,13 @@ class Formulas:
                 else:
                     known.append(values[step] if isinstance(step, str) else step)
         return [known[i] for i in self.results]
+
+
+def _key(formula: Value) -> float | str:
+    """What a step is found by: a number, a symbol, or an operation as an object."""
+    if not isinstance(formula, Expression) or formula.kind == "number":
+        return formula.number if isinstance(formula, Expression) else formula
+    return CONSTANTS.get(formula.name, formula.name) if formula.kind == "symbol" else f"operation {id(formula)}"
 
 
 class Conditions:

@@ -86,6 +86,7 @@ def test_a_sum_is_recognised_by_its_products_and_their_order() -> None:
     total = g.sub(g.add(g.mul(a, x), g.mul(b, y)), g.mul(c, z))
     assert is_sum(g, total, [(a, x), (b, y), (-c, z)])
     assert is_sum(g, -total, [(-a, x), (b, -y), (c, z)])
+    assert not is_sum(g, -total, [(a, x), (b, y), (-c, z)])
     assert not is_sum(g, total, [(a, x), (b, y), (c, z)])
     assert not is_sum(g, total, [(a, x), (-c, z), (b, y)])  # Rounded otherwise.
     assert not is_sum(g, total, [(a, x), (b, y)])
