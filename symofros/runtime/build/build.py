@@ -17,8 +17,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from symofros.base.stored import keep, stored_text
+from symofros.base.threads import beside_each_other
 from symofros.runtime.build.cache import cache_folder, create_cache_folder, install, is_intact, unusable
 from symofros.runtime.build.identity import CODE_IDENTITY
+from symofros.runtime.build.pieces import pieces, usable_processors
 from symofros.runtime.build.toolchain import SHARED_FLAGS, Toolchain, call_compiler, cpu_identity, stated_flags
 
 _SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
@@ -120,7 +122,7 @@ def build_library(
         create_cache_folder(folder)
         with tempfile.TemporaryDirectory(prefix=f".{key[:8]}-", dir=folder) as private:
             _write(Path(private), {"symofros_model.h": header, "model.c": source})
-            _compile(Path(private), toolchain, _chosen(toolchain, flags))
+            _compile(Path(private), source, toolchain, _chosen(toolchain, flags))
             os.replace(Path(private) / "model.c", folder / f"{key}.c")
             install(Path(private) / f"model{_SUFFIX}", library)
     except OSError as error:
@@ -133,10 +135,19 @@ def _write(private: Path, files: Mapping[str, str]) -> None:
         (private / name).write_text(text, encoding="utf-8")
 
 
-def _compile(private: Path, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
-    if not _LOOSE & set(flags):
+def _compile(private: Path, source: str, toolchain: Toolchain, flags: tuple[str, ...]) -> None:
+    """The library of a folder's model.c, which is compiled in pieces beside each other where it is long."""
+    loose, parts = bool(_LOOSE & set(flags)), pieces(source, usable_processors())
+    if len(parts) == 1 and not loose:
         command = [*toolchain.command, *flags, *SHARED_FLAGS, "model.c", "-lm"]
         call_compiler(command, f"model{_SUFFIX}", private, _REMEDY)
         return
-    call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", "model.c"], "model.o", private, _REMEDY)
-    call_compiler([*toolchain.command, "-shared", "model.o", "-lm"], f"model{_SUFFIX}", private, _REMEDY)
+    files = [f"piece{i}.c" for i in range(len(parts))]
+    _write(private, dict(zip(files, parts, strict=True)))
+
+    def to_object(file: str) -> None:
+        call_compiler([*toolchain.command, *flags, *SHARED_FLAGS, "-c", file], f"{file}.o", private, _REMEDY)
+
+    beside_each_other(to_object, files)
+    command = [*toolchain.command, *(() if loose else flags), "-shared", *(f"{file}.o" for file in files), "-lm"]
+    call_compiler(command, f"model{_SUFFIX}", private, _REMEDY)
