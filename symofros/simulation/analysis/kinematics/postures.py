@@ -18,6 +18,9 @@ NEAR = 0.05
 # States that are looked at, spread over the run; more would cost more than short runs themselves. Singular values of nc
 # conditions take nc^3 operations: of many, that number is bounded, but for the fewest states.
 MOST, MAX_OPERATIONS, FEWEST = 1000, 1e7, 16
+# From so many conditions on it is tried first to prove from few singular values that all stay above NEAR, at states
+# whose Jacobians have so many entries together.
+MANY, PROOFS, MAX_ENTRIES = 16, 4, 4e6
 # States farther apart than this [rad, m] have others looked at between them, so many at most.
 FAR, MAX_BETWEEN = 0.05, 16
 # Parts of the motion that are asked for where the straight way between records meets weak conditions.
@@ -152,14 +155,23 @@ def nearest_to_singular(
     model = model.with_precision("double")
     most = int(min(MOST, max(FEWEST, MAX_OPERATIONS / model.nc**3)))
 
-    def weakest(at: Sequence[Array]) -> Array:
-        """The singular value of the weakest condition of those that do not repeat others, at states t, q, u."""
+    def jacobians(at: Sequence[Array]) -> Array:
         times, q, u = at
         (G,) = model.evaluate("constraint_jacobian", q=q, u=u, par=par, t=times)
-        squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
-        return np.asarray(np.sqrt(np.maximum(squares[:, -rank], 0.0)))
+        return np.asarray(G)
+
+    def weakest(at: Sequence[Array]) -> Array:
+        """The singular value of the weakest condition of those that do not repeat others, at states t, q, u."""
+        return _weakest(jacobians(at), rank)
 
     t, q, _, u = states
+    all_at_once = int(MAX_ENTRIES / (model.nc * model.nv))
+    if (
+        model.nc >= MANY
+        and len(t) <= all_at_once
+        and _stay_regular(jacobians(_between(model, all_at_once, t, q, u)), rank)
+    ):
+        return None
     rows = np.unique(np.linspace(0, len(t) - 1, min(len(t), most)).astype(int))
     sizes = weakest([x[rows] for x in (t, q, u)])
     lowest, largest = int(np.argmin(sizes)), max(float(sizes.max()), 1e-300)
@@ -182,6 +194,30 @@ def nearest_to_singular(
                 found.append(_least(straight[part == k], between[0][part == k]))
     size, when = min(found)
     return (when, size / largest) if size < NEAR * largest else None
+
+
+def _weakest(G: Array, rank: int) -> Array:
+    """The smallest but for those of conditions that repeat others of G's singular values (...); G: (..., nc, nv)."""
+    squares = np.linalg.eigvalsh(G @ np.swapaxes(G, -1, -2))
+    return np.asarray(np.sqrt(np.maximum(squares[..., -rank], 0.0)))
+
+
+def _stay_regular(G: Array, rank: int) -> bool:
+    """Whether the weakest conditions at some states (n, nc, nv) are shown to stay above NEAR of their largest.
+
+    A singular value changes by no more than the norm of the change of G (Weyl), so that few of them bound all.
+    """
+    if not np.isfinite(G).all():
+        return False
+    least, most, at = np.zeros(len(G)), np.full(len(G), np.inf), 0
+    for _ in range(PROOFS):
+        size = float(_weakest(G[at], rank))
+        change = np.linalg.norm((G - G[at]).reshape(len(G), -1), axis=1)
+        least, most = np.maximum(least, size - change), np.minimum(most, size + change)
+        at = int(np.argmin(least))
+        if least[at] >= NEAR * most.max():
+            return True
+    return False
 
 
 def _least(sizes: Array, t: Array) -> tuple[float, float]:

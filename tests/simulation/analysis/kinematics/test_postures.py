@@ -11,6 +11,7 @@ import pytest
 import symofros as sf
 from reference_models.closed.four_bars import n_four_bar
 from symofros import blocks
+from symofros.simulation.analysis.kinematics import postures
 from symofros.simulation.analysis.kinematics.postures import MAX_CHANGE, jump_ahead, nearest_to_singular
 from tests.diagrams.parts import moving
 from tests.simulation.mechanisms import loop, slide
@@ -45,6 +46,32 @@ def test_the_weakest_of_many_states_is_found(row: sf.Model) -> None:
     when, share = close
     assert when == pytest.approx(0.4567, abs=1e-3)
     assert share == pytest.approx(np.sin(lowest), rel=0.5)
+
+
+@pytest.mark.parametrize(("lowest", "is_near"), [(0.9, False), (0.3, False), (0.03, True), (0.02, True)])
+def test_few_singular_values_stand_for_many_states_only_where_they_prove_it(
+    row: sf.Model, lowest: float, is_near: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A short run of many loops, by the proof and without it."""
+    times, q = swept(row, np.concatenate([np.linspace(1.0, lowest, 9), np.linspace(lowest, 1.0, 9)[1:]]))
+    at = row, recorded(row, times, q), row.parameter_values, row.nc, nothing_between
+    close = nearest_to_singular(*at)
+    monkeypatch.setattr(postures, "MANY", 10**6)
+    assert close == nearest_to_singular(*at)
+    assert (close is not None) == is_near
+
+
+def test_the_proof_bounds_what_it_does_not_evaluate() -> None:
+    """Conditions of one speed each, the weakest of which dips at one state between others."""
+    strengths = np.ones((9, 20))
+    assert postures._stay_regular(strengths[:, :, None] * np.eye(20), 20)
+    strengths[5, 3] = 0.04
+    assert not postures._stay_regular(strengths[:, :, None] * np.eye(20), 20)
+    strengths[5, 3] = 0.06
+    assert postures._stay_regular(strengths[:, :, None] * np.eye(20), 20)
+    strengths[:, 7] = 0.0
+    assert postures._stay_regular(strengths[:, :, None] * np.eye(20), 19), "a condition that repeats others"
+    assert not postures._stay_regular(np.full((3, 20, 20), np.nan), 20)
 
 
 def parallelogram(size: float) -> sf.Model:
