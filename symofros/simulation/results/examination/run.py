@@ -97,17 +97,27 @@ class ExaminedRun(HeldRun):
         return [x[:: -max(1, len(x) // _SPEEDS)] for x in self.states]
 
     @cached_property
+    def _metrics_of_some(self) -> Array:
+        """Mass matrices of `_some`, the last record's first."""
+        _, q, _, u = self._some
+        return self.metrics(q, u)
+
+    @cached_property
     def fastest(self) -> float:
         """Largest speed of the run, in the norm of the kinetic energy."""
-        _, q, v, u = self._some
-        return float(self.norms(q, u, v).max())
+        return float(norms_in(self._metrics_of_some, self._some[2]).max())
+
+    @property
+    def inertia(self) -> float:
+        """Norm of a unit of each speed at the end of the run."""
+        return float(np.sqrt(np.trace(self._metrics_of_some[0])))
 
     @cached_property
     def reach(self) -> float:
         """Largest displacement of the run, in that norm."""
-        _, q, _, u = self._some
+        _, q, _, _ = self._some
         moved = self.model.difference(np.broadcast_to(self.states[1][0], q.shape), q)
-        return float(self.norms(q, u, moved).max())
+        return float(norms_in(self._metrics_of_some, moved).max())
 
     def rounding(self, states: States) -> float:
         """Speed of a motion by rounding, in the norm of the kinetic energy: a share of the coordinates a record."""

@@ -107,10 +107,19 @@ def _doubted(run: ExaminedRun, ends: States, number: int, least: float) -> list[
     metric = run.metrics(ends[1][chosen], ends[3][chosen])
     with np.errstate(all="ignore"):  # What has exploded overflows.
         missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval, np.newaxis]
+        if (_bounds_of_sums(missed, counts[chosen], metric) <= least * run.fastest).all():
+            return []
         left_out = _largest_sums(missed, counts[chosen], metric)
     shares = left_out / max(run.fastest, left_out.max(), 1e-300)
     worst = np.argsort(-shares, kind="stable")[:_PROVED]
     return [(int(chosen[k]), float(spans[chosen[k]] / counts[chosen[k]])) for k in worst if shares[k] > least]
+
+
+def _bounds_of_sums(changes: Array, counts: Numbers, metric: Array) -> Array:
+    """Bounds of what `_largest_sums` gives (k): no eigenvalue of M is above its trace. Arguments as there."""
+    sizes = np.sqrt(np.einsum("ij,ij->i", changes, changes))
+    traces = np.trace(metric, axis1=-2, axis2=-1)
+    return np.asarray(np.sqrt(traces) * np.add.reduceat(sizes, np.cumsum(counts) - counts))
 
 
 def _largest_sums(changes: Array, counts: Numbers, metric: Array) -> Array:

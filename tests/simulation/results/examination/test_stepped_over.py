@@ -14,7 +14,7 @@ from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination import stepped_over
 from symofros.simulation.results.examination.paths import _cubic, path_within
 from symofros.simulation.results.examination.run import ExaminedRun
-from symofros.simulation.results.examination.stepped_over import _largest_sums
+from symofros.simulation.results.examination.stepped_over import _bounds_of_sums, _largest_sums
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
@@ -169,3 +169,16 @@ def test_largest_sums_are_those_of_each_interval_in_its_own_metric(rng: np.rando
         for k, own in enumerate(np.split(changes, np.cumsum(counts)[:-1])):
             sums = np.cumsum(own, axis=0)
             assert found[k] == pytest.approx(np.sqrt((sums @ metric[k] * sums).sum(axis=1)).max(), rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sums_of_changes_stay_within_their_bounds_which_one_change_along_a_principal_axis_meets(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    counts = rng.integers(1, 9, 6)
+    changes = rng.normal(size=(counts.sum(), 3)) * 10.0 ** rng.uniform(-3, 3, (counts.sum(), 1))
+    roots = rng.normal(size=(6, 3, 3)) * 10.0 ** rng.uniform(-3, 3, (6, 1, 1))
+    metric = roots @ np.swapaxes(roots, -1, -2)
+    assert (_largest_sums(changes, counts, metric) <= _bounds_of_sums(changes, counts, metric) * (1 + 1e-12)).all()
+    along = np.array([[0.0, 0.0, 2.0]])
+    alone = np.diag([0.0, 0.0, 9.0])[np.newaxis]
+    assert _largest_sums(along, np.array([1]), alone) == _bounds_of_sums(along, np.array([1]), alone) == 6.0
