@@ -9,7 +9,7 @@ from decimal import Decimal
 import numpy as np
 
 from .interface import Tree
-from .truth import constraints, derived, steps
+from .truth import constraints, derived, steps, turns
 from .truth.arithmetic import Exact
 from .truth.derived import FRAMES, Frame, TruthOf
 from .truth.dynamics import Point, Truth
@@ -152,6 +152,10 @@ for _frame in FRAMES:
     FUNCTIONS |= _in_frame(_frame)
 
 
+def _at_rest(t: Truth, s: Point) -> Exact:
+    return np.concatenate([s.q, 0 * s.v])
+
+
 def _constrained() -> dict[str, Function]:
     """Functions of trees with constraints."""
     half = Decimal(1) / 2
@@ -161,6 +165,12 @@ def _constrained() -> dict[str, Function]:
             lambda t, s: constraints.jacobian(t, s.q),
         ),
         "constraint_velocity_products": Function("J' v (m)", lambda t, s: constraints.products(t, s.q, s.v)),
+        "constraint_residuals": Function(
+            "what constraints are off by, at q2 (m): points' distance along world axes; vector part of the quaternion "
+            "that turns the second frame into the first, in the second; lengths less those at zero",
+            lambda t, s: constraints.residuals(t, s.q2),
+        ),
+        "step_at_rest": Function("q, v (nq + nv) after a step at rest, without gravity and forces", _at_rest),
         "delassus": Function("J M^-1 J^T (m, m)", lambda t, s: constraints.delassus(t, s.q)),
         "delassus_inverse": Function(
             "(J M^-1 J^T)^-1 (m, m)",
@@ -290,6 +300,12 @@ def _measured() -> dict[str, Function]:
         "gyroscopes": ("angular velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, 3:]),
         "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
         "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
+        "frame_poses": ("positions and rows of R (n, 12)", derived.frame_poses),
+        "accelerometers_driven": ("accelerometers at the accelerations that tau makes (n, 3)", derived.driven),
+        "applied_wrenches": (
+            "forces (nv) that do what the wrench (1, -2, 3; 0.5, -0.25, 0.75) does at each frame, along its axes",
+            derived.applied_wrenches,
+        ),
         "wrench_sensors": (
             "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
             derived.wrench_sensors,
@@ -299,9 +315,55 @@ def _measured() -> dict[str, Function]:
 
 
 MEASURED = _measured()
+
+
+def _stated_in_files() -> dict[str, Function]:
+    """What readers make of losses of joints: no function of q and v need depend on them."""
+    rows = {
+        "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
+        "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
+        "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
+    }
+    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+
+
+def _of_turns() -> dict[str, Function]:
+    """What packages offer of rotations: R that q makes of the only link, Q that q2 makes; w of a rotation vector r is
+    A r', in the turned axes."""
+    rows = {
+        "rotation_matrix": ("rows of R (9)", turns.matrix),
+        "rotation_angle": ("angle of R^T Q (1)", turns.angle),
+        "rotation_logarithm": ("rotation vector of R (3)", turns.logarithm),
+        "rotation_exponential": ("rows of the rotation by the vector v (9)", turns.exponential),
+        "rotation_vector_rates": ("A^-1 at r = v, in the turned axes (3, 3)", turns.vector_rates),
+        "rotation_vector_speeds": ("A at r = v, in the turned axes (3, 3)", turns.vector_speeds),
+        "rotation_vector_rates_fixed": ("the same along the axes before (3, 3)", turns.vector_rates_fixed),
+        "rotation_vector_rates_rate": (
+            "time derivative of the latter at r = v, r' = a (3, 3)",
+            turns.vector_rates_rate,
+        ),
+        "rpy_rates": ("roll, pitch, yaw rates = B w, w along the axes before, at angles v (3, 3)", turns.rpy_rates),
+        "rpy_rates_rate": ("time derivative of B at angles v and rates a (3, 3)", turns.rpy_rates_rate),
+        "rotation_halfway": ("rows of the rotation a quarter of the way from R to Q, the shorter way (9)", turns.between),
+        "twist_transform": ("(6, 6): twists (linear; angular) of a frame at (R, a) in the frame it is in", turns.adjoint),
+    }
+    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+
+
+FUNCTIONS["solid_inertia"] = Function(
+    "mass, mass centre, moments about it xx, yy, zz, xy, xz, yz of the only link (10)", derived.solid_inertia, ("solids",)
+)
+FUNCTIONS["flexible_relation"] = Function(
+    "1 + what forces or steps of a flexible body change with the frame it stands in, as part of them (n)",
+    lambda t, s: np.array([Decimal(1)]),
+    ("flexible bodies",),
+)
+FUNCTIONS["constraint_diagonal"] = Function(
+    "diagonal of J M^-1 J^T (m)", lambda t, s: np.diag(constraints.delassus(t, s.q)), ("a lone body",)
+)
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
-FUNCTIONS |= STEPS | ACTING | MEASURED
+FUNCTIONS |= STEPS | ACTING | MEASURED | _stated_in_files() | _of_turns()
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")
 
@@ -310,6 +372,8 @@ def suits(way: str, tree: Tree) -> bool:
     """Whether a way to a function is for a tree: of constraints and of forces only where it has some."""
     name = way.partition(":")[0]
     needs = FUNCTIONS[name].needs
+    if tree.asked:
+        return tree.asked in needs
     if tree.constraints:
         return name in CONSTRAINED or way in _BESIDES
     if needs:

@@ -123,6 +123,9 @@ class Joint:
         damping: Force against each of its speeds, for a unit of speed.
         stiffness: Force of a spring on a joint of one coordinate, for a unit of it.
         rest: Coordinate at which the spring has no force.
+        friction: Greatest force of dry friction against each of its speeds; files state it, no function has its force.
+        force_limits: Least and greatest force that actuators make together along a joint of one coordinate; () for
+            none.
     """
 
     kind: str
@@ -142,6 +145,8 @@ class Joint:
     damping: float = 0.0
     stiffness: float = 0.0
     rest: float = 0.0
+    friction: float = 0.0
+    force_limits: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -206,11 +211,56 @@ class Constraint:
         kind: One of these.
         ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
         coefficients: Of a "coupling", for each end.
+        torque_scale: Of a "weld", factor of its rows of rotation.
     """
 
     kind: str
     ends: tuple[End, ...]
     coefficients: tuple[float, ...] = ()
+    torque_scale: float = 1.0
+
+
+class Wrap(NamedTuple):
+    """A surface that a tendon is tight around, on its way from one of its points to the next.
+
+    Attributes:
+        after: Number of the point before it.
+        end: Its frame: the centre of a sphere, or a point of a cylinder's axis, which is z.
+        radius: Its radius [m].
+        is_sphere: Whether it is a sphere; otherwise a cylinder, as long as need be.
+    """
+
+    after: int
+    end: End
+    radius: float
+    is_sphere: bool
+
+
+class Muscle(NamedTuple):
+    """An actuator whose gain and bias are those of a muscle, as MuJoCo's documentation states them.
+
+    With l0 the length at rest, L = (length - least) / l0 + low and V = speed / (l0 fastest), where l0 is
+    (greatest - least) / (high - low), gain = -peak FL(L) FV(V), bias = -peak FP(L).
+
+    Attributes:
+        activation: What multiplies the gain.
+        lengths: Least and greatest length of the actuator.
+        operating: What these are in units of l0: low and high.
+        peak: Greatest active force at rest.
+        zeros: L below and above which there is no active force.
+        fastest: V is in units of this.
+        passive: FP at the second of `zeros`.
+        lengthening: FV at speeds above.
+    """
+
+    activation: float
+    lengths: tuple[float, float]
+    operating: tuple[float, float] = (0.75, 1.05)
+    peak: float = 100.0
+    zeros: tuple[float, float] = (0.5, 1.6)
+    fastest: float = 1.5
+    passive: float = 1.3
+    lengthening: float = 1.2
 
 
 @dataclass(frozen=True)
@@ -224,6 +274,8 @@ class Tendon:
         stiffness: Force against a unit of length beyond `rest`.
         damping: Force against a unit of the length's rate.
         rest: Length at which the spring has no force.
+        armature: Mass that moves with the length.
+        wraps: Surfaces on its way; of a "path" only.
     """
 
     kind: str
@@ -232,11 +284,14 @@ class Tendon:
     stiffness: float = 0.0
     damping: float = 0.0
     rest: float = 0.0
+    armature: float = 0.0
+    wraps: tuple[Wrap, ...] = ()
 
 
 @dataclass(frozen=True)
 class Actuator:
-    """A force along a joint's coordinate or a tendon: gain control + bias, with l and l' the length times gear.
+    """A force along a joint's coordinate, a tendon or between frames: gain control + bias, with l and l' the length
+    times gear.
 
     Attributes:
         link: Link whose only joint it drives; "" for a tendon.
@@ -247,6 +302,13 @@ class Actuator:
         control: Control that it has.
         control_limits: Least and greatest control that counts; () for none.
         force_limits: Least and greatest force; () for none.
+        ends: One frame: it makes the force and the moment `wrench` there, along its axes, and its length is zero. Two:
+            its length is how far the first is from the second along `wrench`, which stands in the second. Of a
+            `crank`: the end of the crank, and the slider's frame, which moves along its z.
+        wrench: See `ends`.
+        crank: Length of the rod of a slider and crank [m]: its length is the slider's coordinate. 0 for none.
+        muscle: Gain and bias of a muscle, in place of the stated ones; None for none.
+        is_disabled: Whether it makes no force.
     """
 
     link: str = ""
@@ -257,6 +319,11 @@ class Actuator:
     control: float = 0.0
     control_limits: tuple[float, ...] = ()
     force_limits: tuple[float, ...] = ()
+    ends: tuple[End, ...] = ()
+    wrench: tuple[float, ...] = ()
+    crank: float = 0.0
+    muscle: Muscle | None = None
+    is_disabled: bool = False
 
 
 @dataclass(frozen=True)
@@ -276,6 +343,8 @@ class Tree:
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
         away: Added to the positions that random states have of free joints [m].
+        asked: What else an engine must know by name to be asked about it, such as "turns" or "flexible bodies"; only
+            functions that need it are asked of such a tree.
     """
 
     name: str
@@ -289,24 +358,30 @@ class Tree:
     actuators: tuple[Actuator, ...] = ()
     sensors: tuple[End, ...] = ()
     away: Vector = ORIGIN
+    asked: str = ""
 
     @property
     def forces(self) -> frozenset[str]:
-        """What acts on it by its own statement: "dampers", "springs", "compensation", "tendons", "actuators"."""
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "tendons", "wrapped tendons",
+        "heavy tendons", "actuators"."""
         joints = [joint for link in self.links for joint in link.joints]
         stated = {
             "dampers": any(joint.damping for joint in joints),
             "springs": any(joint.stiffness for joint in joints),
             "compensation": any(link.compensation for link in self.links),
             "tendons": bool(self.tendons),
+            "wrapped tendons": any(tendon.wraps for tendon in self.tendons),
+            "heavy tendons": any(tendon.armature for tendon in self.tendons),
             "actuators": bool(self.actuators),
         }
         return frozenset(name for name, there in stated.items() if there)
 
     @property
     def demands(self) -> frozenset[str]:
-        """What an engine must know by name to be asked about it: transformations, forces, "sensors"."""
-        return self.transformations | self.forces | ({"sensors"} if self.sensors else set())
+        """What an engine must know by name to be asked about it: transformations, forces, "sensors" and the like."""
+        scaled = any(one.torque_scale != 1.0 for one in self.constraints)
+        stated = {"sensors": bool(self.sensors), "scaled welds": scaled, self.asked: bool(self.asked)}
+        return self.transformations | self.forces | {name for name, there in stated.items() if there}
 
     @property
     def transformations(self) -> frozenset[str]:

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import Actuator, End, Joint, Link, Tendon, Tree
-from .kinds import OBLIQUE, link, placed, shifted
+from ..interface import ORIGIN, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
+from .kinds import OBLIQUE, link, placed, shifted, turned
+from .readers import about
 
 
 def _chain(name: str, *joints: Joint, branches: bool = False) -> tuple[Link, ...]:
@@ -43,11 +44,60 @@ def _passive() -> list[Tree]:
         Tree("a damped free body", (body,)),
         Tree("a damped hinge on a damped free base", _carried(body)),
         Tree("borne weights", borne),
+        Tree("borne weights of fixed links", _borne_and_fixed()),
     ]
 
 
 def _carried(base: Link) -> tuple[Link, ...]:
     return base, link(np.random.default_rng(10), "b", 0, placed(np.random.default_rng(12), _DAMPED))
+
+
+def _borne_and_fixed() -> tuple[Link, ...]:
+    """Weights that are borne at links which don't move against the one that they hang on."""
+    links = _chain("borne and fixed", _HINGE, Joint("fixed"), _HINGE, Joint("fixed"))
+    return tuple(replace(one, compensation=part) for one, part in zip(links, (0.0, 1.0, 0.25, 0.5), strict=True))
+
+
+def _pulley(name: str, second: Joint, *wraps: Wrap, **stated: float) -> Tree:
+    """A tendon from the world to a hinge that faces it, around what lies between them."""
+    draw = np.random.default_rng([ord(letter) for letter in name])
+    links = (
+        link(draw, "a", -1, Joint("revolute", p=(0.125, 0.0, 0.0), axis=(0.0, 0.0, 1.0))),
+        link(draw, "b", 0, replace(second, p=(0.75, 0.0, 0.0))),
+    )
+    ends = (End("", p=(-1.0, 0.125, 0.25)), End("b", p=(0.25, 0.0625, -0.125)))
+    return Tree(name, links, tendons=(Tendon("path", ends, wraps=wraps, **stated),))
+
+
+def _wrapped() -> list[Tree]:
+    slide = Joint("prismatic", axis=(0.6, 0.0, 0.8))
+    turn = Joint("revolute", axis=(0.0, 0.6, 0.8))
+    R = about((0.0, 1.0, 0.0), 0.25)
+    ball, own = Wrap(0, End("", p=(0.0625, 0.0, 0.0)), 0.5, True), Wrap(0, End("a", p=(0.0, 0.03125, 0.0)), 0.5, True)
+    drum, turned_drum = Wrap(0, End("", p=(0.0625, 0.0, 0.0)), 0.5, False), Wrap(0, End("a", R=R), 0.5, False)
+    forces = {"stiffness": 4.0, "damping": 0.5, "rest": 0.25}
+    around_a_ball = _pulley("tendon around a sphere", turn, ball, **forces)
+    motor = Actuator(tendon=0, gear=2.0, gain=1.5, bias=(0.25, -3.0, -0.5), control=0.75)
+    return [
+        around_a_ball,
+        _pulley("tendon around a sphere that moves", slide, own, **forces),
+        _pulley("tendon around a cylinder", slide, drum, **forces),
+        _pulley("tendon around a turned cylinder that moves", turn, turned_drum, **forces),
+        replace(around_a_ball, name="actuator on a tendon around a sphere", actuators=(motor,)),
+    ]
+
+
+def _heavy() -> list[Tree]:
+    links = _chain("heavy tendons", _HINGE, _SLIDE, _HINGE)
+    ends = tuple(End(one.name) for one in links)
+    coupled = Tendon("coupling", ends, (1.0, -0.5, 2.0), armature=0.75)
+    draw = np.random.default_rng(17)
+    path = tuple(End(name, p=shifted(draw, 0.3)) for name in ("", "a", "c"))
+    over = Tendon("path", path, armature=0.5)
+    return [
+        Tree("tendon of a sum with armature", links, tendons=(coupled,)),
+        Tree("tendon over points with armature", links, tendons=(over,)),
+    ]
 
 
 def _tendons() -> list[Tree]:
@@ -77,7 +127,35 @@ def _actuators() -> list[Tree]:
     servo = Actuator("b", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5)
     brake = Actuator("c", gear=2.0, gain=1.5, bias=(0.0, 0.0, -1.5), control=0.5)
     general = Actuator("b", gear=-1.5, gain=0.5, bias=(0.25, -1.0, -0.75), control=2.0, control_limits=(-1.0, 1.0))
+    clamped = _chain("clamped", *[replace(_HINGE, force_limits=(-0.25, 0.125))] * 2, _SLIDE)
+    fast = replace(brake, bias=(0.0, 0.0, -1.5), control=8.0)
+    off = replace(general, is_disabled=True)
+    # Lengths of hinges from -1 to 1: operating from the least to the greatest that a muscle pulls at.
+    pulls = [
+        Actuator(one.name, gear=gear, muscle=Muscle(0.625, lengths, operating, peak=peak))
+        for one, gear, lengths, operating, peak in (
+            (links[0], 1.0, (-1.0, 1.0), (0.75, 1.05), 10.0),
+            (links[1], -0.5, (-0.25, 0.25), (0.5, 1.6), 4.0),
+            (links[2], 2.0, (-0.5, 0.5), (0.875, 1.0), 2.0),
+        )
+    ]
+    strained = [replace(one, muscle=one.muscle._replace(lengths=(at, at + 0.5))) for one in pulls for at in (-3.0, 3.0)]
+    draw = np.random.default_rng(19)
+    ends = [End(name, turned(draw), shifted(draw, 0.3)) for name in ("c", "a", "")]
+    wrench = (0.5, -1.0, 0.75, 0.25, 0.5, -0.125)
+    at_site = replace(general, link="", gear=1.0, bias=ORIGIN, ends=tuple(ends[:1]), wrench=wrench)
+    apart = replace(general, link="", gear=2.0, ends=tuple(ends[:2]), wrench=(*wrench[:3], 0.0, 0.0, 0.0))
+    crank = Actuator(
+        ends=(End("b", p=(0.25, 0.125, 0.0625)), End("", p=(0.5, 0.25, 0.125))), crank=4.0, gear=1.5, control=0.75
+    )
     return [
+        Tree("actuators clamped at their joints", clamped, actuators=(fast, replace(fast, link="a"), replace(fast, link="b"))),
+        Tree("actuators disabled", links, actuators=(motor, off, replace(brake, is_disabled=True))),
+        Tree("muscles", links, actuators=tuple(pulls)),
+        Tree("muscles beyond their ranges", links, actuators=tuple(strained)),
+        Tree("actuator at a site", links, actuators=(at_site,)),
+        Tree("actuators between sites", links, actuators=(apart, replace(apart, ends=(ends[0], ends[2])))),
+        Tree("slider and crank", links, actuators=(crank, replace(crank, crank=3.0, ends=(ends[0], ends[1])))),
         Tree("motors", links, actuators=(motor, replace(motor, link="b", gear=-1.0))),
         Tree("servos of position and velocity", links, actuators=(servo, brake)),
         Tree("actuators of all kinds", links, actuators=(motor, servo, brake, general)),
@@ -87,4 +165,4 @@ def _actuators() -> list[Tree]:
 
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
-    return {tree.name: tree for tree in (*_passive(), *_tendons(), *_actuators())}
+    return {tree.name: tree for tree in (*_passive(), *_tendons(), *_wrapped(), *_heavy(), *_actuators())}

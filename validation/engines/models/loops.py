@@ -40,6 +40,20 @@ def _bound(name: str, kind: str, ends: tuple[str, str], *lengths: int, free: boo
     return Tree(name, links, constraints=(Constraint(kind, (_end(draw, ends[0]), _end(draw, ends[1]))),))
 
 
+def _scaled(name: str, second: str, *lengths: int) -> Tree:
+    """A weld whose rows of rotation have a factor; the second frame is its link's."""
+    draw = np.random.default_rng([ord(letter) for letter in name])
+    first = _end(draw, f"a{lengths[0] - 1}")
+    weld = Constraint("weld", (first, End(second)), torque_scale=0.5)
+    return Tree(name, _branches(draw, 0, -1, *lengths), constraints=(weld,))
+
+
+def _lone_body() -> Tree:
+    """A free body whose moments are all equal, welded at its mass centre: J M^-1 J^T is the same at all orientations."""
+    body = Link("a", -1, (Joint("free"),), 2.0, inertia=((0.125, 0.0, 0.0), (0.0, 0.125, 0.0), (0.0, 0.0, 0.125)))
+    return Tree("weld of a ball", (body,), constraints=(Constraint("weld", (End("a"), End(""))),), asked="a lone body")
+
+
 def _two_points() -> Tree:
     draw = np.random.default_rng(31)
     links = _branches(draw, 0, -1, 4, 4)
@@ -93,6 +107,9 @@ def trees() -> dict[str, Tree]:
         _bound("weld on the world", "weld", ("a6", ""), 7),
         _bound("weld of two branches on a free base", "weld", ("a3", "b3"), 4, 4, free=True),
         _bound("weld of a free base's branch on the world", "weld", ("a1", ""), 2, free=True),
+        _scaled("weld between branches with a torque scale", "b3", 4, 4),
+        _scaled("weld on the world with a torque scale", "", 7),
+        _lone_body(),
         _two_points(),
         _four_bar(),
         _of_joint("point beyond a slide", Joint("prismatic", axis=OBLIQUE)),

@@ -150,7 +150,7 @@ def document(tree: Tree, principal: bool = False) -> tuple[str, tuple[tuple[Slot
     if isinstance(elements, Unsupported):
         return elements
     bodies = "\n".join([*elements, *filter(None, [constrained.sites(tree, "")])])
-    option = f'<option gravity="{_text(tree.gravity)}"/>'
+    option = f'<option gravity="{_text(tree.gravity)}"{constrained.options(tree)}/>'
     xml = f'<mujoco model="tree"><compiler angle="radian"/>{option}<worldbody>\n{bodies}\n</worldbody>'
     xml += f"{constrained.elements(tree)}</mujoco>"
     return xml, tuple(made.slots[k] for k in range(len(tree.links))), made.nq, made.nv
@@ -247,6 +247,17 @@ WAYS = {
     ),
     "mass_matrix:mjd_inverseFD": Way(
         "mjd_inverseFD", f"{_INVERSE_FD}None, None, value, None, None, None, None)", _INVERSE_STEPS
+    ),
+    # Of a square root X of M, by rows: X X^T is M. Scaled rows are roots of the inverse.
+    "mass_matrix:mj_mulM2": Way(
+        "mj_mulM2",
+        f"{Q}root = np.zeros((m.nv, m.nv))\nfor row, unit in zip(root, np.eye(m.nv)):\n    mj.mj_mulM2(m, d, row, unit)\n"
+        "value = root @ root.T",
+    ),
+    "mass_matrix_inverse:mj_solveM2": Way(
+        "mj_solveM2",
+        f"{Q}root = np.zeros((m.nv, m.nv))\n"
+        "mj.mj_solveM2(m, d, root, np.eye(m.nv), np.sqrt(1 / d.qLDiagInv ** -1))\nvalue = root @ root.T",
     ),
     "mass_matrix_inverse": Way("mj_solveM", f"{Q}{SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
     "bias": Way("qfrc_bias", f"{QV}value = d.qfrc_bias"),
@@ -370,6 +381,10 @@ PLUGIN = SourcePlugin(
         "compensation": "gravcomp",
         "sensors": "sensor",
         "tendons": "tendon/fixed, tendon/spatial",
+        "wrapped tendons": "tendon/spatial/geom",
+        "heavy tendons": "tendon armature",
+        "scaled welds": "equality/weld torquescale",
+        "a lone body": "efc_diagApprox",
         "actuators": "general, motor, position, velocity",
     },
     formats=tuple(_READERS),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import decimal
+import math
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from decimal import Decimal
@@ -17,6 +18,8 @@ DIGITS = 130
 STEP = Decimal(10) ** -18
 # Angles are halved until they are smaller than 2^-_HALVINGS times their size, which shortens the series.
 _HALVINGS = 12
+# Newton's steps for an angle: each has three times as many digits as the one before, of which doubles have 15.
+_TRIPLINGS = 3
 
 # An array of dtype object, or one of its numbers.
 Exact = Any
@@ -50,6 +53,16 @@ def cos_sin(angle: Decimal) -> tuple[Decimal, Decimal]:
     for _ in range(_HALVINGS):
         versine, sine = 2 * sine * sine, 2 * sine * (1 - versine)
     return 1 - versine, sine
+
+
+def arc(cosine: Exact, sine: Exact) -> Exact:
+    """The angle of a direction (cosine, sine) of any length, in (-pi, pi]."""
+    length = root(cosine * cosine + sine * sine)
+    angle = Decimal(math.atan2(sine, cosine))
+    for _ in range(_TRIPLINGS):
+        c, s = cos_sin(angle)
+        angle += (sine * c - cosine * s) / length
+    return angle
 
 
 def root(square: Exact) -> Exact:

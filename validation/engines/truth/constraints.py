@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import Array, Constraint, HasLayout, State, Tree, Unsupported
-from .arithmetic import Exact, exact, eye, many_digits, skew, solve, zeros
+from .arithmetic import Exact, exact, eye, many_digits, root, skew, solve, zeros
 from .dynamics import Point, Truth, digits, random_state
 from .kinematics import Kinematics
 
@@ -51,7 +51,11 @@ def _rows(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
     # The second link's point is the one that now stands at the first frame: the relative motion of the two links is one
     # spatial vector, which the frames' distance has no part in.
     moved = np.concatenate([second.J[:3] - skew(apart) @ second.J[3:], second.J[3:]])
-    return Rows(np.concatenate([apart, first.R @ angle / 2]), first.R, first.J - moved)
+    scale = exact(constraint.torque_scale)[()]
+    J = first.J - moved
+    return Rows(
+        np.concatenate([apart, scale * (first.R @ angle) / 2]), first.R, np.concatenate([J[:3], scale * J[3:]])
+    )
 
 
 def _along(R: Exact | None, rows: Exact) -> Exact:
@@ -59,6 +63,25 @@ def _along(R: Exact | None, rows: Exact) -> Exact:
     if R is None:
         return rows
     parts = [R.T @ rows[k : k + 3] for k in range(0, len(rows), 3)]
+    return np.concatenate(parts)
+
+
+def residuals(t: Truth, q: Exact) -> Exact:
+    """What constraints are off by (m): the first frame's point less the second's, along world axes; of a weld, times its
+    scale, the vector part of the quaternion that turns the second frame into the first, too; lengths less those at zero.
+    """
+    parts = []
+    for one in t.tree.constraints:
+        residual = _rows(t.kinematics, q, one).residual
+        if one.kind == "weld":
+            first, second = (t.kinematics.held(q, end).R for end in one.ends)
+            turned = second.T @ first
+            spin = np.array([turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]])
+            half = exact(one.torque_scale)[()] * spin / (2 * root(1 + np.trace(turned)))
+            residual = np.concatenate([residual[:3], half])
+        elif one.kind == "path":
+            residual = residual - _at_zero(t.kinematics, one)
+        parts.append(residual)
     return np.concatenate(parts)
 
 

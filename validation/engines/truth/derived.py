@@ -100,6 +100,38 @@ def angular_accelerations(truth: Truth, s: Point) -> Exact:
     return _sensed_accelerations(truth, s)[:, 3:]
 
 
+def driven(truth: Truth, s: Point) -> Exact:
+    """Readings of accelerometers at the accelerations that the forces make (n, 3)."""
+    return accelerometers(truth, s._replace(a=truth.FD(s.q, s.v, s.tau)))
+
+
+def frame_poses(truth: Truth, s: Point) -> Exact:
+    """Positions and rows of R of the sensors' frames (n, 12)."""
+    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
+    return np.array([np.concatenate([p, R.reshape(9)]) for R, p, _ in frames])
+
+
+# Force, then moment about the frame's origin, along its axes.
+WRENCH = (1.0, -2.0, 3.0, 0.5, -0.25, 0.75)
+
+
+def applied_wrenches(truth: Truth, s: Point) -> Exact:
+    """Forces along the speeds (nv) of `WRENCH` at each sensor's frame."""
+    total, wrench = 0 * s.v, exact(WRENCH)
+    for end in truth.tree.sensors:
+        R, _, J = truth.kinematics.held(s.q, end)
+        total = total + np.concatenate([R @ wrench[:3], R @ wrench[3:]]) @ J
+    return total
+
+
+def solid_inertia(truth: Truth, s: Point) -> Exact:
+    """Mass, mass centre, moments about it (10) of the only link, as it is stated."""
+    (link,) = truth.tree.links
+    I = exact(link.inertia)
+    moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
+    return np.array([exact(link.mass)[()], *exact(link.com), *moments])
+
+
 def wrench_sensors(truth: Truth, s: Point) -> Exact:
     """Wrench (force; moment) of each sensor's link's joint on its subtree, at the sensor, along its axes (n, 6)."""
     held, places = joint_wrenches(truth, s), [link.name for link in truth.tree.links]

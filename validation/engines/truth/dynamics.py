@@ -85,6 +85,8 @@ class Truth:
             self.inertias, self.kinematics.poses(q), self.kinematics.jacobians(q), self._rounded, strict=True
         ):
             M = M + J.T @ (rounded[:, np.newaxis] * (inertia.turned(R).matrix() @ J))
+        for armature, J in self.own.heavy(q):
+            M = M + armature * np.outer(J, J)
         return M
 
     def motions(self, q: Exact, v: Exact, a: Exact) -> tuple[Exact, Exact, Exact]:
@@ -120,7 +122,23 @@ class Truth:
 
     def ID(self, q: Exact, v: Exact, a: Exact) -> Exact:
         """M a + h (nv)."""
-        return self.forces(self.motions(q, v, a), self.kinematics.poses(q), list(self.inertias)) + self.armature * a
+        return self.of_links(q, v, a) + self.armature * a + self._of_tendons(q, v, a)
+
+    def of_links(self, q: Exact, v: Exact, a: Exact) -> Exact:
+        """The part of the links in M a + h (nv)."""
+        return self.forces(self.motions(q, v, a), self.kinematics.poses(q), list(self.inertias))
+
+    def _of_tendons(self, q: Exact, v: Exact, a: Exact) -> Exact:
+        """What the mass that moves with tendons takes (nv): that times the acceleration of each length."""
+
+        def arms(at: Exact) -> Exact:
+            return np.array([J for _, J in self.own.heavy(at)], dtype=object).reshape(-1, self.nv)
+
+        heavy = self.own.heavy(q)
+        if not heavy:
+            return zeros(self.nv)
+        rates = arms(q) @ a + self.kinematics.along(arms, q, v) @ v
+        return sum((armature * J * rate_ for (armature, J), rate_ in zip(heavy, rates, strict=True)), zeros(self.nv))
 
     def h(self, q: Exact, v: Exact) -> Exact:
         """Coriolis, centrifugal and gravity forces (nv)."""

@@ -5,7 +5,8 @@ With l(q) the length of a tendon and J its derivative along the speeds, e the fo
     Q = -d v - k (q - rest) + J_c^T (-gamma m g) + sum J^T (-k (l - rest) - d J v) + sum gear J^T e
     e = clip(gain clip(u) + b0 + b1 gear l + b2 gear J v)
 
-where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed.
+where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed. What
+actuators make together along a joint stays within the joint's limits.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..interface import Actuator, End, Tendon, Tree
-from .arithmetic import Exact, exact, zeros
+from ..interface import Actuator, End, Muscle, Tendon, Tree
+from .arithmetic import Exact, exact, rate, root, zeros
 from .kinematics import Kinematics
 
 
@@ -29,12 +30,16 @@ class Forces:
 
     def __init__(self, tree: Tree, kinematics: Kinematics) -> None:
         self.tree, self._kinematics, self._nv = tree, kinematics, kinematics.nv
-        self.damping, self.stiffness = zeros(self._nv), zeros(self._nv)
+        self.damping, self.stiffness, self.friction = zeros(self._nv), zeros(self._nv), zeros(self._nv)
+        self._limits: dict[int, Exact] = {}
         self._springs: list[tuple[int, int, Exact]] = []
         for k in range(len(tree.links)):
             for joint, slot in kinematics.joints(k):
-                if slot is None or not (joint.damping or joint.stiffness):
+                if slot is None:
                     continue
+                if joint.force_limits:
+                    self._limits[slot.v[0]] = exact(joint.force_limits)
+                self.friction[list(slot.v)] = exact(joint.friction)[()]
                 self.damping[list(slot.v)] = exact(joint.damping)[()]
                 if joint.stiffness:
                     self.stiffness[slot.v[0]] = exact(joint.stiffness)[()]
@@ -47,6 +52,11 @@ class Forces:
             offset[speed] = q[coordinate] - rest
         return offset
 
+    def heavy(self, q: Exact) -> list[tuple[Exact, Exact]]:
+        """Armature and derivative of each tendon that has some."""
+        heavy = (tendon for tendon in self.tree.tendons if tendon.armature)
+        return [(exact(one.armature)[()], self._kinematics.line(q, one)[1]) for one in heavy]
+
     def lines(self, q: Exact) -> list[tuple[Exact, Exact]]:
         """Lengths and derivatives of all tendons."""
         return [self._kinematics.line(q, tendon) for tendon in self.tree.tendons]
@@ -55,10 +65,28 @@ class Forces:
         """For each actuator, its length and moment arms (nv), both with its gear."""
         made = []
         for actuator in self.tree.actuators:
-            length, J = self._kinematics.line(q, self._line_of(actuator))
+            length, J = self._line(q, actuator)
             gear = exact(actuator.gear)[()]
             made.append((gear * length, gear * J))
         return made
+
+    def _line(self, q: Exact, actuator: Actuator) -> tuple[Exact, Exact]:
+        """Length and moment arms (nv) of an actuator, without its gear."""
+        if not actuator.ends:
+            return self._kinematics.line(q, self._line_of(actuator))
+        if len(actuator.ends) == 1:
+            frame, wrench = self._kinematics.held(q, actuator.ends[0]), exact(actuator.wrench)
+            along = np.concatenate([frame.R @ wrench[:3], frame.R @ wrench[3:]])
+            return exact(0.0)[()], along @ frame.J
+
+        frame = self._kinematics.held(q, actuator.ends[1])
+        apart, J = self._kinematics.seen(q, actuator.ends[0], frame)
+        if not actuator.crank:
+            along = exact(actuator.wrench[:3])
+            return along @ apart, along @ J
+        rod = exact(actuator.crank)[()]
+        rest = root(apart[2] * apart[2] + rod * rod - apart @ apart)
+        return apart[2] - rest, J[2] - (apart[2] * J[2] - apart @ J) / rest
 
     def _line_of(self, actuator: Actuator) -> Tendon:
         """The tendon that an actuator pulls; that of a joint is its coordinate."""
@@ -83,14 +111,18 @@ class Forces:
         """The actuators' forces (nu)."""
         made = []
         for actuator, (length, J) in zip(self.tree.actuators, self.transmissions(q), strict=True):
-            b0, b1, b2 = exact(actuator.bias)
-            control = _clipped(exact(actuator.control)[()], exact(actuator.control_limits))
-            effort = exact(actuator.gain)[()] * control + b0 + b1 * length + b2 * (J @ v)
-            made.append(_clipped(effort, exact(actuator.force_limits)))
+            made.append(_effort(actuator, length, J @ v))
         return np.array(made, dtype=object)
 
     def actuated(self, q: Exact, v: Exact) -> Exact:
         """What the actuators do (nv)."""
+        total = self._together(q, v)
+        for place, limits in self._limits.items():
+            total[place] = _clipped(total[place], limits)
+        return total
+
+    def _together(self, q: Exact, v: Exact) -> Exact:
+        """What the actuators do before joints bound it (nv)."""
         return sum(
             (e * J for e, (_, J) in zip(self.efforts(q, v), self.transmissions(q), strict=True)), zeros(self._nv)
         )
@@ -110,11 +142,78 @@ class Forces:
         for tendon, (_, J) in zip(self.tree.tendons, self.lines(q), strict=True):
             square = np.outer(J, J)
             D, K = D + exact(tendon.damping)[()] * square, K + exact(tendon.stiffness)[()] * square
+        made: list[tuple[Exact, Exact]] = []
         for number, (actuator, (_, J)) in enumerate(zip(self.tree.actuators, self.transmissions(q), strict=True)):
-            if not self.is_saturated(number, q, v):
-                _, b1, b2 = exact(actuator.bias)
-                D, K = D - b2 * np.outer(J, J), K - b1 * np.outer(J, J)
+            if not self.is_saturated(number, q, v) and not actuator.is_disabled:
+                b1, b2 = self._slopes(actuator, q, v, number)
+                made.append((b1 * np.outer(J, J), b2 * np.outer(J, J)))
+        total = self._together(q, v) if self._limits else None
+        bound = [place for place, (low, high) in self._limits.items() if not low < total[place] < high]
+        for by_length, by_speed in made:
+            by_length[bound], by_speed[bound] = zeros(self._nv), zeros(self._nv)
+            D, K = D - by_speed, K - by_length
         return D, K
+
+    def _slopes(self, actuator: Actuator, q: Exact, v: Exact, number: int) -> tuple[Exact, Exact]:
+        """The derivatives of an actuator's force by its length and by its speed."""
+        _, b1, b2 = exact(actuator.bias)
+        if actuator.muscle is None:
+            return b1, b2
+        length, J = self.transmissions(q)[number]
+        at = np.array([length, J @ v], dtype=object)
+        unit = exact(np.eye(2))
+        by_length, by_speed = (
+            rate(lambda one: np.array([_effort(actuator, *one)], dtype=object), at, unit[k])[0] for k in range(2)
+        )
+        return by_length, by_speed
+
+
+def _effort(actuator: Actuator, length: Exact, speed: Exact) -> Exact:
+    """The force of an actuator."""
+    if actuator.is_disabled:
+        return exact(0.0)[()]
+    b0, b1, b2 = exact(actuator.bias)
+    control = _clipped(exact(actuator.control)[()], exact(actuator.control_limits))
+    effort = exact(actuator.gain)[()] * control + b0 + b1 * length + b2 * speed
+    if actuator.muscle is not None:
+        effort = _pull(actuator.muscle, length, speed)
+    return _clipped(effort, exact(actuator.force_limits))
+
+
+def _pull(muscle: Muscle, length: Exact, speed: Exact) -> Exact:
+    """The force of a muscle: polynomials of degree two, piece by piece."""
+    one, half = exact(1.0)[()], exact(0.5)[()]
+    low, high = exact(muscle.operating)
+    least, greatest = exact(muscle.lengths)
+    unit = (greatest - least) / (high - low)
+    L, V = low + (length - least) / unit, speed / (unit * exact(muscle.fastest)[()])
+    below, above = exact(muscle.zeros)
+    a, b = (below + one) / 2, (one + above) / 2
+    if not below <= L <= above:
+        active = 0 * one
+    elif L <= a:
+        active = half * ((L - below) / (a - below)) ** 2
+    elif L <= one:
+        active = one - half * ((one - L) / (one - a)) ** 2
+    elif L <= b:
+        active = one - half * ((L - one) / (b - one)) ** 2
+    else:
+        active = half * ((above - L) / (above - b)) ** 2
+    top = exact(muscle.lengthening)[()]
+    y = top - one
+    if V <= -one:
+        faster = 0 * one
+    elif V <= 0:
+        faster = (V + one) ** 2
+    elif V <= y:
+        faster = top - (y - V) ** 2 / y
+    else:
+        faster = top
+    passive = 0 * one
+    if L > one:
+        x = (L - one) / (b - one)
+        passive = exact(muscle.passive)[()] * (half * x * x if L <= b else x - half)
+    return -exact(muscle.peak)[()] * (exact(muscle.activation)[()] * active * faster + passive)
 
 
 def _clipped(value: Exact, limits: Iterable[Exact]) -> Exact:

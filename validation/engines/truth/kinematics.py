@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Constraint, End, HasLayout, Joint, Link, Slot, Tendon, Tree
+from ..interface import Constraint, End, HasLayout, Joint, Link, Slot, Tendon, Tree, Wrap
 from .arithmetic import (
     Exact,
+    arc,
+    cross,
     exact,
     eye,
     many_digits,
@@ -114,12 +116,35 @@ class Kinematics:
                 (slot,) = self.slots[self._places[end.link]]
                 length, J[slot.v[0]] = length + coefficient * q[slot.q[0]], J[slot.v[0]] + coefficient
             return length, J
+        wraps = {wrap.after: wrap for wrap in line.wraps} if isinstance(line, Tendon) else {}
         points = [self.held(q, end) for end in line.ends]
-        for before, after in zip(points, points[1:], strict=False):
+        for number, (before, after) in enumerate(zip(points, points[1:], strict=False)):
+            if number in wraps:
+                own, arms = self._wrapped(q, line.ends[number], wraps[number], line.ends[number + 1])
+                length, J = length + own, J + arms
+                continue
             step = after.p - before.p
             distance = root(step @ step)
             length, J = length + distance, J + (step / distance) @ (after.J[:3] - before.J[:3])
         return length, J
+
+    def seen(self, q: Exact, end: End, frame: Held) -> tuple[Exact, Exact]:
+        """Position of a frame's point in another frame (3), and its derivative (3, nv)."""
+        point = self.held(q, end)
+        apart = point.p - frame.p
+        return frame.R.T @ apart, frame.R.T @ (point.J[:3] - frame.J[:3] + skew(apart) @ frame.J[3:])
+
+    def _wrapped(self, q: Exact, first: End, wrap: Wrap, second: End) -> tuple[Exact, Exact]:
+        """Length of a line that is tight around a surface, and its derivative (nv): by differences of the length."""
+        frame, radius = self.held(q, wrap.end), exact(wrap.radius)[()]
+        (a, at_a), (b, at_b) = (self.seen(q, end, frame) for end in (first, second))
+
+        def length(points: Exact) -> Exact:
+            return np.array([around(points[:3], points[3:], radius, wrap.is_sphere)], dtype=object)
+
+        points, unit = np.concatenate([a, b]), eye(6)
+        slopes = np.array([rate(length, points, unit[k])[0] for k in range(6)], dtype=object)
+        return length(points)[0], slopes @ np.concatenate([at_a, at_b])
 
     def _links(self, q: Exact, with_jacobians: bool = True) -> list[tuple[Exact, Exact, Exact]]:
         """R, p and Jacobian of each link; what depends on them must not be changed in place."""
@@ -172,6 +197,27 @@ class Kinematics:
             columns = [(column[:3], vee(column[3:].reshape(3, 3) @ R.T)) for column in rates]
             self._motions[key] = (R, p, columns)
         return self._motions[key]
+
+
+def around(a: Exact, b: Exact, radius: Exact, is_sphere: bool) -> Exact:
+    """The shortest way from a to b around a sphere about the origin, or a cylinder about z; straight where it can be.
+
+    Of a sphere it lies in the plane of a, b and the centre: two tangents, and between them a part of a circle. A cylinder
+    unrolls: the way across z is the same as of a circle, and the rise along z is a side of a right triangle with it.
+    """
+    rise = (b - a) if is_sphere else (b - a)[2:]
+    flat_a, flat_b = (a, b) if is_sphere else (a[:2], b[:2])
+    squares = [one @ one - radius * radius for one in (flat_a, flat_b)]
+    if min(squares) <= 0:  # What begins inside is not held by the surface.
+        return root((b - a) @ (b - a))
+    tangents = [root(square) for square in squares]
+    normal = cross(a, b) if is_sphere else np.array([flat_a[0] * flat_b[1] - flat_a[1] * flat_b[0]])
+    between = arc(flat_a @ flat_b, root(normal @ normal))
+    rest = between - sum(arc(radius, one) for one in tangents)
+    if rest <= 0:
+        return root((b - a) @ (b - a))
+    way = sum(tangents) + radius * rest
+    return way if is_sphere else root(way * way + rise @ rise)
 
 
 def _locked(joint: Joint) -> Pose:

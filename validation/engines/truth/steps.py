@@ -100,8 +100,8 @@ def _metrics(t: Truth, s: Point, implicit: Implicit) -> tuple[Exact, Exact]:
 
 
 def _turning(t: Truth, s: Point) -> Exact:
-    """The bias' derivative by v (nv, nv)."""
-    return t.along_speeds(lambda v: t.h(s.q, v), s.v)
+    """The derivative by v of the links' part of the bias (nv, nv)."""
+    return t.along_speeds(lambda v: t.of_links(s.q, v, zeros(t.nv)), s.v)
 
 
 def _lone_bodies(t: Truth) -> list[int]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
 
-from ...interface import Actuator, Constraint, End, Joint, Tendon, Tree
+from ...interface import STEP, Actuator, Array, Constraint, End, Joint, Muscle, Tendon, Tree, Wrap
 from ..writing.source import Way
 
 KINDS = {
@@ -28,11 +29,25 @@ def _site(name: str, end: End) -> str:
     return f'<site name="{name}" pos="{_text(end.p)}" xyaxes="{_text([*R[:, 0], *R[:, 1]])}"/>'
 
 
+def _surface(name: str, wrap: Wrap) -> str:
+    """A geom that a tendon wraps around and nothing meets."""
+    R, kind = np.array(wrap.end.R), "sphere" if wrap.is_sphere else "cylinder"
+    size = f"{wrap.radius!r}" if wrap.is_sphere else f"{wrap.radius!r} 1"
+    at = f'pos="{_text(wrap.end.p)}" xyaxes="{_text([*R[:, 0], *R[:, 1]])}"'
+    return f'<geom name="{name}" type="{kind}" size="{size}" {at} mass="0" contype="0" conaffinity="0"/>'
+
+
 def sites(tree: Tree, link: str) -> str:
-    """The sites of a link, "" for the world, that constraints hold, tendons run over and sensors stand on."""
+    """The sites of a link, "" for the world, that constraints hold, tendons run over and sensors stand on, and what
+    tendons wrap around."""
     lines: list[tuple[str, Constraint | Tendon]] = [(f"s{number}", one) for number, one in enumerate(tree.constraints)]
     lines += [(f"n{number}", one) for number, one in enumerate(tree.tendons)]
     sensors = "".join(_site(f"o{k}", end) for k, end in enumerate(tree.sensors) if end.link == link)
+    for number, actuator in enumerate(tree.actuators):
+        sensors += "".join(_site(f"u{number}_{k}", end) for k, end in enumerate(actuator.ends) if end.link == link)
+    for number, tendon in enumerate(tree.tendons):
+        wraps = ((k, wrap) for k, wrap in enumerate(tendon.wraps) if wrap.end.link == link)
+        sensors += "".join(_surface(f"w{number}_{k}", wrap) for k, wrap in wraps)
     return sensors + "".join(
         _site(f"{name}_{place}", end)
         for name, one in lines
@@ -47,7 +62,7 @@ def elements(tree: Tree) -> str:
     equalities = [_equality(number, one) for number, one in enumerate(tree.constraints)]
     tendons = [_tendon(number, one) for number, one in enumerate(tree.constraints)]
     tendons += [_line(f"n{number}", f"n{number}", one, _spring(one)) for number, one in enumerate(tree.tendons)]
-    parts = {"tendon": tendons, "equality": equalities, "actuator": [_actuator(one) for one in tree.actuators]}
+    parts = {"tendon": tendons, "equality": equalities, "actuator": [_actuator(k, one) for k, one in enumerate(tree.actuators)]}
     parts["sensor"] = [_sensor(kind, k) for k in range(len(tree.sensors)) for kind in _SENSORS]
     return "".join(f"<{name}>{''.join(part)}</{name}>" for name, part in parts.items() if any(part))
 
@@ -61,14 +76,38 @@ def _sensor(kind: str, k: int) -> str:
 
 
 def _spring(one: Tendon) -> str:
-    return f' stiffness="{one.stiffness!r}" damping="{one.damping!r}" springlength="{one.rest!r}"'
+    heavy = f' armature="{one.armature!r}"' if one.armature else ""
+    return f' stiffness="{one.stiffness!r}" damping="{one.damping!r}" springlength="{one.rest!r}"{heavy}'
 
 
-def _actuator(one: Actuator) -> str:
+def _driven(number: int, one: Actuator) -> str:
+    """What an actuator acts on, and its gear."""
+    if one.crank:
+        at = f'cranksite="u{number}_0" slidersite="u{number}_1" cranklength="{one.crank!r}"'
+    elif one.ends:
+        at = f'site="u{number}_0"' + (f' refsite="u{number}_1"' if len(one.ends) > 1 else "")
+        wrench = (one.gear * part for part in one.wrench)
+        return f'{at} gear="{_text(wrench)}"'
+    else:
+        at = f'joint="{one.link}"' if one.tendon is None else f'tendon="n{one.tendon}"'
+    return f'{at} gear="{one.gear!r}"'
+
+
+def _muscle(one: Muscle) -> str:
+    """A general actuator whose control is the activation."""
+    parameters = (*one.operating, one.peak, 200.0, *one.zeros, one.fastest, one.passive, one.lengthening)
+    return (
+        f'general gaintype="muscle" biastype="muscle" lengthrange="{_text(one.lengths)}"'
+        f' gainprm="{_text(parameters)}" biasprm="{_text(parameters)}"'
+    )
+
+
+def _actuator(number: int, one: Actuator) -> str:
     """A motor, a servo of position or velocity, or the general one."""
-    at = f'joint="{one.link}"' if one.tendon is None else f'tendon="n{one.tendon}"'
     b0, b1, b2 = one.bias
     match one:
+        case Actuator(muscle=Muscle()):
+            element = _muscle(one.muscle)
         case Actuator(gain=1.0, bias=(0.0, 0.0, 0.0)):
             element = "motor"
         case Actuator(bias=(0.0, _, 0.0)) if one.gain == -b1:
@@ -79,21 +118,36 @@ def _actuator(one: Actuator) -> str:
             element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
     limits = f' ctrllimited="true" ctrlrange="{_text(one.control_limits)}"' if one.control_limits else ""
     limits += f' forcelimited="true" forcerange="{_text(one.force_limits)}"' if one.force_limits else ""
-    return f'<{element} {at} gear="{one.gear!r}"{limits}/>'
+    group = ' group="1"' if one.is_disabled else ""
+    return f"<{element} {_driven(number, one)}{limits}{group}/>"
+
+
+def options(tree: Tree) -> str:
+    """Attributes of options that a tree needs."""
+    return ' actuatorgroupdisable="1"' if any(one.is_disabled for one in tree.actuators) else ""
 
 
 def forces(joint: Joint) -> str:
     """The attributes that state a joint's damper and spring."""
     stated = {"damping": joint.damping, "stiffness": joint.stiffness, "springref": joint.rest}
-    return "".join(f' {name}="{value!r}"' for name, value in stated.items() if value)
+    made = "".join(f' {name}="{value!r}"' for name, value in stated.items() if value)
+    limits = f' actuatorfrclimited="true" actuatorfrcrange="{_text(joint.force_limits)}"' if joint.force_limits else ""
+    return made + limits
 
 
 def controls(tree: Tree) -> list[str]:
-    """Statements that set the actuators' controls."""
-    return [f"d.ctrl[:] = {[one.control for one in tree.actuators]}"] if tree.actuators else []
+    """Statements that set the actuators' controls; a muscle's is its activation."""
+    controls = [one.muscle.activation if one.muscle else one.control for one in tree.actuators]
+    return [f"d.ctrl[:] = {controls}"] if tree.actuators else []
 
 
 def _equality(number: int, one: Constraint) -> str:
+    if one.torque_scale != 1.0:  # By bodies: the second's own frame is at a pose in the first.
+        first, second = one.ends
+        others = f' body2="{second.link}"' if second.link else ""
+        w, x, y, z = quaternion_of(np.array(first.R))
+        pose = f'relpose="{_text([*first.p, w, x, y, z])}"'
+        return f'<weld body1="{first.link}"{others} {pose} torquescale="{one.torque_scale!r}" {_HARD}/>'
     if one.kind in ("point", "weld"):
         name = {"point": "connect", "weld": "weld"}[one.kind]
         return f'<{name} site1="s{number}_0" site2="s{number}_1" {_HARD}/>'
@@ -102,6 +156,13 @@ def _equality(number: int, one: Constraint) -> str:
         first, second = (end.link for end in one.ends)
         return f'<joint joint1="{first}" joint2="{second}" polycoef="0 {ratio!r} 0 0 0" {_HARD}/>'
     return f'<tendon tendon1="t{number}" {_HARD}/>'
+
+
+def quaternion_of(R: Array) -> tuple[float, float, float, float]:
+    """Quaternion (w, x, y, z) of a rotation (3, 3) whose angle is not pi."""
+    w = math.sqrt(max(0.0, 1.0 + np.trace(R))) / 2.0
+    x, y, z = ((R[(k + 2) % 3, (k + 1) % 3] - R[(k + 1) % 3, (k + 2) % 3]) / (4.0 * w) for k in range(3))
+    return w, x, y, z
 
 
 def _is_joint(one: Constraint) -> bool:
@@ -116,7 +177,11 @@ def _tendon(number: int, one: Constraint) -> str:
 def _line(name: str, sites: str, one: Constraint | Tendon, more: str = "") -> str:
     """A tendon, spatial over sites or fixed."""
     if one.kind == "path":
-        via = "".join(f'<site site="{sites}_{place}"/>' for place in range(len(one.ends)))
+        wraps = {wrap.after: k for k, wrap in enumerate(one.wraps)} if isinstance(one, Tendon) else {}
+        via = ""
+        for place in range(len(one.ends)):
+            via += f'<site site="{sites}_{place}"/>'
+            via += f'<geom geom="w{sites[1:]}_{wraps[place]}"/>' if place in wraps else ""
         return f'<spatial name="{name}"{more}>{via}</spatial>'
     parts = zip(one.ends, one.coefficients, strict=True)
     inside = "".join(f'<joint joint="{end.link}" coef="{coefficient!r}"/>' for end, coefficient in parts)
@@ -138,11 +203,16 @@ def optional(tree: Tree) -> dict[str, tuple[str, ...]]:
     """
     if not tree.constraints:
         return {}
-    blocks = []
+    blocks, turns = [], []
     for number, one in enumerate(tree.constraints):
+        turns += [f"{1 if one.kind in ('coupling', 'path') else 3} * [1]"]
+        way = f"sign('s{number}_0', 's{number}_1')"
+        if one.torque_scale != 1.0:  # The pose has a quaternion of its own, with w > 0.
+            way += f" * np.sign(m.site('s{number}_0').quat[0])"
+        turns += [f"3 * [{way}]"] * (one.kind == "weld")
         if one.kind in ("point", "weld"):
             blocks.append(f"d.site_xmat[m.site('s{number}_0').id].reshape(3, 3).T")
-            blocks += [f"2 * sign('s{number}_0', 's{number}_1') * np.eye(3)"] * (one.kind == "weld")
+            blocks += [f"2 * {way} * np.eye(3)"] * (one.kind == "weld")
         else:
             blocks.append("np.eye(1)")
     lines: list[str] = []
@@ -154,7 +224,8 @@ def optional(tree: Tree) -> dict[str, tuple[str, ...]]:
             "    return quaternion",
             "def sign(a, b): return np.sign(turned(a) @ turned(b))",
         ]
-    return {"axes": (*lines, f"def axes(): return block_diag({', '.join(blocks)})", *_BLOCKS)}
+    axes = (*lines, f"def axes(): return block_diag({', '.join(blocks)})", *_BLOCKS)
+    return {"axes": axes, "ways_round": (f"def ways_round(): return np.array({' + '.join(turns)})",)}
 
 
 _BLOCKS = (
@@ -176,10 +247,27 @@ _SOFT = 1e-2
 # Far from there the inertia that a row sees is a fraction of the estimate, and forces between redundant rows take the
 # weakest direction of J M^-1 J^T, down to a twentieth of its diagonal: 1e-4 becomes some hundredths.
 _SOFT_FORCES = 5e-2
+# What is left of loops that are closed but for roundings, times the stiffness of constraints and the step.
+_AT_REST = 1e-9
 
 WAYS = {
     "constraint_jacobian": Way("efc_J", f"{_AT}{_J}value = axes() @ J"),
     "constraint_velocity_products": Way("-efc_aref", f"{_AT}value = -axes() @ d.efc_aref"),
+    "constraint_residuals": Way(
+        "efc_pos", f"{_AT.replace('= q, v', '= q2, v')}value = d.efc_pos * ways_round()"
+    ),
+    "step_at_rest": Way(
+        "mj_step",
+        "from copy import copy\nn = copy(m)\n"
+        f"n.opt.gravity[:], n.opt.timestep = 0.0, {STEP}\nd.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, 0.0, 0.0\n"
+        "mj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]",
+        _AT_REST,
+    ),
+    # Of a row of rotation that of the angular velocity, though the row is of half of it.
+    "constraint_diagonal": Way(
+        "efc_diagApprox, efc_diagA",
+        f"{_AT}value = d.efc_diagApprox if hasattr(d, 'efc_diagApprox') else d.efc_diagA",
+    ),
     "delassus": Way(
         "mj_solveM with efc_J",
         f"{_AT}{_J}X = np.zeros_like(J)\nmj.mj_solveM(m, d, X, J)\nvalue = axes() @ J @ X.T @ axes().T",

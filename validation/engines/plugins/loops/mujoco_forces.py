@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from ...interface import STEP, Steps
+from ...truth.derived import WRENCH
 from ..writing.source import Way
 
+FORCE, MOMENT = list(WRENCH[:3]), list(WRENCH[3:])
 Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
 QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
 QVA = f"{QV}d.qacc[:] = a\n"
 _MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
+# What forces make of accelerations, and what accelerometers read then.
+_DRIVEN = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
+_ACCELEROMETERS = "value = [data('accelerometer', k) for k in sensed]"
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
 COPY = "from copy import copy\nn = copy(m)\n"
@@ -62,6 +67,27 @@ for b in bs:
     "wrench_sensors": Way(
         "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
     ),
+    "accelerometers_driven": Way("mj_forward, accelerometer", f"{_DRIVEN}mj.mj_forward(m, d)\n{_ACCELEROMETERS}"),
+    "accelerometers_driven:mj_step2": Way(
+        "mj_step1, mj_step2, accelerometer", f"{_DRIVEN}mj.mj_step1(m, d); mj.mj_step2(m, d)\n{_ACCELEROMETERS}"
+    ),
+    "accelerometers_driven:mj_step": Way("mj_step, accelerometer", f"{_DRIVEN}mj.mj_step(m, d)\n{_ACCELEROMETERS}"),
+    "frame_poses": Way(
+        "site_xpos, site_xmat",
+        f"{Q}own = [m.site(f'o{{k}}').id for k in sensed]\nvalue = np.hstack([d.site_xpos[own], d.site_xmat[own]])",
+    ),
+    "applied_wrenches": Way(
+        "mj_applyFT",
+        f"""{Q}value = np.zeros(m.nv)
+for k in sensed:
+    site = m.site(f'o{{k}}').id
+    R = d.site_xmat[site].reshape(3, 3)
+    mj.mj_applyFT(m, d, R @ {FORCE}, R @ {MOMENT}, d.site_xpos[site], m.site_bodyid[site], value)""",
+    ),
+    "flexible_relation": Way("qfrc_passive, mj_step", "value = 1.0 + difference()"),
+    "joint_dampings": Way("dof_damping", "value = m.dof_damping"),
+    "joint_frictions": Way("dof_frictionloss", "value = m.dof_frictionloss"),
+    "joint_stiffnesses": Way("jnt_stiffness", "value = m.jnt_stiffness[m.dof_jntid]"),
     "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),
     "passive_forces": Way("qfrc_passive", f"{QV}value = d.qfrc_passive"),
     "tendon_lengths": Way("ten_length", f"{QV}value = d.ten_length"),

@@ -1,0 +1,114 @@
+"""Rotations in many digits: R and Q that the coordinates q and q2 make of a tree's only link, and vectors of rotation.
+
+With S the matrix of the cross product of r, of length p, and w along the turned axes,
+
+    w = A r',  A = 1 - (1 - cos p) / p^2 S + (p - sin p) / p^3 S^2                                                       (5)
+
+and along the axes before, w = A^T r'. The angles roll, pitch, yaw make R = Rz Ry Rx.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve
+from .dynamics import Point, Truth
+
+_UNIT = exact(np.eye(3))
+
+
+def _turn(t: Truth, q: Exact) -> Exact:
+    ((R, _),) = t.kinematics.poses(q)
+    return R
+
+
+def matrix(t: Truth, s: Point) -> Exact:
+    """Rows of R (9)."""
+    return _turn(t, s.q).reshape(9)
+
+
+def angle(t: Truth, s: Point) -> Exact:
+    """Angle of R^T Q (1)."""
+    vector = _logarithm(_turn(t, s.q).T @ _turn(t, s.q2))
+    return np.array([root(vector @ vector)])
+
+
+def logarithm(t: Truth, s: Point) -> Exact:
+    """Rotation vector of R (3)."""
+    return _logarithm(_turn(t, s.q))
+
+
+def _logarithm(R: Exact) -> Exact:
+    """Rotation vector (3), shorter than pi."""
+    spin = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / 2
+    sine = root(spin @ spin)
+    return spin * (arc((np.trace(R) - 1) / 2, sine) / sine) if sine else 0 * spin
+
+
+def exponential(t: Truth, s: Point) -> Exact:
+    """Rows of the rotation by the vector v (9)."""
+    return _exponential(s.v).reshape(9)
+
+
+def _exponential(r: Exact) -> Exact:
+    length = root(r @ r)
+    return rotation(r / length, *cos_sin(length)) if length else eye(3)
+
+
+def _speeds(r: Exact) -> Exact:
+    """A, eq. (5)."""
+    length, S = root(r @ r), skew(r)
+    if not length:
+        return eye(3)
+    cosine, sine = cos_sin(length)
+    return eye(3) - (1 - cosine) / length**2 * S + (length - sine) / length**3 * (S @ S)
+
+
+def vector_speeds(t: Truth, s: Point) -> Exact:
+    """A at r = v, eq. (5)."""
+    return _speeds(s.v)
+
+
+def vector_rates(t: Truth, s: Point) -> Exact:
+    """The inverse of A at r = v."""
+    return solve(_speeds(s.v), eye(3))
+
+
+def vector_rates_fixed(t: Truth, s: Point) -> Exact:
+    """The inverse of A^T at r = v."""
+    return solve(_speeds(s.v).T, eye(3))
+
+
+def vector_rates_rate(t: Truth, s: Point) -> Exact:
+    """The time derivative of the inverse of A^T at r = v, r' = a."""
+    return rate(lambda r: solve(_speeds(r).T, eye(3)), s.v, s.a)
+
+
+def _of_angles(angles: Exact) -> Exact:
+    """B with (roll, pitch, yaw)' = B w, w along the axes before."""
+    _, pitch, yaw = (cos_sin(one) for one in angles)
+    z, y = rotation(_UNIT[2], *yaw), rotation(_UNIT[1], *pitch)
+    about = np.stack([(z @ y)[:, 0], z[:, 1], _UNIT[2]], axis=1)
+    return solve(about, eye(3))
+
+
+def rpy_rates(t: Truth, s: Point) -> Exact:
+    """B at the angles v (3, 3)."""
+    return _of_angles(s.v)
+
+
+def rpy_rates_rate(t: Truth, s: Point) -> Exact:
+    """The time derivative of B at angles v and rates a (3, 3)."""
+    return rate(_of_angles, s.v, s.a)
+
+
+def between(t: Truth, s: Point) -> Exact:
+    """Rows of the rotation a quarter of the way from R to Q (9)."""
+    R = _turn(t, s.q)
+    return (R @ _exponential(_logarithm(R.T @ _turn(t, s.q2)) / 4)).reshape(9)
+
+
+def adjoint(t: Truth, s: Point) -> Exact:
+    """Twists of a frame at (R, a), in the frame that it is in (6, 6)."""
+    R = _turn(t, s.q)
+    return np.block([[R, skew(s.a) @ R], [exact(np.zeros((3, 3))), R]])
