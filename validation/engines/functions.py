@@ -339,7 +339,7 @@ def _of_turns() -> dict[str, Function]:
         "rotation_vector_speeds": ("A at r = v, in the turned axes (3, 3)", turns.vector_speeds),
         "rotation_vector_rates_fixed": ("the same along the axes before (3, 3)", turns.vector_rates_fixed),
         "rotation_vector_rates_rate": (
-            "time derivative of the latter at r = v, r' = a (3, 3)",
+            "time derivative of the latter at r = tau, r' = a (3, 3)",
             turns.vector_rates_rate,
         ),
         "rpy_rates": ("roll, pitch, yaw rates = B w, w along the axes before, at angles v (3, 3)", turns.rpy_rates),

@@ -19,7 +19,9 @@ from . import (
     pybullet,
     pykdl,
     roboticstoolbox,
+    spatialmath,
     symofros,
+    trimesh,
 )
 from .loops import exudyn as exudyn_joints
 
@@ -40,6 +42,8 @@ _MODULES = (
     pybullet,
     pykdl,
     roboticstoolbox,
+    spatialmath,
     symofros,
+    trimesh,
 )
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

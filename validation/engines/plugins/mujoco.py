@@ -10,6 +10,7 @@ import numpy as np
 
 from ..interface import Array, Constraint, Convention, Joint, Slot, Statement, Steps, Tendon, Tree, Unsupported
 from .loops import mujoco as constrained
+from .loops import mujoco_flex
 from .loops import mujoco_forces as forces
 from .loops.mujoco_forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
 from .writing.source import Source, SourcePlugin, Way, attached, numbered, series
@@ -177,6 +178,8 @@ def _changing(tree: Tree, xml: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
+    if tree.asked == "flexible bodies":
+        return mujoco_flex.write(tree)
     if tree.changed:
         first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
         if isinstance(first, Unsupported) or isinstance(last, Unsupported):
@@ -383,6 +386,7 @@ PLUGIN = SourcePlugin(
         "tendons": "tendon/fixed, tendon/spatial",
         "wrapped tendons": "tendon/spatial/geom",
         "heavy tendons": "tendon armature",
+        "flexible bodies": "flexcomp",
         "scaled welds": "equality/weld torquescale",
         "a lone body": "efc_diagApprox",
         "actuators": "general, motor, position, velocity",

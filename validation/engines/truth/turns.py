@@ -80,8 +80,8 @@ def vector_rates_fixed(t: Truth, s: Point) -> Exact:
 
 
 def vector_rates_rate(t: Truth, s: Point) -> Exact:
-    """The time derivative of the inverse of A^T at r = v, r' = a."""
-    return rate(lambda r: solve(_speeds(r).T, eye(3)), s.v, s.a)
+    """The time derivative of the inverse of A^T at r = tau, r' = a."""
+    return rate(lambda r: solve(_speeds(r).T, eye(3)), s.tau, s.a)
 
 
 def _of_angles(angles: Exact) -> Exact:

@@ -84,7 +84,7 @@ for k in sensed:
     R = d.site_xmat[site].reshape(3, 3)
     mj.mj_applyFT(m, d, R @ {FORCE}, R @ {MOMENT}, d.site_xpos[site], m.site_bodyid[site], value)""",
     ),
-    "flexible_relation": Way("qfrc_passive, mj_step", "value = 1.0 + difference()"),
+    "flexible_relation": Way("qfrc_passive, mj_step", "value = 1.0 + difference()", 1e-9),
     "joint_dampings": Way("dof_damping", "value = m.dof_damping"),
     "joint_frictions": Way("dof_frictionloss", "value = m.dof_frictionloss"),
     "joint_stiffnesses": Way("jnt_stiffness", "value = m.jnt_stiffness[m.dof_jntid]"),
