@@ -335,9 +335,9 @@ def _of_turns() -> dict[str, Function]:
         "rotation_angle": ("angle of R^T Q (1)", turns.angle),
         "rotation_logarithm": ("rotation vector of R (3)", turns.logarithm),
         "rotation_exponential": ("rows of the rotation by the vector v (9)", turns.exponential),
-        "rotation_vector_rates": ("A^-1 at r = v, in the turned axes (3, 3)", turns.vector_rates),
-        "rotation_vector_speeds": ("A at r = v, in the turned axes (3, 3)", turns.vector_speeds),
-        "rotation_vector_rates_fixed": ("the same along the axes before (3, 3)", turns.vector_rates_fixed),
+        "rotation_vector_rates": ("A^-1 at r = tau, in the turned axes (3, 3)", turns.vector_rates),
+        "rotation_vector_speeds": ("A at r = tau, in the turned axes (3, 3)", turns.vector_speeds),
+        "rotation_vector_rates_fixed": ("A^-1 at r = v, along the axes before (3, 3)", turns.vector_rates_fixed),
         "rotation_vector_rates_rate": (
             "time derivative of the latter at r = tau, r' = a (3, 3)",
             turns.vector_rates_rate,

@@ -93,6 +93,7 @@ def about(
     worker: Worker,
     after: Callable[[str], object],
     goes_on: Callable[[], bool] = lambda: True,
+    further: bool = True,
 ) -> tuple[list[Judged], list[str]]:
     """The cells of engines on trees and files, and the names of those that are left when it goes on no more.
 
@@ -102,10 +103,11 @@ def about(
         worker: Process that the engines run in.
         after: Told the name of each when it is done.
         goes_on: Asked before each.
+        further: Whether functions of trees are asked at further states.
     """
     cells: list[Judged] = []
     left: list[str] = []
-    ask = _asker(plugins, worker)
+    ask = _asker(plugins, worker, further)
     for name, question in questions.items():
         if goes_on():
             cells += ask(question)
@@ -115,14 +117,14 @@ def about(
     return cells, left
 
 
-def _asker(plugins: Mapping[str, EnginePlugin], worker: Worker) -> Callable[[Tree | Reading], list[Judged]]:
+def _asker(plugins: Mapping[str, EnginePlugin], worker: Worker, further: bool = True) -> Callable[[Tree | Reading], list[Judged]]:
     """Question -> the cells of engines on it."""
     of_files = Truths()  # Many files state the same tree.
 
     def ask(question: Tree | Reading) -> list[Judged]:
         # Engines with the same layout of a tree share its truths; other trees have none in common with it.
         truths = of_files if isinstance(question, Reading) else Truths()
-        jobs = ((plugin, _job(plugin, question)) for plugin in plugins.values())
+        jobs = ((plugin, _job(plugin, question, further)) for plugin in plugins.values())
         return [one for plugin, job in jobs if job is not None for one in judged(plugin, job, truths, worker)]
 
     return ask
@@ -137,10 +139,10 @@ def part_of(engines: Sequence[str], names: Sequence[str]) -> Iterator[tuple[str,
             yield name, ask(every[name])
 
 
-def _job(plugin: EnginePlugin, question: Tree | Reading) -> Job | None:
+def _job(plugin: EnginePlugin, question: Tree | Reading, further: bool = True) -> Job | None:
     """What an engine is asked about a tree, or about a file; None where it has no reader of such files."""
     if not isinstance(question, Reading):
-        return Job(plugin.name, suited(question, plugin), asked(plugin, question), SEED, further=True)
+        return Job(plugin.name, suited(question, plugin), asked(plugin, question), SEED, further=further)
     if question.form not in plugin.formats:
         return None
     # What a reader makes of a file shows at one state.
@@ -308,12 +310,12 @@ def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[st
 
 
 def _within_a_minute(reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
-    """What fits into a minute for each engine."""
+    """What fits into a minute for each engine: one state of each tree, so that there are many."""
     cells: list[Judged] = []
     some = {name: every[name] for name in in_turn() if name in wanted}
     for name, plugin in reach.plugins.items():
         goes_on = partial(_is_before, time.monotonic() + SMOKE)
-        cells += about({name: plugin}, some, reach.worker, str, goes_on)[0]
+        cells += about({name: plugin}, some, reach.worker, str, goes_on, further=False)[0]
     return cells
 
 

@@ -125,6 +125,7 @@ def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Re
             reach.worker,
             str,
             lambda: not smoke or max(reach.alone().values(), default=0.0) < SMOKE,
+            further=not smoke,
         )
         seconds = reach.alone()
         for label, release in reach.release.items():

@@ -89,6 +89,23 @@ def _free_with_branches() -> Tree:
     )
 
 
+def _beside_its_base() -> Tree:
+    """A free base without mass; the body is fixed to it, aside, and carries a hinge."""
+    draw = np.random.default_rng(8)
+    base = Link("base", -1, (Joint("free"),), 0.0, ORIGIN, _NOTHING)
+    return Tree(
+        "free base beside its body",
+        (base, link(draw, "b", 0, placed(draw, Joint("fixed"))), link(draw, "c", 1, _hinge(draw))),
+    )
+
+
+def _backwards() -> Tree:
+    draw = np.random.default_rng(9)
+    axes: tuple[Vector, ...] = ((0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+    joints = [placed(draw, Joint(kind, axis=axis)) for kind, axis in zip(("revolute", "prismatic", "revolute"), axes, strict=True)]
+    return Tree("joints against x, y and z", tuple(link(draw, "abc"[k], k - 1, joint) for k, joint in enumerate(joints)))
+
+
 def _far(name: str, p: Vector) -> Tree:
     """A chain whose first joint stands far from the world's origin."""
     first, *rest = _chain("far", 2)
@@ -111,6 +128,8 @@ def trees() -> dict[str, Tree]:
         _grounded(),
         _coincident(),
         _free_with_branches(),
+        _beside_its_base(),
+        _backwards(),
         Tree("tiny before huge masses", ends),
         Tree("huge before tiny masses", (_scaled(heavy[0], 1e8), heavy[1], _scaled(heavy[2], 1e-8))),
         Tree("millimetres", tuple(_resized(one, 1e-3) for one in _chain("small"))),

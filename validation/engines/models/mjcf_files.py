@@ -9,14 +9,17 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import ORIGIN, Joint, Link, Rows, Tree, Vector, rows
+from ..interface import ORIGIN, Actuator, End, Joint, Link, Rows, Tree, Vector, rows
 from . import readers
 from .readers import (
     BODY,
+    DRIVEN,
     IDENTITY,
+    LOSSES,
     NEXT,
     OBLONG,
     PASSIVE,
+    PLACED,
     PRINCIPAL,
     PRODUCTS,
     Reading,
@@ -262,9 +265,87 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
     solid = '<geom type="box" size="0.1 0.2 0.3" density="500"/>'
     shaped = _file(b=_JOINT_B + "<geom/>")
     yield stated("geom by default", solid, _FIRST, _dense(_solid("box", 0.1, 0.2, 0.3), 500.0), shaped)
+    heavier = '<default class="h"><geom density="2000"/></default><default class="p"/>'
+    plain = _file(b=_JOINT_B + '<geom class="p" type="box" size="0.1 0.2 0.3"/>', at=("", 'childclass="h"'))
+    yield stated("class of a geom before childclass", heavier, _FIRST, _dense(_solid("box", 0.1, 0.2, 0.3)), plain)
     massive = '<geom type="box" size="0.1 0.2 0.3"/><default class="k"><geom mass="3"/></default>'
     heavy = replace(NEXT, mass=3.0, com=ORIGIN, inertia=diagonal(0.13, 0.1, 0.05))
     yield stated("geom of a class", massive, _FIRST, heavy, _file(b=_JOINT_B + '<geom class="k"/>'))
+
+
+def _losses() -> Iterator[tuple[str, Reading]]:
+    """Dampers, springs and dry friction of joints, in units that no angle's unit changes."""
+    stated = {"damping": 3.0, "stiffness": 7.0, "friction": 0.3}
+    text = 'damping="3" stiffness="7" frictionloss="0.3"'
+    lost = hung(NEXT, **stated)
+    slide = Joint("prismatic", p=(0.0, 0.0, 0.5), axis=(1.0, 0.0, 0.0), **stated)  # type: ignore[arg-type]
+
+    def second(name: str, joint: str, link: Link, head: str = _RADIAN) -> tuple[str, Reading]:
+        return _of(name, _file(b=joint + _MB, head=head), _FIRST, link, asked=LOSSES)
+
+    yield second("losses of a hinge", f'<joint axis="0 1 0" {text}/>', lost)
+    yield second("losses of a hinge, angle left out", f'<joint axis="0 1 0" {text}/>', lost, "")
+    yield second("losses of a slide", f'<joint type="slide" axis="1 0 0" {text}/>', replace(NEXT, joints=(slide,)), "")
+    classes = f'<default><default class="k"><joint {text}/></default></default>'
+    yield second("losses of a class", '<joint class="k" axis="0 1 0"/>', lost, _RADIAN + classes)
+
+
+def _sites() -> Iterator[tuple[str, Reading]]:
+    """Where sites stand: on moving bodies, fixed ones, the world, stated in every way."""
+    R = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
+    p = (0.1, -0.2, 0.3)
+
+    def of(name: str, text: str, *ends: End) -> tuple[str, Reading]:
+        title = f"mjcf: {name}"
+        return title, Reading("mjcf", text, Tree(title, (_FIRST, NEXT), sensors=ends), asked=PLACED)
+
+    def on_b(name: str, site: str, end: End, head: str = _RADIAN) -> tuple[str, Reading]:
+        return of(name, _file(b=_JOINT_B + _MB + site, head=head), end)
+
+    yield on_b("site", '<site name="o0" pos="0.1 -0.2 0.3"/>', End("b", p=p))
+    yield on_b("site turned", '<site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>', End("b", R, p))
+    both = _file(_JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', _JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>')
+    yield of("sites of two bodies", both, End("a", p=(0.0, 0.5, 0.0)), End("b", p=p))
+    # From (0, 0, 0) to (0.2, 0.4, -0.4): z along the way from the end to the beginning, at the middle.
+    along_it = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
+    ends = End("b", rows(np.array(along_it)), (0.1, 0.2, -0.2))
+    yield on_b("site from end to end", '<site name="o0" type="capsule" size="0.1" fromto="0.2 0.4 -0.4 0 0 0"/>', ends)
+    head = f'{_RADIAN}<default><site pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/></default>'
+    yield on_b("site by default", '<site name="o0"/>', End("b", R, p), head)
+    fixed = f'<body pos="0.2 0.1 0" euler="0.5 0.6 0.7"><site name="o0" pos="0.1 -0.2 0.3"/></body>'
+    at = tuple(float(x) for x in np.array((0.2, 0.1, 0.0)) + np.array(R) @ np.array(p))
+    yield on_b("site of a body that does not move", fixed, End("b", R, (at[0], at[1], at[2])))
+    world = _file().replace("<worldbody>", '<worldbody><site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>')
+    yield of("site of the world", world, End("", R, p))
+
+
+def _driven() -> Iterator[tuple[str, Reading]]:
+    """Actuators that state their numbers, or take them from classes."""
+    links = (_FIRST, NEXT)
+    text = _file('<joint name="a" axis="0 0 1"/>' + _MA, '<joint name="b" axis="0 1 0"/>' + _MB)
+    kinds = {
+        "motor": ('gear="2"', Actuator("b", gear=2.0, control=0.5)),
+        "position": ('kp="3"', Actuator("b", gain=3.0, bias=(0.0, -3.0, 0.0), control=0.5)),
+        "velocity": ('kv="4"', Actuator("b", gain=4.0, bias=(0.0, 0.0, -4.0), control=0.5)),
+        # Its force is -kv control speed.
+        "damper": ('kv="5" ctrlrange="0 1"', Actuator("b", gain=0.0, bias=(0.0, 0.0, -2.5), control=0.5)),
+        "general": (
+            'gainprm="2" biastype="affine" biasprm="0.25 -1 -0.5"',
+            Actuator("b", gain=2.0, bias=(0.25, -1.0, -0.5), control=0.5),
+        ),
+    }
+    for kind, (stated, actuator) in kinds.items():
+        named = f'<default class="k"><{kind} {stated}/></default>'
+        ways = {
+            kind: ("", f'<{kind} joint="b" {stated}/>'),
+            f"{kind} by default": (f"<default><{kind} {stated}/></default>", f'<{kind} joint="b"/>'),
+            f"{kind} of a class": (f"<default>{named}</default>", f'<{kind} class="k" joint="b"/>'),
+        }
+        for name, (classes, element) in ways.items():
+            title = f"mjcf: {name}"
+            whole = text.replace(_RADIAN, _RADIAN + classes)
+            whole = whole.replace("</mujoco>", f"<actuator>{element}</actuator></mujoco>")
+            yield title, Reading("mjcf", whole, Tree(title, links, actuators=(actuator,)), asked=DRIVEN)
 
 
 def _trees() -> Iterator[tuple[str, Reading]]:
@@ -306,4 +387,4 @@ def _trees() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_joints(), *_turns(), *_inertias(), *_geoms(), *_defaults(), *_trees()])
+    return dict([*_joints(), *_turns(), *_inertias(), *_geoms(), *_defaults(), *_losses(), *_sites(), *_driven(), *_trees()])

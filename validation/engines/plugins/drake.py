@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
+from ..interface import STEP, Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
 from .loops import drake_forces as forces
 from .loops.drake_forces import FORCES, QV, Q
 from .writing import urdf
@@ -97,6 +97,10 @@ WAYS = {
     ),
     "link_jacobians": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='W')}"),
     "jacobian_local": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='f')}"),
+    "joint_dampings": Way(
+        "default_damping_vector",
+        "value = np.concatenate([p.get_joint(j).default_damping_vector() for j in p.GetJointIndices()])",
+    ),
     "mass_centre": Way("CalcCenterOfMassPositionInWorld", f"{Q}value = p.CalcCenterOfMassPositionInWorld(c)"),
     "mass_centre_jacobian": Way(
         "CalcJacobianCenterOfMassTranslationalVelocity",
@@ -185,6 +189,25 @@ def _spring(tree: Tree, tendon: Tendon) -> str:
     return f"p.AddForceElement(drake.LinearSpringDamper({ends}, {numbers}))"
 
 
+def _bound(tree: Tree) -> list[str]:
+    """Statements that close loops, for the discrete solver that knows such conditions."""
+    bodies = {link.name: f"b{k}" for k, link in enumerate(tree.links)} | {"": "p.world_body()"}
+    lines = [
+        "if hasattr(drake, 'DiscreteContactApproximation'):",
+        "    p.set_discrete_contact_approximation(drake.DiscreteContactApproximation.kSap)",
+        "else:",
+        "    p.set_discrete_contact_solver(drake.DiscreteContactSolver.kSap)",
+    ]
+    for one in tree.constraints:
+        (first, second), placed = one.ends, [f"X({_array(end.R)}, {_array(end.p)})" for end in one.ends]
+        if one.kind == "weld":
+            lines.append(f"p.AddWeldConstraint({bodies[first.link]}, {placed[0]}, {bodies[second.link]}, {placed[1]})")
+        else:
+            points = f"{bodies[first.link]}, {_array(first.p)}, {bodies[second.link]}, {_array(second.p)}"
+            lines.append(f"p.AddBallConstraint({points})")
+    return lines
+
+
 def _changing(tree: Tree) -> list[str]:
     """Statements that give the context a tree's numbers of what is changed."""
     lines = []
@@ -246,6 +269,9 @@ def write(tree: Tree) -> Source | Unsupported:
     if any(tendon.kind != "path" or len(tendon.ends) != 2 for tendon in tree.tendons):
         return Unsupported("springs run straight from point to point", offered=False)
     lines += [_spring(tree, tendon) for tendon in tree.tendons]
+    if tree.constraints:
+        lines = [line.replace("Plant(0.0)", f"Plant({STEP})") for line in lines]
+        lines += _bound(tree)
     lines.append("p.Finalize()")
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
@@ -353,6 +379,7 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS | forces.WAYS,
     write=write,
+    constraints={"weld": "AddWeldConstraint", "point": "AddBallConstraint"},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={

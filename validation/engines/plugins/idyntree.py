@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Tree
+from ..truth.derived import WRENCH
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
 
@@ -150,6 +151,31 @@ assert robot.getCentroidalTotalMomentumJacobian(J)
 value = J.toNumPy()[:, cut:]""",
     ),
 }
+# Along each link's own axes: what is applied turns with it.
+WAYS["applied_wrenches"] = Way(
+    "addNewContactInFrame, inverseDynamics",
+    f"""robot.setFrameVelocityRepresentation(iDynTree.BODY_FIXED_REPRESENTATION)
+v, a = 0 * v, 0 * a
+state(q, v)
+contacts = iDynTree.LinkContactWrenches(robot.model())
+for k in sensed:
+    one = iDynTree.ContactWrench()
+    for place, number in enumerate({list(WRENCH)}):
+        one.contactWrench.setVal(place, number)
+    assert contacts.addNewContactInFrame(robot.model(), robot.model().getFrameIndex(f'o{{k}}'), one)
+given, forces = iDynTree.LinkWrenches(robot.model()), iDynTree.FreeFloatingGeneralizedTorques(robot.model())
+def held(given):
+    assert robot.inverseDynamics(*rates(a), given, forces)
+    return np.concatenate([forces.baseWrench().asVector().toNumPy(), forces.jointTorques().toNumPy()])
+given.zero()
+value = held(given).copy()
+assert contacts.computeNetWrenches(given)
+value = (value - held(given)).copy()
+R = robot.getWorldBaseTransform().getRotation().toNumPy()
+value[:6] = (value[:6].reshape(2, 3) @ R.T).ravel()
+value = value[cut:]
+robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)""",
+)
 _BASE = "free xyzw, linear and angular before"
 
 
@@ -165,6 +191,8 @@ def read(tree: Tree, described: Described) -> Source:
         "n": ("n = 6 + robot.getNrOfDegreesOfFreedom()",),
         "state": tuple(line.replace("{gravity}", gravity) for line in _FLOATING_STATE),
     }
+    if tree.sensors:
+        optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
     # Links that don't move are frames of others, and nothing holds a floating base.
     if not floating and all(joint.kind != "fixed" for link in tree.links for joint in link.joints):
         optional["js"] = (f"js = [robot.model().getLinkIndex(name) for name in {list(described.links)}]",)
@@ -199,5 +227,6 @@ PLUGIN = SourcePlugin(
     write_reading=of_files(read),
     # Its reader returns no model, and writes why to the log.
     refusals=("no model: see the log",),
+    demands={"sensors": "frames"},
     statements=(UNIT_AXIS,),
 )

@@ -244,7 +244,7 @@ _FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
 
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
-    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}mj.mj_fullM(m, d, value)"),
+    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}mj.mj_fullM(m, *((value, d.qM) if hasattr(d, 'qM') else (d, value)))"),
     "mass_matrix:mj_mulM": Way(
         "mj_mulM", f"{Q}{SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),
@@ -355,6 +355,9 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
     fused = form == "urdf" and not all(slots)
     optional = {} if fused else {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
+    if tree.sensors:
+        optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
+    lines = (*lines, *constrained.controls(tree))
     return Source(lines, slots, nq, nv, optional)
 
 

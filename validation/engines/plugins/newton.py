@@ -65,6 +65,27 @@ value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]""",
 )
 
 
+WAYS |= {
+    "frame_poses": Way(
+        "add_site",
+        f"""{_Q}rotation, sensed
+value = []
+for k in sensed:
+    at = [x.split('/')[-1] for x in m.shape_label].index(f'o{{k}}')
+    body, own = m.shape_body.numpy()[at], m.shape_transform.numpy()[at]
+    x = s.body_q.numpy()[body] if body >= 0 else np.array([0.0, 0, 0, 0, 0, 0, 1])
+    R = rotation(*x[3:])
+    value.append([*(x[:3] + R @ own[:3]), *(R @ rotation(*own[3:])).flat])""",
+    ),
+    "joint_dampings": Way(
+        "joint_damping, mujoco.dof_passive_damping",
+        "value = m.joint_damping.numpy() if hasattr(m, 'joint_damping') else m.mujoco.dof_passive_damping.numpy()",
+    ),
+    "joint_frictions": Way("joint_friction", "value = m.joint_friction.numpy()"),
+    "joint_stiffnesses": Way("mujoco.dof_passive_stiffness", "value = m.mujoco.dof_passive_stiffness.numpy()"),
+}
+
+
 def _array(values: object) -> str:
     return repr(np.asarray(values, dtype=float).tolist())
 
@@ -205,11 +226,14 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         *_IMPORTS,
         f"TEXT = {text!r}",
         f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})" if form == "urdf" else "b = newton.ModelBuilder()",
+        "newton.solvers.SolverMuJoCo.register_custom_attributes(b)",
         _READERS[form],
         'm = b.finalize(device="cpu")',
     )
     labels = f"bodies = [[x.split('/')[-1] for x in m.body_label].index(name) for name in {names!r}]"
     optional = {"rotation": _ROTATION, "bodies": (labels,)}
+    if tree.sensors:
+        optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
     return Source(lines, slots, nq, nv, optional, spelling={"s.body_q.numpy()]": "s.body_q.numpy()[bodies]]"})
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..functions import ALIGNED
+from ..truth.derived import WRENCH
 from ..interface import Array, Convention, End, Joint, Rows, Slot, Statement, Tree, Unsupported
 from .loops import pinocchio as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, is_depth_first, numbered, series
@@ -266,6 +267,35 @@ WAYS = {
         "pin.framesForwardKinematics(m, d, q)\n"
         "value = np.array([np.r_[d.oMf[f].translation, d.oMf[f].rotation.ravel()] for f in fs])",
     ),
+    "frame_poses": Way(
+        "framesForwardKinematics",
+        "pin.framesForwardKinematics(m, d, q)\n"
+        # What the reader has left out is nowhere.
+        "value = [[*d.oMf[f].translation, *d.oMf[f].rotation.flat] if f < m.nframes else [np.nan] * 12 for f in sensed]",
+    ),
+    "applied_wrenches": Way(
+        "rnea with external forces",
+        f"""given = [pin.Force.Zero() for _ in range(m.njoints)]
+for f in sensed:
+    frame = m.frames[f]
+    joint = frame.parentJoint if hasattr(frame, 'parentJoint') else frame.parent
+    given[joint] += frame.placement.act(pin.Force(np.array({list(WRENCH[:3])}), np.array({list(WRENCH[3:])})))
+value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))""",
+    ),
+    "joint_dampings": Way("damping", "value = m.damping"),
+    "joint_frictions": Way("friction, upperDryFrictionLimit", "value = m.friction if hasattr(m, 'friction') else m.upperDryFrictionLimit"),
+    "rotation_logarithm": Way("log3", "value = pin.log3(pin.Quaternion(q).matrix())"),
+    "rotation_logarithm:quaternion": Way("log3", "value = pin.log3(pin.Quaternion(q))"),
+    "rotation_exponential": Way("exp3", "value = pin.exp3(v).ravel()"),
+    "rotation_angle": Way("angularDistance", "value = [pin.Quaternion(q).angularDistance(pin.Quaternion(q2))]"),
+    "rotation_vector_speeds": Way("Jexp3", "value = pin.Jexp3(tau)"),
+    "rotation_vector_rates": Way("Jlog3", "value = pin.Jlog3(pin.exp3(tau))"),
+    "rpy_rates": Way(
+        "rpy.computeRpyJacobianInverse",
+        "from pinocchio import rpy\nvalue = rpy.computeRpyJacobianInverse(v, pin.LOCAL_WORLD_ALIGNED)",
+    ),
+    "rotation_halfway": Way("slerp", "value = pin.Quaternion(q).slerp(0.25, pin.Quaternion(q2)).matrix().ravel()"),
+    "twist_transform": Way("SE3.action", "value = pin.SE3(pin.Quaternion(q).matrix(), a).action"),
     "mass_centre": Way("centerOfMass", "value = pin.centerOfMass(m, d, q)"),
     "mass_centre_jacobian": Way("jacobianCenterOfMass", "value = pin.jacobianCenterOfMass(m, d, q)"),
     "mass_centre_velocity_dq": Way(
@@ -367,7 +397,11 @@ WAYS |= {
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has Pinocchio read a file."""
     read = {
-        "urdf": ("m = pin.buildModelFromXML(TEXT, mimic=True)",),
+        # Before mimicking joints there was no argument for them.
+        "urdf": (
+            "try: m = pin.buildModelFromXML(TEXT, mimic=True)",
+            "except TypeError: m = pin.buildModelFromXML(TEXT)",
+        ),
         "mjcf": (
             "import tempfile",
             "file = tempfile.NamedTemporaryFile('w', suffix='.xml')",
@@ -385,8 +419,10 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
-    frames = f"fs = [m.getFrameId(name, pin.FrameType.BODY) for name in {names!r}]"
-    return Source(lines, slots, nq, nv, {"fs": (frames,)}, closing=CLOSING)
+    optional = {"fs": (f"fs = [m.getFrameId(name, pin.FrameType.BODY) for name in {names!r}]",)}
+    if tree.sensors:
+        optional["sensed"] = (f"sensed = [m.getFrameId(f'o{{k}}') for k in range({len(tree.sensors)})]",)
+    return Source(lines, slots, nq, nv, optional, closing=CLOSING)
 
 
 PLUGIN = SourcePlugin(
@@ -409,6 +445,7 @@ PLUGIN = SourcePlugin(
         "locked": "buildReducedModel",
         "attached": "appendModel",
         "sensors": "frames",
+        "turns": "Quaternion, exp3, log3",
         "changed mass": "inertias",
         "changed inertia": "inertias",
         "changed frame": "jointPlacements",

@@ -31,9 +31,18 @@ for J, (name, (_, path)) in zip(value, links.items()):
 }
 
 
+_AGAINST = {(-x, -y, -z): letter for (x, y, z), letter in _LETTERS.items()}
+
+
+def _step(kind: str, axis: Vector, place: int) -> str:
+    """The elementary transform of a joint; one against an axis is flipped."""
+    letter, flip = _LETTERS.get(axis, _AGAINST.get(axis, "z")), ", flip=True" if axis in _AGAINST else ""
+    return f"ET.{'R' if kind == 'revolute' else 't'}{letter}(jindex={place}{flip})"
+
+
 def _turned(axis: Vector) -> Array:
     """A rotation whose third column is the axis; the identity for axes that elementary transforms have."""
-    if axis in _LETTERS:
+    if axis in _LETTERS or axis in _AGAINST:
         return np.eye(3)
     w = np.array(axis)
     u = np.cross(w, np.eye(3)[int(np.argmin(np.abs(w)))])
@@ -70,7 +79,7 @@ def write(tree: Tree) -> Source | Unsupported:
                     return Unsupported(f"no elementary transform for {joint.kind} {joint.form}".strip(), offered=False)
                 turn = _turned(joint.axis)
                 T[:3, :3] = T[:3, :3] @ turn
-                moves = f"ET.{'R' if joint.kind == 'revolute' else 't'}{_LETTERS.get(joint.axis, 'z')}(jindex={count})"
+                moves = _step(joint.kind, joint.axis, count)
                 own.append(Slot("angle" if joint.kind == "revolute" else "length", (count,), (count,)))
                 count += 1
                 if any(joint.armature):

@@ -65,13 +65,13 @@ def _speeds(r: Exact) -> Exact:
 
 
 def vector_speeds(t: Truth, s: Point) -> Exact:
-    """A at r = v, eq. (5)."""
-    return _speeds(s.v)
+    """A at r = tau, eq. (5)."""
+    return _speeds(s.tau)
 
 
 def vector_rates(t: Truth, s: Point) -> Exact:
-    """The inverse of A at r = v."""
-    return solve(_speeds(s.v), eye(3))
+    """The inverse of A at r = tau."""
+    return solve(_speeds(s.tau), eye(3))
 
 
 def vector_rates_fixed(t: Truth, s: Point) -> Exact:

@@ -34,6 +34,14 @@ WAYS: dict[str, Way] = {
     "step_euler": _integrated("explicit_euler"),
     "step_rk2": _integrated("runge_kutta2"),
     "step_rk3": _integrated("runge_kutta3"),
+    # Loops are closed but for roundings, which the solver's regularisation makes into speeds.
+    "step_at_rest": Way(
+        "AdvanceTo with a constraint",
+        f"c.SetTime(0.0)\np.SetPositions(c, q)\np.SetVelocities(c, 0 * v)\nsim = drake.Simulator(p, c)\n"
+        f"sim.AdvanceTo({STEP})\nvalue = np.r_[p.GetPositions(c), p.GetVelocities(c)]",
+        1e-9,
+        (("p.Finalize()", "p.mutable_gravity_field().set_gravity_vector([0, 0, 0]); p.Finalize()"),),
+    ),
     "passive_forces": Way(
         "CalcForceElementsContribution",
         f"{QV}{FORCES}zero = 0 * v\nvalue = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p))"

@@ -95,8 +95,9 @@ for k in sensed:
     "actuator_lengths": Way("actuator_length", f"{QV}value = d.actuator_length"),
     "actuator_arms": Way(
         "actuator_moment",
-        f"{QV}value = np.zeros((m.nu, m.nv))\n"
-        "mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
+        f"{QV}value = np.array(d.actuator_moment)\n"
+        "if value.ndim == 1:\n    value = np.zeros((m.nu, m.nv))\n"
+        "    mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
     ),
     "actuator_forces": Way("actuator_force", f"{QV}value = d.actuator_force"),
     "actuated_forces": Way("qfrc_actuator", f"{QV}value = d.qfrc_actuator"),

@@ -121,6 +121,8 @@ def describe(tree: Tree, *, base: str = WORLD) -> Described | Unsupported:
                 names.append(name)
             at = child
         series.append(tuple(names))
+    for k, end in enumerate(tree.sensors):  # Frames, as links without mass.
+        lines += [f'<link name="o{k}"/>', *_joint(f"frame_{k}", Joint("fixed", end.R, end.p), end.link, f"o{k}")]
     text = "\n".join(['<robot name="tree">', *lines, "</robot>"])
     return Described(text, floating, tuple(series), tuple(link.name for link in tree.links))
 
