@@ -344,14 +344,22 @@ def _of_turns() -> dict[str, Function]:
         ),
         "rpy_rates": ("roll, pitch, yaw rates = B w, w along the axes before, at angles v (3, 3)", turns.rpy_rates),
         "rpy_rates_rate": ("time derivative of B at angles v and rates a (3, 3)", turns.rpy_rates_rate),
-        "rotation_halfway": ("rows of the rotation a quarter of the way from R to Q, the shorter way (9)", turns.between),
-        "twist_transform": ("(6, 6): twists (linear; angular) of a frame at (R, a) in the frame it is in", turns.adjoint),
+        "rotation_halfway": (
+            "rows of the rotation a quarter of the way from R to Q, the shorter way (9)",
+            turns.between,
+        ),
+        "twist_transform": (
+            "(6, 6): twists (linear; angular) of a frame at (R, a) in the frame it is in",
+            turns.adjoint,
+        ),
     }
     return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
 
 
 FUNCTIONS["solid_inertia"] = Function(
-    "mass, mass centre, moments about it xx, yy, zz, xy, xz, yz of the only link (10)", derived.solid_inertia, ("solids",)
+    "mass, mass centre, moments about it xx, yy, zz, xy, xz, yz of the only link (10)",
+    derived.solid_inertia,
+    ("solids",),
 )
 FUNCTIONS["flexible_relation"] = Function(
     "1 + what forces or steps of a flexible body change with the frame it stands in, as part of them (n)",

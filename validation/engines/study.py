@@ -117,7 +117,9 @@ def about(
     return cells, left
 
 
-def _asker(plugins: Mapping[str, EnginePlugin], worker: Worker, further: bool = True) -> Callable[[Tree | Reading], list[Judged]]:
+def _asker(
+    plugins: Mapping[str, EnginePlugin], worker: Worker, further: bool = True
+) -> Callable[[Tree | Reading], list[Judged]]:
     """Question -> the cells of engines on it."""
     of_files = Truths()  # Many files state the same tree.
 

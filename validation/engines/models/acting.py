@@ -149,7 +149,11 @@ def _actuators() -> list[Tree]:
         ends=(End("b", p=(0.25, 0.125, 0.0625)), End("", p=(0.5, 0.25, 0.125))), crank=4.0, gear=1.5, control=0.75
     )
     return [
-        Tree("actuators clamped at their joints", clamped, actuators=(fast, replace(fast, link="a"), replace(fast, link="b"))),
+        Tree(
+            "actuators clamped at their joints",
+            clamped,
+            actuators=(fast, replace(fast, link="a"), replace(fast, link="b")),
+        ),
         Tree("actuators disabled", links, actuators=(motor, off, replace(brake, is_disabled=True))),
         Tree("muscles", links, actuators=tuple(pulls)),
         Tree("muscles beyond their ranges", links, actuators=tuple(strained)),

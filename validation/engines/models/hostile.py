@@ -102,8 +102,13 @@ def _beside_its_base() -> Tree:
 def _backwards() -> Tree:
     draw = np.random.default_rng(9)
     axes: tuple[Vector, ...] = ((0.0, 0.0, -1.0), (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
-    joints = [placed(draw, Joint(kind, axis=axis)) for kind, axis in zip(("revolute", "prismatic", "revolute"), axes, strict=True)]
-    return Tree("joints against x, y and z", tuple(link(draw, "abc"[k], k - 1, joint) for k, joint in enumerate(joints)))
+    joints = [
+        placed(draw, Joint(kind, axis=axis))
+        for kind, axis in zip(("revolute", "prismatic", "revolute"), axes, strict=True)
+    ]
+    return Tree(
+        "joints against x, y and z", tuple(link(draw, "abc"[k], k - 1, joint) for k, joint in enumerate(joints))
+    )
 
 
 def _far(name: str, p: Vector) -> Tree:

@@ -304,7 +304,9 @@ def _sites() -> Iterator[tuple[str, Reading]]:
 
     yield on_b("site", '<site name="o0" pos="0.1 -0.2 0.3"/>', End("b", p=p))
     yield on_b("site turned", '<site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>', End("b", R, p))
-    both = _file(_JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', _JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>')
+    both = _file(
+        _JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', _JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>'
+    )
     yield of("sites of two bodies", both, End("a", p=(0.0, 0.5, 0.0)), End("b", p=p))
     # From (0, 0, 0) to (0.2, 0.4, -0.4): z along the way from the end to the beginning, at the middle.
     along_it = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
@@ -387,4 +389,6 @@ def _trees() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_joints(), *_turns(), *_inertias(), *_geoms(), *_defaults(), *_losses(), *_sites(), *_driven(), *_trees()])
+    return dict(
+        [*_joints(), *_turns(), *_inertias(), *_geoms(), *_defaults(), *_losses(), *_sites(), *_driven(), *_trees()]
+    )

@@ -200,11 +200,7 @@ def _bound(tree: Tree) -> list[str]:
     ]
     for one in tree.constraints:
         (first, second), placed = one.ends, [f"X({_array(end.R)}, {_array(end.p)})" for end in one.ends]
-        if one.kind == "weld":
-            lines.append(f"p.AddWeldConstraint({bodies[first.link]}, {placed[0]}, {bodies[second.link]}, {placed[1]})")
-        else:
-            points = f"{bodies[first.link]}, {_array(first.p)}, {bodies[second.link]}, {_array(second.p)}"
-            lines.append(f"p.AddBallConstraint({points})")
+        lines.append(f"p.AddWeldConstraint({bodies[first.link]}, {placed[0]}, {bodies[second.link]}, {placed[1]})")
     return lines
 
 
@@ -379,7 +375,7 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS | forces.WAYS,
     write=write,
-    constraints={"weld": "AddWeldConstraint", "point": "AddBallConstraint"},
+    constraints={"weld": "AddWeldConstraint"},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={

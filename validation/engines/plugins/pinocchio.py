@@ -283,7 +283,9 @@ for f in sensed:
 value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))""",
     ),
     "joint_dampings": Way("damping", "value = m.damping"),
-    "joint_frictions": Way("friction, upperDryFrictionLimit", "value = m.friction if hasattr(m, 'friction') else m.upperDryFrictionLimit"),
+    "joint_frictions": Way(
+        "friction, upperDryFrictionLimit", "value = m.friction if hasattr(m, 'friction') else m.upperDryFrictionLimit"
+    ),
     "rotation_logarithm": Way("log3", "value = pin.log3(pin.Quaternion(q).matrix())"),
     "rotation_logarithm:quaternion": Way("log3", "value = pin.log3(pin.Quaternion(q))"),
     "rotation_exponential": Way("exp3", "value = pin.exp3(v).ravel()"),

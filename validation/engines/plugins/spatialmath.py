@@ -15,11 +15,11 @@ WAYS = {
     "rotation_exponential:angvec2r": Way(
         "angvec2r", "angle = np.linalg.norm(v)\nvalue = (sm.angvec2r(angle, v) if angle else np.eye(3)).ravel()"
     ),
-    "rotation_vector_rates_fixed": Way(
-        "rotvelxform", "value = sm.rotvelxform(v, inverse=True, representation='exp')"
-    ),
+    "rotation_vector_rates_fixed": Way("rotvelxform", "value = sm.rotvelxform(v, inverse=True, representation='exp')"),
     "rotation_vector_rates_fixed:exp2jac": Way("exp2jac", "value = np.linalg.inv(sm.exp2jac(v))"),
-    "rotation_vector_rates_rate": Way("rotvelxform_inv_dot", "value = sm.rotvelxform_inv_dot(tau, a, representation='exp')"),
+    "rotation_vector_rates_rate": Way(
+        "rotvelxform_inv_dot", "value = sm.rotvelxform_inv_dot(tau, a, representation='exp')"
+    ),
     "rpy_rates": Way("rotvelxform", "value = sm.rotvelxform(v, inverse=True, representation='rpy/zyx')"),
     "rpy_rates:rpy2jac": Way("rpy2jac", "value = np.linalg.inv(sm.rpy2jac(v, order='zyx'))"),
     "rpy_rates_rate": Way("rotvelxform_inv_dot", "value = sm.rotvelxform_inv_dot(v, a, representation='rpy/zyx')"),

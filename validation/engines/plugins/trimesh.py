@@ -46,7 +46,13 @@ def write(tree: Tree) -> Source | Unsupported:
     parts = {"size": size, "low": low, "high": high, "middle": np.array(body.com)}
     solid = _SOLIDS[tree.name].format(**{name: np.round(value, 12).tolist() for name, value in parts.items()})
     density = body.mass / float(np.prod(size))
-    lines = ("import numpy as np", "import trimesh", *_TRIANGLES, f"density = {round(density, 12)!r}", f"solid = {solid}")
+    lines = (
+        "import numpy as np",
+        "import trimesh",
+        *_TRIANGLES,
+        f"density = {round(density, 12)!r}",
+        f"solid = {solid}",
+    )
     return Source((*lines, "solid.density = density"), ((),), 0, 0)
 
 

@@ -53,9 +53,7 @@ def _rows(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
     moved = np.concatenate([second.J[:3] - skew(apart) @ second.J[3:], second.J[3:]])
     scale = exact(constraint.torque_scale)[()]
     J = first.J - moved
-    return Rows(
-        np.concatenate([apart, scale * (first.R @ angle) / 2]), first.R, np.concatenate([J[:3], scale * J[3:]])
-    )
+    return Rows(np.concatenate([apart, scale * (first.R @ angle) / 2]), first.R, np.concatenate([J[:3], scale * J[3:]]))
 
 
 def _along(R: Exact | None, rows: Exact) -> Exact:

@@ -62,7 +62,11 @@ def elements(tree: Tree) -> str:
     equalities = [_equality(number, one) for number, one in enumerate(tree.constraints)]
     tendons = [_tendon(number, one) for number, one in enumerate(tree.constraints)]
     tendons += [_line(f"n{number}", f"n{number}", one, _spring(one)) for number, one in enumerate(tree.tendons)]
-    parts = {"tendon": tendons, "equality": equalities, "actuator": [_actuator(k, one) for k, one in enumerate(tree.actuators)]}
+    parts = {
+        "tendon": tendons,
+        "equality": equalities,
+        "actuator": [_actuator(k, one) for k, one in enumerate(tree.actuators)],
+    }
     parts["sensor"] = [_sensor(kind, k) for k in range(len(tree.sensors)) for kind in _SENSORS]
     return "".join(f"<{name}>{''.join(part)}</{name}>" for name, part in parts.items() if any(part))
 
@@ -253,9 +257,7 @@ _AT_REST = 1e-9
 WAYS = {
     "constraint_jacobian": Way("efc_J", f"{_AT}{_J}value = axes() @ J"),
     "constraint_velocity_products": Way("-efc_aref", f"{_AT}value = -axes() @ d.efc_aref"),
-    "constraint_residuals": Way(
-        "efc_pos", f"{_AT.replace('= q, v', '= q2, v')}value = d.efc_pos * ways_round()"
-    ),
+    "constraint_residuals": Way("efc_pos", f"{_AT.replace('= q, v', '= q2, v')}value = d.efc_pos * ways_round()"),
     "step_at_rest": Way(
         "mj_step",
         "from copy import copy\nn = copy(m)\n"

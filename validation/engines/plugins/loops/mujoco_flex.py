@@ -29,10 +29,7 @@ def write(tree: Tree) -> Source | Unsupported:
     """Text that makes `difference`, the largest part of the answer by which two models differ."""
     body, _, relation = tree.name.removeprefix("flexible ").partition(": ")
     answer, integrator, apart = _RELATIONS[relation]
-    component = (
-        f'<flexcomp name="f" type="grid" spacing=".1 .1 .1" radius=".005" {_BODIES[body]}'
-        "</flexcomp>"
-    )
+    component = f'<flexcomp name="f" type="grid" spacing=".1 .1 .1" radius=".005" {_BODIES[body]}</flexcomp>'
     if "<edge" not in component:
         component = component.replace("<elasticity", '<edge equality="false"/><elasticity')
     lines = f'''import numpy as np
