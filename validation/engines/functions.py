@@ -328,10 +328,10 @@ def _stated_in_files() -> dict[str, Function]:
 
 
 def _of_turns() -> dict[str, Function]:
-    """What packages offer of rotations: R that q makes of the only link, Q that q2 makes; w of a rotation vector r is
-    A r', in the turned axes."""
+    """What packages offer of rotations: R of the coordinates q, Q of q2, vectors of rotation (`turns`)."""
     rows = {
         "rotation_matrix": ("rows of R (9)", turns.matrix),
+        "rotation_composed": ("rows of R Q (9)", turns.composed),
         "rotation_angle": ("angle of R^T Q (1)", turns.angle),
         "rotation_logarithm": ("rotation vector of R (3)", turns.logarithm),
         "rotation_exponential": ("rows of the rotation by the vector v (9)", turns.exponential),

@@ -290,8 +290,7 @@ class Tendon:
 
 @dataclass(frozen=True)
 class Actuator:
-    """A force along a joint's coordinate, a tendon or between frames: gain control + bias, with l and l' the length
-    times gear.
+    """A force along a coordinate, a tendon or between frames: gain control + bias, with l and l' the length times gear.
 
     Attributes:
         link: Link whose only joint it drives; "" for a tendon.
@@ -362,8 +361,7 @@ class Tree:
 
     @property
     def forces(self) -> frozenset[str]:
-        """What acts on it by its own statement: "dampers", "springs", "compensation", "tendons", "wrapped tendons",
-        "heavy tendons", "actuators"."""
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "actuators", kinds of tendons."""
         joints = [joint for link in self.links for joint in link.joints]
         stated = {
             "dampers": any(joint.damping for joint in joints),

@@ -1,7 +1,7 @@
 """Flexible bodies: no tree states them, so that engines are asked for relations between two of their own models.
 
-A name says of what (solid, shell, cable), what is compared (forces, a step) and what is changed: the frame that the body
-stands in is turned or shifted, or nothing is, and the sum of internal forces, or what a rigid motion makes of them, is asked.
+A name says of what (solid, shell, cable), and what is compared (forces, a step) where the frame that the body stands in
+is turned or shifted; or that the sum or the moment of internal forces is asked, which is nothing.
 """
 
 from __future__ import annotations

@@ -20,7 +20,8 @@ _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 
 # MuJoCo writes six digits: files of MJCF whose numbers take more, once they are worked out, are not asked of writers.
 _LONG = re.compile(
-    "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|geom (box|ell|cyl|cap)|frame (around|within)|site (turned|from|by|of))"
+    "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|geom (box|ell|cyl|cap)|"
+    "frame (around|within)|site (turned|from|by|of))"
 )
 
 

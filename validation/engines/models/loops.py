@@ -49,7 +49,7 @@ def _scaled(name: str, second: str, *lengths: int) -> Tree:
 
 
 def _lone_body() -> Tree:
-    """A free body whose moments are all equal, welded at its mass centre: J M^-1 J^T is the same at all orientations."""
+    """A free body of equal moments, welded at its mass centre: J M^-1 J^T is the same at all orientations."""
     body = Link("a", -1, (Joint("free"),), 2.0, inertia=((0.125, 0.0, 0.0), (0.0, 0.125, 0.0), (0.0, 0.0, 0.125)))
     return Tree("weld of a ball", (body,), constraints=(Constraint("weld", (End("a"), End(""))),), asked="a lone body")
 

@@ -314,7 +314,7 @@ def _sites() -> Iterator[tuple[str, Reading]]:
     yield on_b("site from end to end", '<site name="o0" type="capsule" size="0.1" fromto="0.2 0.4 -0.4 0 0 0"/>', ends)
     head = f'{_RADIAN}<default><site pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/></default>'
     yield on_b("site by default", '<site name="o0"/>', End("b", R, p), head)
-    fixed = f'<body pos="0.2 0.1 0" euler="0.5 0.6 0.7"><site name="o0" pos="0.1 -0.2 0.3"/></body>'
+    fixed = '<body pos="0.2 0.1 0" euler="0.5 0.6 0.7"><site name="o0" pos="0.1 -0.2 0.3"/></body>'
     at = tuple(float(x) for x in np.array((0.2, 0.1, 0.0)) + np.array(R) @ np.array(p))
     yield on_b("site of a body that does not move", fixed, End("b", R, (at[0], at[1], at[2])))
     world = _file().replace("<worldbody>", '<worldbody><site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>')

@@ -254,13 +254,13 @@ WAYS = {
     # Of a square root X of M, by rows: X X^T is M. Scaled rows are roots of the inverse.
     "mass_matrix:mj_mulM2": Way(
         "mj_mulM2",
-        f"{Q}root = np.zeros((m.nv, m.nv))\nfor row, unit in zip(root, np.eye(m.nv)):\n    mj.mj_mulM2(m, d, row, unit)\n"
-        "value = root @ root.T",
+        f"{Q}root = np.zeros((m.nv, m.nv))\nfor row, unit in zip(root, np.eye(m.nv)):\n"
+        "    mj.mj_mulM2(m, d, row, unit)\nvalue = root @ root.T",
     ),
     "mass_matrix_inverse:mj_solveM2": Way(
         "mj_solveM2",
         f"{Q}root = np.zeros((m.nv, m.nv))\n"
-        "mj.mj_solveM2(m, d, root, np.eye(m.nv), np.sqrt(1 / d.qLDiagInv ** -1))\nvalue = root @ root.T",
+        "mj.mj_solveM2(m, d, root, np.eye(m.nv), np.sqrt(d.qLDiagInv))\nvalue = root @ root.T",
     ),
     "mass_matrix_inverse": Way("mj_solveM", f"{Q}{SQUARE}mj.mj_solveM(m, d, value, np.eye(m.nv))"),
     "bias": Way("qfrc_bias", f"{QV}value = d.qfrc_bias"),

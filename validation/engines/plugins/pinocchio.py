@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..functions import ALIGNED
-from ..truth.derived import WRENCH
 from ..interface import Array, Convention, End, Joint, Rows, Slot, Statement, Tree, Unsupported
+from ..truth.derived import WRENCH
 from .loops import pinocchio as constrained
 from .writing.source import Source, SourcePlugin, Way, attached, is_depth_first, numbered, series
 from .writing.urdf import UNIT_AXIS
@@ -271,7 +271,8 @@ WAYS = {
         "framesForwardKinematics",
         "pin.framesForwardKinematics(m, d, q)\n"
         # What the reader has left out is nowhere.
-        "value = [[*d.oMf[f].translation, *d.oMf[f].rotation.flat] if f < m.nframes else [np.nan] * 12 for f in sensed]",
+        "at = [d.oMf[f] if f < m.nframes else None for f in sensed]\n"
+        "value = [[*X.translation, *X.rotation.flat] if X else [np.nan] * 12 for X in at]",
     ),
     "applied_wrenches": Way(
         "rnea with external forces",
@@ -289,6 +290,7 @@ value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.St
     "rotation_logarithm": Way("log3", "value = pin.log3(pin.Quaternion(q).matrix())"),
     "rotation_logarithm:quaternion": Way("log3", "value = pin.log3(pin.Quaternion(q))"),
     "rotation_exponential": Way("exp3", "value = pin.exp3(v).ravel()"),
+    "rotation_composed": Way("Quaternion", "value = (pin.Quaternion(q) * pin.Quaternion(q2)).matrix().ravel()"),
     "rotation_angle": Way("angularDistance", "value = [pin.Quaternion(q).angularDistance(pin.Quaternion(q2))]"),
     "rotation_vector_speeds": Way("Jexp3", "value = pin.Jexp3(tau)"),
     "rotation_vector_rates": Way("Jlog3", "value = pin.Jlog3(pin.exp3(tau))"),

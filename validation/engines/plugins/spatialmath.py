@@ -8,6 +8,7 @@ from .writing.source import Source, SourcePlugin, Way
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"
 WAYS = {
     "rotation_matrix": Way("q2r", "value = sm.q2r(q).ravel()"),
+    "rotation_composed": Way("qqmul", "value = sm.q2r(sm.qqmul(q, q2)).ravel()"),
     "rotation_angle": Way("qangle", "value = [sm.qangle(q, q2 if q @ q2 > 0 else -q2)]"),
     "rotation_logarithm": Way("trlog", f"{_R}value = sm.trlog(R, twist=True)"),
     "rotation_logarithm:tr2angvec": Way("tr2angvec", f"{_R}angle, axis = sm.tr2angvec(R)\nvalue = angle * axis"),

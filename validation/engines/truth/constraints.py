@@ -65,8 +65,10 @@ def _along(R: Exact | None, rows: Exact) -> Exact:
 
 
 def residuals(t: Truth, q: Exact) -> Exact:
-    """What constraints are off by (m): the first frame's point less the second's, along world axes; of a weld, times its
-    scale, the vector part of the quaternion that turns the second frame into the first, too; lengths less those at zero.
+    """What constraints are off by (m).
+
+    The first frame's point less the second's, along world axes; of a weld, times its scale, the vector part of the
+    quaternion that turns the second frame into the first, too; lengths less those at zero.
     """
     parts = []
     for one in t.tree.constraints:

@@ -127,8 +127,8 @@ def applied_wrenches(truth: Truth, s: Point) -> Exact:
 def solid_inertia(truth: Truth, s: Point) -> Exact:
     """Mass, mass centre, moments about it (10) of the only link, as it is stated."""
     (link,) = truth.tree.links
-    I = exact(link.inertia)
-    moments = [I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]
+    stated = exact(link.inertia)
+    moments = [stated[place] for place in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
     return np.array([exact(link.mass)[()], *exact(link.com), *moments])
 
 

@@ -5,8 +5,8 @@ With l(q) the length of a tendon and J its derivative along the speeds, e the fo
     Q = -d v - k (q - rest) + J_c^T (-gamma m g) + sum J^T (-k (l - rest) - d J v) + sum gear J^T e
     e = clip(gain clip(u) + b0 + b1 gear l + b2 gear J v)
 
-where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed. What
-actuators make together along a joint stays within the joint's limits.
+where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed.
+What actuators make together along a joint stays within the joint's limits.
 """
 
 from __future__ import annotations

@@ -202,8 +202,8 @@ class Kinematics:
 def around(a: Exact, b: Exact, radius: Exact, is_sphere: bool) -> Exact:
     """The shortest way from a to b around a sphere about the origin, or a cylinder about z; straight where it can be.
 
-    Of a sphere it lies in the plane of a, b and the centre: two tangents, and between them a part of a circle. A cylinder
-    unrolls: the way across z is the same as of a circle, and the rise along z is a side of a right triangle with it.
+    Of a sphere it lies in the plane of a, b and the centre: two tangents, and between them a part of a circle. A
+    cylinder unrolls: the way across z is that around a circle, and the rise along z makes a right triangle with it.
     """
     rise = (b - a) if is_sphere else (b - a)[2:]
     flat_a, flat_b = (a, b) if is_sphere else (a[:2], b[:2])

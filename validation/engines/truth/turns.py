@@ -2,7 +2,7 @@
 
 With S the matrix of the cross product of r, of length p, and w along the turned axes,
 
-    w = A r',  A = 1 - (1 - cos p) / p^2 S + (p - sin p) / p^3 S^2                                                       (5)
+    w = A r',  A = 1 - (1 - cos p) / p^2 S + (p - sin p) / p^3 S^2                                                (5)
 
 and along the axes before, w = A^T r'. The angles roll, pitch, yaw make R = Rz Ry Rx.
 """
@@ -25,6 +25,11 @@ def _turn(t: Truth, q: Exact) -> Exact:
 def matrix(t: Truth, s: Point) -> Exact:
     """Rows of R (9)."""
     return _turn(t, s.q).reshape(9)
+
+
+def composed(t: Truth, s: Point) -> Exact:
+    """Rows of R Q (9)."""
+    return (_turn(t, s.q) @ _turn(t, s.q2)).reshape(9)
 
 
 def angle(t: Truth, s: Point) -> Exact:

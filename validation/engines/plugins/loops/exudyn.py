@@ -209,8 +209,37 @@ def _connector(name: str, ends: tuple[str, str], arguments: str = "{}") -> str:
     return f"({name!r}, [{', '.join(ends)}], {arguments})"
 
 
+_INITIAL = """container = exu.SystemContainer()
+mbs, matrix = container.AddSystem(), ut.EulerParameters2RotationMatrix
+body = mbs.CreateRigidBody(
+    inertia=ut.InertiaCuboid(1000, [1, 1, 1]), referenceRotationMatrix=matrix(q), initialRotationMatrix=matrix(q2),
+    nodeType=exu.NodeType.{node})
+mbs.Assemble()
+what, when = exu.OutputVariableType.RotationMatrix, exu.ConfigurationType.Initial
+value = mbs.GetObjectOutputBody(body, what, [0, 0, 0], when)"""
+WAYS |= {
+    f"rotation_composed{way}": Way("CreateRigidBody: initialRotationMatrix", _INITIAL.format(node=node))
+    for way, node in (
+        ("", "RotationEulerParameters"),
+        (":Rxyz", "RotationRxyz"),
+        (":rotation vector", "RotationRotationVector"),
+    )
+}
+WAYS |= {
+    "rotation_matrix": Way("EulerParameters2RotationMatrix", "value = ut.EulerParameters2RotationMatrix(q).ravel()"),
+    "rotation_logarithm": Way(
+        "RotationMatrix2RotationVector",
+        "value = ut.RotationMatrix2RotationVector(ut.EulerParameters2RotationMatrix(q))",
+    ),
+    "rotation_exponential": Way("RotationVector2RotationMatrix", "value = ut.RotationVector2RotationMatrix(v).ravel()"),
+}
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that states links and connectors; each call makes the system that it asks."""
+    if tree.asked == "turns":
+        turn = Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2))
+        return Source(("import numpy as np, exudyn as exu", "import exudyn.utilities as ut"), ((turn,),), 4, 3)
     links: list[str] = []
     special: list[str] = []
     generic: list[str] = []
@@ -345,6 +374,7 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
+    demands={"turns": "CreateRigidBody, exudyn.utilities"},
     constraints={
         "point": "ObjectJointSpherical",
         "weld": "ObjectJointGeneric",

@@ -38,8 +38,7 @@ def _surface(name: str, wrap: Wrap) -> str:
 
 
 def sites(tree: Tree, link: str) -> str:
-    """The sites of a link, "" for the world, that constraints hold, tendons run over and sensors stand on, and what
-    tendons wrap around."""
+    """The sites of a link, "" for the world, for constraints, tendons, sensors; and what tendons wrap around."""
     lines: list[tuple[str, Constraint | Tendon]] = [(f"s{number}", one) for number, one in enumerate(tree.constraints)]
     lines += [(f"n{number}", one) for number, one in enumerate(tree.tendons)]
     sensors = "".join(_site(f"o{k}", end) for k, end in enumerate(tree.sensors) if end.link == link)

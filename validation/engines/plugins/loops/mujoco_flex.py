@@ -36,7 +36,8 @@ def write(tree: Tree) -> Source | Unsupported:
 import mujoco as mj
 TURNED = "0.8 0.6 0 0"
 def made(quat="1 0 0 0", pos="0 0 0"):
-    return mj.MjModel.from_xml_string(f"""<mujoco><option gravity="0 0 0" timestep="0.01"><flag contact="disable"/></option><worldbody>
+    return mj.MjModel.from_xml_string(f"""<mujoco><option gravity="0 0 0" timestep="0.01">
+<flag contact="disable"/></option><worldbody>
 <body name="p" quat="{{quat}}" pos="{{pos}}">{component}</body></worldbody></mujoco>""")
 def placed(m):
     m.opt.integrator, d = mj.mjtIntegrator.{integrator}, mj.MjData(m)
