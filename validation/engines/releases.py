@@ -99,22 +99,27 @@ class _Process(Worker):
 
     Attributes:
         crashes: How often the engine took it along, or gave no answer in time.
-        seconds: Time that was spent waiting for its answers.
+        seconds: Time of a processor that its answers took; a busy machine makes it no longer.
     """
 
-    crashes, seconds = 0, 0.0
+    crashes, seconds, _last = 0, 0.0, 0.0
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """As any engine, until it has crashed too often; at which state a crash comes is looked for all the same."""
         answers, answer = super().ask(job), None
         while self.crashes < CRASHES or not job.further:
-            begun = time.monotonic()
             answer = next(answers, None)
-            self.seconds += time.monotonic() - begun
             if answer is None:
+                self._count()
                 return
             self.crashes += job.further and isinstance(answer.value, Crashed)
             yield answer
+
+    def _count(self) -> None:
+        """Count the time that the process has taken since; a new one begins at nothing."""
+        with suppress(WorkerError):
+            (now,) = self.call(("time", "process_time"))
+            self.seconds, self._last = self.seconds + now - (self._last if now >= self._last else 0.0), now
 
     def memory(self) -> float:
         """The most that it has held so far [MB]; 0 where the system does not say."""
@@ -135,7 +140,7 @@ class ReleasesWorker(Worker):
         super().__init__()
         self._processes = processes
         self._judging = dict.fromkeys(processes, 0.0)
-        self._last = "", time.monotonic(), 0.0
+        self._last = "", time.process_time()
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """The answers of the engine's own release."""
@@ -144,12 +149,11 @@ class ReleasesWorker(Worker):
         return process.ask(replace(job, engine=name))
 
     def _attribute(self, engine: str) -> None:
-        """Count what has passed besides waiting as judging the engine that was asked before."""
-        before, since, waited = self._last
-        now, waiting = time.monotonic(), sum(process.seconds for _, process in self._processes.values())
+        """Count what this process has worked since as judging the engine that was asked before."""
+        (before, since), now = self._last, time.process_time()
         if before:
-            self._judging[before] += now - since - (waiting - waited)
-        self._last = engine, now, waiting
+            self._judging[before] += now - since
+        self._last = engine, now
 
     def alone(self) -> dict[str, float]:
         """Seconds that each would have taken by itself: those that ask the same of one tree share its truths."""

@@ -33,7 +33,7 @@ class Asked:
     Attributes:
         cells: Cells, under the names of plug-ins.
         natives: Name of a function -> what the engine calls it.
-        seconds: What it took, with the truths that it was held to.
+        seconds: Time of a processor that it took, with the truths that it was held to.
         memory: The most that its process held [MB].
         disk: Size of its environment [MB].
         words: Why it was not asked; "" where it was.
