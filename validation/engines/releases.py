@@ -107,12 +107,13 @@ class _Process(Worker):
     def ask(self, job: Job) -> Iterator[Answer]:
         """As any engine, until it has crashed too often; at which state a crash comes is looked for all the same."""
         answers, answer = super().ask(job), None
-        while self.crashes < CRASHES or not job.further:
+        looks = not job.further and (bool(job.pieces) or len(job.functions) == 1)
+        while self.crashes < CRASHES or looks:
             answer = next(answers, None)
             if answer is None:
                 self._count()
                 return
-            self.crashes += job.further and isinstance(answer.value, Crashed)
+            self.crashes += not looks and isinstance(answer.value, Crashed)
             yield answer
 
     def _count(self) -> None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
+from ..interface import Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
 from .kinds import OBLIQUE, link, placed, shifted, turned
 from .readers import about
 
@@ -58,7 +58,7 @@ def _borne_and_fixed() -> tuple[Link, ...]:
     return tuple(replace(one, compensation=part) for one, part in zip(links, (0.0, 1.0, 0.25, 0.5), strict=True))
 
 
-def _pulley(name: str, second: Joint, *wraps: Wrap, **stated: float) -> Tree:
+def _pulley(name: str, second: Joint, wrap: Wrap) -> Tree:
     """A tendon from the world to a hinge that faces it, around what lies between them."""
     draw = np.random.default_rng([ord(letter) for letter in name])
     links = (
@@ -66,7 +66,7 @@ def _pulley(name: str, second: Joint, *wraps: Wrap, **stated: float) -> Tree:
         link(draw, "b", 0, replace(second, p=(0.75, 0.0, 0.0))),
     )
     ends = (End("", p=(-1.0, 0.125, 0.25)), End("b", p=(0.25, 0.0625, -0.125)))
-    return Tree(name, links, tendons=(Tendon("path", ends, wraps=wraps, **stated),))
+    return Tree(name, links, tendons=(Tendon("path", ends, stiffness=4.0, damping=0.5, rest=0.25, wraps=(wrap,)),))
 
 
 def _wrapped() -> list[Tree]:
@@ -75,14 +75,13 @@ def _wrapped() -> list[Tree]:
     R = about((0.0, 1.0, 0.0), 0.25)
     ball, own = Wrap(0, End("", p=(0.0625, 0.0, 0.0)), 0.5, True), Wrap(0, End("a", p=(0.0, 0.03125, 0.0)), 0.5, True)
     drum, turned_drum = Wrap(0, End("", p=(0.0625, 0.0, 0.0)), 0.5, False), Wrap(0, End("a", R=R), 0.5, False)
-    forces = {"stiffness": 4.0, "damping": 0.5, "rest": 0.25}
-    around_a_ball = _pulley("tendon around a sphere", turn, ball, **forces)
+    around_a_ball = _pulley("tendon around a sphere", turn, ball)
     motor = Actuator(tendon=0, gear=2.0, gain=1.5, bias=(0.25, -3.0, -0.5), control=0.75)
     return [
         around_a_ball,
-        _pulley("tendon around a sphere that moves", slide, own, **forces),
-        _pulley("tendon around a cylinder", slide, drum, **forces),
-        _pulley("tendon around a turned cylinder that moves", turn, turned_drum, **forces),
+        _pulley("tendon around a sphere that moves", slide, own),
+        _pulley("tendon around a cylinder", slide, drum),
+        _pulley("tendon around a turned cylinder that moves", turn, turned_drum),
         replace(around_a_ball, name="actuator on a tendon around a sphere", actuators=(motor,)),
     ]
 
@@ -130,24 +129,6 @@ def _actuators() -> list[Tree]:
     clamped = _chain("clamped", *[replace(_HINGE, force_limits=(-0.25, 0.125))] * 2, _SLIDE)
     fast = replace(brake, bias=(0.0, 0.0, -1.5), control=8.0)
     off = replace(general, is_disabled=True)
-    # Lengths of hinges from -1 to 1: operating from the least to the greatest that a muscle pulls at.
-    pulls = [
-        Actuator(one.name, gear=gear, muscle=Muscle(0.625, lengths, operating, peak=peak))
-        for one, gear, lengths, operating, peak in (
-            (links[0], 1.0, (-1.0, 1.0), (0.75, 1.05), 10.0),
-            (links[1], -0.5, (-0.25, 0.25), (0.5, 1.6), 4.0),
-            (links[2], 2.0, (-0.5, 0.5), (0.875, 1.0), 2.0),
-        )
-    ]
-    strained = [replace(one, muscle=one.muscle._replace(lengths=(at, at + 0.5))) for one in pulls for at in (-3.0, 3.0)]
-    draw = np.random.default_rng(19)
-    ends = [End(name, turned(draw), shifted(draw, 0.3)) for name in ("c", "a", "")]
-    wrench = (0.5, -1.0, 0.75, 0.25, 0.5, -0.125)
-    at_site = replace(general, link="", gear=1.0, bias=ORIGIN, ends=tuple(ends[:1]), wrench=wrench)
-    apart = replace(general, link="", gear=2.0, ends=tuple(ends[:2]), wrench=(*wrench[:3], 0.0, 0.0, 0.0))
-    crank = Actuator(
-        ends=(End("b", p=(0.25, 0.125, 0.0625)), End("", p=(0.5, 0.25, 0.125))), crank=4.0, gear=1.5, control=0.75
-    )
     return [
         Tree(
             "actuators clamped at their joints",
@@ -155,11 +136,6 @@ def _actuators() -> list[Tree]:
             actuators=(fast, replace(fast, link="a"), replace(fast, link="b")),
         ),
         Tree("actuators disabled", links, actuators=(motor, off, replace(brake, is_disabled=True))),
-        Tree("muscles", links, actuators=tuple(pulls)),
-        Tree("muscles beyond their ranges", links, actuators=tuple(strained)),
-        Tree("actuator at a site", links, actuators=(at_site,)),
-        Tree("actuators between sites", links, actuators=(apart, replace(apart, ends=(ends[0], ends[2])))),
-        Tree("slider and crank", links, actuators=(crank, replace(crank, crank=3.0, ends=(ends[0], ends[1])))),
         Tree("motors", links, actuators=(motor, replace(motor, link="b", gear=-1.0))),
         Tree("servos of position and velocity", links, actuators=(servo, brake)),
         Tree("actuators of all kinds", links, actuators=(motor, servo, brake, general)),
@@ -167,6 +143,55 @@ def _actuators() -> list[Tree]:
     ]
 
 
+def _muscles() -> list[Tree]:
+    """Muscles on joints whose coordinates go from -1 to 1: within the lengths that they pull at, and beyond."""
+    links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
+    muscles = (
+        Muscle(0.625, (-1.0, 1.0), (0.75, 1.05), peak=10.0),
+        Muscle(0.625, (-0.25, 0.25), (0.5, 1.6), peak=4.0),
+        Muscle(0.625, (-0.5, 0.5), (0.875, 1.0), peak=2.0),
+    )
+    pairs = list(zip(links, (1.0, -0.5, 2.0), muscles, strict=True))
+    pulls = tuple(Actuator(one.name, gear=gear, muscle=muscle) for one, gear, muscle in pairs)
+    strained = tuple(
+        Actuator(one.name, gear=gear, muscle=muscle._replace(lengths=(at, at + 0.5)))
+        for one, gear, muscle in pairs
+        for at in (-3.0, 3.0)
+    )
+    return [
+        Tree("muscles", links, actuators=pulls),
+        Tree("muscles beyond their ranges", links, actuators=strained),
+    ]
+
+
+def _remote() -> list[Tree]:
+    """Actuators at a frame, between frames, and on the slider of a crank."""
+    links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
+    draw = np.random.default_rng(19)
+    c, a, world = (End(name, turned(draw), shifted(draw, 0.3)) for name in ("c", "a", ""))
+    wrench = (0.5, -1.0, 0.75, 0.25, 0.5, -0.125)
+    at_site = Actuator(gain=0.5, control=2.0, control_limits=(-1.0, 1.0), ends=(c,), wrench=wrench)
+    apart = Actuator(
+        gear=2.0,
+        gain=0.5,
+        bias=(0.25, -1.0, -0.75),
+        control=2.0,
+        control_limits=(-1.0, 1.0),
+        ends=(c, a),
+        wrench=(*wrench[:3], 0.0, 0.0, 0.0),
+    )
+    slider = (End("b", p=(0.25, 0.125, 0.0625)), End("", p=(0.5, 0.25, 0.125)))
+    crank = Actuator(ends=slider, crank=4.0, gear=1.5, control=0.75)
+    return [
+        Tree("actuator at a site", links, actuators=(at_site,)),
+        Tree("actuators between sites", links, actuators=(apart, replace(apart, ends=(c, world)))),
+        Tree("slider and crank", links, actuators=(crank, replace(crank, crank=3.0, ends=(c, a)))),
+    ]
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
-    return {tree.name: tree for tree in (*_passive(), *_tendons(), *_wrapped(), *_heavy(), *_actuators())}
+    return {
+        tree.name: tree
+        for tree in (*_passive(), *_tendons(), *_wrapped(), *_heavy(), *_actuators(), *_muscles(), *_remote())
+    }

@@ -351,13 +351,13 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         "import mujoco as mj",
         f"m = {_READERS[form].format(text=repr(text))}",
         "d = mj.MjData(m)",
+        *constrained.controls(tree),
     )
     # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
     fused = form == "urdf" and not all(slots)
     optional = {} if fused else {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
     if tree.sensors:
         optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
-    lines = (*lines, *constrained.controls(tree))
     return Source(lines, slots, nq, nv, optional)
 
 

@@ -147,7 +147,7 @@ class Forces:
             if not self.is_saturated(number, q, v) and not actuator.is_disabled:
                 b1, b2 = self._slopes(actuator, q, v, number)
                 made.append((b1 * np.outer(J, J), b2 * np.outer(J, J)))
-        total = self._together(q, v) if self._limits else None
+        total = self._together(q, v)
         bound = [place for place, (low, high) in self._limits.items() if not low < total[place] < high]
         for by_length, by_speed in made:
             by_length[bound], by_speed[bound] = zeros(self._nv), zeros(self._nv)

@@ -109,8 +109,8 @@ def _actuator(number: int, one: Actuator) -> str:
     """A motor, a servo of position or velocity, or the general one."""
     b0, b1, b2 = one.bias
     match one:
-        case Actuator(muscle=Muscle()):
-            element = _muscle(one.muscle)
+        case Actuator(muscle=Muscle() as muscle):
+            element = _muscle(muscle)
         case Actuator(gain=1.0, bias=(0.0, 0.0, 0.0)):
             element = "motor"
         case Actuator(bias=(0.0, _, 0.0)) if one.gain == -b1:
@@ -156,8 +156,8 @@ def _equality(number: int, one: Constraint) -> str:
         return f'<{name} site1="s{number}_0" site2="s{number}_1" {_HARD}/>'
     if _is_joint(one):
         ratio = -one.coefficients[1] / one.coefficients[0]
-        first, second = (end.link for end in one.ends)
-        return f'<joint joint1="{first}" joint2="{second}" polycoef="0 {ratio!r} 0 0 0" {_HARD}/>'
+        driven, driver = (end.link for end in one.ends)
+        return f'<joint joint1="{driven}" joint2="{driver}" polycoef="0 {ratio!r} 0 0 0" {_HARD}/>'
     return f'<tendon tendon1="t{number}" {_HARD}/>'
 
 
