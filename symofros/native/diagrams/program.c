@@ -144,10 +144,12 @@ SYM_EXPORT int32_t sym_program_start(sym_program_instance *instance) {
 
 SYM_EXPORT int32_t sym_program_parameter(const sym_program *program, const char *name) {
     const sym_model *m = program->instants();
-    int32_t i;
+    int32_t i, k;
     for (i = 0; i < m->npar; ++i)
-        if (strcmp(m->par_names[i], name) == 0) return i;
-    return -1;
+        if (strcmp(m->par_names[i], name) == 0) break;
+    for (k = 0; k < program->n_kept; ++k)
+        if (program->kept[k].par == i) return -1; /* memory of the program */
+    return i < m->npar ? i : -1;
 }
 
 SYM_EXPORT sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program) {

@@ -61,7 +61,8 @@ size_t sym_program_size(const sym_program *program);
 /* An instance in that memory, at its start; NULL where the memory is too small, or an initial state can't be projected onto
  * the constraints. */
 sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program);
-/* Evaluate what depends on parameters alone. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
+/* Evaluate what depends on parameters alone; those that events of mechanisms set begin with what `par` says, and are memory
+ * from then on. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
  * model's description: nothing moves then (a part's check_parameters = 0 takes them as they come). */
 int32_t sym_program_prepare(sym_program_instance *instance);
 /* Integrate to time t, executing instants on the way, that of t included: blocks sampled there read the inputs as they are
