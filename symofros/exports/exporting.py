@@ -123,8 +123,9 @@ def export(
         atol: Absolute bound of the local error of adaptive methods. 1e-8 by default.
         beam_limit: Estimated error of the beams' theory beyond which stepping fails, by default as in `simulate`; from
             0.01 on FMUs log a warning.
-        events: Name -> formula or Event, with actions as of `simulate`, which the steps of "c", "fmu2" and "fmu3" look
-            for and do; such an FMU has no Model Exchange, and none of its events is terminal. Of a model.
+        events: Name -> formula or Event, with actions as of `simulate`, which the steps of "c", "fmu2", "fmu3" and
+            "mex" look for and do; such an FMU has no Model Exchange, and events of units and "mex" end nothing. Of a
+            model.
 
     Returns:
         What was written, and notes on what the format lacks.

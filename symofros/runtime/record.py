@@ -225,7 +225,7 @@ class ModelRecord:
         """
         if self.sticking:
             found = f"friction of '{self.sticking[0].name}' sticks"
-            rule = "friction that sticks has modes: `simulate`, batches, steppers, C packages and FMUs choose them"
+            rule = "it has modes: `simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them"
             remedy = "sticks=False: friction that is smooth, and creeps"
             raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
 

@@ -206,5 +206,7 @@ def as_data(resolved: Resolved) -> dict[str, Any]:
         "order": [".".join(one) for one in resolved.order],
         "parts": [list(part.blocks) for part in layout.parts],
         "outlets": {k: ".".join(v) for k, v in wired.outlets.items()},
-        "parameters": {name: value for name, value in zip(layout.par_names[: layout.settable], layout.par, strict=False)},
+        "parameters": {
+            name: value for name, value in zip(layout.par_names[: layout.settable], layout.par, strict=False)
+        },
     }

@@ -15,7 +15,7 @@ from symofros.simulation.actions import StatedActions, places_of, plan_actions
 from symofros.simulation.events import Event, events_of
 
 # Targets whose steps look for events.
-_TARGETS = ("c", "fmu2", "fmu3")
+_TARGETS = ("c", "fmu2", "fmu3", "mex")
 
 
 @dataclass(frozen=True)
@@ -77,14 +77,17 @@ def _refuse(events: Sequence[Event], target: str) -> None:
 
 
 def refuse_ends(events: Iterable[Event]) -> None:
-    """Refuse events that end the motion of an FMU.
+    """Refuse events that end the motion of an FMU, or of a call of a MEX function.
 
     Raises:
         ExportError: One does.
     """
     ending = [event.name for event in events if event.terminal]
     if ending:
-        what, rule = f"export: event '{ending[0]}' ends the motion", "importers decide when the motion of an FMU ends"
+        what, rule = (
+            f"export: event '{ending[0]}' ends the motion",
+            "callers decide when the motion of an FMU or a MEX function ends",
+        )
         raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
 
 

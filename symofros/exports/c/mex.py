@@ -22,7 +22,7 @@ tau = {name}(3, X, A, U, Parameters, t)               inverse dynamics
 [rate, G, gamma] = {name}(6, X, U, Parameters, t)     non-holonomic constraints: G*v - b
 [T, V] = {name}(7, X, U, Parameters, t)               kinetic and potential energy
 [A, B] = {name}(8, X, U, Parameters, t)               linearisation: x' = A*x + B*u
-[T, X] = {name}(9, X, U, Parameters, [t0 t_end dt])   simulation, inputs held
+[T, X] = {name}(9, X, U, Parameters, [t0 t_end dt])   simulation, inputs held; events act
 
 X = [q; v]. U, Parameters and t may be left out or empty: defaults, and t = 0. SI units, radians.
 V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.

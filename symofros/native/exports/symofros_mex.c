@@ -293,6 +293,7 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
     t = mxGetPr(plhs[0]);
     x = mxMalloc(n * (nq + nv + 1) * sizeof *x);
     instance->t = span[0], instance->run.h = 0.0;
+    sym_instance_forget_events(instance); /* each call is a motion of its own */
     for (k = 0; k < n; ++k) {
         if (k > 0) {
             const double next = span[0] + (double)k * span[2];

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.cases import SAMPLED, STARTS, STEP, first_state, need, run, system_of, trajectory
 
 pytestmark = pytest.mark.tools
@@ -132,3 +133,18 @@ show('heavy', four_bar(1, X4, [], [2, 1])); show('light', four_bar(1, X4));
     for key, value in wanted.items():
         value = np.asarray(value).ravel()
         assert np.abs(found[key] - value).max() < SAME * max(1.0, np.abs(value).max()), key
+
+
+def test_events_act_in_the_simulation_of_the_mex_function(tmp_path: Path) -> None:
+    """As in a run from Python, in each call from the start: modes and what counts once begin anew."""
+    need("octave-cli", "mkoctfile")
+    events = {**STRIKE, "thrown": sf.Event("t - 0.9", once=True, action={"dz": 1.0})}
+    sf.export(BALL, "mex", tmp_path / "ball", name="ball", events=events, dt=1e-3)
+    run("octave-cli", "-qf", "--eval", "build_ball", cwd=tmp_path / "ball")
+    call = "[T, X] = ball(9, [0.8; 0], [], [], [0 1 1e-3]);"
+    found = numbers(octave(tmp_path, SHOW + f"{call} {call}\nshow('T', T); show('X', X);"))
+    run_ = sf.simulate(sf.compile(BALL), [0.8], t_end=1.0, events=events, dt=1e-3)
+    assert [one.name for one in run_.events].count("thrown") == 1 and len(run_.events) > 2
+    np.testing.assert_allclose(found["X"][-2:], [run_.q[-1, 0], run_.v[-1, 0]], atol=1e-12)
+    with pytest.raises(sf.ExportError, match="ends the motion"):
+        sf.export(BALL, "mex", tmp_path / "ends", events={"rest": sf.Event("t - 0.5", terminal=True)})
