@@ -40,8 +40,11 @@ if TYPE_CHECKING:
     from symofros.description.forces import Brake as Brake
     from symofros.description.forces import Connection as Connection
     from symofros.description.forces import Damper as Damper
+    from symofros.description.forces import ForceState as ForceState
     from symofros.description.forces import Friction as Friction
+    from symofros.description.forces import Hysteresis as Hysteresis
     from symofros.description.forces import Load as Load
+    from symofros.description.forces import LuGre as LuGre
     from symofros.description.forces import Potential as Potential
     from symofros.description.forces import Rotor as Rotor
     from symofros.description.forces import Spring as Spring

@@ -54,6 +54,7 @@ from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
+from symofros.runtime.stateful import stated
 
 
 def compile_system(system: System, options: Options | None = None) -> Model:
@@ -69,6 +70,11 @@ def compile_system(system: System, options: Options | None = None) -> Model:
         CompileError: The C compiler failed on functions that `options` names, or there is none of its name; that of
             others is raised when they are first called.
     """
+    return stated(Compilation(system, options).model())
+
+
+def _compile_carried(system: System, options: Options) -> Model:
+    """The model with its states of forces, where it has some, among its speeds."""
     return Compilation(system, options).model()
 
 
@@ -223,7 +229,7 @@ class Compilation:
         toolchain, on_tape = _choose_toolchain(self.options)
         background = None
         if self._stated.background and toolchain is not None:
-            background = BackgroundCompilation(partial(compile_system, self.system, self.options))
+            background = BackgroundCompilation(partial(_compile_carried, self.system, self.options))
         units = self._units(toolchain, on_tape, background)
         if self.options.functions is None:
             return self._model(units, units.functions, background=background)
@@ -266,7 +272,7 @@ class Compilation:
             formulas=units.formulas,
             beams=self._beams_at,
             parameter_check=self._parameter_check.problems,
-            origin=partial(compile_system, self.system, self._stated),
+            origin=partial(_compile_carried, self.system, self._stated),
             device_code=units.device_code,
             instants=instants_at(self.tree),
             routes=units.routes if tell else None,

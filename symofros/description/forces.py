@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from symofros.base.names import name_of
 from symofros.description.entries import pairs_of, refuses_unknown_entries, shown_entries
@@ -149,7 +149,97 @@ def Brake(torque: Value | str, engaged: Value | str = 1.0, coordinate: int = 0) 
     return Friction(level.value, coordinate=coordinate, sticks=True)
 
 
-JointElement = Spring | Damper | Stop | Friction
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class LuGre(_Values):
+    """Friction by bristles that bend, the LuGre model: presliding displacement, stick-slip, a lag in sliding.
+
+    F = -(stiffness z + damping z' + viscous v),   z' = v - stiffness |v| z / g,
+    g = dynamic + (static - dynamic) exp(-(v/stribeck_velocity)^2)
+
+    The mean deflection z of the bristles is a state of the model, "COORDINATE.bristle", which runs integrate with the
+    motion; its neutral value is zero. The energy stiffness z^2/2 of the bristles is potential energy
+    (docs/theory/elements.md, (12) to (15), which says up to which speed it dissipates whatever the motion).
+
+    Attributes:
+        dynamic: Coulomb friction at speed [N m or N].
+        stiffness: Stiffness of the bristles [N m/rad or N/m].
+        damping: Damping of the bristles [N m s/rad or N s/m].
+        static: Friction at the onset of motion; dynamic if not given [N m or N].
+        stribeck_velocity: Speed over which static falls to dynamic; needed where static is given [rad/s or m/s].
+        viscous: Viscous coefficient [N m s/rad or N s/m].
+        coordinate: Index of the speed of the joint, from 0.
+    """
+
+    dynamic: Value
+    stiffness: Value
+    damping: Value = 0.0
+    static: Value | None = None
+    stribeck_velocity: Value | None = None
+    viscous: Value = 0.0
+    coordinate: int = 0
+    state: ClassVar[str] = "bristle"
+
+    def __post_init__(self) -> None:
+        """Convert the numbers; static friction falls over a speed."""
+        super().__post_init__()
+        if (self.static is None) != (self.stribeck_velocity is None):
+            given = "static" if self.stribeck_velocity is None else "stribeck_velocity"
+            rule = "friction falls from static to dynamic over stribeck_velocity"
+            raise DescriptionError(
+                Problem("lugre: one of two entries", f"{given} alone", rule, "give both, or neither")
+            )
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class Hysteresis(_Values):
+    """An elasto-plastic element, a spring that slips at a force: rate-independent hysteresis, as of harmonic drives.
+
+    F = -stiffness z,   z' = v (1 - |stiffness z/force|^sharpness) where z grows, z' = v where it falls
+
+    Several on one coordinate, some softer than others, are the model of Iwan and of Maxwell slip: each slips at its
+    own displacement. The deflection z is a state of the model, "COORDINATE.slip" (the next "COORDINATE.slip2"), whose
+    neutral value is zero; stiffness z^2/2 is potential energy (docs/theory/elements.md, (16), (17)).
+
+    Attributes:
+        stiffness: Stiffness before it slips [N m/rad or N/m].
+        force: Force at which it slips [N m or N].
+        sharpness: Exponent, 1 or more: 1 bends at once (Dahl's model), 50 is nearly elastic up to the force.
+        coordinate: Index of the speed of the joint, from 0.
+    """
+
+    stiffness: Value
+    force: Value
+    sharpness: Value = 2.0
+    coordinate: int = 0
+    state: ClassVar[str] = "slip"
+
+
+JointElement = Spring | Damper | Stop | Friction | LuGre | Hysteresis
+# Elements with a state of their own.
+WITH_STATE = (LuGre, Hysteresis)
+
+
+@refuses_unknown_entries
+@dataclass(frozen=True)
+class ForceState:
+    """A state of a force of one's own: a number that moves by its rate, and that formulas of forces may use.
+
+    Its neutral value is zero. Formulas of loads, efforts, virtual power and potentials may name it; of a potential it
+    is energy that is stored, not a force: that is stated beside it.
+
+    Attributes:
+        name: Unique.
+        rate: Formula of states, coordinates, speeds, inputs, parameters and t.
+    """
+
+    name: str
+    rate: Value
+
+    def __post_init__(self) -> None:
+        """Convert the formula."""
+        object.__setattr__(self, "rate", as_value(self.rate, f"state '{self.name}'"))
 
 
 @refuses_unknown_entries

@@ -17,7 +17,7 @@ from symofros.description.beams.segments import SegmentAnchors, segment_names, s
 from symofros.description.constraints import Constraint, Switch, section_order
 from symofros.description.contacts import Contact
 from symofros.description.entries import refuses_unknown_entries, shown_entries
-from symofros.description.forces import Connection, Load, Potential, VirtualPower
+from symofros.description.forces import Connection, ForceState, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
@@ -205,6 +205,7 @@ class System:
     origin: Mapping[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
     visuals: Mapping[str, tuple[Visual, ...]] = field(default_factory=dict, compare=False, repr=False)
     switches: tuple[Switch, ...] = ()
+    states: tuple[ForceState, ...] = ()
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
@@ -218,6 +219,7 @@ class System:
             "constraints",
             "notes",
             "switches",
+            "states",
         ):
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if any(body.segments > 1 for body in self.beams):
@@ -278,11 +280,12 @@ class System:
             dict(self.origin),
             dict(self.visuals),
             self.switches,
+            self.states,
         )
 
     def __repr__(self) -> str:
-        """Each field that counts; no switches where there are none, as hashes of descriptions are made of this text."""
-        return shown_entries(self, () if self.switches else ("switches",))
+        """Each field that counts, as hashes of descriptions are made of this text; what came later if there is some."""
+        return shown_entries(self, [name for name in ("switches", "states") if not getattr(self, name)])
 
     def body(self, name: str) -> Body:
         """The body of that name.

@@ -61,6 +61,9 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         upper += [float("inf") if limits is None or limits.upper is None else limits.upper] * n
         neutral += neutral_coordinates(link.joint, n)
         periodic += angles(link.joint)
+    idle = len(names.states)
+    lower, upper = lower + [-math.inf] * idle, upper + [math.inf] * idle
+    neutral, periodic = neutral + [0.0] * idle, periodic + [False] * idle
     return ModelRecord(
         name=tree.system.name,
         hash=_hash(tree.system, options),
@@ -94,6 +97,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         contact_names=ball_names(tree),
         switches=_switches(tree),
         sticking=_sticking(tree),
+        state_names=names.states,
     )
 
 
@@ -188,6 +192,9 @@ def _segments(tree: SpanningTree) -> tuple[Segment, ...]:
             segments[-1] = segments[-1]._replace(size=segments[-1].size + link.q[1])
         else:
             segments.append(Segment(kind, link.q[0], link.v[0], link.q[1]))
+    names = tree.coordinates
+    if n := len(names.states):
+        segments.append(Segment("linear", len(names.q) - n, len(names.v) - n, n))
     return tuple(segments)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, overload
 
@@ -17,11 +16,11 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.functions import Rate as Rate
-from symofros.runtime.methods import linear
 from symofros.runtime.methods.adjoint import AdjointFunctions
 from symofros.runtime.methods.configurations import ConfigurationFunctions
 from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.copies import CopyFunctions
+from symofros.runtime.methods.derivatives import DerivativeFunctions
 from symofros.runtime.methods.frames import FrameFunctions
 from symofros.runtime.methods.identification import IdentificationFunctions
 from symofros.runtime.methods.identification import JointTerm as JointTerm
@@ -31,6 +30,7 @@ from symofros.runtime.methods.linear import StateMatrices as StateMatrices
 from symofros.runtime.methods.momentum import MomentumFunctions
 from symofros.runtime.methods.reactions import ReactionFunctions
 from symofros.runtime.methods.routes import RouteFunctions
+from symofros.runtime.methods.states import StateFunctions
 
 
 class Model(
@@ -38,11 +38,13 @@ class Model(
     ConfigurationFunctions,
     ConstraintFunctions,
     CopyFunctions,
+    DerivativeFunctions,
     FrameFunctions,
     IdentificationFunctions,
     MomentumFunctions,
     ReactionFunctions,
     RouteFunctions,
+    StateFunctions,
 ):
     """The equations of one mechanism, ready to be evaluated.
 
@@ -54,6 +56,8 @@ class Model(
     `par=` overrides the run-time parameters (..., npar), judged as the description's own (`with_parameter_checks`);
     `t=` gives the time (...,) to models that depend on it; `u=` matters where a motion is prescribed, because its
     coordinates, speeds and their rates are inputs.
+    `z=` gives the states (..., nz) of forces to models that have some, as of friction by bristles; the neutral ones,
+    zeros, by default.
     Quaternions are rotations: near unit length, to 1e-3, they are taken at it, others raise ShapeError.
     NaN in a state or an input propagates to what depends on it, so that one bad state does not spoil its batch.
     Methods raise ShapeError where an array does not fit, UnknownNameError for a name that is not in the model, and
@@ -145,16 +149,34 @@ class Model(
         return self._one("bias", {"q": q, "v": v, "u": u}, par)
 
     def generalized_force(
-        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """Applied and joint forces Q(q, v, u) (..., nv)."""
-        return self._one("generalized_force", {"q": q, "v": v, "u": u, "t": t}, par)
+        return self._one(
+            "generalized_force", {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t}, par
+        )
 
     def dynamics(
-        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        u: ArrayLike,
+        *,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> tuple[Array, Array, Array]:
         """M (..., nv, nv), h (..., nv) and Q (..., nv) in one call."""
-        M, h, Q = self._call("dynamics", "", {"q": q, "v": v, "u": u, "t": t}, par)
+        M, h, Q = self._call(
+            "dynamics", "", {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t}, par
+        )
         return M, h, Q
 
     @overload
@@ -168,6 +190,7 @@ class Model(
         t: ArrayLike = 0.0,
         gains: npt.ArrayLike | None = None,
         multipliers: Literal[False] = False,
+        z: ArrayLike | None = None,
     ) -> Array: ...
     @overload
     def forward_dynamics(
@@ -180,6 +203,7 @@ class Model(
         t: ArrayLike = 0.0,
         gains: npt.ArrayLike | None = None,
         multipliers: Literal[True],
+        z: ArrayLike | None = None,
     ) -> tuple[Array, Array]: ...
     def forward_dynamics(
         self,
@@ -191,6 +215,7 @@ class Model(
         t: ArrayLike = 0.0,
         gains: npt.ArrayLike | None = None,
         multipliers: bool = False,
+        z: ArrayLike | None = None,
     ) -> Array | tuple[Array, Array]:
         """Accelerations v' (..., nv) that the forces produce, constraints kept.
 
@@ -203,12 +228,17 @@ class Model(
             gains: Baumgarte's (alpha, beta) for all constraints, or (..., 2 nc): alpha of each, then beta of each
                 [1/s]; none: accelerations only, so that errors of phi and G v drift.
             multipliers: Whether to return lam (..., nc) as well: G^T lam are the constraint forces.
+            z: States of forces (..., nz).
         """
         if multipliers is not False:
             check_argument("forward_dynamics: multipliers", multipliers, bool)
         if multipliers:
-            return self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains)[:2]
-        return self._one("forward_dynamics", {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}, par)
+            return self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains, z=z)[:2]
+        return self._one(
+            "forward_dynamics",
+            {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t, "gains": self._gains(gains)},
+            par,
+        )
 
     def constrained_dynamics(
         self,
@@ -219,13 +249,14 @@ class Model(
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
         gains: npt.ArrayLike | None = None,
+        z: ArrayLike | None = None,
     ) -> tuple[Array, Array, Array]:
         """Accelerations v' (..., nv), multipliers (..., nc) and the rank of G (...,).
 
         Conditions that repeat others leave v' as it is and get multipliers of least norm; ones that contradict each
         other are met in the sense of least squares. A rank of -1 marks a state that has no acceleration (NaN).
         """
-        given = {"q": q, "v": v, "u": u, "t": t, "gains": self._gains(gains)}
+        given = {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t, "gains": self._gains(gains)}
         a, *constrained = self._call("forward_dynamics", "", given, par)
         if not constrained:
             batch = a.shape[:-1]
@@ -248,9 +279,12 @@ class Model(
         u: ArrayLike | None = None,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """M a + h - Q(q, v, 0) (..., nv): what the inputs must supply for v' = a; of u, only motions count."""
-        return self._one("inverse_dynamics", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
+        return self._one(
+            "inverse_dynamics", {"q": q, "v": v if z is None else self._with_states(v, z), "a": a, "u": u, "t": t}, par
+        )
 
     def kinetic_energy(
         self, q: ArrayLike, v: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None
@@ -259,131 +293,17 @@ class Model(
         return self._one("kinetic_energy", {"q": q, "v": v, "u": u}, par)
 
     def potential_energy(
-        self, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None, t: ArrayLike = 0.0
+        self,
+        q: ArrayLike,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """Potential energy (...,) [J]: of the weight, zero for mass at the world origin, and of springs."""
-        return self._one("potential_energy", {"q": q, "u": u, "t": t}, par)
-
-    # Derivatives. Those by q are along the manifold: column k is the change as q moves with speed k alone.
-
-    def inverse_dynamics_derivatives(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        a: ArrayLike,
-        *,
-        u: ArrayLike | None = None,
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> tuple[Array, Array]:
-        """The derivatives of `inverse_dynamics` by q and by v (..., nv, nv); that by a is M."""
-        by_q, by_v = self._call("inverse_dynamics_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
-        return by_q, by_v
-
-    def forward_dynamics_derivatives(
-        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
-    ) -> tuple[Array, Array, Array]:
-        """The derivatives of `forward_dynamics` by q, v (..., nv, nv) and u (..., nv, nu), constraints kept.
-
-        Of a quaternion among u they hold for changes that are perpendicular to it (docs/theory/linear.md, section 9).
-        """
-        by_q, by_v, by_u = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
-        return by_q[..., : self.nv, :], by_v[..., : self.nv, :], by_u[..., : self.nv, :]
-
-    def inverse_dynamics_by_par(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        a: ArrayLike,
-        *,
-        u: ArrayLike | None = None,
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> Array:
-        """The derivative of `inverse_dynamics` by the run-time parameters (..., nv, npar)."""
-        return self._one("inverse_dynamics_by_par", {"q": q, "v": v, "a": a, "u": u, "t": t}, par)
-
-    def forward_dynamics_by_par(
-        self, q: ArrayLike, v: ArrayLike, u: ArrayLike, *, par: ArrayLike | None = None, t: ArrayLike = 0.0
-    ) -> Array:
-        """The derivative of `forward_dynamics` by the run-time parameters (..., nv, npar), constraints kept.
-
-        At the given state: where a parameter changes the constraints themselves, the state does not follow.
-        """
-        return self._one("forward_dynamics_by_par", {"q": q, "v": v, "u": u, "t": t}, par)[..., : self.nv, :]
-
-    @overload
-    def linearize(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        u: ArrayLike,
-        *,
-        outputs: None = None,
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> tuple[Array, Array]: ...
-    @overload
-    def linearize(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        u: ArrayLike,
-        *,
-        outputs: Sequence[Output],
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> StateMatrices: ...
-    def linearize(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        u: ArrayLike,
-        *,
-        outputs: Sequence[Output] | None = None,
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> tuple[Array, Array] | StateMatrices:
-        """A (..., 2 nv, 2 nv) and B (..., 2 nv, nu) of the state's small changes: x' = A x + B u.
-
-        With outputs C (..., p, 2 nv) and D (..., p, nu) as well: y = C x + D u.
-        x = (difference of q along the manifold, difference of v). Exact: differentiated on the graph. On constraints
-        only some x are possible: `sf.state_space` keeps those. Of u, changes of a quaternion are perpendicular to it.
-
-        Args:
-            q: Configuration (..., nq).
-            v: Speeds (..., nv).
-            u: Inputs (..., nu).
-            outputs: What y stacks, in order: "q", "v", "a" (nv rows each), "lam" (nc), and ("frame_pose", frame),
-                ("frame_velocity", frame), ("frame_acceleration", frame) of 6 rows in world axes, linear part first;
-                of a pose the change of the origin and the small rotation.
-            par: Run-time parameters.
-            t: Time.
-
-        Raises:
-            UnknownNameError: No such output or frame.
-        """
-        slopes = self._call("forward_dynamics_derivatives", "", {"q": q, "v": v, "u": u, "t": t}, par)
-        speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
-        if outputs is None:
-            return linear.state_matrices(self.record.segments, slopes, speeds)
-
-        def frame_derivatives(frame: str) -> FrameDerivatives:
-            a = self.forward_dynamics(q, v, u, par=par, t=t)
-            return self.frame_derivatives(frame, q, v, a, u=u, par=par)
-
-        return linear.linearize(self.record.segments, slopes, speeds, outputs, frame_derivatives)
-
-    def residual_derivatives(
-        self,
-        q: ArrayLike,
-        v: ArrayLike,
-        a: ArrayLike,
-        u: ArrayLike,
-        lam: ArrayLike,
-        *,
-        par: ArrayLike | None = None,
-        t: ArrayLike = 0.0,
-    ) -> list[Array]:
-        """Derivatives of R = (M a + h - Q - G^T lam; G a - gamma) by q, v and u (..., nv + nc, nv or nu)."""
-        return self._call("residual_derivatives", "", {"q": q, "v": v, "a": a, "u": u, "lam": lam, "t": t}, par)
+        given: dict[str, ArrayLike | None] = {"q": q, "u": u, "t": t}
+        if self.nz or z is not None:
+            at_states = self._at_states(z)
+            given |= {"v": at_states} if self.nz else {}
+        return self._one("potential_energy", given, par)

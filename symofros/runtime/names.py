@@ -17,7 +17,7 @@ from symofros.runtime.record import ModelRecord
 
 @dataclass(frozen=True)
 class Names:
-    """Names of coordinates, speeds, inputs, parameters, frames, constraints, joints, sections, ..., and contacts."""
+    """Names of coordinates, speeds, inputs, parameters, frames, constraints, ..., contacts, states of forces (z)."""
 
     q: tuple[str, ...]
     v: tuple[str, ...]
@@ -29,6 +29,7 @@ class Names:
     sections: tuple[tuple[str, float], ...]
     prescribed: tuple[str, ...]
     contacts: tuple[str, ...]
+    z: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, record: ModelRecord) -> Names:
@@ -44,6 +45,7 @@ class Names:
             record.section_names,
             record.prescribed_names,
             record.contact_names,
+            record.state_names,
         )
 
 
@@ -54,6 +56,7 @@ _GROUPS = {
     "inputs": ("u",),
     "run-time parameters": ("par",),
     "constraints": ("lam",),
+    "states of forces": ("z", "z0"),
 }
 
 
@@ -82,6 +85,7 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
         "inputs": (record.u_names, record.u_default),
         "run-time parameters": (record.par_names, tuple(par.tolist())),
         "constraints": (record.constraint_names, (0.0,) * record.nc),
+        "states of forces": (record.state_names, (0.0,) * len(record.state_names)),
         "": ((), ()),
     }[kind]
     if not kind:

@@ -160,6 +160,7 @@ class ModelRecord:
         contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
         switches: Constraints that engage and release.
         sticking: Coordinates with friction that sticks.
+        state_names: States of forces, carried as the last speeds, each beside an idle coordinate, the last ones.
     """
 
     name: str
@@ -194,6 +195,7 @@ class ModelRecord:
     contact_names: tuple[str, ...] = ()
     switches: tuple[SwitchRecord, ...] = ()
     sticking: tuple[StickingRecord, ...] = ()
+    state_names: tuple[str, ...] = ()
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:

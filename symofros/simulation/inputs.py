@@ -172,7 +172,7 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
     if isinstance(u, Mapping):
         return _by_name(model, u, constant)
     if callable(u):
-        return InputPlan(constant, callback=u)
+        return InputPlan(constant, callback=u if model.carried is model else _of_stated(u, model.nq, model.nv))
     array = numeric("u", u)
     if array.shape == (len(names),):
         for name, value in zip(names, array, strict=True):
@@ -187,6 +187,11 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
             )
         )
     return InputPlan(array)
+
+
+def _of_stated(u: Callback, nq: int, nv: int) -> Callback:
+    """A function of the coordinates and speeds alone, where states of forces are carried behind them."""
+    return lambda t, q, v: u(t, q[:nq], v[:nv])
 
 
 def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:

@@ -39,6 +39,7 @@ def simulate(
     v0: ArrayLike | None = None,
     t_end: float = 1.0,
     *,
+    z0: ArrayLike | None = None,
     u: Inputs | None = None,
     par: ArrayLike | None = None,
     events: Mapping[str, Any] | None = None,
@@ -54,6 +55,7 @@ def simulate(
             default.
         v0: First speeds (nv), or values by name; rest by default.
         t_end: End time [s].
+        z0: First states of forces (nz), or values by name; the neutral ones, zeros, by default.
         u: Inputs: an array (nu), a Signal of all, a mapping from input names to numbers, formulas (of coordinates,
             speeds, parameters and t, compiled to C) and Signals, or a function (t, q, v) -> (nu), called from the loop
             and hence slow; after a run of fixed steps, but not in real time, it is called about a few states again, and
@@ -76,14 +78,15 @@ def simulate(
         SymofrosError: The options contradict each other, or inputs that prescribe a motion.
     """
     settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
-    model = model.with_precision("double")
+    stated, model = model, model.carried.with_precision("double")
+    q0, v0 = stated.carry(q0, v0, z0)
     values = model.parameter_values
     if par is not None:
         values = vector(model, "par", model.checked_parameters(par), model.npar)
     q = first_configuration(model, q0)
     v = np.zeros(model.nv) if v0 is None else vector(model, "v0", v0, model.nv)
     looked_for = events_of(model, events)
-    inputs = plan_inputs(model, u)
+    inputs = plan_inputs(stated, u)
     check_fit(model, settings, inputs)
     if settings.method.family.multistep:
         refuse_actions(looked_for, f"simulation by '{settings.method.name}'", "method='rodas4', or 'dopri5'")
@@ -96,7 +99,7 @@ def simulate(
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))
     check_start(model, settings, q, v, stepper.inputs_at(settings.t0, q, v), np.asarray(values))
     with bar(progress, settings.t0, t_end) as show:
-        return run_to_its_end(stepper, settings, q, v, show)
+        return run_to_its_end(stepper, settings, q, v, show).of(stated)
 
 
 def run_to_its_end(
@@ -232,7 +235,8 @@ def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
     pairs = zip(firsts, phases, phases[1:], strict=False)
     changes = tuple((first, after.par) for first, before, after in pairs if before.acted)
     par = np.array(phases[0].par)
-    return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes)
+    z = stepper.model.states_of(v)
+    return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes, z)
 
 
 def prepare_run(model: Model, settings: Settings | None = None) -> None:

@@ -29,7 +29,7 @@ from symofros.simulation.prescribed_motions import (
     refuse_contradiction,
 )
 from symofros.simulation.results.examination.batch_examination import BatchExamination
-from symofros.simulation.results.trajectories import Trajectories
+from symofros.simulation.results.trajectories import Trajectories, of_stated
 from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.batch_stepper import BatchResults, BatchStepper, InitialStates, run_batch_steppers
 from symofros.simulation.stepping.methods import METHODS
@@ -43,6 +43,7 @@ def simulate_batch(
     v0: ArrayLike | None = None,
     t_end: float = 1.0,
     *,
+    z0: ArrayLike | None = None,
     u: Inputs | None = None,
     par: ArrayLike | None = None,
     events: Mapping[str, Any] | None = None,
@@ -64,6 +65,7 @@ def simulate_batch(
         q0: First configurations (..., nq), on the constraints; the neutral one by default.
         v0: First speeds (..., nv); rest by default.
         t_end: End time [s].
+        z0: First states of forces (..., nz); the neutral ones, zeros, by default.
         u: Inputs: an array (..., nu); a Signal of all, whose values are (n, nu), or (..., n, nu) where they differ; or
             a mapping from names to numbers, arrays (...), formulas, and Signals of values (n) or (..., n, 1).
         par: Run-time parameters (..., npar); the model's own by default.
@@ -93,6 +95,8 @@ def simulate_batch(
         raise SymofrosError(
             Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
         )
+    stated, model = model, model.carried
+    q0, v0 = stated.carry(q0, v0, z0)
     given = sort_inputs(model, u)
     parameters = model.parameter_values if par is None else model.checked_parameters(par)
     rows = {
@@ -120,7 +124,7 @@ def simulate_batch(
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
     kept = replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())
-    return Trajectories(
+    runs = Trajectories(
         **results.shaped(shape),
         model=model,
         t=settings.grid,
@@ -131,6 +135,7 @@ def simulate_batch(
         met=tuple(met for stepper in steppers for met in stepper.met),
         examination=BatchExamination(model, settings, kept),
     )
+    return of_stated(stated, runs)
 
 
 def _check_batch(settings: Settings, options: SimulationOptions) -> None:

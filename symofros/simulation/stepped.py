@@ -18,7 +18,7 @@ _STATE, _MADE = (
     "reset(q, v, t) begins a motion at another state",
     "make another one, and reset it at this one's t, q, v",
 )
-_CHANGED_BY = dict.fromkeys(("t", "q", "v"), _STATE) | dict.fromkeys(("model", "n", "dt", "inputs"), _MADE)
+_CHANGED_BY = dict.fromkeys(("t", "q", "v", "z"), _STATE) | dict.fromkeys(("model", "n", "dt", "inputs"), _MADE)
 _CHANGED_BY |= {"u": "step(u) holds inputs", "par": "reset(q, v, t, par=...) begins with other parameters"}
 # Arguments of other calls.
 _ELSEWHERE = {
@@ -84,7 +84,9 @@ class SteppedModel(Stepped):
         return self._dynamics()[1]
 
     def _dynamics(self: Any) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self.par, t=self.t)
+        a, lam, _ = self.model.constrained_dynamics(
+            self.q, self.v, self.u, par=self.par, t=self.t, z=self.z if self.model.nz else None
+        )
         return a, lam
 
 

@@ -71,6 +71,7 @@ class Stepper(SteppedModel):
         inputs: Names of the inputs that `step` takes, in order.
         q: Present configuration (nq), a view that steps change and that can't be written: copy it to keep it.
         v: Present speeds (nv), as q.
+        z: Present states of forces (nz), as q.
 
     Raises:
         ShapeError: An array does not fit.
@@ -93,17 +94,19 @@ class Stepper(SteppedModel):
         chosen = options_by_hand(options, changes, ("u", "par", "events"))
         self._given: dict[str, Any] = {"u": u, "events": events, "options": chosen}
         self._stepping = Lock()
-        self.model = model = model.with_precision("double")
+        self.model = stated = model.with_precision("double")
+        model = stated.carried
         settings = settings_by_hand(model, chosen)
         values = np.array(model.parameter_values) if par is None else _parameters(model, par)
-        inputs = plan_inputs(model, u)
+        inputs = plan_inputs(stated, u)
         check_fit(model, settings, inputs)
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
         self._hand = HandRun(model, settings, inputs, fixed_inputs(u), events_of(model, events), values)
         self._told: list[tuple[Met, Found]] = []
         self._first = settings.t0
-        self.dt, self.q, self.v = settings.dt, self._hand.q, self._hand.v
+        self.dt, self.z = settings.dt, model.states_of(self._hand.v)
+        self.q, self.v = self._hand.q[: stated.nq], self._hand.v[: stated.nv]
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         self.reset()
         if type(self).step is not Stepper.step:  # A class of the caller's has its own.
@@ -120,6 +123,7 @@ class Stepper(SteppedModel):
         t: float | None = None,
         *,
         par: ArrayLike | None = None,
+        z: ArrayLike | None = None,
     ) -> None:
         """Begin a motion at a state. Its inputs are those of the description until a step gives others.
 
@@ -129,11 +133,13 @@ class Stepper(SteppedModel):
             t: Time [s]; that of the options, `t0`, by default.
             par: Other run-time parameters (npar), or values by name; by default those that the motion before began
                 with, whatever actions have made of them.
+            z: States of forces (nz), or values by name; the neutral ones by default.
 
         Raises:
             ShapeError: An array does not fit, or a quaternion is no rotation.
         """
-        model = self.model
+        model = self.model.carried
+        q, v = self.model.carry(q, v, z)
         configuration = first_configuration(model, q)
         speeds = np.zeros(model.nv) if v is None else vector(model, "v", v, model.nv)
         time = self._first if t is None else float(t)
@@ -169,7 +175,7 @@ class Stepper(SteppedModel):
             inputs = hand.begin(values)
             start, settings = hand.start, replace(hand.settings, t0=hand.start.t)
             try:
-                check_start(self.model, settings, start.q, start.v, inputs, self.par)
+                check_start(self.model.carried, settings, start.q, start.v, inputs, self.par)
             except SymofrosError:
                 hand.reset(start.t, start.q, start.v)
                 raise
@@ -217,7 +223,7 @@ class Stepper(SteppedModel):
     @property
     def potential_energy(self) -> float:
         """[J]."""
-        return float(self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t))
+        return float(self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t, z=self.z))
 
     @property
     def energy(self) -> float:
@@ -231,7 +237,7 @@ class Stepper(SteppedModel):
         known = 0  # Those that were asked for before are not worked out again.
         while known < min(len(met), len(told)) and told[known][0] is met[known]:
             known += 1
-        told[known:] = [(one, found_of(run, one)) for one in met[known:]]
+        told[known:] = [(one, found_of(run, one).of(self.model)) for one in met[known:]]
         return tuple(found for _, found in told)
 
     def trajectory(self) -> Trajectory:
@@ -247,7 +253,7 @@ class Stepper(SteppedModel):
             notes.append(
                 f"what was before t = {start.t:.6g} s was not looked at: inputs are kept of {MOST_NOTED} changes"
             )
-        return replace(made, outcome=replace(made.outcome, notes=tuple(notes)))
+        return replace(made, outcome=replace(made.outcome, notes=tuple(notes))).of(self.model)
 
     @property
     def outcome(self) -> Outcome:

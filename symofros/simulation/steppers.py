@@ -74,6 +74,7 @@ class Steppers(SteppedModel):
         t: Present times (n) [s], a view that steps change: copy it to keep it.
         q: Present configurations (n, nq), as t.
         v: Present speeds (n, nv), as t.
+        z: Present states of forces (n, nz), as t.
 
     Raises:
         ShapeError: An array does not fit.
@@ -107,11 +108,12 @@ class Steppers(SteppedModel):
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
                 raise refusal(what, str(number), rule, "give a whole number of that range")
         self._stepping = Lock()
-        self.model, self.n, self.dt = model, n, settings.dt
+        stated, model = model, model.carried
+        self.model, self.n, self.dt = stated, n, settings.dt
         self._par = np.array(model.parameter_values if par is None else model.checked_parameters(par))
         if self._par.shape not in ((model.npar,), (n, model.npar)):
             raise self._misfit("par", self._par, model.npar, "parameters of each motion, or one set for all")
-        plan = plan_inputs(model, u)
+        plan = plan_inputs(stated, u)
         check_fit(model, settings, plan)
         prepare_run(model, settings)
         self._settings, self._kind = settings, owner_of("steppers", model.record.name)
@@ -123,8 +125,9 @@ class Steppers(SteppedModel):
         self._hand = HandBatch(model, settings, plan, fixed_inputs(u), rows, n, threads, looked_for)
         self.inputs = tuple(model.names.u[i] for i in self._hand.held)
         results = self._hand.results
-        self.t, self.q, self.v, self._status = (
-            read_only(array) for array in (results.t_last, results.q_last, results.v_last, results.status)
+        q, v = results.q_last[:, : stated.nq], results.v_last[:, : stated.nv]
+        self.t, self.q, self.v, self.z, self._status = (
+            read_only(array) for array in (results.t_last, q, v, model.states_of(results.v_last), results.status)
         )
         self.reset()
 
@@ -137,6 +140,7 @@ class Steppers(SteppedModel):
         *,
         par: ArrayLike | None = None,
         which: ArrayLike | None = None,
+        z: ArrayLike | None = None,
     ) -> None:
         """Begin motions at states, their inputs those of the description until a step gives others.
 
@@ -147,12 +151,14 @@ class Steppers(SteppedModel):
             par: Other run-time parameters (n, npar), of steppers that were made with one set each; by default those
                 that the motions before began with, whatever actions have made of them.
             which: Motions that begin anew, of bool (n); all by default. The rows of the others count for nothing.
+            z: States of forces (n, nz), or (nz) for all; the neutral ones by default.
 
         Raises:
             ShapeError: An array does not fit, or a quaternion is no rotation.
             SymofrosError: Parameters of each motion where all share one set.
         """
-        model, chosen = self.model, self._chosen(which)
+        model, chosen = self.model.carried, self._chosen(which)
+        q, v = self.model.carry(q, v, z)
         first = self._rows("q", model.neutral() if q is None else q, model.nq)[chosen]
         speeds = self._rows("v", np.zeros(model.nv) if v is None else v, model.nv)[chosen]
         first = at_unit_length(model.record, "q", first, "q")
@@ -208,7 +214,9 @@ class Steppers(SteppedModel):
         hand = self._hand
         chosen = np.flatnonzero(hand.begins)
         inputs, par = hand.inputs_at_start(chosen, u), self.par if self.par.ndim == 1 else self.par[chosen]
-        off = starts_off(self.model, self._settings, hand.q0[chosen], hand.v0[chosen], inputs, par, hand.t0[chosen])
+        off = starts_off(
+            self.model.carried, self._settings, hand.q0[chosen], hand.v0[chosen], inputs, par, hand.t0[chosen]
+        )
         hand.results.status[chosen[off]] = Status.PROJECTION_FAILED
 
     def __repr__(self) -> str:
@@ -234,7 +242,7 @@ class Steppers(SteppedModel):
     def energy(self) -> Array:
         """Kinetic and potential energy together (n) [J]."""
         kinetic = self.model.kinetic_energy(self.q, self.v, u=self.u, par=self.par)
-        return np.asarray(kinetic + self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t))
+        return np.asarray(kinetic + self.model.potential_energy(self.q, u=self.u, par=self.par, t=self.t, z=self.z))
 
     @checked
     def outcome(self, i: int) -> Outcome:
@@ -249,7 +257,7 @@ class Steppers(SteppedModel):
         method = self._settings.method.name
         ends = Trajectories(
             **arrays,
-            model=self.model,
+            model=self.model.carried,
             t=np.zeros(0),
             par=self.par,
             method=method,
@@ -265,7 +273,7 @@ class Steppers(SteppedModel):
     @checked
     def events(self, i: int) -> tuple[Found, ...]:
         """Events that motion i has met since it began, in the order of time, with what their actions did."""
-        return tuple(found_of(self._hand.single, met) for met in self._hand.met.get(i, ()))
+        return tuple(found_of(self._hand.single, met).of(self.model) for met in self._hand.met.get(i, ()))
 
     def save(self) -> BatchState:
         """The present states, with all that later steps depend on."""

@@ -106,9 +106,14 @@ def _function(e: Equations, request: Request, methods: Methods, known: Mapping[s
     # Properties are looked up by the names that the table states.
     source: Any = FrameEquations(e, e.tree.frame(request.frame)) if row.of_frame else e
     outputs = tuple(_output(array, getattr(source, array.source), known) for array in row.outputs)
-    implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
     choices = (choose("inertia forces"),) if row.name == "inverse_dynamics" else _slopes_routes(e, row)
-    return Function(row.name, request.frame, (*row.inputs, *implicit), outputs, choices=choices)
+    return Function(row.name, request.frame, (*row.inputs, *_implicit(e, row)), outputs, choices=choices)
+
+
+def _implicit(e: Equations, row: ModelFunction) -> tuple[str, ...]:
+    """Inputs that a function has beside those of the table: prescribed motions, and states that store energy."""
+    states = ("v",) if e.kinematics.states and row.name.startswith("potential_energy") else ()
+    return tuple(name for name in (*e.implicit_inputs, *states) if name not in row.inputs)
 
 
 def _slopes_routes(e: Equations, row: ModelFunction) -> tuple[Choice, ...]:
@@ -119,8 +124,7 @@ def _slopes_routes(e: Equations, row: ModelFunction) -> tuple[Choice, ...]:
 def _transposed(e: Equations, row: ModelFunction, of: Function, methods: Methods, known: Mapping[str, int]) -> Function:
     """Vector-Jacobian products of a function; of one that the routine for constraints finishes, by its equations."""
     by = [array.source.removeprefix("by_") for array in row.outputs]
-    implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
-    inputs = (*row.inputs, *implicit)
+    inputs = (*row.inputs, *_implicit(e, row))
     if of.solver is not None:
         weights = [e.g.input(group, k) for group, n in (("a_bar", e.nv), ("lam_bar", known["nc"])) for k in range(n)]
         gradient = weighted_derivatives(e.kinematics, e.residual, weights, by)
@@ -339,8 +343,7 @@ def _formed(
 
     def build(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
         outputs = tuple(_output(array, value, known) for array, value in zip(row.outputs, form(e), strict=True))
-        implicit = tuple(name for name in e.implicit_inputs if name not in row.inputs)
-        return Function(row.name, "", (*row.inputs, *implicit), outputs, choices=routes(e))
+        return Function(row.name, "", (*row.inputs, *_implicit(e, row)), outputs, choices=routes(e))
 
     return build
 

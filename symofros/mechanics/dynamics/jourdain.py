@@ -64,6 +64,8 @@ def link_wrenches(
     g = kinematics.g
     wrenches = [inertia_wrench(body, state) for body, state in zip(inertias, motions, strict=True)]
     total: list[Edge] = [ZERO] * kinematics.nv
+    for k in kinematics.states:
+        total[k] = v_rate[k]
     for beam in kinematics.beams:
         if beam.tip is not None:
             tip = kinematics.links[beam.tip]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from symofros.expr.edges import ZERO, Edge
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.packs.pack import WIDTH, SignedPack
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.bodies.inertia import inertia_in_parent
@@ -96,6 +96,8 @@ def mass_matrix(kinematics: TreeKinematics, inertias: list[LinkInertia], rotors:
     for rotor in rotors:
         if rotor.k is not None:
             _add_rotor(kinematics, M, rotor, rotor.k)
+    for k in kinematics.states:
+        M[k][k] = ONE
     return MassMatrix(M, composites, carried)
 
 

@@ -117,6 +117,11 @@ class TreeKinematics:
     nv: int
     beams: tuple[MovingBeam, ...]
 
+    @property
+    def states(self) -> range:
+        """Indices of the speeds that are states of forces: the last ones, which move no link and have unit inertia."""
+        return range(self.nv - len(self.tree.coordinates.states), self.nv)
+
     def in_link(self, index: int) -> Mat3:
         """R_LB of a link; the identity for the base."""
         return Mat3.identity(self.g) if index == BASE else self.links[index].R_LB

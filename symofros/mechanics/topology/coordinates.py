@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from symofros.base.names import TIME, rate_symbol, symbol_of
+from symofros.description.forces import WITH_STATE
 from symofros.description.joints.joint import Joint
 from symofros.description.system import System
 from symofros.expr.graph import Slot
@@ -76,6 +78,16 @@ def rate_keys(joint: Joint) -> tuple[str, ...]:
     return tuple(rate_symbol(name, 2) for name in coordinate_names(joint))
 
 
+def state_names(joint: Joint) -> Iterator[str]:
+    """Names of the states of a joint's elements, in their order: of its coordinate, and what the state is."""
+    counts = Counter[str]()
+    for element in joint.elements:
+        if isinstance(element, WITH_STATE):
+            kind = f"{coordinate_names(joint)[element.coordinate]}.{element.state}"
+            counts[kind] += 1
+            yield kind if counts[kind] == 1 else f"{kind}{counts[kind]}"
+
+
 def motion_symbols(joint: Joint) -> tuple[str, ...]:
     """All that formulas may call the coordinates of a joint, its speeds and their rates, in one order for all names."""
     of_motion = (coordinate_symbols, speed_symbols, rate_symbols, speed_keys, rate_keys)
@@ -94,6 +106,8 @@ class CoordinateMap:
         symbols: Slots by the names that formulas use; constants are not among them.
         keys: Slots of speeds and of prescribed rates by symbols that nothing else has; formulas may use them, too.
         speed_symbols: What formulas call the speeds, in the order of v.
+        states: Names of the states of forces. Each is carried as a speed, the last of v, beside an idle coordinate, the
+            last of q (docs/theory/elements.md, section 6).
     """
 
     q: tuple[str, ...]
@@ -106,6 +120,12 @@ class CoordinateMap:
     symbols: dict[str, Slot]
     keys: dict[str, Slot]
     speed_symbols: tuple[str, ...]
+    states: tuple[str, ...] = ()
+
+
+def idle_coordinate(state: str) -> str:
+    """Name of the coordinate beside a state of a force: the state's integral, which nothing depends on."""
+    return f"{state}.integral"
 
 
 def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
@@ -118,6 +138,7 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     free = [joint for joint in joints if not joint.prescribed]
     q = tuple(name for joint in free for name in coordinate_names(joint))
     v = tuple(name for joint in free for name in speed_names(joint))
+    states = tuple(state.name for state in system.states) + tuple(name for joint in free for name in state_names(joint))
     actuated = tuple(name for joint in free if joint.actuated for name in speed_names(joint))
     stated = tuple(item.name for item in system.inputs)
     prescribed = tuple(
@@ -137,12 +158,13 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     keys |= {name: Slot("u", efforts + i) for i, name in enumerate(given)}
     # Where a coordinate has the name of another's rate, formulas mean the coordinate, or are refused.
     symbols |= {symbol_of(name): Slot("q", i) for i, name in enumerate(q)}
+    symbols |= {symbol_of(name): Slot("v", len(v) + i) for i, name in enumerate(states)}
     symbols |= {symbol_of(name): Slot("u", i) for i, name in enumerate(stated)}
     symbols |= {parameter.name: Slot("par", i) for i, parameter in enumerate(run_time)}
     symbols[TIME] = Slot("t", 0)
     return CoordinateMap(
-        q,
-        v,
+        q + tuple(map(idle_coordinate, states)),
+        v + states,
         stated + actuated + prescribed,
         efforts,
         tuple(parameter.name for parameter in run_time),
@@ -150,5 +172,6 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
         {parameter.name: float(parameter.value) for parameter in system.parameters if parameter.constant},
         symbols,
         keys,
-        rates,
+        rates + tuple(map(symbol_of, states)),
+        states,
     )

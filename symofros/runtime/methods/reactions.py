@@ -8,7 +8,8 @@ import numpy as np
 
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.calls.kernel import Array
-from symofros.runtime.functions import ArrayLike, Functions
+from symofros.runtime.functions import ArrayLike
+from symofros.runtime.methods.states import StateFunctions
 
 
 class ContactForces(NamedTuple):
@@ -29,7 +30,7 @@ class ContactForces(NamedTuple):
     share: Array
 
 
-class ReactionFunctions(Functions):
+class ReactionFunctions(StateFunctions):
     """Methods of a model that tell of the reactions in a motion; arguments as in `Model`."""
 
     def joint_wrenches(
@@ -42,6 +43,7 @@ class ReactionFunctions(Functions):
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """What each joint transmits from its parent to its body (..., joints, 6) [N, N m].
 
@@ -59,8 +61,9 @@ class ReactionFunctions(Functions):
             lam: Multipliers (..., nc), from `forward_dynamics` or `sf.actuator_efforts`; needed where loops are closed.
             par: Run-time parameters.
             t: Time.
+            z: States of forces (..., nz): loads may depend on them.
         """
-        return self._reactions("joint_wrenches", q, v, a, u, lam, par, t)
+        return self._reactions("joint_wrenches", q, v if z is None else self._with_states(v, z), a, u, lam, par, t)
 
     def section_forces(
         self,
@@ -72,6 +75,7 @@ class ReactionFunctions(Functions):
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """Force and moment inside elastic beams (..., sections, 6) [N, N m], in the order of `names.sections`.
 
@@ -83,7 +87,7 @@ class ReactionFunctions(Functions):
 
         Arguments as of `joint_wrenches`.
         """
-        return self._reactions("section_forces", q, v, a, u, lam, par, t)
+        return self._reactions("section_forces", q, v if z is None else self._with_states(v, z), a, u, lam, par, t)
 
     def prescribed_efforts(
         self,
@@ -95,13 +99,14 @@ class ReactionFunctions(Functions):
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> Array:
         """Efforts of the drives of prescribed motions (..., speeds) [N m or N], in the order of `names.prescribed`.
 
         Arguments as of `joint_wrenches`. A drive's power is its effort times its speed; its effort counts what its
         rotors and its armature take (docs/theory/rigid.md, (49)).
         """
-        return self._reactions("prescribed_efforts", q, v, a, u, lam, par, t)
+        return self._reactions("prescribed_efforts", q, v if z is None else self._with_states(v, z), a, u, lam, par, t)
 
     def contact_forces(
         self,

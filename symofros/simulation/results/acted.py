@@ -86,7 +86,7 @@ def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:
     given: dict[str, Any] = {"u": u, "par": done.par_set}
 
     def energy(speeds: Array, par: Array) -> float:
-        potential = model.potential_energy(met.q, u=u, par=par, t=met.t)
+        potential = model.potential_energy(met.q, u=u, par=par, t=met.t, z=model.states_of(speeds))
         return float(model.kinetic_energy(met.q, speeds, u=u, par=par) + potential)
 
     try:

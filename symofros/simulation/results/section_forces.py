@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -102,7 +103,12 @@ class SectionForces:
 
 
 def section_forces_of(
-    model: Model, beam: str, t: Array, states: tuple[Array, Array, Array, Array, Array], par: Array
+    model: Model,
+    beam: str,
+    t: Array,
+    states: tuple[Array, Array, Array, Array, Array],
+    par: Array,
+    of_forces: Mapping[str, Array],
 ) -> SectionForces:
     """Section forces of one beam along a motion.
 
@@ -112,6 +118,7 @@ def section_forces_of(
         t: Times (n) [s].
         states: q, v, v', u and multipliers (n, ...).
         par: Run-time parameters (npar), or (n, npar) that have the same beams.
+        of_forces: States of forces (n, nz), as "z", where there are some.
 
     Raises:
         UnknownNameError: The model has no such elastic beam with stations.
@@ -130,5 +137,5 @@ def section_forces_of(
         )
     length = next(one.length for one in model.beams(par if par.ndim == 1 else par[0]) if one.name == beam)
     x = length * np.array([sections[k][1] for k in rows])
-    values = model.section_forces(*states, par=par, t=t)[..., rows, :]
+    values = model.section_forces(*states, par=par, t=t, **of_forces)[..., rows, :]
     return SectionForces(beam, x, t, values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from functools import partial
 
 import numpy as np
@@ -58,6 +58,16 @@ class Trajectories(BatchResults):
     processor_seconds: float
     examination: BatchExamination | None = None
     met: tuple[tuple[int, Met], ...] = ()
+
+    @property
+    def z(self) -> Array:
+        """States of forces (..., m, nz), as q."""
+        return self.model.states_of(self.v)
+
+    @property
+    def z_last(self) -> Array:
+        """Last good states of forces of each run (..., nz)."""
+        return self.model.states_of(self.v_last)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -153,6 +163,7 @@ class Trajectories(BatchResults):
             statistics,
             self.bendings(index),
             self._changes(index),
+            self.z[index][reached],
         )
 
     def __len__(self) -> int:
@@ -195,3 +206,54 @@ class Trajectories(BatchResults):
                 lines.append(f"  steps, first seen in {list(index)}: {notes[0]}")
                 break
         return "\n".join(lines)
+
+
+@dataclass(frozen=True, repr=False)
+class StatefulTrajectories(Trajectories):
+    """Runs of a model with states of forces.
+
+    Attributes:
+        whole: The runs of the model's `carried`.
+    """
+
+    whole: Trajectories = field(kw_only=True)
+
+    @property
+    def z(self) -> Array:
+        """States of forces (..., m, nz), as q."""
+        return self.whole.z
+
+    @property
+    def z_last(self) -> Array:
+        """Last good states of forces of each run (..., nz)."""
+        return self.whole.z_last
+
+    def outcome(self, index: Index) -> Outcome:
+        """Outcome of one run."""
+        return self.whole.outcome(index)
+
+    def events(self, index: Index) -> tuple[Found, ...]:
+        """Events that one run met."""
+        return tuple(found.of(self.model) for found in self.whole.events(index))
+
+    def bendings(self, index: Index) -> tuple[BeamBending, ...]:
+        """Bending of each beam in one run."""
+        return self.whole.bendings(index)
+
+    def __getitem__(self, index: Index) -> Trajectory:
+        """One run, as far as it was recorded."""
+        return self.whole[index].of(self.model)
+
+    def __str__(self) -> str:
+        """As of the runs of the carried model."""
+        return str(self.whole)
+
+
+def of_stated(model: Model, runs: Trajectories) -> Trajectories:
+    """Runs of a model's `carried` as those of the model: q, v and z apart."""
+    if model.carried is model:
+        return runs
+    arrays = {item.name: getattr(runs, item.name) for item in fields(runs)}
+    arrays |= {"q": runs.q[..., : model.nq], "q_last": runs.q_last[..., : model.nq]}
+    arrays |= {"v": runs.v[..., : model.nv], "v_last": runs.v_last[..., : model.nv]}
+    return StatefulTrajectories(**arrays | {"model": model}, whole=runs)

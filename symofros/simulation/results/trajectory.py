@@ -48,6 +48,11 @@ class Found(NamedTuple):
     energy_lost: float = 0.0
     energy_added: float = 0.0
 
+    def of(self, model: Model) -> Found:
+        """The event of a run of a model's `carried` as one of the model."""
+        after = None if self.v_after is None else self.v_after[: model.nv]
+        return self._replace(q=self.q[: model.nq], v=self.v[: model.nv], v_after=after)
+
 
 @dataclass(frozen=True)
 class Statistics:
@@ -127,6 +132,7 @@ class Trajectory:
         statistics: Cost of the run: steps, evaluations, time.
         bendings: Bending of each beam at the step where its theory errs most.
         changes: Parameters (npar) that actions of events left, each with the number of the first record with them.
+        z: States of forces (n, nz).
     """
 
     model: Model
@@ -140,6 +146,19 @@ class Trajectory:
     statistics: Statistics = field(default_factory=lambda: Statistics("", 0, 0, 0, 0, 0.0))
     bendings: tuple[BeamBending, ...] = ()
     changes: tuple[tuple[int, Array], ...] = ()
+    z: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def of(self, model: Model) -> Trajectory:
+        """The run of a model's `carried` as one of the model: q, v and z apart."""
+        if model.carried is model:
+            return self
+        events = tuple(found.of(model) for found in self.events)
+        return replace(self, model=model, q=self.q[:, : model.nq], v=self.v[:, : model.nv], events=events)
+
+    @property
+    def _states(self) -> dict[str, Array]:
+        """What functions of a model with states of forces take beside q and v."""
+        return {"z": self.z} if self.model.nz else {}
 
     def __len__(self) -> int:
         """Number of recorded states."""
@@ -160,7 +179,7 @@ class Trajectory:
 
     @cached_property
     def _dynamics(self) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self._par, t=self.t)
+        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self._par, t=self.t, **self._states)
         return a, lam
 
     @property
@@ -181,7 +200,7 @@ class Trajectory:
     @cached_property
     def potential_energy(self) -> Array:
         """(n) [J]."""
-        return self.model.potential_energy(self.q, u=self.u, par=self._par, t=self.t)
+        return self.model.potential_energy(self.q, u=self.u, par=self._par, t=self.t, **self._states)
 
     @property
     def energy(self) -> Array:
@@ -199,7 +218,7 @@ class Trajectory:
             UnknownNameError: There is no such elastic beam.
         """
         states = self.q, self.v, self.a, self.u, self.lam
-        return section_forces_of(self.model, beam, self.t, states, self._par)
+        return section_forces_of(self.model, beam, self.t, states, self._par, self._states)
 
     @property
     def frames(self) -> Frames:
@@ -219,6 +238,8 @@ class Trajectory:
                 return values[:, known.index(found)]
         if found := speed_of(name, names.v):
             return self.v[:, names.v.index(found)]
+        if name in names.z:
+            return self.z[:, names.z.index(name)]
         columns = tuple(self.columns())
         listed = ", ".join(columns[:12]) + (", …" if len(columns) > 12 else "")
         raise UnknownNameError(
@@ -250,6 +271,7 @@ class Trajectory:
         names = self.model.names
         columns_by_name = {TIME: self.t} | {symbol_of(name): self.q[:, i] for i, name in enumerate(names.q)}
         columns_by_name |= {speed_column(name, names.q): self.v[:, i] for i, name in enumerate(names.v)}
+        columns_by_name |= {name: self.z[:, i] for i, name in enumerate(names.z)}
         return columns_by_name | {
             (name if name not in columns_by_name else f"u.{name}"): self.u[:, i] for i, name in enumerate(names.u)
         }
@@ -293,6 +315,7 @@ class Trajectory:
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
             names = self.model.names
             arrays |= {"par_over_time": self.par_over_time} if self.changes else {}
+            arrays |= {"z": self.z, "names_z": names.z} if names.z else {}
             write_npz(
                 path,
                 {**arrays, "names_q": names.q, "names_v": names.v, "names_u": names.u, "outcome": str(self.outcome)},

@@ -73,7 +73,7 @@ class Energies:
         model, par = self.model_of(mechanism), layout.parameters_of(name, mechanism, self.par)
         q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
         kinetic = model.kinetic_energy(q, v, par=par)
-        return kinetic, kinetic + model.potential_energy(q, par=par, t=t)
+        return kinetic, kinetic + model.potential_energy(q, par=par, t=t, z=model.states_of(v))
 
     def powers(self, name: str, states: States, a: Array) -> Array:
         """Power of all forces without a potential (n) [W]: the rate of the energy along the motion.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from symofros.base.smoothed_sign import PEAK, TERMS
-from symofros.description.forces import Damper, Friction, JointElement, Spring, Stop
+from symofros.description.forces import WITH_STATE, Damper, Friction, Hysteresis, JointElement, LuGre, Spring, Stop
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.mechanics.kinematics.lowering import Lowering
@@ -14,7 +14,7 @@ _STRIBECK = 10.0
 _LONGEST_RISE = 1.5
 
 
-def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge, mode: Edge | None = None) -> Edge:
+def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge, own: Edge = ZERO) -> Edge:
     """The force of an element on its own speed.
 
     Args:
@@ -22,7 +22,7 @@ def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge, m
         element: The element as described.
         q: The coordinate it acts on; unused by dampers and friction.
         v: The speed.
-        mode: Mode of friction that sticks; None of others.
+        own: State of an element that has one, mode of friction that sticks; of others not used.
     """
     g = lowering.g
     if isinstance(element, Spring):
@@ -34,12 +34,46 @@ def element_force(lowering: Lowering, element: JointElement, q: Edge, v: Edge, m
         return -g.mul(g.add(lowering.value(element.coefficient), quadratic), v)
     if isinstance(element, Stop):
         return _stop_force(lowering, element, q, v)
-    return _friction(lowering, element, v) if mode is None else _friction_by_mode(lowering, element, v, mode)
+    if isinstance(element, LuGre):
+        bristles = g.mul(lowering.value(element.stiffness), own)
+        lag = g.mul(lowering.value(element.damping), _bristle_rate(lowering, element, v, own))
+        return -g.add(g.add(bristles, lag), g.mul(lowering.value(element.viscous), v))
+    if isinstance(element, Hysteresis):
+        return -g.mul(lowering.value(element.stiffness), own)
+    return _friction_by_mode(lowering, element, v, own) if element.sticks else _friction(lowering, element, v)
 
 
-def element_energy(lowering: Lowering, element: JointElement, q: Edge) -> Edge:
-    """The potential energy an element stores."""
+def state_rate(lowering: Lowering, element: LuGre | Hysteresis, v: Edge, z: Edge) -> Edge:
+    """The rate of an element's state at speed v."""
+    if isinstance(element, LuGre):
+        return _bristle_rate(lowering, element, v, z)
+    return _slip_rate(lowering, element, v, z)
+
+
+def _bristle_rate(lowering: Lowering, element: LuGre, v: Edge, z: Edge) -> Edge:
+    """docs/theory/elements.md, (13)."""
+    g, level = lowering.g, lowering.value(element.dynamic)
+    if element.static is not None and element.stribeck_velocity is not None:
+        y = g.div(v, lowering.value(element.stribeck_velocity))
+        level = g.add(level, g.mul(g.sub(lowering.value(element.static), level), g.call("exp", -g.mul(y, y))))
+    share = g.div(g.mul(lowering.value(element.stiffness), z), level)
+    return g.sub(v, g.mul(g.call("abs", v), share))
+
+
+def _slip_rate(lowering: Lowering, element: Hysteresis, v: Edge, z: Edge) -> Edge:
+    """docs/theory/elements.md, (16)."""
     g = lowering.g
+    share = g.call("abs", g.div(g.mul(lowering.value(element.stiffness), z), lowering.value(element.force)))
+    grows = g.call("max", g.mul(v, g.call("sign", z)), ZERO)
+    slipped = g.mul(g.call("pow", share, lowering.value(element.sharpness)), grows)
+    return g.sub(v, g.mul(slipped, g.call("sign", z)))
+
+
+def element_energy(lowering: Lowering, element: JointElement, q: Edge, own: Edge = ZERO) -> Edge:
+    """The potential energy an element stores, at its coordinate and its state."""
+    g = lowering.g
+    if isinstance(element, WITH_STATE):
+        return g.mul(g.mul(g.constant(0.5), lowering.value(element.stiffness)), g.mul(own, own))
     if isinstance(element, Spring):
         x = g.sub(q, lowering.value(element.rest))
         x2 = g.mul(x, x)

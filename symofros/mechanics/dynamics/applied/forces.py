@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from symofros.base.manifold import ManifoldKind
+from symofros.base.names import symbol_of
+from symofros.description.forces import WITH_STATE, JointElement
+from symofros.description.joints.joint import Joint
 from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
-from symofros.mechanics.dynamics.applied.elements import element_energy, element_force
+from symofros.mechanics.dynamics.applied.elements import element_energy, element_force, state_rate
 from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
 from symofros.mechanics.dynamics.jourdain import virtual_power
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import MovingBeam, TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.spatial.wrench import Wrench, no_wrench
-from symofros.mechanics.topology.coordinates import joint_sizes
+from symofros.mechanics.topology.coordinates import joint_sizes, state_names
 from symofros.mechanics.topology.sticking import mode_name, sticks
 from symofros.mechanics.topology.tree import Link
 
@@ -43,6 +46,8 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
         total = [
             g.sub(force, slope) for force, slope in zip(total, _gradient(kinematics, g.sum(potentials)), strict=True)
         ]
+    for state in system.states:
+        total[index[symbol_of(state.name)]] = kinematics.lowering.value(state.rate)
     acting, modal = applied_wrenches(kinematics, frames)
     for beam, forces in zip(kinematics.beams, modal, strict=True):
         _add_modal(kinematics, beam, total, forces)
@@ -85,8 +90,8 @@ def stored_energy(kinematics: TreeKinematics, frames: FrameKinematics) -> Edge:
     g, lowering = kinematics.g, kinematics.lowering
     parts = [lowering.value(potential.energy) for potential in kinematics.tree.system.potentials]
     for link in kinematics.tree.links:
-        for element in link.joint.elements:
-            parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate)))
+        for element, own in _with_own(lowering, link.joint):
+            parts.append(element_energy(lowering, element, _coordinate(lowering, link, element.coordinate), own))
     parts += [beam.equations.strain_energy.value() for beam in kinematics.beams]
     return g.sum([*parts, connection_energy(kinematics, frames)])
 
@@ -113,15 +118,27 @@ def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
         speeds = lowering.speeds_of(link.joint)
         for k, value in enumerate(link.joint.effort):
             add(start + k, lowering.value(value))
-        for element in link.joint.elements:
+        for element, own in _with_own(lowering, link.joint):
             k = element.coordinate
-            mode = lowering.symbol(mode_name(link.joint, k)) if sticks(element) else None
-            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k], mode))
+            add(start + k, element_force(lowering, element, _coordinate(lowering, link, k), speeds[k], own))
+            if isinstance(element, WITH_STATE):
+                add(g.slot[own].index, state_rate(lowering, element, speeds[k], own))
         if link.joint.actuated:
             for k in range(size):
                 add(start + k, g.input("u", actuator + k))
             actuator += size
     return total
+
+
+def _with_own(lowering: Lowering, joint: Joint) -> Iterator[tuple[JointElement, Edge]]:
+    """A joint's elements, each with its state or mode, where it has one; prescribed joints have no states."""
+    states = map(symbol_of, state_names(joint))
+    for element in joint.elements:
+        if isinstance(element, WITH_STATE):
+            name = next(states)
+            yield element, ZERO if joint.prescribed else lowering.symbol(name)
+        else:
+            yield element, lowering.symbol(mode_name(joint, element.coordinate)) if sticks(element) else ZERO
 
 
 def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
@@ -131,18 +148,25 @@ def _gradient(kinematics: TreeKinematics, energy: Edge) -> list[Edge]:
 
 def rates_per_speed(kinematics: TreeKinematics, prescribed: bool = False) -> list[dict[Edge, Edge]]:
     """Rates of the coordinates per unit of each free speed, or of each prescribed one: columns of N in q' = N v."""
-    return [
+    rates = [
         _RATES[link.joint.traits.manifold](kinematics.g, kinematics.lowering.coordinates_of(link.joint), k)
         for link in kinematics.tree.links
         if link.joint.prescribed == prescribed
         for k in range(joint_sizes(link.joint)[1] if prescribed else link.v[1])
     ]
+    return rates if prescribed else rates + [{idle: ONE} for idle, _ in _states(kinematics)]
+
+
+def _states(kinematics: TreeKinematics) -> list[tuple[Edge, Edge]]:
+    """The states of forces, each as its idle coordinate and the speed that it is."""
+    g, first = kinematics.g, len(kinematics.tree.coordinates.q) - kinematics.nv
+    return [(g.input("q", first + k), g.input("v", k)) for k in kinematics.states]
 
 
 def coordinate_rates(kinematics: TreeKinematics) -> dict[Edge, Edge]:
     """The rate of every coordinate, q' = N v; of prescribed ones, their given speeds."""
     g, lowering = kinematics.g, kinematics.lowering
-    rates: dict[Edge, Edge] = {}
+    rates: dict[Edge, Edge] = dict(_states(kinematics))
     for link in kinematics.tree.links:
         q = lowering.coordinates_of(link.joint)
         for k, speed in enumerate(lowering.speeds_of(link.joint)):

@@ -18,6 +18,7 @@ def measures_of(tree: SpanningTree) -> Measures:
             group += [len(group)] * count
             unit += [measure] * count
     speeds = [kind for link in tree.links if not link.joint.prescribed for kind in _speed_kinds(link.joint)]
+    speeds += (OTHER,) * len(tree.coordinates.states)
     return Measures(tuple(group), tuple(unit), tuple(speeds))
 
 

@@ -29,4 +29,5 @@ def by_inputs(kinematics: TreeKinematics, edges: Sequence[Edge], group: str, cou
 
 def _together(kinematics: TreeKinematics) -> list[list[int]]:
     """Speeds that move the same links, in ascending order, as they stand in a row."""
-    return [sorted(path) for path in speeds_by_path(kinematics)]
+    groups = [sorted(path) for path in speeds_by_path(kinematics)]
+    return [*groups, [*kinematics.states]] if kinematics.states else groups

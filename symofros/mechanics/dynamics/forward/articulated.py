@@ -156,6 +156,8 @@ def _rates(
     links = [*map(_ArticulatedBody, _inertias(kinematics, inertias), driven.wrenches)]
     joints = _tip_to_base(kinematics, links, rotors, driven)
     v_rate = [ZERO] * kinematics.nv
+    for k in kinematics.states:
+        v_rate[k] = -driven.forces[k]
     accelerations: list[Acceleration] = []
     for i, (link, joint) in enumerate(zip(kinematics.links, joints, strict=True)):
         parent = driven.base if link.parent == BASE else accelerations[link.parent]

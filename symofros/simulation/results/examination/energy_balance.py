@@ -162,7 +162,7 @@ def _power(run: ExaminedRun, step: float, states: States) -> Array:
     for s in (moment, -moment):
         q_s, v_s = retract(model.record.segments, q, s[:, np.newaxis] * v), v + s[:, np.newaxis] * a
         kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
-        ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s))
+        ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s, z=model.states_of(v_s)))
     rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
     if model.nc:
         rate = rate - np.einsum("ij,ij->i", lam, model.constraint_rate(q, v, u=u, par=par, t=t))

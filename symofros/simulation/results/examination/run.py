@@ -87,7 +87,7 @@ class ExaminedRun(HeldRun):
             return None
         try:
             kinetic = model.kinetic_energy(q, v, u=u, par=par)
-            return kinetic, kinetic + model.potential_energy(q, u=u, par=par, t=t)
+            return kinetic, kinetic + model.potential_energy(q, u=u, par=par, t=t, z=model.states_of(v))
         except SymofrosError:  # Options.functions left them out.
             return None
 
