@@ -24,7 +24,6 @@ from symofros.description.contacts import Contact as Contact
 from symofros.description.forces import Anchor as Anchor
 from symofros.description.forces import Connection as Connection
 from symofros.description.forces import Damper as Damper
-from symofros.description.forces import ForceState as ForceState
 from symofros.description.forces import Friction as Friction
 from symofros.description.forces import JointElement as JointElement
 from symofros.description.forces import Spring as Spring

@@ -231,6 +231,19 @@ class ModelRecord:
             remedy = "sticks=False: friction that is smooth, and creeps"
             raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
 
+    def refuse_states(self, what: str) -> None:
+        """Refuse states of forces where nothing takes them.
+
+        Raises:
+            SymofrosError: There are some.
+        """
+        if self.state_names:
+            found, rule = ", ".join(self.state_names[:8]), f"{what} takes coordinates and speeds alone"
+            remedy = "leave the elements with states out (LuGre, Hysteresis), or take friction that is smooth"
+            raise SymofrosError(
+                Problem(f"model '{self.name}' has states of forces: {what} has none of them", found, rule, remedy)
+            )
+
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""
         bounds = []

@@ -14,7 +14,7 @@ from symofros.base.names import rate_symbol, symbol_of
 from symofros.base.sources import Source
 from symofros.description.constraints import Constraint, Coupling, Switch
 from symofros.description.contacts import Contact
-from symofros.description.forces import Connection, Potential, VirtualPower
+from symofros.description.forces import Connection, ForceState, Potential, VirtualPower
 from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_bytes, refuse_size, resolved
 from symofros.description.reading import Reading as Reading
 from symofros.description.system import Body, Input, Parameter, System
@@ -39,6 +39,7 @@ _SECTIONS = {
     "contacts": "connection",
     "virtual_power": "virtual_power",
     "potentials": "potential",
+    "states": "state",
     "closures": "constraint",
     "couplings": "constraint",
     "nonholonomic": "constraint",
@@ -84,6 +85,7 @@ class _Merger:
     potentials: list[Potential] = field(default_factory=list)
     constraints: list[Constraint] = field(default_factory=list)
     switches: list[Switch] = field(default_factory=list)
+    states: list[ForceState] = field(default_factory=list)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
@@ -112,6 +114,7 @@ class _Merger:
             tuple(self.constraints),
             origin=self.origin,
             switches=tuple(self.switches),
+            states=tuple(self.states),
         )
         return Reading(system, problems, broken, self.all_sources())
 
@@ -254,6 +257,7 @@ class _Merger:
             self.connections += [connection.build(name=name) for name, connection in fresh(section)]
         self.virtual_power += [VirtualPower(name, tuple(forces.items())) for name, forces in fresh("virtual_power")]
         self.potentials += [Potential(name, energy) for name, energy in fresh("potentials")]
+        self.states += [ForceState(name, rate) for name, rate in fresh("states")]
         self.constraints += [closure.build(name) for name, closure in fresh("closures")]
         self.constraints += [Coupling(name, residual) for name, residual in fresh("couplings")]
         self.constraints += [condition.build(name) for name, condition in fresh("nonholonomic")]

@@ -183,6 +183,8 @@ class NativeFile(Entry):
     """Internal forces: for each, speed (`dq1`) -> force by formula."""
     potentials: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None
     """Potential energies by formula of coordinates, parameters and `t` [J]."""
+    states: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None
+    """States of forces: for each the formula of its rate. Formulas of forces may name them; they begin at zero."""
     closures: Annotated[dict[Name, ClosureEntry], Field(max_length=10_000)] | None = None
     """Frames that stay together: they close loops of the tree."""
     couplings: Annotated[dict[Name, Formula], Field(max_length=10_000)] | None = None

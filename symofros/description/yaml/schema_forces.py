@@ -8,7 +8,19 @@ from typing import Annotated, Self
 from pydantic import ConfigDict, Field, model_validator
 
 from symofros.description.contacts import Contact
-from symofros.description.forces import Brake, Connection, Damper, Friction, JointElement, Load, Rotor, Spring, Stop
+from symofros.description.forces import (
+    Brake,
+    Connection,
+    Damper,
+    Friction,
+    Hysteresis,
+    JointElement,
+    Load,
+    LuGre,
+    Rotor,
+    Spring,
+    Stop,
+)
 from symofros.description.yaml.derived import NounEntry
 from symofros.description.yaml.fields import Formula, PartEntry, Three, fault
 from symofros.errors import DescriptionError, Problem
@@ -47,17 +59,28 @@ class BrakeEntry(PartEntry):
         return Brake(self.torque, self.engaged, self.coordinate)
 
 
+class LuGreEntry(NounEntry, noun=LuGre, checked=True):
+    coordinate: Coordinate = 0
+
+
+class HysteresisEntry(NounEntry, noun=Hysteresis):
+    coordinate: Coordinate = 0
+
+
 # Elements by what files call them; one that is written goes by its class, a brake as friction that sticks.
 ELEMENTS: dict[str, type[NounEntry]] = {
     "spring": SpringEntry,
     "damper": DamperEntry,
     "stop": StopEntry,
     "friction": FrictionEntry,
+    "lugre": LuGreEntry,
+    "hysteresis": HysteresisEntry,
 }
+_KINDS = (*ELEMENTS, "brake")
 
 
 class ElementEntry(PartEntry):
-    """One element on a joint's coordinate: exactly one of spring, damper, stop, friction, brake."""
+    """One element on a joint's coordinate: exactly one of spring, damper, stop, friction, lugre, hysteresis, brake."""
 
     model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
 
@@ -65,17 +88,19 @@ class ElementEntry(PartEntry):
     damper: DamperEntry | None = None
     stop: StopEntry | None = None
     friction: FrictionEntry | None = None
+    lugre: LuGreEntry | None = None
+    hysteresis: HysteresisEntry | None = None
     brake: BrakeEntry | None = None
 
     @property
     def given(self) -> list[NounEntry | BrakeEntry]:
         """The elements that are stated."""
-        return [entry for name in (*ELEMENTS, "brake") if (entry := getattr(self, name)) is not None]
+        return [entry for name in _KINDS if (entry := getattr(self, name)) is not None]
 
     @model_validator(mode="after")
     def _one(self) -> Self:
         if len(self.given) != 1:
-            rule = "each element is exactly one of spring, damper, stop, friction, brake"
+            rule = f"each element is exactly one of {', '.join(_KINDS)}"
             raise fault(
                 Problem("not exactly one element", f"{len(self.given)} of them", rule, "make a list of elements")
             )

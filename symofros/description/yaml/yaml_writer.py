@@ -22,7 +22,7 @@ from symofros.description.constraints import (
     Rod,
     Rolling,
 )
-from symofros.description.forces import Anchor
+from symofros.description.forces import WITH_STATE, Anchor
 from symofros.description.frames import Frame
 from symofros.description.quoting import text_among
 from symofros.description.system import Body, Inertia, System
@@ -77,6 +77,7 @@ _OPEN = frozenset(
         "switches",
         "virtual_power",
         "potentials",
+        "states",
     }
 )
 
@@ -113,6 +114,7 @@ def _duplicates(system: System) -> Iterator[Problem]:
     groups += [("connection", [item.name for item in system.connections])]
     groups += [("virtual power", [item.name for item in system.virtual_power])]
     groups += [("potential", [item.name for item in system.potentials])]
+    groups += [("state", [item.name for item in system.states])]
     groups += [("constraint", [item.name for item in system.constraints])]
     groups += [(f"body '{body.name}': frame", [frame.name for frame in body.frames]) for body in system.bodies]
     for kind, names in groups:
@@ -140,6 +142,7 @@ def _document(system: System) -> Plain:
         item.name: {speed: _number(force) for speed, force in item.forces} for item in system.virtual_power
     }
     document["potentials"] = {item.name: _number(item.energy) for item in system.potentials}
+    document["states"] = {item.name: _number(item.rate) for item in system.states}
     for item in system.constraints:
         section, entry = _constraint(item)
         document.setdefault(section, {})[item.name] = entry
@@ -245,11 +248,15 @@ def _number(value: Value) -> Any:
 
 def _needing_quotes(system: System) -> tuple[list[str], frozenset[str]]:
     """Symbols that formulas could take for operations on others; and those of coordinates that are rates by name."""
-    names = {item.name for item in system.parameters} | {item.name for item in system.inputs}
+    names = {item.name for item in (*system.parameters, *system.inputs, *system.states)}
     stems = {name for body in system.beams for name in body.coordinates}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
         suffixes = (*joint.traits.coordinate_suffixes, *(joint.traits.speed_suffixes or ()))
-        stems |= {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
+        own = {*joint.coordinates, *(f"{joint.name}.{suffix}" if suffix else joint.name for suffix in suffixes)}
+        kinds = {element.state for element in joint.elements if isinstance(element, WITH_STATE)}
+        counts = ("", *range(2, len(joint.elements) + 1))
+        names |= {f"{stem}.{kind}{count}" for stem in own for kind in kinds for count in counts}
+        stems |= own
     rates = {f"d{stem}" for stem in stems}
     return needs_quotes(names | stems | rates | {f"d{rate}" for rate in rates}), frozenset(stems & rates)
 

@@ -79,11 +79,12 @@ def rate_keys(joint: Joint) -> tuple[str, ...]:
 
 
 def state_names(joint: Joint) -> Iterator[str]:
-    """Names of the states of a joint's elements, in their order: of its coordinate, and what the state is."""
+    """Names of the states of a joint's elements, in their order: of its speed, and what the state is."""
     counts = Counter[str]()
     for element in joint.elements:
-        if isinstance(element, WITH_STATE):
-            kind = f"{coordinate_names(joint)[element.coordinate]}.{element.state}"
+        # One on a coordinate that does not exist is refused elsewhere.
+        if isinstance(element, WITH_STATE) and 0 <= element.coordinate < len(speed_names(joint)):
+            kind = f"{speed_names(joint)[element.coordinate]}.{element.state}"
             counts[kind] += 1
             yield kind if counts[kind] == 1 else f"{kind}{counts[kind]}"
 

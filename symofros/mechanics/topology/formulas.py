@@ -30,12 +30,14 @@ from symofros.mechanics.topology.coordinates import (
     rate_symbols,
     speed_keys,
     speed_symbols,
+    state_names,
 )
 
-# What a formula may use: parameters alone; also coordinates; also t; also speeds and inputs; a general joint's own
-# coordinates; parameters and the station x of a beam; everything and x; the station xi = x/L alone.
+# What a formula may use: parameters alone; also coordinates; also t, in conditions on speeds and in energies, in these
+# states of forces too; also speeds and inputs; a general joint's own coordinates; parameters and the station x of a beam;
+# everything and x; the station xi = x/L alone.
 Scope = Literal[
-    "parameters", "coordinates", "configuration", "condition", "motion", "joint", "section", "spread", "shape"
+    "parameters", "coordinates", "configuration", "condition", "energy", "motion", "joint", "section", "spread", "shape"
 ]
 
 
@@ -109,7 +111,9 @@ def stated_values(system: System) -> Iterator[Stated]:
         yield Stated(f"switch of '{switch.constraint}': engaged", switch.engaged, ("switch", switch.constraint))
     for potential in system.potentials:
         key = ("potential", potential.name)
-        yield Stated(f"potential '{potential.name}'", potential.energy, key, "configuration")
+        yield Stated(f"potential '{potential.name}'", potential.energy, key, "energy")
+    for state in system.states:
+        yield Stated(f"state '{state.name}': rate", state.rate, ("state", state.name), "motion")
 
 
 def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
@@ -213,6 +217,7 @@ class _Scopes:
     parameters: frozenset[str]
     coordinates: frozenset[str]
     configuration: frozenset[str]
+    energy: frozenset[str]
     motion: frozenset[str]
     both: frozenset[str]
 
@@ -240,13 +245,18 @@ def _known(system: System) -> _Scopes:
     keys = {name for joint in joints for name in (*speed_keys(joint), *(rate_keys(joint) if joint.prescribed else ()))}
     inputs = {symbol_of(item.name) for item in system.inputs}
     placed = parameters | coordinates
-    return _Scopes(parameters, placed, placed | {TIME}, placed | {TIME} | inputs | rates | keys, coordinates & rates)
+    timed = placed | {TIME}
+    states = {symbol_of(state.name) for state in system.states}
+    states |= {symbol_of(name) for joint in joints if not joint.prescribed for name in state_names(joint)}
+    motion = timed | inputs | rates | keys | states
+    return _Scopes(parameters, placed, timed, timed | states, motion, coordinates & rates)
 
 
 _RULES: dict[Scope, str] = {
     "parameters": "geometry, inertia, gravity and the constants of forces depend on parameters only",
     "coordinates": "a coupling depends on coordinates and parameters only",
-    "configuration": "a potential depends on coordinates, parameters and t only",
+    "configuration": "it depends on coordinates, parameters and t only",
+    "energy": "a potential depends on coordinates, states of forces, parameters and t only",
     "condition": "a condition on speeds is linear in them: its coefficients and its right side depend on coordinates, "
     "parameters and t only",
     "motion": "a formula uses names that the description declares",
@@ -260,7 +270,8 @@ _RULES: dict[Scope, str] = {
 _REMEDIES: dict[Scope, str] = {
     "parameters": "declare a parameter for it; what moves acts through loads, efforts, virtual power and potentials",
     "coordinates": "what binds speeds is a condition on speeds; a motion that is given in time is a prescribed joint",
-    "configuration": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
+    "configuration": "",
+    "energy": "state forces that depend on speeds or inputs as loads, efforts or virtual power",
     "condition": "state it as the sum of coefficient times speed = right; one that is not linear in speeds, such as a "
     "product of two of them, has no equations of motion by virtual power and can't be stated",
     "motion": "",

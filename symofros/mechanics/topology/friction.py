@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from symofros.description.forces import Friction
+from symofros.description.forces import Friction, Hysteresis, LuGre
 from symofros.description.system import System
-from symofros.description.values import Value
+from symofros.description.values import Term, Value
 from symofros.errors import Problem
 from symofros.mechanics.topology.conditions import Condition
 from symofros.mechanics.topology.numbers import Numbers
+
+_POSITIVE = ("dynamic", "static", "stiffness", "stribeck_velocity")
 
 
 def friction_conditions(system: System) -> Iterator[Condition]:
@@ -20,8 +22,11 @@ def friction_conditions(system: System) -> Iterator[Condition]:
             continue
         where = system.origin.get(("joint", body.joint.name), "")
         for element in body.joint.elements:
+            what = f"joint '{body.joint.name}': {type(element).__name__.lower()}"
             if isinstance(element, Friction):
-                yield from _conditions_of(element, f"joint '{body.joint.name}': friction", where)
+                yield from _conditions_of(element, what, where)
+            elif isinstance(element, LuGre | Hysteresis):
+                yield from _conditions_of_state(element, what, where)
 
 
 def _conditions_of(friction: Friction, what: str, where: str) -> Iterator[Condition]:
@@ -29,6 +34,29 @@ def _conditions_of(friction: Friction, what: str, where: str) -> Iterator[Condit
         value = getattr(friction, label)
         if value is not None:
             yield Condition((value,), "positive", partial(_not_positive, f"{what} {label}", value, where))
+
+
+def _conditions_of_state(element: LuGre | Hysteresis, what: str, where: str) -> Iterator[Condition]:
+    """Levels and stiffnesses that the rate of a state divides by, or that make it return; elements.md, (13), (16)."""
+    labels = ("stiffness", "force") if isinstance(element, Hysteresis) else _POSITIVE
+    for label in labels:
+        value = getattr(element, label)
+        if value is not None:
+            yield Condition((value,), "positive", partial(_no_level, f"{what} {label}", value, "above zero", where))
+    if isinstance(element, LuGre):
+        for label in ("damping", "viscous"):
+            value = getattr(element, label)
+            problem = partial(_no_level, f"{what} {label}", value, "zero or more", where)
+            yield Condition((value,), "not negative", problem)
+        return
+    sharpness = element.sharpness
+    problem = partial(_no_level, f"{what} sharpness", sharpness, "1 or more", where)
+    yield Condition(((Term(sharpness) - Term(1.0)).value,), "not negative", problem)
+
+
+def _no_level(what: str, value: Value, allowed: str, where: str, numbers: Numbers) -> Problem:
+    rule = f"it is {allowed}: the state's rate would have no bound, or no sign"
+    return Problem(f"{what} {numbers.value(value):g}", f"'{value}'", rule, f"give a number that is {allowed}", where)
 
 
 def _not_positive(what: str, value: Value, where: str, numbers: Numbers) -> Problem:

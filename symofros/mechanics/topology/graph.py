@@ -143,6 +143,7 @@ class _Checker:
         yield "system", self.system.name
         yield from (("parameter", item.name) for item in self.system.parameters)
         yield from (("input", item.name) for item in self.system.inputs)
+        yield from (("state", item.name) for item in self.system.states)
         for body in self.system.bodies:
             yield "body", body.name
             for frame in body.frames:
@@ -186,6 +187,7 @@ class _Checker:
         # Inputs and joints of files may be called t or pi; a parameter is its author's own, and has no other symbol.
         stated = [("parameter", item.name, item.name) for item in self.system.parameters]
         stated += [("input", item.name, symbol_of(item.name)) for item in self.system.inputs]
+        stated += [("state", item.name, symbol_of(item.name)) for item in self.system.states]
         for kind, name, symbol in stated:
             if symbol in taken:
                 yield Problem(
@@ -195,7 +197,7 @@ class _Checker:
                     "rename one of them",
                     self.where(kind, name),
                 )
-            taken.setdefault(symbol, f"a {kind}" if kind == "parameter" else "an input")
+            taken.setdefault(symbol, "an input" if kind == "input" else f"a {kind}")
         for joint in self.joints:
             yield from self._taken(joint, "coordinate", coordinate_symbols(joint), taken)
         for joint in self.joints:
@@ -307,6 +309,7 @@ class _Checker:
             ("connection", self.system.connections),
             ("virtual power", self.system.virtual_power),
             ("potential", self.system.potentials),
+            ("state", self.system.states),
         ):
             yield from self._unique(kind, [item.name for item in named])
         for connection in self.system.connections:

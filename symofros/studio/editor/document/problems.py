@@ -18,7 +18,8 @@ from symofros.studio.editor.editing.yaml_spans import YamlText
 ShownProblem = dict[str, Any]
 
 _NAMED = re.compile(
-    r"(joint|body|beam|constraint|connection|contact|virtual power|virtual_power|potential|parameter|input) '([^']*)'"
+    r"(joint|body|beam|constraint|connection|contact|virtual power|virtual_power|potential|state|parameter|input)"
+    r" '([^']*)'"
 )
 _FRAME = re.compile(r"frame '([^']*)' of body '([^']*)'")
 _SECTION_OF = {
@@ -28,6 +29,7 @@ _SECTION_OF = {
     "virtual power": ("virtual_power",),
     "virtual_power": ("virtual_power",),
     "potential": ("potentials",),
+    "state": ("states",),
     "parameter": ("parameters",),
     "input": ("inputs",),
     "body": ("bodies",),
