@@ -159,7 +159,7 @@ class LuGre(_Values):
 
     The mean deflection z of the bristles is a state of the model, "COORDINATE.bristle", which runs integrate with the
     motion; its neutral value is zero. The energy stiffness z^2/2 of the bristles is potential energy
-    (docs/theory/elements.md, (12) to (15), which says up to which speed it dissipates whatever the motion).
+    (docs/theory/states.md, section 2, which says up to which speed it dissipates whatever the motion).
 
     Attributes:
         dynamic: Coulomb friction at speed [N m or N].
@@ -200,7 +200,7 @@ class Hysteresis(_Values):
 
     Several on one coordinate, some softer than others, are the model of Iwan and of Maxwell slip: each slips at its
     own displacement. The deflection z is a state of the model, "COORDINATE.slip" (the next "COORDINATE.slip2"), whose
-    neutral value is zero; stiffness z^2/2 is potential energy (docs/theory/elements.md, (16), (17)).
+    neutral value is zero; stiffness z^2/2 is potential energy (docs/theory/states.md, section 3).
 
     Attributes:
         stiffness: Stiffness before it slips [N m/rad or N/m].

@@ -42,6 +42,7 @@ from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
+from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
@@ -65,6 +66,8 @@ _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, st
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
+# Targets whose speeds may end with states of forces; of descriptions, which note the elements that they leave out.
+_WITH_STATES = ("c", "fmu2", "fmu3", "urdf", "mjcf")
 _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
@@ -149,6 +152,8 @@ def export(
     check_folder(place)  # Before the work, not only after it.
     if target == "cuda":
         Compilation(system).record.refuse_sticking(f"export: '{target}'")
+    if target not in _WITH_STATES:
+        Compilation(system).record.refuse_states(f"export '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(
@@ -159,7 +164,9 @@ def export(
             )
         )
     if target in _DESCRIBED:
-        event_plan(Compilation(system), compile_system(system, Options(backend="interpreter")), events, "", target)
+        event_plan(
+            Compilation(system), compile_system(system, Options(backend="interpreter")).carried, events, "", target
+        )
         Compilation(system).tree  # noqa: B018 - refuses what is no mechanism
         return _DESCRIBED[target](system, name, place, GENERATOR)
     with _with_stepping():
@@ -266,7 +273,7 @@ def _material(
     shown = _outputs(record.frame_names, framed, outputs)
     if target in _DIFFERENTIATED and record.driven and shown:
         compilation.request(("frame_derivatives",), shown)
-    interpreted = compile_system(system, Options(backend="interpreter"))
+    interpreted = compile_system(system, Options(backend="interpreter")).carried
     first = _start(interpreted, start)
     kernels = InterpretedUnit(compilation.program).kernels
     order = tuple((request.name, request.frame) for request in compilation.requests)
@@ -289,11 +296,22 @@ def _material(
         (
             *system.notes,
             *limits_note(joints_of(system)),
+            *_states_note(record),
             *first.notes,
             *singular_start(interpreted, first.q),
             *((_UNKNOWN_INSTANTS,) if instants and target not in _STEPPED else ()),
         ),
         event_plan(compilation, interpreted, events, c_name, target),
+    )
+
+
+def _states_note(record: ModelRecord) -> tuple[str, ...]:
+    """What states of forces are called in a package."""
+    if not record.state_names:
+        return ()
+    listed = ", ".join(record.state_names)
+    return (
+        f"states of forces are the last speeds, their rates the last accelerations, beside idle coordinates: {listed}",
     )
 
 

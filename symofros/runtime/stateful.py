@@ -12,6 +12,7 @@ from symofros.base.functions import FUNCTIONS, INPUTS
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, Kernel, Numbers, Precision
+from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.functions import ArrayLike, Key
 from symofros.runtime.methods.linear import Output, StateMatrices, state_matrices
 from symofros.runtime.methods.routes import Routes
@@ -149,6 +150,10 @@ class StatefulModel(Model):
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True, reactions: bool = False) -> Kernel:
         """Refused: kernels are of `carried`."""
         raise self._refusal("kernels of formulas are of coordinates and speeds alone")
+
+    def cuda(self, precision: Precision | None = None, *, contract: bool = False) -> CudaModel:
+        """Refused: kernels are of `carried`."""
+        raise self._refusal("kernels are of coordinates and speeds alone")
 
     def linearize(  # type: ignore[override]
         self,

@@ -80,6 +80,7 @@ class Models:
         """A model's description, checked and numbered, and what can be formed of it."""
         if name not in self._compilations:
             self._compilations[name] = Compilation(self.system(name))
+            self._compilations[name].record.refuse_states(f"diagram '{self._diagram}'")
         return self._compilations[name]
 
     def record(self, name: str) -> ModelRecord:

@@ -246,6 +246,7 @@ def _lost(system: System) -> Iterator[str]:
         ("contacts", [c.name for c in system.contacts]),
         ("virtual power", [p.name for p in system.virtual_power]),
         ("potentials", [p.name for p in system.potentials]),
+        ("states of forces", [s.name for s in system.states]),
         ("inputs of formulas", [i.name for i in system.inputs]),
     ):
         if names:

@@ -103,6 +103,7 @@ def model_text(
         ),
         n_functions=len(rows),
         lanes="NULL" if vectors is None or vectors.in_rows else f"SYM_LANE_TABLE({name})",
+        states=f", {len(record.state_names)}" if record.state_names else "",
         c_name=name,
         name=c_string(record.name),
         nq=len(record.q_names),

@@ -108,7 +108,7 @@ class CoordinateMap:
         keys: Slots of speeds and of prescribed rates by symbols that nothing else has; formulas may use them, too.
         speed_symbols: What formulas call the speeds, in the order of v.
         states: Names of the states of forces. Each is carried as a speed, the last of v, beside an idle coordinate, the
-            last of q (docs/theory/elements.md, section 6).
+            last of q (docs/theory/states.md, section 1).
     """
 
     q: tuple[str, ...]

@@ -34,8 +34,8 @@ from symofros.mechanics.topology.coordinates import (
 )
 
 # What a formula may use: parameters alone; also coordinates; also t, in conditions on speeds and in energies, in these
-# states of forces too; also speeds and inputs; a general joint's own coordinates; parameters and the station x of a beam;
-# everything and x; the station xi = x/L alone.
+# states of forces too; also speeds and inputs; a general joint's own coordinates; parameters and the station x of a
+# beam; everything and x; the station xi = x/L alone.
 Scope = Literal[
     "parameters", "coordinates", "configuration", "condition", "energy", "motion", "joint", "section", "spread", "shape"
 ]

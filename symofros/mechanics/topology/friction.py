@@ -37,7 +37,7 @@ def _conditions_of(friction: Friction, what: str, where: str) -> Iterator[Condit
 
 
 def _conditions_of_state(element: LuGre | Hysteresis, what: str, where: str) -> Iterator[Condition]:
-    """Levels and stiffnesses that the rate of a state divides by, or that make it return; elements.md, (13), (16)."""
+    """Levels and stiffnesses that the rate of a state divides by, or that make it return; states.md, (6), (10)."""
     labels = ("stiffness", "force") if isinstance(element, Hysteresis) else _POSITIVE
     for label in labels:
         value = getattr(element, label)

@@ -88,6 +88,9 @@ typedef struct sym_model {
     int32_t n_functions;
     const sym_function *functions;
     const sym_lanes *lanes; /* of each function, or NULL; added later: there if `size` says so */
+    /* States of forces, the last speeds, each beside an idle coordinate, its integral, the last in q: their rates are the
+     * last accelerations. Added later: there if `size` says so. */
+    int32_t nz;
 } sym_model;
 /* cdef end */
 

@@ -22,7 +22,7 @@ class StateFunctions(Functions):
     def carried(self) -> Self:
         """The model whose speeds end with the states of forces, each beside an idle coordinate, its integral.
 
-        It is the form in which they are integrated, exported and differentiated (docs/theory/elements.md, section 6):
+        It is the form in which they are integrated, exported and differentiated (docs/theory/states.md, section 1):
         q = (q, integral of z), v = (v, z), M = diag(M, 1), Q = (Q, z'). Of a model without states it is the model.
         """
         return self

@@ -106,6 +106,7 @@ def actuator_efforts(
         ActuationError: The motion violates the constraints, or these actuators can't produce it; says where, and by
             how much.
     """
+    model.record.refuse_states("actuator_efforts")
     model = model.with_precision("double")
     names = _names(model, actuators)
     accelerations = _vector("a", model.by_name("a", a), model.nv)

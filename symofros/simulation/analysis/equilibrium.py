@@ -105,6 +105,7 @@ def equilibrium(
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
+    model.record.refuse_states("equilibrium")
     model = model.with_precision("double")
     free = free_speeds(model, held)
     q = model.neutral() if q is None else given_configuration(model, q)

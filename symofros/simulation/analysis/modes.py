@@ -72,6 +72,7 @@ def modes(
         AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
     """
+    model.record.refuse_states("modes")
     state = (
         given_configuration(model, q),
         np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),

@@ -242,6 +242,8 @@ def rollout(
             or the motion leaves the finite numbers.
         ShapeError: An array does not fit.
     """
+    if model.carried is not model:
+        model.record.refuse_states("rollout, which is of `model.carried`")
     model = model.with_precision("double")
     _refuse(model, method, dt, t0)
     held = real_array(u)

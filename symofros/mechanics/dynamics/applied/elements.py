@@ -51,7 +51,7 @@ def state_rate(lowering: Lowering, element: LuGre | Hysteresis, v: Edge, z: Edge
 
 
 def _bristle_rate(lowering: Lowering, element: LuGre, v: Edge, z: Edge) -> Edge:
-    """docs/theory/elements.md, (13)."""
+    """docs/theory/states.md, (6)."""
     g, level = lowering.g, lowering.value(element.dynamic)
     if element.static is not None and element.stribeck_velocity is not None:
         y = g.div(v, lowering.value(element.stribeck_velocity))
@@ -61,7 +61,7 @@ def _bristle_rate(lowering: Lowering, element: LuGre, v: Edge, z: Edge) -> Edge:
 
 
 def _slip_rate(lowering: Lowering, element: Hysteresis, v: Edge, z: Edge) -> Edge:
-    """docs/theory/elements.md, (16)."""
+    """docs/theory/states.md, (10)."""
     g = lowering.g
     share = g.call("abs", g.div(g.mul(lowering.value(element.stiffness), z), lowering.value(element.force)))
     grows = g.call("max", g.mul(v, g.call("sign", z)), ZERO)
