@@ -247,7 +247,7 @@ def _known(system: System) -> _Scopes:
     placed = parameters | coordinates
     timed = placed | {TIME}
     states = {symbol_of(state.name) for state in system.states}
-    states |= {symbol_of(name) for joint in joints if not joint.prescribed for name in state_names(joint)}
+    states |= {symbol_of(name) for joint in joints for name in state_names(joint)}
     motion = timed | inputs | rates | keys | states
     return _Scopes(parameters, placed, timed, timed | states, motion, coordinates & rates)
 

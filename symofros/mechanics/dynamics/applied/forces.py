@@ -131,12 +131,11 @@ def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
 
 
 def _with_own(lowering: Lowering, joint: Joint) -> Iterator[tuple[JointElement, Edge]]:
-    """A joint's elements, each with its state or mode, where it has one; prescribed joints have no states."""
+    """A joint's elements, each with its state or mode, where it has one."""
     states = map(symbol_of, state_names(joint))
     for element in joint.elements:
         if isinstance(element, WITH_STATE):
-            name = next(states)
-            yield element, ZERO if joint.prescribed else lowering.symbol(name)
+            yield element, lowering.symbol(next(states))
         else:
             yield element, lowering.symbol(mode_name(joint, element.coordinate)) if sticks(element) else ZERO
 
