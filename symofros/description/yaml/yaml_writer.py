@@ -248,7 +248,8 @@ def _number(value: Value) -> Any:
 
 def _needing_quotes(system: System) -> tuple[list[str], frozenset[str]]:
     """Symbols that formulas could take for operations on others; and those of coordinates that are rates by name."""
-    names = {item.name for item in (*system.parameters, *system.inputs, *system.states)}
+    names = {item.name for item in system.parameters} | {item.name for item in system.inputs}
+    names |= {state.name for state in system.states}
     stems = {name for body in system.beams for name in body.coordinates}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
         suffixes = (*joint.traits.coordinate_suffixes, *(joint.traits.speed_suffixes or ()))
