@@ -101,7 +101,7 @@ def test_constant_speed_has_the_curve_of_stribeck() -> None:
 
 
 def test_bristles_hold_a_load() -> None:
-    """At 0.9 of static friction, reached slowly, a block is at rest after a presliding displacement, and stays there."""
+    """At 0.9 of static friction, reached slowly, a block is at rest after presliding, and stays there."""
     run = sf.simulate(dragged(), t_end=30.0, u={"x": "2.7*min(t/10, 1)"}, method="rodas4", rtol=1e-9, atol=1e-13)
     assert np.abs(run.v[-1]) < 1e-12 and run.z[-1] == pytest.approx(2.7 / 3e3, rel=1e-9)
     assert 2.7 / 3e3 < run.q[-1, 0] < 1e-2
