@@ -255,7 +255,7 @@ static double memory[1 << 16];
 int main(void) {
     sym_instance *it = sym_instance_init(memory, sizeof memory, rubbing_plant());
     if (it == NULL || rubbing_selftest() > 1e-9 || sym_instance_advance(it, 0.5, 1e-4) != SYM_FINISHED) return 1;
-    printf("%d %.17g %.17g %.17g\\n", (int)it->model->nz, it->q[0], it->v[0], it->v[1]);
+    printf("%d %.17g %.17g %.17g\\n", (int)sym_nz(it->model), it->q[0], it->v[0], it->v[1]);
     return 0;
 }
 """

@@ -88,10 +88,14 @@ typedef struct sym_model {
     int32_t n_functions;
     const sym_function *functions;
     const sym_lanes *lanes; /* of each function, or NULL; added later: there if `size` says so */
-    /* States of forces, the last speeds, each beside an idle coordinate, its integral, the last in q: their rates are the
-     * last accelerations. Added later: there if `size` says so. */
-    int32_t nz;
 } sym_model;
+
+/* A model whose forces have states: the last nz speeds, each beside an idle coordinate, its integral, the last ones of q; their
+ * rates are the last accelerations. A model is one if `size` says so: sym_nz. */
+typedef struct sym_stateful_model {
+    sym_model model;
+    int32_t nz;
+} sym_stateful_model;
 /* cdef end */
 
 #if defined(__GNUC__) || defined(__clang__)
@@ -129,6 +133,11 @@ static inline size_t sym_work(const sym_model *model) {
     for (i = 0; i < model->n_functions; ++i)
         if (model->functions[i].work > most) most = model->functions[i].work;
     return most;
+}
+
+/* Number of states of forces. */
+static inline int32_t sym_nz(const sym_model *model) {
+    return model->size >= sizeof(sym_stateful_model) ? ((const sym_stateful_model *)(const void *)model)->nz : 0;
 }
 
 static inline double sym_sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : x; }
