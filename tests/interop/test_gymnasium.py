@@ -125,6 +125,17 @@ def test_a_mask_resets_selected_environments(task: Any) -> None:
     assert cuts[2] == [True, False, True] and cuts[3] == [False, True, False]
 
 
+def test_parameters_of_selected_environments_leave_the_others_in_their_time(task: Any) -> None:
+    envs = sf.interop.gymnasium.MechanismVectorEnv(with_masses(task), 3)
+    envs.reset(seed=3, options={"par": {"m": [1.0, 2.0, 3.0]}})
+    moved = envs.step(np.ones((3, 1)))[0]
+    chosen = {"reset_mask": np.array([False, True, False]), "par": {"m": [7.0, 8.0, 9.0]}}
+    state, _ = envs.reset(seed=[3, 4, 5], options=chosen)
+    np.testing.assert_array_equal(envs.par[:, 0], [1.0, 8.0, 3.0])
+    np.testing.assert_array_equal(state[[0, 2]], moved[[0, 2]])
+    np.testing.assert_array_equal(envs._steppers.t, [task.dt, 0.0, task.dt])
+
+
 @pytest.mark.parametrize(
     ("asked", "says"),
     [
