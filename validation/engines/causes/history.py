@@ -12,7 +12,7 @@ from typing import Any
 from ...faults.environment import NotAskedError, day_of, default_folder, kept, own_variables, published
 from .. import parts
 from ..bisection import Search, red_place, told
-from ..proving.scripts import fails
+from ..proving.scripts import exception_of, fails
 from ..releases import stated
 from .cause import FOLDER, Cause
 from .cause import stated as causes
@@ -72,17 +72,15 @@ def proof_of(cause: Cause, data: Mapping[str, Any]) -> Proof:
         ValueError: The report has none.
     """
     groups = causes_of(parts.cells(data), corrected=parts.cells(data, "corrected"))
-    scripts = [
-        script for group in groups if group.cause == cause for script in scripts_of(group, groups, data["proofs"])
-    ]
+    own = [group for group in groups if group.cause == cause]
+    scripts = [script for group in own for script in scripts_of(group, groups, data["proofs"])]
     if not scripts:
         raise ValueError(f"{cause.engine}/{cause.name}: the stored report has no script that proves it")
     first = scripts[0]
     (version,) = (one["version"] for one in data["engines"] if one["name"] == cause.engine)
-    raised = (
-        re.findall(r"^(?:\w+\.)*(\w+)(?::|$)", first["output"], re.MULTILINE) if first["verdict"] == "raises" else []
-    )
-    return Proof(version, first["text"], raised[-1] if raised else "", cause.words)
+    place = first["function"], first["model"]
+    (cell,) = (one for group in own for one in group.cells if (one.function, one.model) == place)
+    return Proof(version, first["text"], exception_of(cell), cause.words)
 
 
 def histories(

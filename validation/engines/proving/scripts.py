@@ -18,6 +18,7 @@ from ..functions import FUNCTIONS
 from ..interface import Array, EnginePlugin
 from ..matrix import SEED, Judged, Truths, judged
 from ..plugins.writing.source import SourcePlugin
+from ..verdicts import Cell
 from ..workers import Crashed, Job, Worker
 from .pieces import taken
 from .shrink import TRIES, Case, size, smallest
@@ -96,7 +97,7 @@ class Prover:
         path = self.folder / file_of(red)
         if path.exists():
             kept = path.read_text(encoding="utf-8")
-            output, failed = fails(path, _exception(red), self.worker.python(plugin.name))
+            output, failed = fails(path, exception_of(red.cell), self.worker.python(plugin.name))
             if failed and kept.startswith(_title(plugin, red)):
                 return _proof(plugin, red, kept, output, failed)
         ends = red.cell.verdict in ("crashes", "raises")
@@ -106,7 +107,7 @@ class Prover:
         self.folder.mkdir(parents=True, exist_ok=True)
         script = text(plugin, small, _thread(red))
         path.write_text(script, encoding="utf-8")
-        output, failed = fails(path, _exception(red), self.worker.python(plugin.name))
+        output, failed = fails(path, exception_of(red.cell), self.worker.python(plugin.name))
         return _proof(plugin, red, script, output, failed)
 
     def shrunk(self, plugin: EnginePlugin, red: Judged) -> Judged:
@@ -246,9 +247,9 @@ def text(plugin: EnginePlugin, red: Judged, known: str) -> str:
     return "\n".join([head + red.answer.script.rstrip(), "import numpy as np", *lines, ""])
 
 
-def _exception(red: Judged) -> str:
+def exception_of(cell: Cell) -> str:
     """Type of the exception that a red cell is; "" for none."""
-    return red.cell.words.partition(":")[0] if red.cell.verdict == "raises" else ""
+    return cell.words.partition(":")[0] if cell.verdict == "raises" else ""
 
 
 def fails(
