@@ -8,17 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description import MODEL_SUFFIXES, System
+from symofros.studio.editor.diagrams.grouping import grouped
 from symofros.studio.editor.document.document import EditedDocument, StaleError, refuse_text
+from symofros.studio.editor.document.examples import take_example
 from symofros.studio.editor.document.expressions import check_field
 from symofros.studio.editor.document.figures.beam_figures import beam_figures
 from symofros.studio.editor.document.figures.inertia_figures import inertia_figures
 from symofros.studio.editor.document.parts.parts import insertion
 from symofros.studio.editor.document.parts.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
-from symofros.studio.editor.document.workspace import FileError, Workspace, read_text, write
+from symofros.studio.editor.document.workspace import FileError, Workspace, identifier, read_text, write
 from symofros.studio.editor.editing.data_edits import four_parts, refusal
 from symofros.studio.editor.editing.requests import edits_of, fields_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
+from symofros.studio.editor.editing.yaml_rendering import block
 from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
@@ -164,6 +167,11 @@ class Session:
         """Begin a document with a text that came from elsewhere."""
         self._leave(body, lambda: self.storage.adopt(name, text))
 
+    def example(self, body: Json) -> None:
+        """Begin a document that says what an example says; what it reads goes into the workspace."""
+        name, text = take_example(text_of(body, "name") or "", self.workspace)
+        self._leave(body, lambda: self.storage.adopt(name, text, "example"))
+
     def _leave(self, body: Json, enter: Callable[[], None]) -> None:
         """Go to another document; unsaved changes stay beside their file, unless given up."""
         if body.get("discard") is not True:
@@ -184,6 +192,24 @@ class Session:
         parent, frame = text_of(body, "parent") or None, text_of(body, "frame") or None
         edits = insertion(yaml_text_of(self.document.text).data, self.library.part(name), parent, frame)
         self.document.change(f"insert {name}"[:200], lambda text: with_references(text, edits))
+        self.storage.autosave()
+
+    def group(self, body: Json) -> None:
+        """Put blocks of the diagram into a subsystem: a file of its own beside it, and a part in their place.
+
+        Undo brings the blocks back; the file stays.
+        """
+        self.document.expect(body.get("revision"))
+        name, blocks = text_of(body, "name") or "", body.get("blocks")
+        if not isinstance(blocks, list) or not all(isinstance(item, str) for item in blocks):
+            raise refusal("blocks of the subsystem", f"{blocks!r:.100}", "a list of ids", "choose some")
+        folder = self.document.file.parent
+        stem = identifier(name)
+        file = next(one for n in range(1, 1000) if not (one := folder / f"{stem}{n if n > 1 else ''}.yaml").exists())
+        self.workspace.inside(self.workspace.shown(file))
+        inside, edits = grouped(yaml_text_of(self.document.text).data, stem, file.name, blocks)
+        write(file, "\n".join([*block(inside, (), 0), ""]))
+        self.document.change(f"group into {stem}"[:200], lambda text: with_references(text, edits))
         self.storage.autosave()
 
     # Beside the document.

@@ -112,10 +112,10 @@ class Storage:
             )
         self.begin(file, kind)
 
-    def adopt(self, name: str, text: str) -> None:
+    def adopt(self, name: str, text: str, label: str = "import") -> None:
         """Begin a new document with a text that came from elsewhere; it takes a free name."""
         self.begin(self._unused(identifier(Path(name).stem)))
-        self.document.change("import", lambda _: text)
+        self.document.change(label, lambda _: text)
         self.autosave()
 
     def _become(self, document: EditedDocument, seen: str) -> None:

@@ -24,6 +24,7 @@ from starlette.types import ASGIApp
 from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.document.document import StaleError
+from symofros.studio.editor.document.examples import listed
 from symofros.studio.editor.document.figures.shape_curves import curves
 from symofros.studio.editor.document.parts.palette import catalogue
 from symofros.studio.editor.document.session import Json, Session
@@ -72,6 +73,8 @@ class Editor:
             "new": session.create,
             "enter": session.enter,
             "leave": session.leave,
+            "example": session.example,
+            "group": session.group,
             "parts/insert": session.insert_part,
         }
         made = [Route(f"/api/{name}", self.changing(action), methods=["POST"]) for name, action in changes.items()]
@@ -85,6 +88,7 @@ class Editor:
             Route("/api/beam", self.beam, methods=["POST"]),
             Route("/api/inertia", self.inertia, methods=["POST"]),
             Route("/api/files", self.files),
+            Route("/api/examples", self.examples),
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
             Route("/api/import", self.import_text, methods=["POST"]),
@@ -160,6 +164,10 @@ class Editor:
         """Files that can be opened."""
         workspace = self.session.workspace
         return JSONResponse({"root": str(workspace.root), "files": await run_sync(workspace.files)})
+
+    async def examples(self, _: Request) -> Response:
+        """Examples that a document can be begun from."""
+        return JSONResponse({"examples": listed()})
 
     async def parts(self, _: Request) -> Response:
         """Sub-assemblies that were kept."""

@@ -80,7 +80,12 @@ def test_a_diagram_and_its_windows_are_accessible(opened: Serve, page: Page, fau
 
 # Kind of document -> a block, fields of its window, the command that runs it and what is typed then.
 KINDS = {
-    "model": ("bodies/link1", ("Modes along y", "Modes of shear along z", "Length"), "Simulate", {"Duration": "0.3"}),
+    "model": (
+        "bodies/link1",
+        ("Shape functions along y", "Shape functions of shear along z", "Length"),
+        "Simulate",
+        {"Duration": "0.3"},
+    ),
     "diagram": ("blocks/slow", ("Name", "Sample time", "Source of u"), "Run", {}),
 }
 

@@ -102,7 +102,7 @@ def test_a_model_has_a_canvas_of_its_own_and_a_way_back(opened: Serve, page: Pag
     # The window of a block, and a new name, which all that refers to it follows.
     steps.block(page, "blocks/pd").dblclick()
     steps.fill(page, "Name", "law")
-    steps.fill(page, "Kp", "[6.0e1, 25]")
+    steps.fill(page, "Proportional gain", "[6.0e1, 25]")
     steps.accept(page)
     expect(steps.wire(page, "blocks/plant/inputs/u")).to_have_count(1)
     steps.problems(page, 0)

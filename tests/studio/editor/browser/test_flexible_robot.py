@@ -28,7 +28,7 @@ def test_beams_become_rigid_and_the_engines_agree(opened: Serve, page: Page, pic
         expect(curves.locator("path.series")).to_have_count(3)
         if beam == "link1":
             picture("beam")
-        steps.fill(page, "Modes along y", "0")
+        steps.fill(page, "Shape functions along y", "0")
         expect(steps.window(page)).to_contain_text("the beam is rigid")
         steps.accept(page)
         expect(steps.block(page, f"bodies/{beam}")).to_contain_text("rigid")

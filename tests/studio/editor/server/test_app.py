@@ -70,6 +70,22 @@ def test_a_conflict_on_disk_carries_both_texts(client: TestClient, folder: Path)
     assert saved.status_code == 200 and (folder / "four_bar.yaml").read_text().endswith("# ours\n")
 
 
+def test_examples_are_listed_and_begin_a_document(client: TestClient, folder: Path) -> None:
+    names = [each["name"] for each in client.get("/api/examples").json()["examples"]]
+    assert "balance" in names
+    begun = client.post("/api/example", json={"name": "balance"}).json()
+    assert begun["name"] == "balance.yaml" and begun["dirty"] and begun["problems"] == []
+    assert (folder / "rigid/cart_pole.yaml").is_file()
+    grouped = client.post(
+        "/api/group", json={"revision": begun["revision"], "name": "law", "blocks": ["blocks/lqr"]}
+    ).json()
+    assert grouped["data"]["parts"]["law"]["file"] == "law.yaml" and grouped["undo_label"] == "group into law"
+    assert client.post("/api/example", json={"name": "nothing"}).status_code == 422
+    assert (
+        client.post("/api/group", json={"revision": grouped["revision"], "name": "x", "blocks": 3}).status_code == 422
+    )
+
+
 def test_files_are_listed_opened_and_created(client: TestClient, folder: Path) -> None:
     assert [f["path"] for f in client.get("/api/files").json()["files"]] == ["double_pendulum.yaml", "four_bar.yaml"]
     assert client.post("/api/open", json={"path": "double_pendulum.yaml"}).json()["name"] == "double_pendulum.yaml"

@@ -11,8 +11,10 @@ import { Boundary } from "./shell/Boundary";
 import { DiagramPalette } from "./shell/DiagramPalette";
 import { Palette } from "./shell/Palette";
 import { onKey } from "./shell/shortcuts";
+import { ContextMenu } from "./shell/ContextMenu";
 import { Status } from "./shell/Status";
 import { Toolbar } from "./shell/Toolbar";
+import { TourPane } from "./shell/TourPane";
 import { importFile } from "./store/files";
 import { useDocument, useStore } from "./store/store";
 import { Dialogs } from "./windows/Dialogs";
@@ -60,6 +62,10 @@ function Editor() {
       <Boundary what="The window" attempt={dialog}>
         <Dialogs />
       </Boundary>
+      <Boundary what="The menu" attempt={document}>
+        <ContextMenu />
+      </Boundary>
+      <TourPane />
       <Notices />
     </ReactFlowProvider>
   );

@@ -178,6 +178,8 @@ export interface PaletteItem {
 /** An entry of a diagram's palette. */
 export interface BlockItem extends PaletteItem {
   group: string;
+  /** All that its author says of it. */
+  about?: string;
 }
 
 /** What is known of diagrams as such. */
@@ -223,6 +225,15 @@ export interface Part {
   inputs: JsonMap;
   bodies: JsonMap;
   closures: JsonMap;
+}
+
+/** A model or a diagram to begin with. */
+export interface Example {
+  name: string;
+  title: string;
+  about: string;
+  kind: "mechanism" | "diagram";
+  picture: string;
 }
 
 export interface FileEntry {

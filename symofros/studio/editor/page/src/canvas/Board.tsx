@@ -43,6 +43,16 @@ function choose(changes: readonly (NodeChange | EdgeChange)[]): void {
   if (chosen.size !== before.length || before.some((id) => !chosen.has(id))) update({ selected: [...chosen] });
 }
 
+/** Opens the menu of a block, a link, or the canvas; what it is about is chosen first. */
+function openMenu(event: { preventDefault(): void; clientX: number; clientY: number }, id: string | null): void {
+  event.preventDefault();
+  const { selected } = now();
+  update({
+    menu: { id, at: [event.clientX, event.clientY] },
+    selected: id === null || selected.includes(id) ? selected : [id],
+  });
+}
+
 function shownPlaces(): Record<string, Point> {
   const { document, places } = now();
   const ids = new Set([...(document?.graph.nodes ?? []), ...(document?.diagram?.nodes ?? [])].map(({ id }) => id));
@@ -119,6 +129,9 @@ export function Board<N extends Node>({
       edgeTypes={edgeTypes}
       onNodesChange={onNodesChange}
       onEdgesChange={choose}
+      onNodeContextMenu={(event, node) => openMenu(event, node.id)}
+      onEdgeContextMenu={(event, edge) => openMenu(event, edge.id)}
+      onPaneContextMenu={(event) => openMenu(event, null)}
       onPaneClick={() => update({ selected: [] })}
       onConnect={connect}
       onNodeDoubleClick={(_, node) => open(node.id)}

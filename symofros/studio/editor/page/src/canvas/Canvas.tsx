@@ -8,8 +8,10 @@ import { loads, standIns } from "../model/folding";
 import { size } from "../model/geometry";
 import { add, mount } from "../store/bodies";
 import { insertPart } from "../store/clipboard";
+import { browseExamples } from "../store/files";
 import { MOST_DRAWN } from "../store/requests";
 import { now, show, useDocument, useStore } from "../store/store";
+import { beginTour } from "../store/tour";
 import { Block, type BlockNode, frameOf, JOINT } from "./Block";
 import { Board } from "./Board";
 import { Mount, Tie } from "./links";
@@ -89,8 +91,14 @@ export function Canvas() {
         </Panel>
       ) : null}
       {document.graph.nodes.length === 1 ? (
-        <Panel position="top-center" className="quiet">
-          Drag a body from the left onto the canvas, or click it there.
+        <Panel position="top-center" className="welcome">
+          <p className="quiet">Drag a body from the left onto the canvas, or click it there. New here?</p>
+          <button type="button" onClick={() => void browseExamples()}>
+            Open an example
+          </button>
+          <button type="button" onClick={beginTour}>
+            Take the tour
+          </button>
         </Panel>
       ) : null}
     </Board>

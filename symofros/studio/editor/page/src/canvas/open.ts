@@ -6,7 +6,8 @@ import { mapAt, textAt } from "../model/paths";
 import { enter } from "../store/files";
 import { now, show } from "../store/store";
 
-function pathOf(id: string): Path | undefined {
+/** The entry of the document that an element is about. */
+export function pathOf(id: string): Path | undefined {
   const document = now().document;
   const all = [
     ...(document?.graph.nodes ?? []),

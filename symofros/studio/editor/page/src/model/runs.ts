@@ -29,3 +29,9 @@ export function withRun(runs: readonly KeptRun[], job: Job): readonly KeptRun[] 
 /** Others of a kind than the newest, whose curves are drawn with its own. */
 export const overlaid = (runs: readonly KeptRun[], kind: JobKind, newest: string | undefined): KeptRun[] =>
   runs.filter((run) => run.kind === kind && run.shown && run.id !== newest);
+
+/** The record after (or before) a time, of times that rise; the last (or first) where there is none. */
+export function neighbour(t: readonly number[], at: number, by: 1 | -1): number {
+  const found = by === 1 ? t.find((each) => each > at) : t.findLast((each) => each < at);
+  return found ?? (by === 1 ? t.at(-1) : t[0]) ?? at;
+}

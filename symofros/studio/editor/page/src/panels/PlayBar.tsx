@@ -1,4 +1,5 @@
 import { brief } from "../model/plot";
+import { neighbour } from "../model/runs";
 import { pause, play, setTime, SPEEDS } from "../store/playing";
 import { update, useStore } from "../store/store";
 
@@ -9,10 +10,20 @@ export function PlayBar({ t }: { t: readonly number[] }) {
   const speed = useStore((state) => state.speed);
   const [start, end] = [t[0] ?? 0, t.at(-1) ?? 0];
   const at = Math.min(Math.max(time ?? start, start), end);
+  const step = (by: 1 | -1): void => {
+    pause();
+    setTime(neighbour(t, at, by));
+  };
   return (
     <div className="play-bar" role="group" aria-label="Motion">
       <button type="button" className="small" disabled={end <= start} onClick={playing ? pause : play}>
         {playing ? "Pause" : "Play"}
+      </button>
+      <button type="button" className="small" aria-label="A step back" disabled={at <= start} onClick={() => step(-1)}>
+        ‹
+      </button>
+      <button type="button" className="small" aria-label="A step on" disabled={at >= end} onClick={() => step(1)}>
+        ›
       </button>
       <input
         type="range"

@@ -1,4 +1,4 @@
-import { type KeyboardEvent, useEffect, useId, useRef, useState } from "react";
+import { type KeyboardEvent, useCallback, useEffect, useId, useRef, useState } from "react";
 
 export interface MenuItem {
   title: string;
@@ -7,36 +7,71 @@ export interface MenuItem {
   disabled?: boolean;
 }
 
-/** A button that opens a list of commands. */
-export function Menu({ title, items }: { title: string; items: readonly MenuItem[] }) {
-  const [open, setOpen] = useState(false);
-  const box = useRef<HTMLDivElement>(null);
-  const id = useId();
+const CHOICES = "[role=menuitem]:not(:disabled)";
+
+interface ListProps {
+  id?: string;
+  title: string;
+  items: readonly MenuItem[];
+  /** Something was chosen, given up, or pressed elsewhere. */
+  close(why: "done" | "elsewhere"): void;
+}
+
+/** A list of commands: arrows move in it, Escape closes it, so does a press elsewhere. */
+export function MenuList({ id, title, items, close }: ListProps) {
+  const list = useRef<HTMLDivElement>(null);
   useEffect(() => {
-    if (!open) return undefined;
-    box.current?.querySelector<HTMLElement>("[role=menuitem]:not(:disabled)")?.focus();
+    list.current?.querySelector<HTMLElement>(CHOICES)?.focus();
     const elsewhere = (event: PointerEvent): void => {
-      if (!box.current?.contains(event.target as Node)) setOpen(false);
+      if (!list.current?.parentElement?.contains(event.target as Node)) close("elsewhere");
     };
-    window.addEventListener("pointerdown", elsewhere);
-    return () => window.removeEventListener("pointerdown", elsewhere);
-  }, [open]);
-  const close = (): void => {
-    setOpen(false);
-    box.current?.querySelector("button")?.focus();
-  };
+    window.addEventListener("pointerdown", elsewhere, true);
+    return () => window.removeEventListener("pointerdown", elsewhere, true);
+  }, [close]);
   const go = (event: KeyboardEvent): void => {
-    if (event.key === "Escape") close();
+    event.stopPropagation();
+    if (event.key === "Escape") close("done");
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     if (step === 0) return;
     event.preventDefault();
-    const all = [...(box.current?.querySelectorAll<HTMLElement>("[role=menuitem]:not(:disabled)") ?? [])];
+    const all = [...(list.current?.querySelectorAll<HTMLElement>(CHOICES) ?? [])];
     const place = all.indexOf(window.document.activeElement as HTMLElement);
     all[(place + step + all.length) % all.length]?.focus();
   };
   return (
-    <div ref={box} className="menu" onKeyDown={go}>
+    <div id={id} ref={list} role="menu" aria-label={title} className="menu-list" onKeyDown={go}>
+      {items.map((item) => (
+        <button
+          key={item.title}
+          type="button"
+          role="menuitem"
+          disabled={item.disabled}
+          onClick={() => {
+            close("done");
+            item.act();
+          }}
+        >
+          <span>{item.title}</span>
+          {item.keys === undefined ? null : <kbd>{item.keys}</kbd>}
+        </button>
+      ))}
+    </div>
+  );
+}
+
+/** A button that opens a list of commands. */
+export function Menu({ title, items }: { title: string; items: readonly MenuItem[] }) {
+  const [open, setOpen] = useState(false);
+  const button = useRef<HTMLButtonElement>(null);
+  const id = useId();
+  const close = useCallback((why: "done" | "elsewhere"): void => {
+    setOpen(false);
+    if (why === "done") button.current?.focus();
+  }, []);
+  return (
+    <div className="menu">
       <button
+        ref={button}
         type="button"
         aria-haspopup="menu"
         aria-expanded={open}
@@ -45,25 +80,7 @@ export function Menu({ title, items }: { title: string; items: readonly MenuItem
       >
         {title}
       </button>
-      {open ? (
-        <div id={id} role="menu" aria-label={title} className="menu-list">
-          {items.map((item) => (
-            <button
-              key={item.title}
-              type="button"
-              role="menuitem"
-              disabled={item.disabled}
-              onClick={() => {
-                close();
-                item.act();
-              }}
-            >
-              <span>{item.title}</span>
-              {item.keys === undefined ? null : <kbd>{item.keys}</kbd>}
-            </button>
-          ))}
-        </div>
-      ) : null}
+      {open ? <MenuList id={id} title={title} items={items} close={close} /> : null}
     </div>
   );
 }

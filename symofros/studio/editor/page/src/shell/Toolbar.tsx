@@ -10,8 +10,9 @@ import { tidy } from "../model/layout";
 import { copy, paste } from "../store/clipboard";
 import { moveBlocks, redo, undo } from "../store/edits";
 import { remove } from "../store/elements";
-import { browse, leave, save } from "../store/files";
+import { browse, browseExamples, leave, save } from "../store/files";
 import { run } from "../store/jobs";
+import { beginTour } from "../store/tour";
 import { now, show, update, useBegun, useDocument, useStore } from "../store/store";
 import { toggleTheme } from "../store/theme";
 import { IconButton } from "./IconButton";
@@ -24,6 +25,8 @@ function FileMenu() {
       title="File"
       items={[
         { title: "New…", act: () => show({ kind: "new" }) },
+        { title: "Examples…", act: () => void browseExamples() },
+        { title: "Tour: five steps to a motion", act: beginTour },
         { title: "Open…", keys: "Ctrl O", act: () => void browse() },
         { title: "Save", keys: "Ctrl S", act: () => void save() },
         { title: "Save as…", keys: "Ctrl Shift S", act: () => show({ kind: "save as" }) },

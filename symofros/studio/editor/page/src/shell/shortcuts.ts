@@ -6,6 +6,7 @@ import { copy, paste } from "../store/clipboard";
 import { redo, undo } from "../store/edits";
 import { browse, leave, save } from "../store/files";
 import { toggleFolds } from "../store/folding";
+import { group } from "../store/grouping";
 import { now, show, update } from "../store/store";
 
 const isTyping = (target: EventTarget | null): boolean =>
@@ -32,6 +33,7 @@ const WITH_CONTROL: Record<string, () => void> = {
     void remove(now().selected);
   },
   v: () => void paste(),
+  g: () => void group(now().selected),
   a: () => {
     const { graph, diagram } = now().document ?? {};
     update({ selected: [...(graph?.nodes ?? []), ...(diagram?.nodes ?? [])].map(({ id }) => id) });

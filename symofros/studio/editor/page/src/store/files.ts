@@ -1,12 +1,12 @@
 /** Files: open, new, save, import; never over something that nobody has seen. */
 
 import { get, post, type Refused } from "../api/client";
-import type { Document, FileEntry } from "../api/types";
+import type { Document, Example, FileEntry } from "../api/types";
 import { change, setText } from "./edits";
 import { followPath } from "./asked";
 import { accept, acceptTheirs, explain, ordered } from "./requests";
 import { settle } from "./unsent";
-import { dismiss, now, show, update } from "./store";
+import { dismiss, isBegun, now, show, update } from "./store";
 
 /** Takes what the server answers as the open document; asks first if unsaved work would be lost. */
 async function replace(address: string, body: object): Promise<void> {
@@ -17,7 +17,8 @@ async function replace(address: string, body: object): Promise<void> {
     accept(document);
     dismiss();
   };
-  if (now().document?.dirty === true) show({ kind: "discard", proceed: () => void change(true) });
+  const { document } = now();
+  if (document?.dirty === true && isBegun(document)) show({ kind: "discard", proceed: () => void change(true) });
   else await change(false);
 }
 
@@ -52,6 +53,14 @@ export async function browse(): Promise<void> {
   const answer = await ordered(() => get<{ files: FileEntry[] }>("api/files"));
   if (answer !== undefined) show({ kind: "open", files: answer.files });
 }
+
+export async function browseExamples(): Promise<void> {
+  const answer = await ordered(() => get<{ examples: Example[] }>("api/examples"));
+  if (answer !== undefined) show({ kind: "examples", examples: answer.examples });
+}
+
+/** A new document that says what an example says. */
+export const takeExample = (name: string): Promise<void> => replace("api/example", { name });
 
 /** Saves; `over` names the state of the file that the user has seen and gives up. */
 export async function save(path: string | null = null, over: string | null = null): Promise<boolean> {

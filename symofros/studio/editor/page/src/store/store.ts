@@ -3,11 +3,23 @@
 import { create } from "zustand";
 
 import type { Job, JobKind, RunPlot } from "../api/jobs";
-import type { Catalogue, Document, Fault, FileEntry, Json, LibraryPart, Path, Point, View } from "../api/types";
+import type {
+  Catalogue,
+  Document,
+  Example,
+  Fault,
+  FileEntry,
+  Json,
+  LibraryPart,
+  Path,
+  Point,
+  View,
+} from "../api/types";
 import type { AskedRun, AskedSimulation } from "../model/asked";
 import { type Moves, NO_MOVES } from "../model/moves";
 import { isMap } from "../model/paths";
 import type { KeptRun } from "../model/runs";
+import type { Tour } from "../model/tour";
 
 export type Link = "ok" | "lost" | "expired";
 export type RightPane = "parameters" | "tree" | "text" | "view";
@@ -21,6 +33,7 @@ export interface Anchor {
 export type Dialog =
   | { kind: "properties"; path: Path; entry?: Path }
   | { kind: "open"; files: FileEntry[] }
+  | { kind: "examples"; examples: Example[] }
   | { kind: "new" }
   | { kind: "save as" }
   | { kind: "simulate" }
@@ -91,6 +104,10 @@ export interface State extends OfDocument {
   speed: number;
   link: Link;
   notices: Notice[];
+  /** The step of the tour; null while nobody takes it. */
+  tour: Tour | null;
+  /** The menu of what was pressed with the other button, and where. */
+  menu: { id: string | null; at: Point } | null;
   right: RightPane | null;
   bottom: BottomPane | null;
 }
@@ -124,6 +141,8 @@ export const useStore = create<State>(() => ({
   speed: 1,
   link: "ok",
   notices: [],
+  tour: null,
+  menu: null,
   right: "parameters",
   bottom: null,
 }));
@@ -141,9 +160,10 @@ export function useDocument(): Document {
 // What a new document says.
 const OF_EMPTY = ["bodies", "system", "symofros", "symofros_diagram", "name"];
 
-/** Whether there is anything yet that could be wrong: a new file is no fault. */
-export function useBegun(): boolean {
-  const { data, text } = useDocument();
+/** Whether there is anything yet that could be wrong, or lost: a new file is no fault. */
+export const useBegun = (): boolean => isBegun(useDocument());
+
+export function isBegun({ data, text }: Document): boolean {
   if (Object.keys(data).length === 0) return text.trim() !== ""; // There is a text, and nothing can be made of it.
   return Object.keys(data).some((key) => !OF_EMPTY.includes(key) && filled(data[key])) || filled(data["bodies"]);
 }

@@ -1,4 +1,5 @@
 import { useStore } from "../store/store";
+import { Examples } from "./Examples";
 import { ExportForm } from "./ExportForm";
 import { ChangedOnDisk, Discard, NewFile, OpenFile, SaveAs } from "./files";
 import { Keys } from "./Keys";
@@ -19,6 +20,8 @@ export function Dialogs() {
       return <Properties key={dialog.path.join("/")} path={dialog.path} entry={dialog.entry ?? []} />;
     case "open":
       return <OpenFile files={dialog.files} />;
+    case "examples":
+      return <Examples examples={dialog.examples} />;
     case "new":
       return <NewFile />;
     case "save as":

@@ -5,6 +5,7 @@ import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { run } from "../store/jobs";
+import { DocsPage } from "./Help";
 import { dismiss, useDocument, useStore } from "../store/store";
 
 const TITLES: Record<string, string> = {
@@ -50,6 +51,7 @@ export function ExportForm() {
         ))}
       </fieldset>
       <TextRow title="Folder" text={folder} onChange={setFolder} />
+      <DocsPage page="docs/exports.md" />
     </Window>
   );
 }

@@ -6,6 +6,7 @@ const KEYS = [
   ["Enter", "properties of the chosen block or link (also double click)"],
   ["Arrows", "move the chosen blocks"],
   ["F", "fold what the chosen bodies carry into them, and back"],
+  ["Ctrl G", "group the chosen blocks of a diagram into a subsystem"],
   ["Delete", "remove what is chosen"],
   ["Ctrl Z, Ctrl Y", "undo, redo"],
   ["Ctrl C, Ctrl X, Ctrl V", "copy, cut, paste bodies or blocks, also in another document"],

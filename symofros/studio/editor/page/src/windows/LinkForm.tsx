@@ -1,6 +1,7 @@
 import { Window } from "../shell/Window";
 import { Glyph } from "../shell/Glyph";
 import { join, type Join } from "../store/bodies";
+import { DocsPage } from "./Help";
 import { type Anchor, dismiss } from "../store/store";
 
 const KINDS: readonly { kind: Join; glyph: string; title: string; help: string }[] = [
@@ -34,6 +35,7 @@ export function LinkForm({ first, second }: { first: Anchor; second: Anchor }) {
           </button>
         ))}
       </div>
+      <DocsPage page="docs/howto/closed_loops.md" />
     </Window>
   );
 }

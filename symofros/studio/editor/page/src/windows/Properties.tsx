@@ -15,6 +15,7 @@ import { SYSTEM } from "../model/sections";
 import { BodyForm } from "./BodyForm";
 import { DiagramForm } from "./DiagramForm";
 import { EntryForm } from "./EntryForm";
+import { Help } from "./Help";
 import { GravityForm, SystemForm } from "./SystemForm";
 
 const NOUNS: Record<string, string> = {
@@ -134,6 +135,7 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
         {isSystem || section === "bodies" || diagram !== null ? null : (
           <EntryForm section={section} value={draft} onChange={setDraft} path={path} />
         )}
+        <Help path={path} value={isMap(draft) ? draft : {}} />
       </Form.Provider>
     </Window>
   );

@@ -8,6 +8,7 @@ import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { askedRun, keepRun } from "../store/asked";
 import { run } from "../store/jobs";
+import { DocsPage } from "./Help";
 import { dismiss, useDocument, useStore } from "../store/store";
 
 const isPositive = (text: string): boolean => text.trim() === "" || (isNumber(text) && Number(text) > 0);
@@ -123,6 +124,7 @@ export function RunForm() {
         isRight={areStopsRight}
         onChange={(stops) => set({ stops })}
       />
+      <DocsPage page="docs/diagrams.md" />
     </Window>
   );
 }

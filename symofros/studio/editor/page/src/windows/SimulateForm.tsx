@@ -8,6 +8,7 @@ import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { askedSimulation, keepSimulation } from "../store/asked";
 import { run } from "../store/jobs";
+import { DocsPage } from "./Help";
 import { dismiss, useDocument, useStore } from "../store/store";
 import { LeftOut, NameTable } from "./NameTable";
 
@@ -166,6 +167,7 @@ export function SimulateForm() {
         <NumberRow title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
       <Given asked={asked} set={set} />
+      <DocsPage page="docs/howto/simulating.md" />
     </Window>
   );
 }

@@ -1,0 +1,38 @@
+/** What can be done with a block, a wire, or the canvas: the commands of the menu that the other button opens. */
+
+import type { MenuItem } from "../shell/Menu";
+import { copy, paste } from "../store/clipboard";
+import { look } from "../store/diagram";
+import { remove } from "../store/elements";
+import { toggleFolds } from "../store/folding";
+import { group } from "../store/grouping";
+import { now, show, update } from "../store/store";
+import { fileOf, goInto, openProperties, pathOf } from "./open";
+
+/** The commands for an element, or for the canvas where there is none. */
+export function commandsFor(id: string | null): MenuItem[] {
+  const { document, selected } = now();
+  const diagram = document?.diagram ?? null;
+  if (id === null) {
+    const all = [...(document?.graph.nodes ?? []), ...(diagram?.nodes ?? [])].map((each) => each.id);
+    return [
+      { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+      { title: "Choose all", keys: "Ctrl A", act: () => update({ selected: all }) },
+      { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
+    ];
+  }
+  const chosen = selected.includes(id) ? selected : [id];
+  const wire = diagram?.wires.find((each) => each.id === id);
+  const isBlock = [...(document?.graph.nodes ?? []), ...(diagram?.nodes ?? [])].some((each) => each.id === id);
+  return [
+    { title: "Properties…", keys: "Enter", act: () => openProperties(id) },
+    ...(fileOf(pathOf(id) ?? []) === undefined ? [] : [{ title: "Go into it", act: () => goInto(id) }]),
+    ...(wire === undefined ? [] : [{ title: "Add a scope", act: () => void look(wire.source, wire.source_port) }]),
+    ...(isBlock ? [{ title: "Copy", keys: "Ctrl C", act: copy }] : []),
+    ...(isBlock && diagram === null ? [{ title: "Fold or unfold", keys: "F", act: () => toggleFolds(chosen) }] : []),
+    ...(isBlock && diagram !== null
+      ? [{ title: "Group into a subsystem…", keys: "Ctrl G", act: () => void group(chosen) }]
+      : []),
+    { title: "Remove", keys: "Delete", act: () => void remove([...chosen]) },
+  ];
+}
