@@ -204,4 +204,5 @@ def test_a_window_has_help_and_its_page(opened: Serve, page: Page, faults: Fault
     expect(text).to_contain_text("Number of shape functions for the displacement along y")
     expect(text).to_contain_text("docs/theory/beams.md")
     assert faults() == []
+    text.scroll_into_view_if_needed()
     picture("help")
