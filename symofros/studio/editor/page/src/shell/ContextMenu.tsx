@@ -5,7 +5,7 @@ import { update, useStore } from "../store/store";
 import { MenuList } from "./Menu";
 
 // What keeps the list within the window [px].
-const ROOM = [230, 260] as const;
+const ROOM = [280, 260] as const;
 
 /** What can be done with what was pressed with the other button of the mouse. */
 export function ContextMenu() {
