@@ -17,7 +17,8 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-_SECTION = re.compile(r"(?=<h2)")
+# A section that is folded has its anchor within.
+_SECTION = re.compile(r'(?=<h2 |<h2>|<div id=")')
 _FIGURE = re.compile(r"<figure>.*?</figure>", re.DOTALL)
 _COLORS = re.compile(r":root \{ (--ink[^}]*) \}")
 
@@ -33,7 +34,7 @@ def figure(page: str, anchor: str, position: int) -> str:
     Raises:
         LookupError: The page has no such section, or the section no such figure.
     """
-    sections = [text for text in _SECTION.split(page) if text.startswith(f'<h2 id="{anchor}">')]
+    sections = [text for text in _SECTION.split(page) if text.startswith((f'<h2 id="{anchor}">', f'<div id="{anchor}">'))]
     figures = _FIGURE.findall(sections[0]) if sections else []
     if not 1 <= position <= len(figures):
         raise LookupError(f"{anchor} {position}")

@@ -7,6 +7,8 @@ of these seven constraints holds where its parameter is 1, at the pose of the mo
 
 from __future__ import annotations
 
+from typing import Literal
+
 import symofros as sf
 
 from ..rigid.station import two_arm_bodies
@@ -18,7 +20,7 @@ STOWAGE = (0.2, 0.4, 0.5, -1.0, 0.3, 0.1, 0.2)
 RACK = (-0.2, -0.5, 0.8, -1.6, 0.4, 0.0, 0.0)
 # Part -> its mass [kg], where it is at first, and where it may be put.
 PARTS = {"worn": (200.0, "worksite", "stowage"), "spare": (180.0, "rack", "worksite")}
-_AXES = ("x", "y", "z")
+_AXES: tuple[Literal["x", "y", "z"], ...] = ("x", "y", "z")
 
 
 def exchange() -> sf.System:
@@ -41,7 +43,7 @@ def exchange() -> sf.System:
         tuple(sf.Parameter(f"{one.name}_on", float(one.name in at_first)) for one in held),
         gravity=(0.0, 0.0, 0.0),
         constraints=tuple(held),
-        switches=tuple(sf.Switch(one.name, f"{one.name}_on", "moment") for one in held),
+        switches=tuple(sf.Switch(one.name, f"{one.name}_on", "moment") for one in held),  # type: ignore[arg-type]
     )
 
 

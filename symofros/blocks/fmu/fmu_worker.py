@@ -55,7 +55,7 @@ def unpacked(file: str, folder: str) -> None:
 
 def described(file: str) -> dict[str, Any]:
     """What the unit states of itself."""
-    import fmpy
+    import fmpy  # An extra, looked for by the parent.
 
     stated = fmpy.read_model_description(file, validate=False)
     if stated.fmiVersion == "1.0":
@@ -116,7 +116,7 @@ class Unit:
     """
 
     def __init__(self, file: str, folder: str, kind: str, rtol: float) -> None:
-        import fmpy
+        import fmpy  # An extra, looked for by the parent.
 
         unpacked(file, folder)
         self.stated = fmpy.read_model_description(folder, validate=False)
@@ -192,7 +192,7 @@ class Unit:
             self._begin_exchange()
 
     def _begin_exchange(self) -> None:
-        from fmpy.sundials import CVodeSolver
+        from fmpy.sundials import CVodeSolver  # Of the extra, too, and of model exchange alone.
 
         self._discrete()
         fmu = self.fmu

@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import accumulate
+from itertools import accumulate, chain, repeat
 
-from symofros.exports.diagram_interface import Interface, entry_names, entry_starts
+from symofros.exports.diagram_interface import Interface, Quantity, entry_starts
 from symofros.exports.material import Material
 from symofros.mechanics.topology import coordinate_names
 
@@ -56,7 +56,7 @@ def quoted(name: str) -> str:
 def diagram_variables(shown: Interface) -> list[Variable]:
     """All variables of an FMU of a diagram, in the order of their references."""
     listed = [Variable(0, "time", "independent", "continuous", unit="s")]
-    kinds = (
+    kinds: tuple[tuple[str, str, tuple[Quantity, ...]], ...] = (
         ("input", "", shown.inputs),
         ("output", "calculated", shown.outputs),
         ("parameter", "exact", shown.parameters),
@@ -64,7 +64,7 @@ def diagram_variables(shown: Interface) -> list[Variable]:
     references: dict[str, list[int]] = {}
     for causality, initial, quantities in kinds:
         variability = "tunable" if causality == "parameter" else "continuous"
-        starts: Iterator[float | None] = iter(entry_starts(quantities) or [None] * len(entry_names(quantities)))
+        starts: Iterator[float | None] = chain(entry_starts(quantities), repeat(None))
         for quantity in quantities:
             depends = sorted(at for name in quantity.depends for at in references[name])
             for name, unit, start in zip(quantity.entries, quantity.units, starts, strict=False):
