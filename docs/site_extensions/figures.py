@@ -34,7 +34,8 @@ def figure(page: str, anchor: str, position: int) -> str:
     Raises:
         LookupError: The page has no such section, or the section no such figure.
     """
-    sections = [text for text in _SECTION.split(page) if text.startswith((f'<h2 id="{anchor}">', f'<div id="{anchor}">'))]
+    begins = tuple(f'<{tag} id="{anchor}">' for tag in ("h2", "div"))
+    sections = [text for text in _SECTION.split(page) if text.startswith(begins)]
     figures = _FIGURE.findall(sections[0]) if sections else []
     if not 1 <= position <= len(figures):
         raise LookupError(f"{anchor} {position}")
