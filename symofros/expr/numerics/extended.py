@@ -46,6 +46,10 @@ def extended_context() -> Any:
     """
     context = import_module("mpmath").MPContext()
     context.prec = PRECISION
+    # Loading mpmath forms inf - inf. Within a NumPy loop over objects that would be taken for an error of the loop;
+    # any operation of NumPy's clears the processor's flags.
+    with np.errstate(all="ignore"):
+        np.zeros(1) + 0.0
     return context
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 
 import mpmath
 import numpy as np
@@ -75,3 +77,16 @@ def test_a_formula_has_the_digits_of_the_context(text: str) -> None:
 def test_formulas_outside_their_domain_raise(text: str) -> None:
     with pytest.raises(ArithmeticError):
         evaluate_extended(parse(text), {"xi": extended_context().mpf(0.3)})
+
+
+def test_the_first_constant_within_a_loop_of_numpy_raises_no_warning() -> None:
+    """In a process of its own, where mpmath is loaded in the loop: what it raises is no error of the loop."""
+    script = """
+import warnings, numpy as np
+from symofros.expr.graph import Graph
+from symofros.expr.terms import terms
+warnings.simplefilter("error")
+g = Graph()
+np.arctan2(terms(g, [g.constant(0.53)]), terms(g, [g.constant(0.85)]))
+"""
+    subprocess.run([sys.executable, "-c", script], check=True)
