@@ -1,0 +1,330 @@
+"""What an engine is stated: a tree of rigid links, with what constrains, drives and pulls it.
+
+Frames: a link's frame stands where its last joint leaves it. Vectors are tuples, rotations tuples of rows; R of a
+placement turns components of the placed frame into those of the frame it is placed in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+Rows = tuple[Vector, Vector, Vector]
+
+
+def rows(matrix: Array) -> Rows:
+    """A matrix (3, 3) as tuples."""
+    a, b, c = (tuple(row) for row in np.asarray(matrix, dtype=float).tolist())
+    return (a, b, c)
+
+
+def vector(values: Array) -> Vector:
+    """A vector (3) as a tuple."""
+    x, y, z = np.asarray(values, dtype=float).tolist()
+    return (x, y, z)
+
+
+ORIGIN: Vector = (0.0, 0.0, 0.0)
+IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One elementary joint; a link may hang on several in series.
+
+    Attributes:
+        kind: Key of `charts.GEOMETRIES`, such as "revolute".
+        R: Rotation (3, 3) of the frame before its motion, in the frame that it is placed in.
+        p: Position (3) of the same [m].
+        axis: Direction of its motion in its own frame, of unit length.
+        second: Direction of its second motion ("universal").
+        pitch: Advance for a radian [m/rad] ("helical").
+        radii: Half axes (3) [m] ("ellipsoid").
+        sequence: Axes of successive rotations ("euler"), as "ZYX".
+        form: Native form that is asked for where an engine has several, such as "unbounded"; "" for the plainest.
+        armature: Inertia added to the diagonal of the mass matrix, for each speed; () for none.
+        mimics: Name of the link whose (one and only) joint it follows: q = ratio q_followed + offset; "" for none.
+        ratio: See `mimics`.
+        offset: See `mimics`.
+        locked: Coordinate that a joint of one coordinate is locked at, by the engine: the joint moves no more. None for
+            none.
+        damping: Force against each of its speeds, for a unit of speed.
+        stiffness: Force of a spring on a joint of one coordinate, for a unit of it.
+        rest: Coordinate at which the spring has no force.
+        friction: Greatest force of dry friction against each of its speeds; files state it, no function has its force.
+        force_limits: Least and greatest force that actuators make together along a joint of one coordinate; () for
+            none.
+    """
+
+    kind: str
+    R: Rows = IDENTITY
+    p: Vector = ORIGIN
+    axis: Vector = (0.0, 0.0, 1.0)
+    second: Vector = (0.0, 1.0, 0.0)
+    pitch: float = 0.0
+    radii: Vector = (0.0, 0.0, 0.0)
+    sequence: str = ""
+    form: str = ""
+    armature: tuple[float, ...] = ()
+    mimics: str = ""
+    ratio: float = 1.0
+    offset: float = 0.0
+    locked: float | None = None
+    damping: float = 0.0
+    stiffness: float = 0.0
+    rest: float = 0.0
+    friction: float = 0.0
+    force_limits: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Link:
+    """A rigid body and the joints it hangs on.
+
+    Attributes:
+        name: Name of the link.
+        parent: Index of the link it hangs on, smaller than its own; -1 for the world.
+        joints: Joints in series, the first placed in the parent's frame. A joint of kind "fixed" places only.
+        mass: Mass [kg].
+        com: Mass centre (3) in the link's frame [m].
+        inertia: Inertia (3, 3) about the mass centre, along the link's axes [kg m^2].
+        compensation: Part of its weight that a force at its mass centre bears.
+    """
+
+    name: str
+    parent: int
+    joints: tuple[Joint, ...]
+    mass: float = 1.0
+    com: Vector = ORIGIN
+    inertia: Rows = IDENTITY
+    compensation: float = 0.0
+
+    def before(self, change: str) -> Link:
+        """The link before a change (`Tree.changed`)."""
+        x, y, z = self.com
+        match change:
+            case "mass":
+                return replace(self, mass=2.0 * self.mass)
+            case "inertia":
+                return replace(self, com=(y, z, x), inertia=rows(np.array(self.inertia)[::-1, ::-1]))
+            case "frame":
+                first, *rest = self.joints
+                return replace(self, joints=(replace(first, R=IDENTITY, p=(0.5, 0.25, -0.125)), *rest))
+        return self
+
+
+class End(NamedTuple):
+    """A frame that a constraint holds.
+
+    Attributes:
+        link: Name of its link; "" for the world.
+        R: Rotation (3, 3) in the link's frame.
+        p: Position (3) in the link's frame [m].
+    """
+
+    link: str
+    R: Rows = IDENTITY
+    p: Vector = ORIGIN
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """An equation between positions of links.
+
+    "point": the origins of two frames coincide. "weld": two frames coincide. "coupling": a sum of coordinates, each
+    times its coefficient, is constant; each is that of the only joint of a link. "path": the sum of the distances from
+    point to point is what it is with all coordinates zero.
+
+    Attributes:
+        kind: One of these.
+        ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
+        coefficients: Of a "coupling", for each end.
+        torque_scale: Of a "weld", factor of its rows of rotation.
+    """
+
+    kind: str
+    ends: tuple[End, ...]
+    coefficients: tuple[float, ...] = ()
+    torque_scale: float = 1.0
+
+
+class Wrap(NamedTuple):
+    """A surface that a tendon is tight around, on its way from one of its points to the next.
+
+    Attributes:
+        after: Number of the point before it.
+        end: Its frame: the centre of a sphere, or a point of a cylinder's axis, which is z.
+        radius: Its radius [m].
+        is_sphere: Whether it is a sphere; otherwise a cylinder, as long as need be.
+    """
+
+    after: int
+    end: End
+    radius: float
+    is_sphere: bool
+
+
+class Muscle(NamedTuple):
+    """An actuator whose gain and bias are those of a muscle, as MuJoCo's documentation states them.
+
+    With l0 the length at rest, L = (length - least) / l0 + low and V = speed / (l0 fastest), where l0 is
+    (greatest - least) / (high - low), gain = -peak FL(L) FV(V), bias = -peak FP(L).
+
+    Attributes:
+        activation: What multiplies the gain.
+        lengths: Least and greatest length of the actuator.
+        operating: What these are in units of l0: low and high.
+        peak: Greatest active force at rest.
+        zeros: L below and above which there is no active force.
+        fastest: V is in units of this.
+        passive: FP at the second of `zeros`.
+        lengthening: FV at speeds above.
+    """
+
+    activation: float
+    lengths: tuple[float, float]
+    operating: tuple[float, float] = (0.75, 1.05)
+    peak: float = 100.0
+    zeros: tuple[float, float] = (0.5, 1.6)
+    fastest: float = 1.5
+    passive: float = 1.3
+    lengthening: float = 1.2
+
+
+@dataclass(frozen=True)
+class Tendon:
+    """A length, and the spring and the damper that act along it.
+
+    Attributes:
+        kind: "coupling", a sum of coordinates, or "path", as constraints have them.
+        ends: See `Constraint`.
+        coefficients: See `Constraint`.
+        stiffness: Force against a unit of length beyond `rest`.
+        damping: Force against a unit of the length's rate.
+        rest: Length at which the spring has no force.
+        armature: Mass that moves with the length.
+        wraps: Surfaces on its way; of a "path" only.
+    """
+
+    kind: str
+    ends: tuple[End, ...]
+    coefficients: tuple[float, ...] = ()
+    stiffness: float = 0.0
+    damping: float = 0.0
+    rest: float = 0.0
+    armature: float = 0.0
+    wraps: tuple[Wrap, ...] = ()
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A force along a coordinate, a tendon or between frames: gain control + bias, with l and l' the length times gear.
+
+    Attributes:
+        link: Link whose only joint it drives; "" for a tendon.
+        tendon: Number of the tendon that it pulls; None for a joint.
+        gear: Factor of length and force.
+        gain: Force for a unit of control.
+        bias: Force b0 + b1 l + b2 l'.
+        control: Control that it has.
+        control_limits: Least and greatest control that counts; () for none.
+        force_limits: Least and greatest force; () for none.
+        ends: One frame: it makes the force and the moment `wrench` there, along its axes, and its length is zero. Two:
+            its length is how far the first is from the second along `wrench`, which stands in the second. Of a
+            `crank`: the end of the crank, and the slider's frame, which moves along its z.
+        wrench: See `ends`.
+        crank: Length of the rod of a slider and crank [m]: its length is the slider's coordinate. 0 for none.
+        muscle: Gain and bias of a muscle, in place of the stated ones; None for none.
+        is_disabled: Whether it makes no force.
+    """
+
+    link: str = ""
+    tendon: int | None = None
+    gear: float = 1.0
+    gain: float = 1.0
+    bias: Vector = ORIGIN
+    control: float = 0.0
+    control_limits: tuple[float, ...] = ()
+    force_limits: tuple[float, ...] = ()
+    ends: tuple[End, ...] = ()
+    wrench: tuple[float, ...] = ()
+    crank: float = 0.0
+    muscle: Muscle | None = None
+    is_disabled: bool = False
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A mechanism as it is stated to all engines.
+
+    Attributes:
+        name: Name for tables.
+        links: Links, each after its parent.
+        gravity: Acceleration of gravity (3) in the world [m/s^2].
+        constraints: Equations that bind the links further. Only `functions.CONSTRAINED` are asked of such a tree.
+        attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
+        fused: Whether the engine fuses links that don't move against each other.
+        changed: What the engine changes, once model and data are there and used, from `before` to what is stated:
+            "mass", "inertia" (with mass centres), "frame" (placements of joints) or "gravity"; "" for nothing.
+        tendons: Lengths over its joints or links.
+        actuators: What drives it.
+        sensors: Frames of links at which sensors stand.
+        away: Added to the positions that random states have of free joints [m].
+        asked: What else an engine must know by name to be asked about it, such as "turns" or "flexible bodies"; only
+            functions that need it are asked of such a tree.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    gravity: Vector = (0.0, 0.0, -9.81)
+    constraints: tuple[Constraint, ...] = ()
+    attached: str = ""
+    fused: bool = False
+    changed: str = ""
+    tendons: tuple[Tendon, ...] = ()
+    actuators: tuple[Actuator, ...] = ()
+    sensors: tuple[End, ...] = ()
+    away: Vector = ORIGIN
+    asked: str = ""
+
+    @property
+    def forces(self) -> frozenset[str]:
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "actuators", kinds of tendons."""
+        joints = [joint for link in self.links for joint in link.joints]
+        stated = {
+            "dampers": any(joint.damping for joint in joints),
+            "springs": any(joint.stiffness for joint in joints),
+            "compensation": any(link.compensation for link in self.links),
+            "tendons": bool(self.tendons),
+            "wrapped tendons": any(tendon.wraps for tendon in self.tendons),
+            "heavy tendons": any(tendon.armature for tendon in self.tendons),
+            "actuators": bool(self.actuators),
+        }
+        return frozenset(name for name, there in stated.items() if there)
+
+    @property
+    def demands(self) -> frozenset[str]:
+        """What an engine must know by name to be asked about it: transformations, forces, "sensors" and the like."""
+        scaled = any(one.torque_scale != 1.0 for one in self.constraints)
+        stated = {"sensors": bool(self.sensors), "scaled welds": scaled, self.asked: bool(self.asked)}
+        return self.transformations | self.forces | {name for name, there in stated.items() if there}
+
+    @property
+    def transformations(self) -> frozenset[str]:
+        """What engines must do to it once it is built: "locked", "attached", "fused", "changed mass" and the like."""
+        locked = any(joint.locked is not None for link in self.links for joint in link.joints)
+        stated = {"locked": locked, "attached": bool(self.attached), "fused": self.fused}
+        names = {name for name, there in stated.items() if there}
+        return frozenset(names | ({f"changed {self.changed}"} if self.changed else set()))
+
+    @property
+    def before(self) -> Tree:
+        """The tree that an engine builds first, where it changes one thing of it after."""
+        x, y, z = self.gravity
+        links = tuple(link.before(self.changed) for link in self.links)
+        return replace(self, links=links, gravity=(z, x, y) if self.changed == "gravity" else self.gravity, changed="")
