@@ -24,7 +24,7 @@ from symofros.mechanics.dynamics.frame_equations import FrameEquations
 METHODS = {name: name for name in FUNCTIONS if hasattr(sf.Model, name)} | {"closure_wrenches": "closure_wrench"}
 # Arguments that methods have besides the inputs of the function.
 FRAME = {"slider_crank": "rod", "double_pendulum": "tip"}
-FURTHER = {"self", "par", "u", "frame", "multipliers", "name", "on", "joint_terms", "minimum_velocity"}
+FURTHER = {"self", "par", "u", "z", "frame", "multipliers", "name", "on", "joint_terms", "minimum_velocity"}
 
 
 @cache

@@ -27,6 +27,7 @@ MAKE: dict[str, dict[str, Any]] = {
     "FrictionCompensation": {"model": "m"},
     "GravityCompensation": {"model": "m"},
     "InverseDynamics": {"model": "m"},
+    "MomentumObserver": {"model": "m"},
     "ForwardDynamics": {"model": "m"},
     "ForwardKinematics": {"model": "m", "frame": "rod"},
     "Extremities": {"model": "m"},
@@ -51,7 +52,7 @@ OF_THE_USER = {
     "Noise", "Pick", "Product", "Pulse", "PythonBlock", "Quantizer", "Ramp", "RateLimit", "Relay", "Reshape",
     "Saturation", "Sequence", "Sine", "StateSpace", "Step", "Store", "Sum", "Switch", "TransferFunction", "Transform",
     "FrameTransform", "UdpReceiver", "UdpTransmitter", "UnitDelay", "ZenohPublisher", "ZenohSubscriber", "Scope",
-    "LivePlot", "JointTrajectory", "FMU",
+    "LivePlot", "JointTrajectory", "FMU", "KalmanFilter", "LookupTable2D", "Notch", "TransportDelay",
 }  # fmt: skip
 # Measured by what is connected: tests below.
 BY_WIRE = {"JointPD", "JointPID"}

@@ -20,6 +20,7 @@ PRINTED = {
     "closed_loop": r"finished at t = 0\.5 s",
     "controller_diagram": r"tracking error \d\.\de-0[5-9]",
     "cross_check": r"(?s)mass_matrix +mujoco .*All \d+ comparisons on 1 model agree",
+    "exchange": r"(?s)finished at t = 58 s.*release_spare +0\.0e\+00 J lost.*largest difference \d\.\de?-?[12]\d",
     "first_arm": r"tip after 2 s",
     "flexible_beam": r"    3 +[5-7]\.\d+e-04",
     "fmu": r"differ by \d\.\de-1[4-9]",
@@ -33,6 +34,8 @@ PRINTED = {
     "urdf_to_c": r"selftest 0",
 }
 
+PROGRAMS = {"exchange": ("cmake", "cc"), "urdf_to_c": ("cc",)}
+
 
 # What README's own lines do in every run: a cross-check, and C from a URDF.
 ELSEWHERE = {"cross_check", "urdf_to_c"}
@@ -42,8 +45,9 @@ ELSEWHERE = {"cross_check", "urdf_to_c"}
     "script", [pytest.param(s, id=s.stem, marks=pytest.mark.slow if s.stem in ELSEWHERE else ()) for s in SCRIPTS]
 )
 def test_an_example_runs(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    if script.stem == "urdf_to_c" and not shutil.which("cc"):
-        pytest.skip("needs a program called cc")
+    for program in PROGRAMS.get(script.stem, ()):
+        if not shutil.which(program):
+            pytest.skip(f"needs a program called {program}")
     extra = re.search(r"the extra `(\w+)`", script.read_text())
     if extra and find_spec(extra[1]) is None:
         pytest.skip(needs_extra(extra[1], extra[1]))

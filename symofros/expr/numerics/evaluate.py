@@ -22,10 +22,10 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
     """
     args, nodes = graph.args, []
     needed = {abs(edge) for edge in edges}
-    marks = bytearray(1 + max(needed, default=0))
+    marks = bytearray(len(args))
     for node in needed:
         marks[node] = 1
-    # Operands have smaller numbers than results, so one way down meets all, in order.
+    # Operands that have operands have smaller numbers than results, so one way down meets all, in order.
     node = marks.rfind(1)
     while node > 0:
         if args[node] and node not in given:  # Inputs and numbers have no operands.
