@@ -20,6 +20,7 @@ from symofros.base.atomic import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
@@ -56,19 +57,25 @@ class _Recording:
                 )
             )
         self.t = np.minimum(motion.start + speed * period * np.arange(count), motion.end)
-        q, u = motion.at(self.t)
-        self.drawing = mechanism.drawing(motion.par)
+        q, u, par = motion.at(self.t)
+        # Events set parameters seldom: a drawing lasts from one picture whose parameters are others to the next.
+        first = [0, *(np.flatnonzero(np.any(par[1:] != par[:-1], axis=1)) + 1)]
+        self._drawings = {int(i): mechanism.drawing(par[i]) for i in first}
+        self.drawing = self._drawings[0]
+        self.camera = Camera.of(max(self._drawings.values(), key=lambda drawing: drawing.size))
         self.q = q
-        self.postures = mechanism.posture(q, u, motion.par, exaggeration)
+        self.postures = mechanism.posture(q, u, par if len(first) > 1 else par[0], exaggeration)
         self.layers = initial_layers(self.drawing)
         self.count, self.exaggeration, self.speed = count, exaggeration, speed
 
-    def __iter__(self) -> Iterator[Posture]:
-        return (self.postures[i] for i in range(self.count))
+    def __iter__(self) -> Iterator[tuple[Drawing, Posture]]:
+        drawing = self.drawing
+        for i in range(self.count):
+            drawing = self._drawings.get(i, drawing)
+            yield drawing, self.postures[i]
 
     def pictures(self, size: tuple[int, int]) -> Iterator[Image]:
-        camera = Camera.of(self.drawing)
-        return (picture(self.drawing, posture, self.layers, camera, *size) for posture in self)
+        return (picture(drawing, posture, self.layers, self.camera, *size) for drawing, posture in self)
 
     def captions(self) -> Iterator[str]:
         """Time of each picture, and how much larger deformations are drawn than they are."""
@@ -144,7 +151,7 @@ def record(
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
-        motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par)
+        motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par[-1:])
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
     frames = _Recording(mechanism, motion, period, speed, exaggeration)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
@@ -206,13 +213,16 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
     try:
         scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
         serializer = server.get_scene_serializer()
-        for posture in frames:
-            scene.move(posture)
+        for drawing, posture in frames:
+            if drawing is scene.drawing:
+                scene.move(posture)
+            else:
+                scene = ViserScene(server, drawing, posture, frames.layers)
             serializer.insert_sleep(frames.period)
         return replay_page(
             serializer.as_html(),
             f"{mechanism.system.name} - SYMOFROS",
-            Camera.of(frames.drawing),
+            frames.camera,
             frames.t,
             frames.period,
             frames.factor + pace,
@@ -230,7 +240,7 @@ def _captioned(frames: _Recording, size: tuple[int, int]) -> Iterator[Image]:
     images = _extra("PIL.Image", "captions need Pillow", "symofros[view]")
     pencil = _extra("PIL.ImageDraw", "captions need Pillow", "symofros[view]")
     height = max(10, size[1] // 30)
-    camera = Camera.of(frames.drawing)
+    camera = frames.camera
     bar = scale_bar(picture_height(camera.position, camera.target, camera.fov))
     for image, text in zip(frames.pictures(size), frames.captions(), strict=True):
         drawn = images.fromarray(image)

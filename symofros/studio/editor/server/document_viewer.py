@@ -174,8 +174,8 @@ class DocumentViewer:
                 except SymofrosError as error:
                     raise EditError(_problem(error_of(error))) from None
             motion = self._motion[1]
-            q, u = motion.at(float(np.clip(time, motion.start, motion.end)))
-            viewer.show(q, u=u, par=motion.par)
+            q, u, par = motion.at(float(np.clip(time, motion.start, motion.end)))
+            viewer.show(q, u=u, par=par)
             return {**_stand(viewer), "why": ""}
 
     def _as_json(self, viewer: Viewer) -> Json:

@@ -208,8 +208,7 @@ class ViewerPage:
     def _paint_motion(self) -> None:
         if self._player is not None:
             motion = self._player.motion
-            q, u = motion.at(self._player.time)
-            self._paint(State(q, u, motion.par))
+            self._paint(State(*motion.at(self._player.time)))
             if time.monotonic() - self._followed > _FOLLOWED or not self._player.playing:
                 self._follow()
 

@@ -38,7 +38,7 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
 
 
 def shown_system_and_states(run: DiagramRun, block: str = "") -> tuple[System, States]:
-    """The mechanism that a block moves, and its states over time, with the run's own parameters.
+    """The mechanism that a block moves, and its states over time, with the run's own parameters as events set them.
 
     Raises:
         UnknownNameError: As `chosen_block`.
@@ -50,6 +50,5 @@ def shown_system_and_states(run: DiagramRun, block: str = "") -> tuple[System, S
     # Signals are computed by a function of their own: only where they move something is that worth its while.
     source = wired.driving(block)
     u = None if source is None else run[".".join(source)]
-    return wired.models.system(model), States(
-        run.t, run.motion(block)[0], u, run.par[layout.parameters["", model].slice]
-    )
+    par = layout.parameters_of(block, model, layout.present(run.par, run.u))
+    return wired.models.system(model), States(run.t, run.motion(block)[0], u, par)

@@ -37,7 +37,7 @@ class PlayedMotion:
         t: Times, rising (n) [s].
         q: Configurations (n, nq).
         u: Inputs, for prescribed motions (n, nu).
-        par: Run-time parameters (npar).
+        par: Run-time parameters (n, npar), which actions of events change.
     """
 
     model: Model
@@ -56,22 +56,29 @@ class PlayedMotion:
         """Last time [s]."""
         return float(self.t[-1])
 
-    def at(self, times: ArrayLike) -> tuple[Array, Array]:
-        """Coordinates (..., nq) and inputs (..., nu) at times (...,), interpolated along the manifold."""
+    def at(self, times: ArrayLike) -> tuple[Array, Array, Array]:
+        """Coordinates (..., nq), inputs (..., nu) and parameters (..., npar) at times (...,).
+
+        Coordinates are interpolated along the manifold; parameters are those of the last state by then.
+        """
         times = np.asarray(times, dtype=np.float64)
+        last = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 1)
+        par = self.par[last]
         if len(self.t) == 1:
-            shape = (*times.shape, 1)
-            return np.tile(self.q[0], shape), np.tile(self.u[0], shape)
-        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 2)
+            return self.q[last], self.u[last], par
+        i = np.minimum(last, len(self.t) - 2)
         gap = self.t[i + 1] - self.t[i]
         # Two states at one time stand before and after an event.
         share = np.clip((times - self.t[i]) / np.where(gap > 0.0, gap, 1.0), 0.0, 1.0)[..., None]
         q = self.model.integrate(self.q[i], share * self.model.difference(self.q[i], self.q[i + 1]))
-        return q, self.u[i] + share * (self.u[i + 1] - self.u[i])
+        return q, self.u[i] + share * (self.u[i + 1] - self.u[i]), par
 
 
 class States(NamedTuple):
-    """States over time of a mechanism that is yet to be compiled: t (n), q (n, nq), u (n, nu), par (npar)."""
+    """States over time of a mechanism that is yet to be compiled: t (n), q (n, nq), u (n, nu).
+
+    Its run-time parameters are par (npar), or those of each state (n, npar).
+    """
 
     t: ArrayLike
     q: ArrayLike
@@ -98,7 +105,8 @@ def motion_of(model: Model, given: Played) -> PlayedMotion:
                 f"the model's are {_some(model.names.q)}",
                 "show it with the system that it was simulated with",
             )
-        return _checked(model, given.t, given.q, given.u, given.par, "trajectory")
+        par = given.par_over_time if given.changes else given.par
+        return _checked(model, given.t, given.q, given.u, par, "trajectory")
     if isinstance(given, States):
         return _checked(model, *given, "motion")
     if not isinstance(given, tuple | list) or len(given) != 2:
@@ -112,7 +120,7 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     """A motion from a file that `Trajectory.save` wrote, or one like it.
 
     Args:
-        path: .npz with t (n), q (n, nq) and, if it has them, u, par, names_q; .csv or .parquet with columns t and the
+        path: .npz with t (n), q (n, nq) and, if it has them, u, par, par_over_time, names_q; .csv or .parquet with columns t and the
             coordinates' names and, where motions are prescribed, the inputs'.
         model: Model that moves.
 
@@ -159,7 +167,7 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
 
 
 def _read_arrays(file: Path, model: Model) -> PlayedMotion:
-    arrays = read_npz(file, MAX_NUMBERS, ("t", "q", "u", "par", "names_q"))
+    arrays = read_npz(file, MAX_NUMBERS, ("t", "q", "u", "par", "par_over_time", "names_q"))
     for name in ("t", "q"):
         if name not in arrays:
             _refuse(file.name, f"arrays {_some(tuple(arrays))}", "arrays t (n) and q (n, nq)", f"add {name}")
@@ -171,7 +179,8 @@ def _read_arrays(file: Path, model: Model) -> PlayedMotion:
             f"the model's are {_some(model.names.q)}",
             "show it with the model that it was simulated with",
         )
-    return _checked(model, arrays["t"], arrays["q"], arrays.get("u"), arrays.get("par"), file.name)
+    par = arrays.get("par_over_time", arrays.get("par"))
+    return _checked(model, arrays["t"], arrays["q"], arrays.get("u"), par, file.name)
 
 
 def _read_csv(file: Path, model: Model) -> PlayedMotion:
@@ -234,7 +243,7 @@ def _checked(
         ("t", t, (n,)),
         ("q", q, (n, model.nq)),
         ("u", u, (n, model.nu)),
-        ("par", par, (model.npar,)),
+        ("par", par, (model.npar,) if par.ndim == 1 else (n, model.npar)),
     ):
         if array.shape != shape:
             _refuse(
@@ -259,6 +268,7 @@ def _checked(
     if np.any(np.diff(t[:count]) < 0.0):
         _refuse(what, "times that fall", "times rise from state to state", "sort the states by time")
     # Those of other simulators may have left unit length.
+    par = np.broadcast_to(par, (n, model.npar))[:count]
     return PlayedMotion(model, t[:count], model.normalized(q[:count]), u[:count], par)
 
 

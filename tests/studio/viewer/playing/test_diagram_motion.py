@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -12,6 +15,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.errors import SymofrosError, UnknownNameError
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
+from symofros.studio.viewer.playing.motion import read_motion
 
 
 def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
@@ -82,3 +86,51 @@ def test_arguments_that_are_neither_motion_nor_run_are_refused(one: DiagramRun) 
     for given in ((system, (one.t, one["plant.q"])), (system, "r.png"), (one, (one.t, one["plant.q"]), "r.png")):
         with pytest.raises(SymofrosError, match="a system, its motion and a path; or a diagram's run and a path"):
             sf.record(*given)
+
+
+LENGTHENED = sf.System(
+    "crane",
+    (
+        sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)), (sf.Frame("tip", ("L", 0, 0)),)),
+        sf.RigidBody("load", sf.Joint("r", "revolute", "arm", axis=(0, 1, 0), frame="tip"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1))),
+    ),
+    (sf.Parameter("L", 0.5),),
+)
+LONGER = {"longer": sf.Event("t - 0.05", action={"L": 1.5})}
+
+
+def lengthened_by(way: str) -> DiagramRun | sf.Trajectory:
+    """The crane, whose arm an event makes longer, as a diagram or by itself."""
+    if way == "simulate":
+        return sf.simulate(sf.compile(LENGTHENED), t_end=0.1, dt=1e-2, method="rk4", events=LONGER)
+    d = sf.Diagram("crane")
+    d.add_model("crane", LENGTHENED)
+    d.add(blocks.ForwardDynamics(name="plant", model="crane", events=LONGER))
+    return sf.Simulation(d).run(0.1, dt=1e-2)
+
+
+def reach(viewer: sf.Viewer, time: float) -> float:
+    """How far the load's joint is from the arm's in the picture at a time [m]."""
+    viewer.seek(time)
+    return float(np.linalg.norm(viewer._server.scene.get_handle_by_name("/mechanism/link1").position))
+
+
+@pytest.mark.parametrize("way", ["simulate", "diagram"])
+def test_a_replay_uses_the_parameters_that_events_set(way: str, tmp_path: Path) -> None:
+    """In the picture at each time, in files and in pictures."""
+    run = lengthened_by(way)
+    shown = (run,) if isinstance(run, DiagramRun) else (LENGTHENED, run)
+    with sf.view(*shown, port=0, browser=False) as viewer:
+        viewer.toggle()
+        found = [reach(viewer, time) for time in (0.02, 0.08, 0.0, 0.1)]
+    assert found == pytest.approx([0.5, 1.5, 0.5, 1.5])
+    film = import_module("PIL.Image").open(sf.record(*shown, tmp_path / "m.gif", rate=100, size=(160, 120)))
+    wide = []
+    for frame in (0, film.n_frames - 1):
+        film.seek(frame)
+        picture = np.asarray(film.convert("RGB")).astype(int)
+        wide.append(int((np.ptp(picture, axis=2) > 60).any(axis=0).sum()))
+    assert wide[1] > 1.5 * wide[0]
+    if isinstance(run, sf.Trajectory):
+        read = read_motion(run.save(tmp_path / "run.npz"), run.model)
+        assert np.array_equal(read.par, run.par_over_time)

@@ -35,7 +35,7 @@ def motion(model: sf.Model, t: object, q: object) -> PlayedMotion:
 
 
 def test_between_states_it_goes_straight(pendulum: sf.Model) -> None:
-    q, u = motion(pendulum, [0.0, 1.0, 3.0], [[0.0, 0.0], [1.0, 2.0], [0.0, 4.0]]).at([-1.0, 0.25, 2.0, 9.0])
+    q, u, _ = motion(pendulum, [0.0, 1.0, 3.0], [[0.0, 0.0], [1.0, 2.0], [0.0, 4.0]]).at([-1.0, 0.25, 2.0, 9.0])
     assert np.allclose(q, [[0.0, 0.0], [0.25, 0.5], [0.5, 3.0], [0.0, 4.0]]) and u.shape == (4, pendulum.nu)
     assert np.allclose(motion(pendulum, [3.0], [[0.1, 0.2]]).at([0.0, 9.0])[0], [[0.1, 0.2]] * 2)  # One stands.
 
@@ -44,7 +44,7 @@ def test_orientations_turn_on_the_shortest_way() -> None:
     body = sf.RigidBody("b", sf.Joint("j", "ball"), sf.Inertia(1.0, moments=(1.0, 1.0, 1.0)))
     model = sf.compile(sf.System("s", [body]), sf.Options(backend="interpreter"))
     start, end = [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, np.sin(0.5), np.cos(0.5)]
-    q, _ = motion(model, [0.0, 2.0], [start, end]).at(1.0)
+    q, *_ = motion(model, [0.0, 2.0], [start, end]).at(1.0)
     assert np.allclose(q, [0.0, 0.0, np.sin(0.25), np.cos(0.25)])
 
 
