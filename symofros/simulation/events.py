@@ -32,7 +32,8 @@ class Event(metaclass=CheckedCalls):
             them.
         once: Whether only the first crossing counts.
         restitution: Newton's coefficient e, 0 to 1, of an action that lets constraints strike: they hold for the
-            instant alone, and what they take of the speeds comes back e times; parameters are then as before.
+            instant alone, and what they take of the speeds comes back e times; parameters are then as before. With 0
+            the run ends there unless forces part the bodies again.
     """
 
     formula: Any

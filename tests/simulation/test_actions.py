@@ -244,6 +244,31 @@ def test_bodies_that_strike_by_a_constraint_rebound(e: float) -> None:
     assert not run.lam.any() and np.array_equal(run.par_over_time[-1], run.par)
 
 
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("pull", [-2.0, 0.0, 2.0])
+def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: str) -> None:
+    """Go on where a force parts them; else they need a constraint: they would pass through each other, or chatter."""
+    rail = [
+        sf.RigidBody(n, sf.Joint(n, "prismatic", axis=(1, 0, 0), actuated=n == "x"), sf.Inertia(m))
+        for n, m in (("x", 1.0), ("y", 3.0))
+    ]
+    touch = sf.Closure("touch", ("x", None), ("y", None), ("x",))
+    switched = sf.Switch("touch", "contact")
+    system = sf.System("rail", tuple(rail), (sf.Parameter("contact", 0.0),), constraints=(touch,), switches=(switched,))
+    strike = {"strike": sf.Event("x - y", "falling", action={"contact": 1}, restitution=0.0)}
+    q, v = [0.513, 0.0137], [-3.0, 0.3]
+    run = sf.simulate(sf.compile(system), q, v, 0.5, u={"x": pull}, events=strike, method=method, dt=1e-2)
+    (found,) = run.events
+    if pull > 0.0:
+        assert run.outcome.kind == "finished" and not run.outcome.notes
+        assert np.ptp(found.v_after) < 1e-12
+        assert (run.q[-1] @ [1, -1]) == pytest.approx(0.5 * pull * (0.5 - found.t) ** 2, abs=1e-9)
+    else:
+        assert run.outcome.kind == "interrupted" and run.outcome.t == found.t
+        assert "'strike' brings bodies to rest on each other" in run.outcome.reason
+        assert "need a constraint that engages" in run.outcome.advice
+
+
 def test_what_is_refused() -> None:
     """With the event or the constraint by name: before a run where it is known, as its outcome where it happens."""
     model, q, v = docking()

@@ -29,7 +29,8 @@ class View3D(ExternalBlock):
     """Shows a mechanism in a browser as its coordinates change (the extra `view`, docs/view.md).
 
     A run hands its coordinates over and goes on: what comes faster than pictures can be drawn is dropped. The mechanism
-    is drawn with the parameters that the diagram states, whatever a single run puts in their place.
+    is drawn with the parameters that the diagram states, whatever a single run or an event puts in their place; what is
+    viewed or recorded after the run (`sf.view`, `sf.record`) has those of each instant.
 
     What it keeps of a run: "shown" and "dropped", how many samples were handed over, and how many of these were not
     drawn since newer ones came first.

@@ -272,7 +272,7 @@ static int fmu_step(fmu *f, double t) {
     case SYM_ENGAGED_APART: return strcpy(f->message, "constraints engage while they are apart"), FMU_BEYOND_THEORY;
     case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
     case SYM_ACTS_WITHOUT_END:
-        return strcpy(f->message, "an event acts again and again at the same instant"), FMU_BEYOND_THEORY;
+        return strcpy(f->message, "an event acts again and again at the same instant, or leaves bodies at rest on each other"), FMU_BEYOND_THEORY;
     default: return FMU_SINGULAR;
     }
 }

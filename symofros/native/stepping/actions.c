@@ -83,6 +83,29 @@ SYM_EXPORT size_t sym_done_size(const sym_run *r) {
     return 2 + (size_t)s->nu + 2 * (size_t)s->nv + (size_t)s->nq + 2 * (size_t)r->actions->npar;
 }
 
+/* Whether bodies that an impact without rebound has brought to rest on each other part again: the force that would hold them
+ * together draws against the impulse, (32a). Parameters become those before the action. Returns 0 or a status. */
+static int32_t sym_parts_again(sym_run *r, const sym_done *done) {
+    const sym_system *s = r->system;
+    const int32_t nv = s->nv;
+    double along = 0.0, size = 0.0, *held = done->q_after; /* its room, of nq >= nv entries, is free until the end */
+    int32_t i, status;
+    sym_load_state(r);
+    status = sym_evaluate_acceleration(r);
+    if (status != 0) return status;
+    memcpy(held, s->a, (size_t)nv * sizeof *held);
+    sym_run_set_parameters(r, done->par);
+    sym_let_go(s, r->par), sym_hold_by_modes(s, r->par); /* modes are chosen later */
+    sym_load_state(r);
+    status = sym_evaluate_modes(r, r->par);
+    if (status != 0) return status;
+    for (i = 0; i < nv; ++i) {
+        const double impulse = r->v[i] - done->v_set[i], force = held[i] - s->a[i];
+        along += impulse * force, size += fabs(impulse) * (fabs(held[i]) + fabs(s->a[i]));
+    }
+    return along < -SYM_ACCELERATION_ROUNDING * size ? 0 : SYM_ACTS_WITHOUT_END;
+}
+
 /* Parameters and speeds that an action has set take effect: the constraints that hold now take the speeds onto them.
  * Returns 0 or a status, with nothing changed then. */
 static int32_t sym_impact(sym_run *r, double e, const sym_done *done) {
@@ -93,6 +116,7 @@ static int32_t sym_impact(sym_run *r, double e, const sym_done *done) {
     memcpy(done->v_after, r->v, nv * sizeof *r->v);
     memcpy(r->v, done->v_set, nv * sizeof *r->v);
     if (r->system->nc > 0) status = sym_run_engage(r, done->gap);
+    if (status == 0 && e == 0.0) status = sym_parts_again(r, done);
     if (status != 0) memcpy(r->v, done->v_after, nv * sizeof *r->v);
     for (i = 0; status == 0 && e >= 0.0 && i < nv; ++i) r->v[i] += e * (r->v[i] - done->v_set[i]); /* (32) */
     if (status != 0 || e >= 0.0) sym_run_set_parameters(r, done->par);

@@ -68,27 +68,40 @@ static int32_t sym_restart_events(sym_run *r) {
 /* Errors that a state of fixed steps has at least; those of adaptive steps are rtol and atol. */
 #define SYM_EVENT_RTOL 1e-9
 #define SYM_EVENT_ATOL 1e-12
+/* Errors of a state by rounding. */
+#define SYM_EVENT_STATE_ROUNDING 1e-14
 
-/* What event i may change by at x where the entries of y have errors of the size that steps allow, their signs alternating
- * one way or the other. Returns 0 or a status. */
-static int32_t sym_event_error(sym_event_step *step, int32_t i, double x, double value, double *error) {
+/* Whether event i is at x no farther from zero than errors of the entries of y may move it, their signs alternating one way
+ * or the other. Returns 0 or a status. */
+static int32_t sym_event_is_at_zero(sym_event_step *step, int32_t i, double x, double rtol, double atol, int32_t *is) {
     sym_run *r = step->run;
     sym_workspace *w = step->memory;
-    const double rtol = r->adaptive ? r->rtol : SYM_EVENT_RTOL, atol = r->adaptive ? r->atol : SYM_EVENT_ATOL;
-    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
-    int32_t way, l;
-    *error = 0.0;
+    double value, error = 0.0, *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    int32_t way, l, status = sym_event_values_within_step(step, x, values);
+    if (status != 0) return status;
+    value = values[i];
     sym_state_magnitudes(r, w->magnitude);
     for (way = -1; way <= 1; way += 2) {
-        int32_t sign = way, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
+        int32_t sign = way;
+        status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
         if (status != 0) return status;
         for (l = 0; l < 2 * r->system->nv; ++l, sign = -sign) w->stage[l] += sign * (atol + rtol * w->magnitude[l]);
         sym_load_chart_state(r, r->t + x * step->h, w->stage);
         status = sym_event_values(r, values);
         if (status != 0) return status;
-        *error += fabs(values[i] - value);
+        error += fabs(values[i] - value);
     }
+    *is = fabs(value) <= error;
     return 0;
+}
+
+/* Whether event i is met at x by rounding alone: a strike without rebound has left the bodies at rest on each other where the
+ * step begins, and half way to x they have not moved apart by more. Returns 0 or a status. */
+static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, int32_t *is) {
+    const sym_run *r = step->run;
+    *is = 0;
+    if (r->actions == NULL || r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t) return 0;
+    return sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
 }
 
 /* Keep what was noted of the events of a step, the first of each kind: one that turns at x nearer to zero than the errors of
@@ -96,16 +109,15 @@ static int32_t sym_event_error(sym_event_step *step, int32_t i, double x, double
 static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search *search) {
     sym_run *r = step->run;
     const int32_t i = search->touched;
-    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, value, error;
-    int32_t status;
+    const double rtol = r->adaptive ? r->rtol : SYM_EVENT_RTOL, atol = r->adaptive ? r->atol : SYM_EVENT_ATOL;
+    int32_t status, is_rounding, is_zero = 0;
     if (r->unresolved_event < 0 && search->unresolved >= 0)
         r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
     if (r->touched_event >= 0 || i < 0) return 0;
-    status = sym_event_values_within_step(step, search->touched_x, values);
-    if (status != 0) return status;
-    value = values[i];
-    status = sym_event_error(step, i, search->touched_x, value, &error);
-    if (status == 0 && fabs(value) <= error) r->touched_event = i, r->touched_t = r->t + search->touched_x * step->h;
+    status = sym_event_is_rounding(step, i, search->touched_x, &is_rounding);
+    if (status != 0 || is_rounding) return status;
+    status = sym_event_is_at_zero(step, i, search->touched_x, rtol, atol, &is_zero);
+    if (status == 0 && is_zero) r->touched_event = i, r->touched_t = r->t + search->touched_x * step->h;
     return status;
 }
 
@@ -139,9 +151,12 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     status = sym_event_search_begin(&search);
     while (status == 0) {
         double x;
-        int32_t which;
+        int32_t which, is_rounding;
         status = sym_event_search_next(&search, &which, &x);
         if (status != 0 || which < 0 || x > *stop_x) break;
+        status = sym_event_is_rounding(&step, which, x, &is_rounding);
+        if (status != 0) break;
+        if (is_rounding) continue;
         if (x != last_x && r->n_event_records + s->n_events > r->event_capacity) {
             *stop_x = last_x;
             break;

@@ -28,7 +28,7 @@ typedef enum sym_status {
     SYM_NO_ROTATION = -10,       /* a quaternion is not of unit length: of inputs, or of an instance's state */
     SYM_ENGAGED_APART = -11,     /* conditions that engage are not fulfilled */
     SYM_ACTION_REFUSED = -12,    /* an event's action sets what is not allowed, or its restitution lets nothing strike */
-    SYM_ACTS_WITHOUT_END = -13,  /* an event's action brings the event about again, at the same instant */
+    SYM_ACTS_WITHOUT_END = -13,  /* an event's action brings the event about again at the same instant, or bodies to rest */
     SYM_MODES_UNDECIDED = -14,   /* no modes of friction that sticks agree with what they bring about */
     SYM_HELD_TWICE = -15         /* friction holds what it or constraints hold already: what it takes is not determined */
 } sym_status;

@@ -53,6 +53,8 @@ def failure_of(run: BoundRun, met: Met) -> Outcome | None:
         return engaged_apart(t, done.gap, ", ".join(engaging) or event.name)
     if done.status == Status.ACTS_WITHOUT_END:
         reason = f"event '{event.name}' acts again at the same instant: actions follow each other without end"
+        if event.restitution == 0.0:
+            reason = f"event '{event.name}' brings bodies to rest on each other, and nothing parts them again"
         return ENDS[done.status].outcome(t, reason=reason)
     if done.status != Status.ACTION_REFUSED:
         return ENDS[done.status].outcome(t)

@@ -37,7 +37,7 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
         The page as text; coordinates, speeds and inputs of each picture, doubles in base64; parameters.
 
     Raises:
-        SymofrosError: The motion has no speeds, or the stepping is none.
+        SymofrosError: The motion has no speeds, events set its parameters, or the stepping is none.
         CompileError: The package ziglang is missing, or refused.
     """
     if not isinstance(run, Trajectory):
@@ -48,6 +48,11 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
                 "a state has speeds, too: those of a Trajectory of sf.simulate",
                 "leave simulate out, or record a trajectory",
             )
+        )
+    if run.changes:
+        found, rule = "parameters that events set", "the page has one set of parameters, and no events"
+        raise SymofrosError(
+            Problem("record: the page can't simulate on", found, rule, "leave simulate out: the replay has them")
         )
     unknown = sorted(set(stepping) - set(_STEPPING))
     if unknown:

@@ -120,8 +120,8 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     """A motion from a file that `Trajectory.save` wrote, or one like it.
 
     Args:
-        path: .npz with t (n), q (n, nq) and, if it has them, u, par, par_over_time, names_q; .csv or .parquet with columns t and the
-            coordinates' names and, where motions are prescribed, the inputs'.
+        path: .npz with t (n), q (n, nq) and, if it has them, u, par, par_over_time, names_q; .csv or .parquet with
+            columns t and the coordinates' names and, where motions are prescribed, the inputs'.
         model: Model that moves.
 
     Raises:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -91,8 +93,17 @@ def test_arguments_that_are_neither_motion_nor_run_are_refused(one: DiagramRun) 
 LENGTHENED = sf.System(
     "crane",
     (
-        sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)), (sf.Frame("tip", ("L", 0, 0)),)),
-        sf.RigidBody("load", sf.Joint("r", "revolute", "arm", axis=(0, 1, 0), frame="tip"), sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1))),
+        sf.RigidBody(
+            "arm",
+            sf.Joint("q", "revolute", axis=(0, 1, 0)),
+            sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)),
+            (sf.Frame("tip", ("L", 0, 0)),),
+        ),
+        sf.RigidBody(
+            "load",
+            sf.Joint("r", "revolute", "arm", axis=(0, 1, 0), frame="tip"),
+            sf.Inertia(1.0, (0.1, 0, 0), (1, 1, 1)),
+        ),
     ),
     (sf.Parameter("L", 0.5),),
 )
@@ -134,3 +145,15 @@ def test_a_replay_uses_the_parameters_that_events_set(way: str, tmp_path: Path) 
     if isinstance(run, sf.Trajectory):
         read = read_motion(run.save(tmp_path / "run.npz"), run.model)
         assert np.array_equal(read.par, run.par_over_time)
+        with pytest.raises(SymofrosError, match="found:  parameters that events set"):
+            sf.record(*shown, tmp_path / "m.html", simulate=True)
+
+
+def test_a_page_has_the_geometry_of_each_time(tmp_path: Path) -> None:
+    """Drawn anew at the picture from which on the arm is longer."""
+    page = sf.record(lengthened_by("diagram"), tmp_path / "m.html", rate=100).read_text()
+    (data,) = re.findall(r'__VISER_EMBED_DATA__="([^"]+)"', page)
+    whole = import_module("zstandard").ZstdDecompressor().decompress(base64.b64decode(data)[8:], 1 << 26)
+    found = import_module("msgspec").msgpack.decode(whole[8 : 8 + int.from_bytes(whole[:8], "little")])
+    drawn = {round(time, 6) for time, message in found["messages"] if message["type"] == "MeshMessage"}
+    assert drawn == {0.0, 0.05}
