@@ -6,6 +6,7 @@ import base64
 import re
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from symofros.errors import SymofrosError, UnknownNameError
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 from symofros.studio.viewer.playing.motion import read_motion
+from symofros.studio.viewer.viewer import Viewer
 
 
 def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
@@ -110,7 +112,7 @@ LENGTHENED = sf.System(
 LONGER = {"longer": sf.Event("t - 0.05", action={"L": 1.5})}
 
 
-def lengthened_by(way: str) -> DiagramRun | sf.Trajectory:
+def lengthened_by(way: str) -> Any:
     """The crane, whose arm an event makes longer, as a diagram or by itself."""
     if way == "simulate":
         return sf.simulate(sf.compile(LENGTHENED), t_end=0.1, dt=1e-2, method="rk4", events=LONGER)
@@ -120,7 +122,7 @@ def lengthened_by(way: str) -> DiagramRun | sf.Trajectory:
     return sf.Simulation(d).run(0.1, dt=1e-2)
 
 
-def reach(viewer: sf.Viewer, time: float) -> float:
+def reach(viewer: Viewer, time: float) -> float:
     """How far the load's joint is from the arm's in the picture at a time [m]."""
     viewer.seek(time)
     return float(np.linalg.norm(viewer._server.scene.get_handle_by_name("/mechanism/link1").position))
@@ -130,7 +132,7 @@ def reach(viewer: sf.Viewer, time: float) -> float:
 def test_a_replay_uses_the_parameters_that_events_set(way: str, tmp_path: Path) -> None:
     """In the picture at each time, in files and in pictures."""
     run = lengthened_by(way)
-    shown = (run,) if isinstance(run, DiagramRun) else (LENGTHENED, run)
+    shown: tuple[Any, ...] = (run,) if isinstance(run, DiagramRun) else (LENGTHENED, run)
     with sf.view(*shown, port=0, browser=False) as viewer:
         viewer.toggle()
         found = [reach(viewer, time) for time in (0.02, 0.08, 0.0, 0.1)]
