@@ -1,11 +1,11 @@
-# newton 1.8.0, base 10 km away: SolverFeatherstone is wrong (q+, v+ (nq + nv) after a step: v+ = v + h M^-1 f, f = tau + Q - (bias); q+ where v+ leads in h).
+# newton 1.8.0, base 10 km away: SolverFeatherstone is wrong (q+, v+ (nq + nv) after a step: v+ = v + h M^-1 f, q+ = q + h N(q) v+ with quaternions brought to unit length).
 # not finite.
 import numpy as np, warp as wp
 wp.config.quiet = True
 import newton
 b = newton.ModelBuilder(gravity=[0.0, 0.0, 0.0])
 b0 = b.add_link(mass=1.0, com=[0.0, 0.0, 0.0], inertia=wp.mat33([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]), lock_inertia=True)
-j0 = b.add_joint_revolute(-1, b0, parent_xform=wp.transform([6400.0, -4800.0, 6000.0], wp.quat(0.0, 0.0, 0.0, 1.0)), axis=[0.0, 0.0, 1.0], armature=0.0)
+j0 = b.add_joint_revolute(-1, b0, parent_xform=wp.transform([6400.0, -4800.0, 6000.0], wp.quat(0.5, 0.5, 0.5, 0.5)), axis=[0.0, 0.0, 1.0], armature=0.0)
 b.add_articulation([j0])
 m = b.finalize(device="cpu")
 def rotation(x, y, z, w):

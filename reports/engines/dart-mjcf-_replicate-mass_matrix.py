@@ -1,0 +1,17 @@
+# dart 6.20.0, mjcf: replicate: getMassMatrix is wrong (M).
+# shape (1, 1), not (3, 3).
+# Known: https://github.com/dartsim/dart/pull/2505 (logs warnings of elements that it does not support).
+import numpy as np
+import dartpy as dart
+from tempfile import NamedTemporaryFile
+file = NamedTemporaryFile('w', suffix='.xml')
+print('<mujoco model="m"><compiler angle="radian"/><worldbody><body name="a" pos="0.1 0.2 0.3"><joint axis="0 0 1"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><replicate count="2" offset="0 0.3 0" sep=""><body name="b" pos="0 0 0.5"><joint axis="0 1 0"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></replicate></body></worldbody></mujoco>', file=file, flush=True)
+world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))
+s = world and world.getSkeleton(0)
+if s is None: raise ValueError('no skeleton: see the log')
+links = [b for name in ['a', 'b0', 'b1'] if (b := s.getBodyNode(name))]
+q = np.array([0.0, 0.0, 0.0])
+s.setPositions(q)
+value = s.getMassMatrix()
+import numpy as np
+assert np.shape(value) == (3, 3), np.shape(value)

@@ -1,0 +1,29 @@
+# idyntree 15.1.0, free base beside its body: getCoriolisAndMassMatrices is wrong (C v = h - g, C the Coriolis matrix).
+import numpy as np
+import idyntree.bindings as iDynTree
+loader = iDynTree.ModelLoader()
+options = loader.parsingOptions()
+options.addSensorFramesAsAdditionalFrames = False
+loader.setParsingOptions(options)
+if not loader.loadReducedModelFromString('<robot name="tree">\n<link name="base"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="0.0"/>\n<inertia ixx="0.0" ixy="0.0" ixz="0.0" iyy="0.0" iyz="0.0" izz="0.0"/></inertial></link>\n<link name="b"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.0"/>\n<inertia ixx="1.0" ixy="0.0" ixz="0.0" iyy="1.0" iyz="0.0" izz="1.0"/></inertial></link>\n<joint name="joint_b" type="fixed"><parent link="base"/><child link="b"/>\n<origin xyz="1.0 0.0 0.0" rpy="0.0 0.0 0.0"/>\n</joint>\n</robot>', []): raise ValueError('no model: see the log')
+robot = iDynTree.KinDynComputations()
+assert robot.loadRobotModel(loader.model())
+robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
+assert robot.setFloatingBase("base"), "the reader has dropped the link base"
+links = ['base', 'b']
+n = 6 + robot.getNrOfDegreesOfFreedom()
+def state(q, v):
+    x, y, z, w = q[3:7]
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    pose = np.eye(4)
+    pose[:3, 3], pose[:3, :3] = q[:3], np.eye(3) + 2 * w * K + 2 * K @ K
+    robot.setRobotState(pose, q[7:], v[:6], v[6:], np.array([0.0, 0.0, 0.0]))
+q = np.array([0.0, 0.0, 0.0, 0.273294341638708, 0.3567708494566067, -0.42174035036639745, -0.7875022797929568])
+v = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+state(q, v)
+C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
+assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
+value = C.toNumPy() @ v
+import numpy as np
+value, expected = np.reshape(value, (6,))[(3,)], 0.28475301569827616
+assert abs(value - expected) <= 2.2e-12, f"{value = }, {expected = }"

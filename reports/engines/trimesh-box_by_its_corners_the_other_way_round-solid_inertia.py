@@ -1,0 +1,15 @@
+# trimesh 5.2.0, box by its corners, the other way round: mass_properties is wrong (mass, mass centre, moments about it xx, yy, zz, xy, xz, yz of the only link).
+import numpy as np
+import trimesh
+def triangles(low, high):
+    corners = [[(low, high)[k >> j & 1][j] for j in range(3)] for k in range(8)]
+    squares = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    return corners, [t for a, b, c, d in squares for t in ((a, b, c), (a, c, d))]
+density = 0.068041381744
+solid = trimesh.creation.box(bounds=[[1.224744871392, 1.224744871392, 1.224744871392], [-1.224744871392, -1.224744871392, -1.224744871392]])
+solid.density = density
+I = solid.moment_inertia
+value = [solid.mass, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]
+import numpy as np
+value, expected = np.reshape(value, (10,))[(1,)], 0.0
+assert abs(value - expected) <= 1.4e-12, f"{value = }, {expected = }"
