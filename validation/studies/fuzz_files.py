@@ -103,7 +103,7 @@ def _motion(folder: Path, name: str, data: bytes, number: int) -> bool:
     put(folder / name, data)
     model = _arm()
     motion = tools.read_motion(folder / name, model)
-    q, _ = motion.at(np.linspace(motion.start, motion.end, _TIMES))
+    q = motion.at(np.linspace(motion.start, motion.end, _TIMES))[0]
     if not np.all(np.isfinite(q)):
         raise RuntimeError("positions between states are not finite")
     return False
