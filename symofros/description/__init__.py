@@ -55,5 +55,3 @@ from symofros.description.values import as_value as as_value
 from symofros.description.values import as_vector as as_vector
 from symofros.description.values import symbols as symbols
 from symofros.description.visual import Visual as Visual
-from symofros.description.workers import Conversation as Conversation
-from symofros.description.workers import answer_of as answer_of

@@ -18,7 +18,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import resource
 import sys
 import zipfile
 from pathlib import Path
@@ -130,15 +129,13 @@ class Unit:
             folder,
             self.stated,
             "ModelExchange" if self._exchanged else "CoSimulation",
-            logger=self._log_3 if self._third else self._log_2,
+            logger=self._log,
             require_functions=False,
         )
 
-    def _log_2(self, _component: object, _name: object, _status: object, _category: object, message: bytes) -> None:
-        self.said = (message or b"").decode("utf-8", "replace")[:MAX_LOG]
-
-    def _log_3(self, _environment: object, _status: object, _category: object, message: bytes) -> None:
-        self.said = (message or b"").decode("utf-8", "replace")[:MAX_LOG]
+    def _log(self, *said: Any) -> None:
+        """Keep a message of the unit; FMI 2 and 3 put other things before it."""
+        self.said = (said[-1] or b"").decode("utf-8", "replace")[:MAX_LOG]
 
     # Values.
 
@@ -312,6 +309,8 @@ class Session:
 
 def main() -> None:
     """Answer tasks until there are no more."""
+    import resource  # Windows has none.
+
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     # What native code prints goes to the standard error; answers have a way of their own.

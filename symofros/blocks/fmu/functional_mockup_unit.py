@@ -14,7 +14,7 @@ from symofros.blocks.checks import number, numbers, refuse
 from symofros.blocks.fmu import fmu_worker
 from symofros.blocks.fmu.unit_description import UnitDescription, UnitPort, known, unit_description, unit_ports
 from symofros.blocks.generic.sampling import needs_period
-from symofros.description import Conversation
+from symofros.description.workers import Conversation
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.errors import Problem, SymofrosError
@@ -158,6 +158,7 @@ class _RunningUnit(Running):
             inputs: Inputs at this sample; of a unit without feedthrough those of the sample before.
         """
         entries = [x for one in self._given for x in inputs[one.port.name].reshape(-1).tolist()]
+        answer: dict[str, Any] = {}
         if not self._begun:
             given, taken = (
                 [(v.name, v.size) for one in ports for v in one.variables] for ports in (self._given, self._taken)
@@ -165,12 +166,9 @@ class _RunningUnit(Running):
             task = {"begin": t, "set": self._starts, "inputs": given, "outputs": taken}
             answer = self._ask(task, _LOADING, t)
             self._begun = True
-            if self._through:
-                answer = self._ask({"to": t, "before": None, "after": entries}, self._block.timeout, t)
-        elif self._through:
-            answer = self._ask({"to": t, "before": None, "after": entries}, self._block.timeout, t)
-        else:
-            answer = self._ask({"to": t, "before": entries, "after": None}, self._block.timeout, t)
+        if self._through or not answer:
+            before, after = (None, entries) if self._through else (entries, None)
+            answer = self._ask({"to": t, "before": before, "after": after}, self._block.timeout, t)
         outputs, at = {}, 0
         for one in self._taken:
             size = sum(variable.size for variable in one.variables)

@@ -14,7 +14,7 @@ from typing import Any
 from symofros.base.units import parse as parse_unit
 from symofros.blocks.checks import refuse
 from symofros.blocks.fmu import fmu_worker
-from symofros.description import answer_of
+from symofros.description.workers import answer_of
 from symofros.diagrams.block import Port
 from symofros.errors import DescriptionError, Problem, did_you_mean
 
