@@ -25,7 +25,7 @@ class Event(metaclass=CheckedCalls):
             ("reaction.q1.fx").
         direction: Direction of the crossings that count.
         terminal: Whether the first one ends the run.
-        name: ArrayLike by the mapping it stands in.
+        name: Its key in the mapping that it stands in.
         action: What happens at each crossing that counts: run-time parameter or speed ("grip", "dq1") -> number, or
             formula of the state before. Then the speeds meet the constraints that hold, by a plastic impact
             (docs/theory/constraints.md, section 13). `simulate`, `simulate_batch`, steppers, packages of C and FMUs do
