@@ -60,7 +60,7 @@ collect_ignore = [] if _PLAYWRIGHT else ["studio/editor/browser"]
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--slow", action="store_true", help="also run what a run leaves out for its time")
-    parser.addoption("--slow-part", metavar="I/N", help="only every N-th of the slow tests, from the I-th on")
+    parser.addoption("--part", metavar="I/N", help="only every N-th of the tests, from the I-th on")
     parser.addoption("--draw", metavar="WORD", help="what long tests and flags are drawn by; else the date")
     parser.addoption("--update-seconds", action="store_true", help="write what a case takes to tests/seconds.txt")
     parser.addoption("--tools", action="store_true", help="also run tests of programs that .ci/run installs")
@@ -139,9 +139,8 @@ def _draw(config: pytest.Config, items: list[pytest.Item]) -> None:
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     _draw(config, items)
-    if config.getoption("--slow-part"):
-        _keep_a_part_of_the_slow(config, items)
-        return
+    if config.getoption("--part"):
+        _keep_a_part(config, items)
     needs = {"slow": "left out for its time", "tools": "needs programs of the system", "browser": "needs Chromium"}
     for word, why in needs.items():
         if not config.getoption(f"--{word}"):
@@ -154,19 +153,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Flags of the compiler for a test, its fixtures and the processes that it starts."""
     if _STATED_FLAGS is None:
-        asked = any(map(item.config.getoption, ("--slow", "--slow-part", "--benchmark-enable")))
+        asked = any(map(item.config.getoption, ("--slow", "--benchmark-enable")))
         file = item.path.relative_to(Path(__file__).parent)
         drawn = draw.is_optimised(file.as_posix(), item.config.getoption("--draw"))
         as_users_do = asked or drawn or file.parts[0] in _OPTIMISED
         os.environ["SYMOFROS_CFLAGS"] = "" if as_users_do else "-O0"
 
 
-def _keep_a_part_of_the_slow(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """One of N shares that are alike in time, but for tests that state their minutes, which take as long as a share."""
-    index, count = map(int, config.getoption("--slow-part").split("/"))
-    slow = [item for item in items if (marker := item.get_closest_marker("slow")) and not marker.kwargs]
-    kept = [item for item in slow if zlib.crc32(item.nodeid.encode()) % count == index % count]
-    config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+def _keep_a_part(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """One of N parts of about equal time, without tests that state their minutes, which take as long as a part."""
+    index, count = map(int, config.getoption("--part").split("/"))
+    kept, others = [], []
+    for item in items:
+        stated = (marker := item.get_closest_marker("slow")) is not None and marker.kwargs
+        in_part = not stated and zlib.crc32(item.nodeid.encode()) % count == index % count
+        (kept if in_part else others).append(item)
+    config.hook.pytest_deselected(items=others)
     items[:] = kept
 
 
