@@ -21,6 +21,10 @@ MEASURES: dict[Surface, tuple[str, ...]] = {
 }
 HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
+_NUMBERS = (
+    *("stiffness", "radius", "surface_radius", "length", "dissipation"),
+    *("friction", "minimum_velocity", "bristle_stiffness", "bristle_damping"),
+)
 # Balls of a contact.
 _MOST = 1000
 
@@ -32,8 +36,13 @@ class Contact:
 
     At a penetration d > 0 the surface pushes by N = stiffness d^exponent max(0, 1 + dissipation d'), and friction drags
     by up to `friction` N against the slip (docs/theory/rigid.md, section 10.2). It never pulls, and what it stores,
-    stiffness d^(exponent + 1)/(exponent + 1), is potential energy. Friction is smooth through zero slip: it holds
-    nothing at rest, and a body on an incline creeps, as a joint with `Friction` does.
+    stiffness d^(exponent + 1)/(exponent + 1), is potential energy.
+
+    Friction is smooth through zero slip unless bristles are stated: then it holds nothing at rest, and a body on an
+    incline creeps, as a joint with `Friction` does. With `bristle_stiffness` and `bristle_damping` each ball sticks
+    by a spring across the surface, which slips at `friction` N; its deflections are states of the model,
+    "BALL.bristle_x" and so on in the axes of the second frame, of a plane two, of other surfaces three
+    (docs/theory/states.md, section 5).
 
     Attributes:
         name: Unique name, among connections too.
@@ -53,7 +62,9 @@ class Contact:
         dissipation: Share of the force that a speed of approach adds [s/m]: with it the coefficient of restitution of
             slow impacts is 1 - 2/3 dissipation times the speed.
         friction: Coefficient of Coulomb's friction.
-        minimum_velocity: Speed of slip that smooths friction, which has its maximum from 15/8 of it on [m/s].
+        minimum_velocity: Speed of slip that smooths friction without bristles: its maximum is from 15/8 of it on [m/s].
+        bristle_stiffness: Stiffness against displacement across the surface where a ball sticks [N/m].
+        bristle_damping: Damping of that displacement [N s/m].
     """
 
     name: str
@@ -71,11 +82,13 @@ class Contact:
     dissipation: Value = 0.0
     friction: Value = 0.0
     minimum_velocity: Value = 1e-3
+    bristle_stiffness: Value | None = None
+    bristle_damping: Value | None = None
 
     def __post_init__(self) -> None:
         """Convert the numbers, and refuse measures that the surface lacks or does not have."""
         what = f"contact '{self.name}'"
-        for label in ("stiffness", "radius", "surface_radius", "length", "dissipation", "friction", "minimum_velocity"):
+        for label in _NUMBERS:
             if getattr(self, label) is not None:
                 object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
         if self.size is not None:
@@ -104,12 +117,29 @@ class Contact:
             return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")
         if not 1 <= len(self.points) <= _MOST:
             return Problem(f"{what}: points", f"{len(self.points)}", f"from 1 to {_MOST} balls", "state their centres")
+        return self._bristle_problem(what)
+
+    def _bristle_problem(self, what: str) -> Problem | None:
+        """What is wrong about the bristles."""
+        if (self.bristle_stiffness is None) != (self.bristle_damping is None):
+            found = "bristle_damping" if self.bristle_stiffness is None else "bristle_stiffness"
+            rule = "bristles are springs and dampers across the surface"
+            return Problem(f"{what}: one of two entries", f"{found} alone", rule, "give both, or neither")
+        if self.bristle_stiffness is not None and self.friction == 0.0:
+            rule = "bristles hold up to friction times the normal force"
+            return Problem(f"{what}: bristles without friction", "friction 0", rule, "state friction above zero")
         return None
 
     @property
     def ball_names(self) -> tuple[str, ...]:
         """One a ball: the contact's name, of several with their number from 0 on."""
         return (self.name,) if len(self.points) == 1 else tuple(f"{self.name}.{k}" for k in range(len(self.points)))
+
+    @property
+    def state_names(self) -> tuple[tuple[str, ...], ...]:
+        """Names of the states of each ball: none without bristles."""
+        axes = "" if self.bristle_stiffness is None else "xy" if self.surface == "plane" else "xyz"
+        return tuple(tuple(f"{ball}.bristle_{axis}" for axis in axes) for ball in self.ball_names)
 
     def values(self) -> list[tuple[str, Any]]:
         """Label and value of each number."""

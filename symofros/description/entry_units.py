@@ -53,6 +53,8 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "size": ("m",),
         "dissipation": ("s/m",),
         "minimum_velocity": ("m/s",),
+        "bristle_stiffness": ("N/m",),
+        "bristle_damping": ("N s/m",),
     },
     "Rod": {"length": ("m",)},
     "Rolling": {"radius": ("m",), "height": ("m",)},

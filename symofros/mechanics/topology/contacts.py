@@ -18,6 +18,8 @@ _SIGNS: dict[str, tuple[Sign, str, str]] = {
     "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
     "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),
     "friction": ("not negative", "friction is against the slip", "give zero or more"),
+    "bristle_stiffness": ("positive", "bristles are springs", "give a stiffness above zero"),
+    "bristle_damping": ("positive", "bristles that are bent too far relax by their damping", "give one above zero"),
     "minimum_velocity": ("positive", "friction is smoothed over a speed above zero", "give a small one, such as 0.001"),
 }
 

@@ -140,6 +140,7 @@ def map_coordinates(system: System, joints: Sequence[Joint]) -> CoordinateMap:
     q = tuple(name for joint in free for name in coordinate_names(joint))
     v = tuple(name for joint in free for name in speed_names(joint))
     states = tuple(state.name for state in system.states) + tuple(name for joint in free for name in state_names(joint))
+    states += tuple(name for contact in system.contacts for names in contact.state_names for name in names)
     actuated = tuple(name for joint in free if joint.actuated for name in speed_names(joint))
     stated = tuple(item.name for item in system.inputs)
     prescribed = tuple(

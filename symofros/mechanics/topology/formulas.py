@@ -248,6 +248,7 @@ def _known(system: System) -> _Scopes:
     timed = placed | {TIME}
     states = {symbol_of(state.name) for state in system.states}
     states |= {symbol_of(name) for joint in joints for name in state_names(joint)}
+    states |= {symbol_of(name) for contact in system.contacts for names in contact.state_names for name in names}
     motion = timed | inputs | rates | keys | states
     return _Scopes(parameters, placed, timed, timed | states, motion, coordinates & rates)
 

@@ -116,6 +116,7 @@ class ReactionFunctions(StateFunctions):
         *,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
+        z: ArrayLike | None = None,
     ) -> ContactForces:
         """Distances and forces of compliant contacts, in the order of `names.contacts`.
 
@@ -125,8 +126,10 @@ class ReactionFunctions(StateFunctions):
             u: Inputs, for prescribed motions.
             par: Run-time parameters.
             t: Time.
+            z: States of forces (..., nz), such as the deflections of bristles.
         """
-        return ContactForces(*self._call("contact_forces", "", {"q": q, "v": v, "u": u, "t": t}, par))
+        given = {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t}
+        return ContactForces(*self._call("contact_forces", "", given, par))
 
     def _reactions(
         self,

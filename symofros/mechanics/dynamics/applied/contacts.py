@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
+from symofros.base.names import symbol_of
 from symofros.base.smoothed_sign import PEAK
 from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
@@ -18,6 +20,8 @@ from symofros.mechanics.topology.tree import frame_of
 # What roots are taken of is at least this, a number of single precision too: the derivative of a root of zero does not
 # exist, and that of these is zero there.
 _TINY = 1e-30
+# Share of the largest friction from which on bristles begin to slip as they are bent further.
+_BREAKAWAY = 0.9
 
 
 @dataclass(frozen=True)
@@ -30,8 +34,9 @@ class TouchingBall:
         push: Normal force [N].
         force: Force on the ball: normal force and friction [N].
         point: Point of the surface next to the ball's centre, where the force acts [m].
-        energy: Energy that the penetration stores [J].
+        energy: Energy that the penetration and bristles store [J].
         share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
+        rates: Rates of the deflections of its bristles, in the axes of the surface; none without bristles [m/s].
     """
 
     gap: Edge
@@ -41,15 +46,29 @@ class TouchingBall:
     point: Vec3
     energy: Edge
     share: Edge
+    rates: tuple[Edge, ...]
 
 
 def touching_balls(kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact) -> list[TouchingBall]:
     """The balls of a contact, in order."""
     lowering = kinematics.lowering
-    return [_touching(kinematics, frames, contact, lowering.vector(point)) for point in contact.points]
+    return [
+        _touching(kinematics, frames, contact, lowering.vector(point), names)
+        for point, names in zip(contact.points, contact.state_names, strict=True)
+    ]
 
 
-def _touching(kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact, point: Vec3) -> TouchingBall:
+def bristle_rates(kinematics: TreeKinematics, frames: FrameKinematics) -> Iterator[tuple[str, Edge]]:
+    """Names of the states of all contacts, and their rates."""
+    for contact in kinematics.tree.system.contacts:
+        if contact.bristle_stiffness is not None:
+            for names, ball in zip(contact.state_names, touching_balls(kinematics, frames, contact), strict=True):
+                yield from zip(names, ball.rates, strict=True)
+
+
+def _touching(
+    kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact, point: Vec3, states: tuple[str, ...]
+) -> TouchingBall:
     g, lowering = kinematics.g, kinematics.lowering
     ends = [frame_of(kinematics.tree, *anchor) for anchor in (contact.first, contact.second)]
     first, second = (frames.pose(end) for end in ends)
@@ -67,11 +86,20 @@ def _touching(kinematics: TreeKinematics, frames: FrameKinematics, contact: Cont
     elastic = g.mul(lowering.value(contact.stiffness), _power(g, depth, contact.exponent))
     damping = g.call("max", g.add(ONE, g.mul(lowering.value(contact.dissipation), approach)), ZERO)
     push = g.mul(elastic, damping)
-    drag = _friction(lowering, contact, push, slip + normal.scaled(approach))
+    across = slip + normal.scaled(approach)
     energy = g.div(g.mul(elastic, depth), g.constant(contact.exponent + 1.0))
+    rates: tuple[Edge, ...] = ()
+    if states:
+        z = Vec3(g, *(lowering.symbol(symbol_of(name)) for name in states))
+        bristles = _Bristles(lowering, contact, gradient, push, second.R_WF.T.times(across), z)
+        drag = second.R_WF.times(bristles.drag())
+        energy = g.add(energy, bristles.energy())
+        rates = tuple(bristles.rate(g.sub(ONE, g.call("step", gap))))[: len(states)]
+    else:
+        drag = _friction(lowering, contact, push, across)
     size = _size(lowering, contact)
     share = ZERO if size is None else g.div(depth, size)
-    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share)
+    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share, rates)
 
 
 def _velocity_at(g: Graph, velocity: list[Edge], offset: Vec3) -> Vec3:
@@ -89,6 +117,57 @@ def _friction(lowering: Lowering, contact: Contact, push: Edge, slip: Vec3) -> V
     # Beyond the peak xi is a unit vector, before it the share of the peak.
     xi = slip.scaled(g.div(ONE, g.sqrt(g.call("max", slip.dot(slip), g.mul(peak, peak)))))
     return xi.scaled(g.mul(g.mul(coefficient, push), smoothed_sign(g, xi.dot(xi))))
+
+
+class _Bristles:
+    """Bristles of a ball in the axes S of the surface, a spring that slips (docs/theory/states.md, section 5).
+
+    Args:
+        lowering: Edges of the contact's numbers.
+        contact: The contact.
+        normal: Normal of the surface, in S.
+        push: Normal force [N].
+        slip: Velocity of the ball's point across the surface, in S [m/s].
+        z: Deflection [m].
+    """
+
+    def __init__(self, lowering: Lowering, contact: Contact, normal: Vec3, push: Edge, slip: Vec3, z: Vec3) -> None:
+        g = self.g = lowering.g
+        self.stiffness = lowering.value(contact.bristle_stiffness or 0.0)
+        self.damping = lowering.value(contact.bristle_damping or 0.0)
+        tiny = g.constant(_TINY)
+        self.z = z
+        self.along = normal.scaled(normal.dot(z))
+        self.across = z - self.along
+        square = self.across.dot(self.across)
+        pull = g.mul(self.stiffness, g.sqrt(g.call("max", square, tiny)))
+        limit = g.mul(lowering.value(contact.friction), push)
+        self.left = g.call("max", g.sub(limit, pull), ZERO)
+        self.held = g.div(limit, g.add(g.call("max", pull, limit), tiny))
+        beyond = g.sub(pull, g.mul(g.constant(_BREAKAWAY), limit))
+        ramp = g.div(beyond, g.add(g.mul(g.constant(1.0 - _BREAKAWAY), limit), tiny))
+        slipping = g.call("min", g.call("max", ramp, ZERO), ONE)
+        leads = g.div(g.call("max", slip.dot(self.across), ZERO), g.call("max", square, tiny))
+        self.elastic_slip = slip - self.across.scaled(g.mul(slipping, leads))
+
+    def drag(self) -> Vec3:
+        """The force against the slip, in S: (19), (20)."""
+        g = self.g
+        lag = g.mul(self.damping, _norm(g, self.elastic_slip))
+        share = g.div(self.left, g.add(g.add(self.left, lag), g.constant(_TINY)))
+        spring = self.across.scaled(g.mul(self.stiffness, self.held))
+        return spring + self.elastic_slip.scaled(g.mul(self.damping, share))
+
+    def rate(self, touches: Edge) -> Vec3:
+        """The rate of the deflection where the ball touches the surface (1) or not (0), in S: (18)."""
+        g = self.g
+        relaxation = g.div(self.stiffness, self.damping)
+        bent = self.across.scaled(g.sub(ONE, self.held)) + self.along
+        return self.elastic_slip.scaled(touches) - bent.scaled(relaxation)
+
+    def energy(self) -> Edge:
+        """What the deflection stores [J]."""
+        return self.g.mul(self.g.mul(self.g.constant(0.5), self.stiffness), self.z.dot(self.z))
 
 
 def _power(g: Graph, depth: Edge, exponent: float) -> Edge:

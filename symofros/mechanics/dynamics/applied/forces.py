@@ -13,6 +13,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.mechanics.dynamics.applied.beam_loads import beam_loads
+from symofros.mechanics.dynamics.applied.contacts import bristle_rates
 from symofros.mechanics.dynamics.applied.elements import element_energy, element_force, state_rate
 from symofros.mechanics.dynamics.applied.loads import connection_energy, wrenches
 from symofros.mechanics.dynamics.jourdain import virtual_power
@@ -48,6 +49,8 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
         ]
     for state in system.states:
         total[index[symbol_of(state.name)]] = kinematics.lowering.value(state.rate)
+    for name, rate in bristle_rates(kinematics, frames):
+        total[index[symbol_of(name)]] = rate
     acting, modal = applied_wrenches(kinematics, frames)
     for beam, forces in zip(kinematics.beams, modal, strict=True):
         _add_modal(kinematics, beam, total, forces)
