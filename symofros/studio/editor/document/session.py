@@ -26,7 +26,7 @@ from symofros.studio.editor.editing.yaml_spans import yaml_text_of
 
 Json = dict[str, Any]
 
-MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "page", "export")
+MECHANISM_JOBS = ("compile", "crosscheck", "simulate", "analyse", "page", "export")
 DIAGRAM_JOBS = ("run", "export")
 MAX_DEPTH = 10
 

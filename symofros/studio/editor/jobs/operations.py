@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import subprocess
 import tempfile
@@ -17,17 +16,19 @@ import numpy as np
 
 import symofros as sf
 from symofros.base.functions import exported
-from symofros.base.names import quoted, speed_column, speed_of, symbol_of
+from symofros.base.names import quoted, speed_column, symbol_of
+from symofros.base.routes import Choice
 from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml import write_yaml
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import Problem, SymofrosError
 from symofros.exports.folder import check_same
 from symofros.harness import command_line
 from symofros.mechanics.topology import SpanningTree, build_tree
-from symofros.simulation.analysis.kinematics.starts import closed_start
 from symofros.simulation.simulate import prepare_run
 from symofros.studio.editor.jobs.bent_beams import bent_beams
-from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, number_of, system_of
+from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, number_of, numbers_for_json, system_of, table
+from symofros.studio.editor.jobs.starts import laws_of, stated_start, whole_of
+from symofros.studio.editor.jobs.stops import events_of
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
@@ -73,8 +74,24 @@ def compile_model(request: Json, tell: Tell) -> Json:
         "u_names": list(names.u),
         "par_names": list(names.par),
         "frames": list(names.frames),
+        "methods": _methods(model),
         "notes": list(system.notes),
     }
+
+
+def _methods(model: sf.Model) -> Json:
+    """Methods that were chosen where several apply, with what decided."""
+    rows = [
+        [name, choice.quantity, choice.method, choice.reason, choice.counted, _otherwise(choice)]
+        for name, choices in model.routes.items()
+        for choice in choices
+        if choice.others
+    ]
+    return table("Methods, where several apply", ["Function", "Of", "Method", "Because", "Figures", "Otherwise"], rows)
+
+
+def _otherwise(choice: Choice) -> str:
+    return ", ".join(f"{route.method} by {route.option}" for route in choice.others if route.option)
 
 
 def _prepare_start(model: sf.Model) -> None:
@@ -98,7 +115,7 @@ def cross_check(request: Json, tell: Tell) -> Json:
         file = Path(folder) / "model.yaml"
         file.write_text(write_yaml(system), encoding="utf-8")
         arguments = ["check", str(file), "--json", "--report", folder, "--workers", "1"]
-        arguments += ["--states", str(_whole(options.get("states"), 1, 10_000, 20))]
+        arguments += ["--states", str(whole_of(options.get("states"), 1, 10_000, 20))]
         tell(1, 3, "engines at work")
         command = command_line(arguments)
         run = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=os.environ, check=False)
@@ -142,20 +159,13 @@ def simulate(request: Json, tell: Tell) -> Json:
     t_end = number_of(options.get("t_end", 1.0), "t_end")
     tell(0, 100, "compiling")
     model = compile_system(system, sf.Options(background=True))  # A first run does not wait for a compiler.
-    par = _vector(model.names.par, options.get("parameters"), model.parameter_values, "parameter")
-    q = _vector(model.names.q, options.get("q0"), model.neutral(), "coordinate")
-    v = _vector(model.names.v, options.get("v0"), np.zeros(model.nv), "speed")
     if model.nc:
         tell(0, 100, "closing the loops")
-    stated = [speed_of(str(name), model.names.q) for name in options.get("q0") or {}]
-    moved = [speed_of(str(name), model.names.v) for name in options.get("v0") or {}]
-    start = closed_start(model, q, v, stated, moved, par=par)
-    points = _whole(options.get("points"), 2, MAX_POINTS, POINTS)
+    start = stated_start(model, options)
+    points = whole_of(options.get("points"), 2, MAX_POINTS, POINTS)
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
     chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
-    inputs = {
-        str(name): _formula(text) for name, text in (options.get("inputs") or {}).items() if text not in ("", None)
-    }
+    inputs = laws_of(options.get("inputs"))
     shown = -1
 
     def progress(t: float) -> None:
@@ -172,13 +182,14 @@ def simulate(request: Json, tell: Tell) -> Json:
         start.v,
         t_end,
         u=inputs or None,
-        par=par,
+        par=start.par,
+        events=events_of(model, options) or None,
         output=t_end / points if t_end else None,
         progress=progress,
         **chosen,
     )
     run = replace(run, outcome=replace(run.outcome, notes=(*start.notes, *run.outcome.notes)))
-    return {**_motion(run, build_tree(system)), "par": par.tolist(), "wall_s": time.perf_counter() - began}
+    return {**_motion(run, build_tree(system)), "par": start.par.tolist(), "wall_s": time.perf_counter() - began}
 
 
 def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
@@ -191,10 +202,10 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
             # As in files of trajectories.
             inputs = f"u.{name}" if name in names.q else name
             label = {"q": symbol_of(name), "v": speed_column(name, names.q), "u": inputs}[kind]
-            series.append({"name": label, "kind": kind, "unit": unit, "values": _numbers(values[:, i])})
+            series.append({"name": label, "kind": kind, "unit": unit, "values": numbers_for_json(values[:, i])})
     cost, end = run.statistics, run.outcome
     return {
-        "t": _numbers(run.t),
+        "t": numbers_for_json(run.t),
         "series": series,
         "method": cost.method,
         "steps": cost.steps,
@@ -202,11 +213,12 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
         "evaluations": cost.evaluations,
         "loop_s": cost.seconds,
         "energy": {
-            "kinetic": _numbers(run.kinetic_energy),
-            "potential": _numbers(run.potential_energy),
-            "total": _numbers(run.energy),
+            "kinetic": numbers_for_json(run.kinetic_energy),
+            "potential": numbers_for_json(run.potential_energy),
+            "total": numbers_for_json(run.energy),
         },
         "beams": bent_beams(run.bendings),
+        "events": table("Events", ["Event", "t [s]"], [[event.name, event.t] for event in run.events]),
         "outcome": {"ok": end.ok, **end.as_data()},
     }
 
@@ -244,34 +256,6 @@ def import_model(request: Json, tell: Tell) -> Json:
     tell(0, 1, "reading")
     system = sf.load(request["file"])
     return {"text": write_yaml(system), "notes": list(system.notes)}
-
-
-def _whole(given: Any, low: int, high: int, default: int) -> int:
-    return max(low, min(high, given)) if type(given) is int else default
-
-
-def _formula(text: Any) -> str | float:
-    return float(text) if isinstance(text, (int, float)) else str(text)
-
-
-def _vector(names: tuple[str, ...], given: Any, default: Any, what: str) -> Any:
-    """Values by name over defaults; a speed may bear its coordinate's d."""
-    values = np.array(default, dtype=np.float64)
-    for name, number in (given or {}).items():
-        plain = speed_of(str(name), names)
-        if not plain:
-            raise UnknownNameError(
-                Problem(
-                    f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
-                )
-            )
-        values[names.index(plain)] = number_of(number, name)
-    return values
-
-
-def _numbers(values: Any) -> list[float | None]:
-    """Numbers as JSON holds them; None where one is not finite, as after a run that diverged."""
-    return [x if math.isfinite(x) else None for x in np.asarray(values, dtype=np.float64).tolist()]
 
 
 TASKS: dict[str, Callable[[Json, Tell], Any]] = {

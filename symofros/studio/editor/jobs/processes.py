@@ -44,10 +44,10 @@ class Job:
         return {**summary, "result": self.result} if whole else summary
 
     def motion(self, block: str = "") -> Json:
-        """The motion that a simulation or a diagram's run has led to: "t", "series", "par".
+        """The motion that a simulation, an analysis or a diagram's run has led to: "t", "series", "par".
 
         Args:
-            block: Block of a diagram that moves a mechanism; "" for the first one.
+            block: Block of a diagram that moves a mechanism, or motion of an analysis; "" for the first one.
 
         Raises:
             EditError: It is another job, has no result, or moves no such mechanism.
@@ -55,11 +55,11 @@ class Job:
         result = self.result if isinstance(self.result, dict) else {}
         if self.kind == "simulate" and result:
             return result
-        motions: Json = result.get("motions", {}) if self.kind == "run" else {}
+        motions: Json = result.get("motions", {}) if self.kind in ("run", "analyse") else {}
         chosen = block or next(iter(motions), "")
         if chosen not in motions:
             actual = f"block '{block[:50]}' of {', '.join(motions)}" if motions else f"{self.kind}, {self.state}"
-            rule = "a motion is that of a simulation, or of a block of a run that moves a mechanism"
+            rule = "a motion is that of a simulation, an analysis, or of a block of a run that moves a mechanism"
             raise refusal(f"job {self.key} has no such motion", actual, rule, "simulate or run it first")
         motion: Json = motions[chosen]
         return motion

@@ -1,13 +1,15 @@
-"""A request to a worker process: its data, its progress, and the system or diagram that its text describes."""
+"""A request to a worker process: its data, its progress, what its text describes; numbers and tables of the answer."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
+
+import numpy as np
 
 from symofros.description import System, in_order
 from symofros.description.yaml import read_yaml
@@ -76,3 +78,14 @@ def diagram_of(request: Json) -> Diagram:
     if problems or diagram is None:
         raise DescriptionError(problems)
     return diagram
+
+
+def table(caption: str, head: Sequence[str], rows: Sequence[Sequence[Any]]) -> Json:
+    """A table of the page; numbers that are not finite are null."""
+    cells = [[x if isinstance(x, str) else numbers_for_json([x])[0] for x in row] for row in rows]
+    return {"caption": caption, "head": list(head), "rows": cells}
+
+
+def numbers_for_json(values: Any) -> list[float | None]:
+    """Numbers as JSON holds them; None where one is not finite, as after a run that diverged."""
+    return [x if math.isfinite(x) else None for x in np.asarray(values, dtype=np.float64).tolist()]

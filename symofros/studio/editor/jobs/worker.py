@@ -65,6 +65,10 @@ def task(kind: str) -> Callable[[Json, Tell], Any]:
         from symofros.studio.editor.jobs.diagram_run import run_diagram  # With the library of blocks.
 
         return run_diagram
+    if kind == "analyse":
+        from symofros.studio.editor.jobs.sweeps import analyse  # With the drawing of mechanisms, and advice.
+
+        return analyse
     from symofros.studio.editor.jobs import operations  # With exports and advice.
 
     return operations.TASKS[kind]

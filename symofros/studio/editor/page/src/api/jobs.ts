@@ -2,7 +2,7 @@
 
 import type { Fault } from "./types";
 
-export type JobKind = "compile" | "crosscheck" | "simulate" | "page" | "export" | "run";
+export type JobKind = "compile" | "crosscheck" | "simulate" | "analyse" | "page" | "export" | "run";
 export type JobState = "running" | "done" | "failed" | "cancelled";
 
 export interface Count {
@@ -11,6 +11,13 @@ export interface Count {
   div: number;
   call: number;
   total: number;
+}
+
+/** A table of an analysis: a name and values a row; null where a number is not finite. */
+export interface ResultTable {
+  caption: string;
+  head: string[];
+  rows: (string | number | null)[][];
 }
 
 export interface Compiled {
@@ -22,6 +29,8 @@ export interface Compiled {
   nu: number;
   npar: number;
   nc: number;
+  /** What was chosen where several methods apply. */
+  methods: ResultTable;
   notes: string[];
 }
 
@@ -67,12 +76,37 @@ export interface Simulated {
   t: number[];
   series: Series[];
   energy: { kinetic: (number | null)[]; potential: (number | null)[]; total: (number | null)[] };
+  events: ResultTable;
   /** Each where its theory errs most. */
   beams: BentBeam[];
   outcome: { ok: boolean; t: number; reason: string; advice: string; notes: string[] };
   method: string;
   steps: number;
   wall_s: number;
+}
+
+/** Curves over something else than time, such as a parameter. */
+export interface ResultPlot {
+  title: string;
+  x_title: string;
+  unit: string;
+  curves: { name: string; x: number[]; y: (number | null)[] }[];
+}
+
+/** An analysis: equilibrium, modes and the like. */
+export interface Analysed {
+  what: string;
+  title: string;
+  tables: ResultTable[];
+  plots: ResultPlot[];
+  /** By the names that they are chosen by. */
+  motions: Record<string, { t: number[] }>;
+  /** Coordinates to simulate from. */
+  start: Record<string, number> | null;
+  /** A model that was found, which can be opened as a document. */
+  model: { name: string; text: string } | null;
+  notes: string[];
+  beams: BentBeam[];
 }
 
 /** A page that simulates by itself. */

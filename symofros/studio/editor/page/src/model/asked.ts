@@ -10,6 +10,39 @@ export interface AskedSimulation {
   q0: Texts;
   v0: Texts;
   inputs: Texts;
+  events: readonly AskedEvent[];
+  stopAtLimits: boolean;
+}
+
+/** A formula whose zeros are found. */
+export interface AskedEvent {
+  name: string;
+  formula: string;
+  direction: "both" | "rising" | "falling";
+  terminal: boolean;
+}
+
+export interface AskedAnalysis {
+  what: string;
+  about: "equilibrium" | "pose";
+  /** Inputs as numbers. */
+  u: Texts;
+  /** Speeds whose coordinates stay. */
+  held: readonly string[];
+  /** Of a sweep: what is drawn over which parameter, from where to where at how many values. */
+  of: "frequencies" | "motion";
+  parameter: string;
+  low: string;
+  high: string;
+  count: string;
+  /** Of advice: what of the motion matters, and the error that does no harm. */
+  outputs: readonly AskedOutput[];
+}
+
+export interface AskedOutput {
+  kind: "position" | "coordinate" | "speed";
+  of: string;
+  absolute: string;
 }
 
 export interface AskedRun {
@@ -30,6 +63,21 @@ export const FIRST_SIMULATION: AskedSimulation = {
   q0: {},
   v0: {},
   inputs: {},
+  events: [],
+  stopAtLimits: false,
+};
+
+export const FIRST_ANALYSIS: AskedAnalysis = {
+  what: "equilibrium",
+  about: "equilibrium",
+  u: {},
+  held: [],
+  of: "frequencies",
+  parameter: "",
+  low: "",
+  high: "",
+  count: "5",
+  outputs: [],
 };
 
 export const FIRST_RUN: AskedRun = { mode: "compiled", end: "", step: "", method: "", pace: "", stops: "" };

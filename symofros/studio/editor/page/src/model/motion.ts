@@ -86,13 +86,27 @@ export function anglesOfTurn(turn: readonly [number, number, number]): [number, 
 // Rounding below what a start that is kept may be off.
 const START_DIGITS = 10;
 
-/** The texts of a start at what the sliders of the 3-D view say, whose turns are rotation vectors. */
+/** The rotation vector of a quaternion x, y, z, w. */
+function turnOf([x, y, z, w]: readonly number[]): [number, number, number] {
+  const [a, b, c, d] = [x ?? 0, y ?? 0, z ?? 0, w ?? 1];
+  const size = Math.hypot(a, b, c);
+  const factor = size === 0 ? 0 : (2 * Math.atan2(size, d)) / size;
+  return [factor * a, factor * b, factor * c];
+}
+
+/** The turn of a joint that turns freely: as the sliders say it, else of its quaternion. */
+function turnIn(values: Readonly<Record<string, number>>, name: string): [number, number, number] {
+  if (`${name}.qw` in values) return turnOf(QUATERNION.map((part) => values[`${name}.${part}`] ?? 0));
+  const [x, y, z] = ["x", "y", "z"].map((axis) => values[`${name}.turn_${axis}`] ?? 0);
+  return [x ?? 0, y ?? 0, z ?? 0];
+}
+
+/** The texts of a start at coordinates: a model's, or as the sliders of the 3-D view say them, by rotation vectors. */
 export function startTexts(data: JsonMap, shown: Readonly<Record<string, number>>): Texts {
   const values: Record<string, number> = { ...shown };
   for (const { name, entry } of moving(data)) {
     if (!turnsFreely(entry)) continue;
-    const [x, y, z] = ["x", "y", "z"].map((axis) => shown[`${name}.turn_${axis}`] ?? 0);
-    anglesOfTurn([x ?? 0, y ?? 0, z ?? 0]).forEach((angle, i) => (values[`${name}.${ANGLES[i] ?? ""}`] = angle));
+    anglesOfTurn(turnIn(shown, name)).forEach((angle, i) => (values[`${name}.${ANGLES[i] ?? ""}`] = angle));
   }
   return Object.fromEntries(
     starts(data).flatMap(({ name }) => {

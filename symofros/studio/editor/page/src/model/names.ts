@@ -38,6 +38,10 @@ export function frameNames(data: JsonMap, body: string): string[] {
   return isBeam && frames.length === 0 ? ["tip"] : frames;
 }
 
+/** Frames by the names that a model has them under: each body's own, and BODY.FRAME. */
+export const allFrames = (data: JsonMap): string[] =>
+  bodyNames(data).flatMap((body) => [body, ...frameNames(data, body).map((frame) => `${body}.${frame}`)]);
+
 /** Names in a formula, in order; functions included. */
 export function namesIn(formula: string): string[] {
   return [...new Set(formula.match(/[A-Za-z_][A-Za-z_0-9.]*/g) ?? [])];

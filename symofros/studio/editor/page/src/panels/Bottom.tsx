@@ -1,6 +1,7 @@
 import { useState } from "react";
 
 import type {
+  Analysed as AnalysedResult,
   Compiled as CompiledResult,
   Crosschecked as CrosscheckedResult,
   Exported,
@@ -17,6 +18,7 @@ import { Splitter } from "../shell/Splitter";
 import { type Tab, Tabs } from "../shell/Tabs";
 import { cancel, order } from "../store/jobs";
 import { type BottomPane, update, useBegun, useDocument, useStore } from "../store/store";
+import { Analysed } from "./Analysed";
 import { Compiled } from "./Compiled";
 import { Crosschecked } from "./Crosschecked";
 import { Problems } from "./Problems";
@@ -27,6 +29,7 @@ const TITLES: Record<JobKind, string> = {
   compile: "Operations",
   crosscheck: "Cross-check",
   simulate: "Simulation",
+  analyse: "Analysis",
   page: "In this page",
   export: "Export",
   run: "Run",
@@ -84,6 +87,8 @@ function Result({ job }: { job: Job }) {
       return <Crosschecked result={job.result as CrosscheckedResult} />;
     case "simulate":
       return <Simulation result={job.result as Simulated} />;
+    case "analyse":
+      return <Analysed result={job.result as AnalysedResult} />;
     case "page":
       return (
         <iframe

@@ -1,5 +1,6 @@
 import type { Compiled as Result } from "../api/jobs";
 import { brief } from "../model/plot";
+import { Table } from "./Table";
 
 const COLUMNS = ["mul", "add", "div", "call", "total"] as const;
 const TITLES = { mul: "×", add: "+ −", div: "÷", call: "calls", total: "total" };
@@ -38,6 +39,7 @@ export function Compiled({ result }: { result: Result }) {
           ))}
         </tbody>
       </table>
+      {result.methods.rows.length === 0 ? null : <Table table={result.methods} />}
       {result.notes.map((note) => (
         <p key={note} className="quiet">
           {note}

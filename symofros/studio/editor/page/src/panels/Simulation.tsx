@@ -6,6 +6,7 @@ import { Beams } from "./Beams";
 import { PlayBar } from "./PlayBar";
 import { Plot, type PlotCurve } from "./Plot";
 import { Runs } from "./Runs";
+import { Table } from "./Table";
 
 /** All curves of a simulation, energies too. */
 function allSeries(result: Simulated): Series[] {
@@ -59,6 +60,7 @@ export function Simulation({ result }: { result: Simulated }) {
         </p>
       ))}
       <Beams beams={result.beams} />
+      {result.events.rows.length === 0 ? null : <Table table={result.events} />}
       <PlayBar t={result.t} />
       <Runs kind="simulate" />
       <div className="plots">

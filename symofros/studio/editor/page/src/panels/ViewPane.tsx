@@ -5,7 +5,8 @@ import { badge } from "../model/bending";
 import { startTexts } from "../model/motion";
 import { scaleBar } from "../model/scale";
 import { askedSimulation, keepSimulation } from "../store/asked";
-import { show, update, useDocument, useStore } from "../store/store";
+import { setTime } from "../store/playing";
+import { now, show, update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
 import { look, lookAway, move, shownBlock } from "../store/view";
 import { ParameterSlider } from "./ParameterSlider";
@@ -242,6 +243,10 @@ export function ViewPane() {
   useEffect(() => {
     if (isShown) void move({ dark: theme === "dark" });
   }, [isShown, theme]);
+  useEffect(() => {
+    const { time } = now();
+    if (isShown && time !== null) setTime(time);
+  }, [isShown]);
   const selected = useStore((state) => state.selected);
   useEffect(() => {
     if (isShown) void move({ marked: diagram === null ? selected : [] });

@@ -109,6 +109,12 @@ const OF_MECHANISM: readonly Command[] = [
   },
   { kind: "simulate", title: "Simulate…", help: "Integrate the motion", start: () => show({ kind: "simulate" }) },
   {
+    kind: "analyse",
+    title: "Analyse…",
+    help: "Equilibrium, vibration modes, linear model",
+    start: () => show({ kind: "analyse" }),
+  },
+  {
     kind: "export",
     title: "Export…",
     help: "C package, FMU, MEX and other formats",

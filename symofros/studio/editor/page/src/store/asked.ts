@@ -1,8 +1,17 @@
 /** What windows of runs were asked last, kept by document. */
 
 import type { Document } from "../api/types";
-import { type AskedRun, type AskedSimulation, FIRST_RUN, FIRST_SIMULATION, followed } from "../model/asked";
-import { inputs, rates, starts } from "../model/motion";
+import {
+  type AskedAnalysis,
+  type AskedRun,
+  type AskedSimulation,
+  FIRST_ANALYSIS,
+  FIRST_RUN,
+  FIRST_SIMULATION,
+  followed,
+  known,
+} from "../model/asked";
+import { inputs, rates, startNumbers, starts } from "../model/motion";
 import { now, update } from "./store";
 
 const here = (): string => now().document?.path ?? "";
@@ -10,6 +19,34 @@ const here = (): string => now().document?.path ?? "";
 /** What was asked of the open document last, or what one begins with. */
 export const askedSimulation = (): AskedSimulation => now().asked.simulate[here()] ?? FIRST_SIMULATION;
 export const askedRun = (): AskedRun => now().asked.run[here()] ?? FIRST_RUN;
+
+const numbers = (texts: Record<string, string>): Record<string, number> =>
+  Object.fromEntries(Object.entries(texts).map(([name, text]) => [name, Number(text)]));
+const named = (rows: readonly { name: string }[]): string[] => rows.map(({ name }) => name);
+
+/** Whether a method of simulation chooses its steps by a tolerance. */
+export const isAdaptive = (method: string): boolean =>
+  now().catalogue?.methods.find(({ name }) => name === method)?.adaptive === true;
+
+/** What a simulation is asked of the server: start and method, to which the motion's end, inputs and events belong. */
+export function simulationOptions(asked: AskedSimulation): { from: object; course: object } {
+  const data = now().document?.data ?? {};
+  const { end, step, tolerance, method, events, stopAtLimits } = asked;
+  const accuracy = isAdaptive(method) ? { rtol: Number(tolerance) } : { dt: Number(step) };
+  const q0 = startNumbers(data, known(asked.q0, named(starts(data))));
+  const v0 = numbers(known(asked.v0, named(rates(data))));
+  const laws = known(asked.inputs, named(inputs(data)));
+  return {
+    from: { method, ...accuracy, q0, v0 },
+    course: { t_end: Number(end), inputs: laws, events, stop_at_limits: stopAtLimits },
+  };
+}
+
+export const askedAnalysis = (): AskedAnalysis => now().asked.analyse[here()] ?? FIRST_ANALYSIS;
+
+export function keepAnalysis(last: AskedAnalysis): void {
+  update(({ asked }) => ({ asked: { ...asked, analyse: { ...asked.analyse, [here()]: last } } }));
+}
 
 export function keepSimulation(last: AskedSimulation): void {
   update(({ asked }) => ({ asked: { ...asked, simulate: { ...asked.simulate, [here()]: last } } }));
@@ -38,6 +75,13 @@ export function followPath(from: string, to: string): void {
   update(({ asked }) => {
     const { [from]: simulate = FIRST_SIMULATION } = asked.simulate;
     const { [from]: run = FIRST_RUN } = asked.run;
-    return { asked: { simulate: { ...asked.simulate, [to]: simulate }, run: { ...asked.run, [to]: run } } };
+    const { [from]: analyse = FIRST_ANALYSIS } = asked.analyse;
+    return {
+      asked: {
+        simulate: { ...asked.simulate, [to]: simulate },
+        run: { ...asked.run, [to]: run },
+        analyse: { ...asked.analyse, [to]: analyse },
+      },
+    };
   });
 }

@@ -41,7 +41,7 @@ export async function leave(): Promise<void> {
   else await back(false);
 }
 
-const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
+export const importText = (name: string, text: string): Promise<void> => replace("api/import", { name, text });
 
 export const importPath = (path: string): Promise<void> => replace("api/import", { path });
 

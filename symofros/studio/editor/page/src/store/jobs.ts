@@ -49,7 +49,7 @@ async function fetchJob(id: string): Promise<Job | undefined> {
 }
 
 function take(job: Job): void {
-  const moves = job.kind === "simulate" || job.kind === "run";
+  const moves = job.kind === "simulate" || job.kind === "run" || job.kind === "analyse";
   const isNew = moves && job.state === "done" && now().jobs[job.kind]?.state !== "done";
   update((state) => ({ jobs: { ...state.jobs, [job.kind]: job }, runs: withRun(state.runs, job) }));
   const { time } = now();

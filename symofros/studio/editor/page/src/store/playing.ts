@@ -1,26 +1,40 @@
 /** The time that plots and the 3-D view stand at, and its course while a motion plays. */
 
-import type { Ran, Simulated } from "../api/jobs";
+import type { Analysed, Ran, Simulated } from "../api/jobs";
 import { now, update } from "./store";
 import { seek, shownBlock } from "./view";
 
 // What the clock can be slowed down and sped up to.
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 5] as const;
 
-/** The times of the newest motion: of the simulation, or of the diagram's run, if it has a result. */
-function newest(): { id: string; t: number[] } | null {
-  const { document, jobs } = now();
-  const job = document?.diagram ? jobs.run : jobs.simulate;
+/** The newest motion: of the diagram's run, of the analysis whose result is shown, else of the simulation. */
+function newest(): { id: string; t: number[]; block: string } | null {
+  const { document, jobs, bottom, shape } = now();
+  const isAnalysis = bottom === "analyse" && jobs.analyse?.state === "done";
+  const job = document?.diagram ? jobs.run : isAnalysis ? jobs.analyse : jobs.simulate;
   if (job?.state !== "done") return null;
-  const t = job.kind === "run" ? (job.result as Ran).motions[shownBlock()]?.t : (job.result as Simulated).t;
-  return t === undefined ? null : { id: job.id, t };
+  if (job.kind === "simulate") return { id: job.id, t: (job.result as Simulated).t, block: "" };
+  const { motions } = job.result as Ran | Analysed;
+  const block = job.kind === "run" ? shownBlock() : shownMotion(motions, shape);
+  const t = motions[block]?.t;
+  return t === undefined ? null : { id: job.id, t, block };
 }
+
+/** The name of the motion that is chosen, of those that an analysis has. */
+export const shownMotion = (motions: Analysed["motions"], shape: string): string =>
+  shape in motions ? shape : (Object.keys(motions)[0] ?? "");
 
 /** Puts the cursor of all plots, the slider and the 3-D view to a time [s]. */
 export function setTime(time: number): void {
   update({ time });
   const run = newest();
-  if (run !== null && now().right === "view") seek(run.id, time);
+  if (run !== null && now().right === "view") seek(run.id, time, run.block);
+}
+
+/** Shows the motion's state in the 3-D view, which opens. */
+export function showMotion(): void {
+  update({ right: "view", time: newest()?.t[0] ?? 0 });
+  setTime(now().time ?? 0);
 }
 
 export function pause(): void {

@@ -31,6 +31,7 @@ const OF_DOCUMENT: readonly Dialog["kind"][] = [
   "properties",
   "save as",
   "simulate",
+  "analyse",
   "run",
   "export",
   "save part",

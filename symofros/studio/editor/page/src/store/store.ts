@@ -15,7 +15,7 @@ import type {
   Point,
   View,
 } from "../api/types";
-import type { AskedRun, AskedSimulation } from "../model/asked";
+import type { AskedAnalysis, AskedRun, AskedSimulation } from "../model/asked";
 import { type Moves, NO_MOVES } from "../model/moves";
 import { isMap } from "../model/paths";
 import type { KeptRun } from "../model/runs";
@@ -37,6 +37,7 @@ export type Dialog =
   | { kind: "new" }
   | { kind: "save as" }
   | { kind: "simulate" }
+  | { kind: "analyse" }
   | { kind: "run" }
   | { kind: "export" }
   | { kind: "save part"; bodies: string[] }
@@ -78,6 +79,8 @@ export interface OfDocument {
   /** Where the cursor of the plots and the motion in the 3-D view stand [s]; null before anybody has put it. */
   time: number | null;
   playing: boolean;
+  /** The motion of an analysis that is played, such as a mode; "" for its first. */
+  shape: string;
   /** The text as it was typed while the server did not answer, once its pane is closed; and what it was made from. */
   leftText: { text: string; base: string } | null;
   /** The block of a diagram, the mechanism of which the 3-D view shows; "" for the first. */
@@ -92,6 +95,7 @@ export interface OfDocument {
 export interface Asked {
   simulate: Record<string, AskedSimulation>;
   run: Record<string, AskedRun>;
+  analyse: Record<string, AskedAnalysis>;
 }
 
 export interface State extends OfDocument {
@@ -125,6 +129,7 @@ export const OF_NEW_DOCUMENT: OfDocument = {
   runs: [],
   time: null,
   playing: false,
+  shape: "",
   leftText: null,
   block: "",
   view: null,
@@ -136,7 +141,7 @@ export const useStore = create<State>(() => ({
   catalogue: null,
   parts: [],
   document: null,
-  asked: { simulate: {}, run: {} },
+  asked: { simulate: {}, run: {}, analyse: {} },
   dialog: null,
   speed: 1,
   link: "ok",

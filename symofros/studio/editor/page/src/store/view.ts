@@ -60,10 +60,10 @@ let of: string | undefined;
 let moving = false;
 
 /** Shows a run's state at a time. */
-export function seek(run: string, t: number): void {
+export function seek(run: string, t: number, block: string): void {
   // What waits to be moved is of another state.
   next = null;
-  void move({ run, t, block: shownBlock() });
+  void move({ run, t, block });
 }
 
 /** Moves the view; while one request is on its way, the newest of each value waits. */

@@ -1,4 +1,5 @@
 import { useStore } from "../store/store";
+import { AnalyseForm } from "./AnalyseForm";
 import { Examples } from "./Examples";
 import { ExportForm } from "./ExportForm";
 import { ChangedOnDisk, Discard, NewFile, OpenFile, SaveAs } from "./files";
@@ -28,6 +29,8 @@ export function Dialogs() {
       return <SaveAs />;
     case "simulate":
       return <SimulateForm />;
+    case "analyse":
+      return <AnalyseForm />;
     case "run":
       return <RunForm />;
     case "export":

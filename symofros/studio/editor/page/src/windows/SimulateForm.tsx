@@ -2,19 +2,18 @@ import { useState } from "react";
 
 import { isNumber } from "../forms/values";
 import { type AskedSimulation, known, strangers } from "../model/asked";
-import { inputs, rates, startNumbers, starts } from "../model/motion";
+import { inputs, rates, starts } from "../model/motion";
 import { Foot } from "../shell/Foot";
 import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
-import { askedSimulation, keepSimulation } from "../store/asked";
+import { askedSimulation, isAdaptive, keepSimulation, simulationOptions } from "../store/asked";
 import { run } from "../store/jobs";
 import { DocsPage } from "./Help";
 import { dismiss, useDocument, useStore } from "../store/store";
+import { Events } from "./Events";
 import { LeftOut, NameTable } from "./NameTable";
 
 const positive = (text: string): boolean => isNumber(text) && Number(text) > 0;
-const numbers = (texts: Record<string, string>): Record<string, number> =>
-  Object.fromEntries(Object.entries(texts).map(([name, text]) => [name, Number(text)]));
 
 function NumberRow({
   title,
@@ -71,7 +70,7 @@ function Given({ asked, set }: { asked: AskedSimulation; set(part: Partial<Asked
         rows={driven.map(({ name, fallback }) => ({ name, unit: "", title: name, fallback }))}
         columns={[
           {
-            title: "Formula of t",
+            title: "Formula",
             names: of("inputs"),
             texts: asked.inputs,
             isRight: () => true,
@@ -98,7 +97,7 @@ export function SimulateForm() {
   const methods = useStore((state) => state.catalogue?.methods) ?? [];
   const [asked, setAsked] = useState(askedSimulation);
   const set = (part: Partial<AskedSimulation>): void => setAsked({ ...asked, ...part });
-  const isAdaptive = methods.find(({ name }) => name === asked.method)?.adaptive === true;
+  const adaptive = isAdaptive(asked.method);
   const q0 = known(
     asked.q0,
     starts(data).map(({ name }) => name),
@@ -107,23 +106,18 @@ export function SimulateForm() {
     asked.v0,
     rates(data).map(({ name }) => name),
   );
-  const laws = known(
-    asked.inputs,
-    inputs(data).map(({ name }) => name),
-  );
   const isFine =
     positive(asked.end) &&
-    positive(isAdaptive ? asked.tolerance : asked.step) &&
+    positive(adaptive ? asked.tolerance : asked.step) &&
+    asked.events.every(({ name, formula }) => name.trim() !== "" && formula.trim() !== "") &&
     [...Object.values(q0), ...Object.values(v0)].every(isNumber);
   const begin = (kind: "simulate" | "page"): void => {
     if (!isFine) return;
     keepSimulation(asked);
     dismiss();
-    const { end, step, tolerance, method } = asked;
-    const accuracy = isAdaptive ? { rtol: Number(tolerance) } : { dt: Number(step) };
-    const driven = { t_end: Number(end), inputs: laws };
-    const more = kind === "simulate" ? driven : {}; // The page goes on and on, and has sliders.
-    void run(kind, { method, ...accuracy, q0: startNumbers(data, q0), v0: numbers(v0), ...more });
+    const { from, course } = simulationOptions(asked);
+    // The page goes on and on, and has sliders.
+    void run(kind, kind === "simulate" ? { ...from, ...course } : from);
   };
   return (
     <Window
@@ -156,7 +150,7 @@ export function SimulateForm() {
           </select>
         )}
       </Row>
-      {isAdaptive ? (
+      {adaptive ? (
         <NumberRow
           title="Tolerance"
           unit="relative"
@@ -167,6 +161,7 @@ export function SimulateForm() {
         <NumberRow title="Step" unit="s" text={asked.step} onChange={(step) => set({ step })} />
       )}
       <Given asked={asked} set={set} />
+      <Events asked={asked} set={set} />
       <DocsPage page="docs/howto/simulating.md" />
     </Window>
   );

@@ -1,0 +1,87 @@
+"""The library in the page: equilibrium, modes and linear model, in tables and in three dimensions."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.conftest import Faults, Picture, Server
+
+pytestmark = pytest.mark.browser
+
+
+def analysed(page: Page, what: str, says: str) -> None:
+    """Analyse the model by the window, and wait for the words of the result."""
+    steps.run(page, "Analyse…")
+    steps.window(page).get_by_label(what).check()
+    steps.window(page).get_by_role("button", name="Analyse", exact=True).click()
+    expect(steps.results(page)).to_contain_text(says, timeout=steps.JOB)
+
+
+def test_a_model_is_analysed_and_its_modes_play(arm: Server, page: Page, faults: Faults, picture: Picture) -> None:
+    """The double pendulum hangs down, swings in two modes and is simulated from there."""
+    analysed(page, "Equilibrium", "Equilibrium after")
+    expect(steps.results(page).get_by_role("row", name="q1 [rad]")).to_contain_text("1.571")
+    steps.run(page, "Analyse…")
+    picture("analyse")
+    assert not faults()
+    page.keyboard.press("Escape")
+    analysed(page, "Vibration modes", "2 modes about the equilibrium")
+    expect(steps.results(page).get_by_role("row", name="1.626")).to_be_visible()
+    steps.results(page).get_by_label("Shown in 3-D").select_option(index=1)
+    steps.results(page).get_by_role("button", name="Play").click()
+    expect(page.frame_locator("iframe.view").locator("canvas").first).to_be_visible(timeout=steps.JOB)
+    expect(steps.results(page).get_by_role("button", name="Play")).to_be_visible(timeout=steps.JOB)
+    assert not faults()
+    steps.results(page).get_by_role("slider", name="Time [s]").fill("0.1")
+    steps.settled(page)
+    picture("modes")
+    with page.expect_download() as saved:
+        steps.results(page).get_by_role("button", name="Modes as CSV").click()
+    assert saved.value.suggested_filename == "Modes.csv"
+    assert saved.value.path().read_text("utf-8").startswith("Mode,|s|/2π [Hz],")
+    steps.results(page).get_by_role("button", name="Simulate from here…").click()
+    assert float(steps.window(page).get_by_label("Start of q1", exact=True).input_value()) == pytest.approx(
+        1.5707963268
+    )
+    page.keyboard.press("Escape")
+    analysed(page, "Linear model", "4 states, 2 inputs")
+    expect(steps.results(page).get_by_role("region", name="B", exact=True)).to_be_visible()
+    page.set_viewport_size({"width": 400, "height": 760})
+    assert not faults()
+
+
+def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults: Faults, picture: Picture) -> None:
+    """Frequencies over a length; five motions, of which one plays; the instant of an event."""
+    steps.run(page, "Analyse…")
+    steps.window(page).get_by_label("Sweep").check()
+    steps.window(page).get_by_label("Parameter", exact=True).select_option("L2")
+    assert steps.window(page).get_by_label("From", exact=True).input_value() == "0.2"
+    assert not faults()
+    steps.window(page).get_by_role("button", name="Analyse", exact=True).click()
+    expect(steps.results(page).get_by_role("img", name="Frequencies over L2: mode 1, mode 2")).to_be_visible(
+        timeout=steps.JOB
+    )
+    steps.run(page, "Analyse…")
+    steps.window(page).get_by_label("Drawn").select_option("motion")
+    steps.window(page).get_by_role("button", name="Analyse", exact=True).click()
+    expect(steps.results(page).get_by_role("img", name="q1: L2 = 0.2, L2 = 0.3")).to_be_visible(timeout=steps.JOB)
+    expect(steps.results(page).get_by_role("img", name="dq2")).to_have_count(0)
+    steps.results(page).get_by_text("Signals").click()
+    steps.results(page).get_by_label("dq2").check()
+    expect(steps.results(page).get_by_role("img", name="dq2: L2 = 0.2")).to_be_visible()
+    assert not faults()
+    picture("swept")
+    steps.run(page, "Simulate…")
+    steps.window(page).get_by_role("button", name="Add an event").click()
+    expect(steps.window(page).get_by_role("button", name="Simulate", exact=True)).to_be_disabled()
+    steps.fill(page, "Formula of event 1", "q1 - 1")
+    steps.window(page).get_by_label("ends the run").check()
+    steps.fill(page, "Duration", "2")
+    picture("events")
+    assert not faults()
+    steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
+    expect(steps.results(page).get_by_role("row", name="event 1")).to_be_visible(timeout=steps.JOB)
+    run_end = steps.results(page).get_by_role("slider", name="Time [s]").get_attribute("max")
+    assert run_end is not None and 0.1 < float(run_end) < 2.0
