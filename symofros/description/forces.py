@@ -116,6 +116,8 @@ class Friction(_Values):
             speed at all of friction that sticks [rad/s or m/s].
         coordinate: Index of the speed of the joint, from 0.
         sticks: Whether runs hold the joint at rest exactly.
+        factor: Factor of dynamic and static, a formula of coordinates, speeds, inputs, states of forces, parameters and
+            t: load, temperature, position; 0 where it is below zero. Not of friction that sticks.
     """
 
     dynamic: Value
@@ -125,10 +127,20 @@ class Friction(_Values):
     stribeck_velocity: Value | None = None
     coordinate: int = 0
     sticks: bool = False
+    factor: Value = 1.0
+
+    def __post_init__(self) -> None:
+        """Convert the numbers; what holds a joint has a level that only events change."""
+        super().__post_init__()
+        if self.sticks and self.factor != 1.0:
+            rule = "friction that sticks lets go at a level of parameters, which only events change"
+            remedy = "leave sticks out, or state dynamic and static by parameters"
+            raise DescriptionError(Problem("friction: factor of friction that sticks", f"{self.factor}", rule, remedy))
 
     def __repr__(self) -> str:
         """Each field that counts, as hashes of descriptions are made of this text."""
-        return shown_entries(self, () if self.sticks else ("sticks",))
+        unused = {"sticks": not self.sticks, "factor": self.factor == 1.0}
+        return shown_entries(self, [name for name, left_out in unused.items() if left_out])
 
     @property
     def breakaway(self) -> Value:

@@ -130,7 +130,8 @@ def element_force(element: Any, x: Any, v: Array, values: Mapping[str, Any]) -> 
                 inward = np.where(beyond > 0.0, np.maximum(side * v, 0.0), 0.0)
                 force -= side * (number("stiffness") * beyond + number("damping") * inward)
         return force
-    return np.asarray(-_dry_friction(element, v, number) - number("viscous") * v)
+    factor = np.maximum(number("factor"), 0.0)
+    return np.asarray(-factor * _dry_friction(element, v, number) - number("viscous") * v)
 
 
 def _dry_friction(element: sf.Friction, v: Array, number: Callable[[str], Any]) -> Array:

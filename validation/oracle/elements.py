@@ -77,7 +77,8 @@ def _dissipation(scope: Scope, element: Any, q: Any, v: Any) -> Any:
     if isinstance(element, sf.Friction):
         static = "dynamic" if element.static is None else "static"
         wide = 10 * x("minimum_velocity") if element.stribeck_velocity is None else x("stribeck_velocity")
-        return -_dry_friction(x(static), x("dynamic"), x("minimum_velocity"), wide, v) - x("viscous") * v
+        dry = _dry_friction(x(static), x("dynamic"), x("minimum_velocity"), wide, v)
+        return -sympy.Max(x("factor"), 0) * dry - x("viscous") * v
     return sympy.Integer(0)
 
 

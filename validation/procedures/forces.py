@@ -168,6 +168,7 @@ def each_coordinate(_: Scene) -> Iterator[Cell]:
     kinds = {"universal": 2, "cylindrical": 2, "planar": 3}
     bodies, wanted = [], []
     rng = np.random.default_rng(23)
+    factor = sf.formula("2*t - 0.5")
     for kind, count in kinds.items():
         numbers = rng.uniform(0.5, 3.0, (count, 6))
         elements: list[Any] = []
@@ -175,7 +176,7 @@ def each_coordinate(_: Scene) -> Iterator[Cell]:
             elements += [
                 sf.Spring(stiffness, rest=rest, coordinate=k),
                 sf.Damper(damping, coordinate=k),
-                sf.Friction(force, viscous=soft, minimum_velocity=1e-3, coordinate=k),
+                sf.Friction(force, viscous=soft, minimum_velocity=1e-3, coordinate=k, factor=factor),
                 sf.Stop(wall, upper=-4.0, coordinate=k),
             ]
         joint = sf.Joint(kind[0], kind, elements=tuple(elements))  # type: ignore[arg-type]
@@ -184,8 +185,8 @@ def each_coordinate(_: Scene) -> Iterator[Cell]:
     model = sf.compile(sf.System("several", tuple(bodies)), sf.Options(backend="interpreter"))
     q, v = rng.uniform(-1.0, 1.0, (2, model.nv))
     stiffness, damping, force, rest, soft, wall = np.concatenate(wanted).T
-    efforts = -stiffness * (q - rest) - (damping + soft) * v - force * np.sign(v) - wall * (q + 4.0)
-    yield Cell("forces on every coordinate", off(model.generalized_force(q, v, []), efforts), ROUNDING)
+    efforts = -stiffness * (q - rest) - (damping + soft) * v - 0.9 * force * np.sign(v) - wall * (q + 4.0)
+    yield Cell("forces on every coordinate", off(model.generalized_force(q, v, [], t=0.7), efforts), ROUNDING)
 
 
 def rods(_: Scene) -> Iterator[Cell]:

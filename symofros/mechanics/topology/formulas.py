@@ -141,7 +141,8 @@ def _joint_values(joint: Joint) -> Iterator[Stated]:
         label = type(element).__name__.lower()
         for name, value in numbers_of(element):
             units = _of_coordinate(joint, element.coordinate, units_of(type(element), name))
-            yield Stated(f"{what}: {label} {name}", value, key, units=units)
+            scope: Scope = "motion" if isinstance(element, Friction) and name == "factor" else "parameters"
+            yield Stated(f"{what}: {label} {name}", value, key, scope, units=units)
     for rotor in joint.rotors:
         yield Stated(f"{what}: rotor", rotor.inertia, key, units=units_of(Rotor, "inertia"))
         for value in (rotor.ratio, *(rotor.axis or ())):

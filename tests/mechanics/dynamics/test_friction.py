@@ -90,6 +90,28 @@ def test_static_below_dynamic_friction_rises_with_speed() -> None:
     )
 
 
+def test_a_factor_scales_dry_friction_alone_and_never_drives() -> None:
+    """Load, temperature as a state, position; below zero it counts as zero."""
+    levels: dict[str, Any] = dict(dynamic=0.7, static=1.1, minimum_velocity=0.02, stribeck_velocity=0.1)
+    plain = slider(sf.Friction(**levels))
+    friction = sf.Friction(**levels, viscous=0.3, factor="1 + 2*abs(motor) - T + x")
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(friction,))
+    system = sf.System("rubs", (sf.RigidBody("block", joint, sf.Inertia(1.0)),), inputs=(sf.Input("motor"),),
+                       states=(sf.ForceState("T", "dx^2"),))  # fmt: skip
+    m = sf.compile(system, sf.Options(backend="interpreter"))
+    v = np.linspace(-0.5, 0.5, 41)
+    dry = forces(plain, v)
+    for motor, T, x in ((0.5, 0.3, 0.2), (-1.0, 0.0, -0.5), (0.0, 3.0, 0.1)):
+        factor = max(1 + 2 * abs(motor) - T + x, 0.0)
+        found = -m.generalized_force(np.full((41, 1), x), v[:, None], np.full((41, 1), motor), z=[T])[:, 0]
+        np.testing.assert_allclose(found, factor * dry + 0.3 * v, rtol=1e-13, atol=1e-15)
+    A, B = m.linearize([0.2], [0.3], [0.5], z=[0.3])
+    assert [A[1, 0], A[1, 2], B[1, 0]] == pytest.approx([-k * forces(plain, np.array([0.3]))[0] for k in (1, -1, 2)])
+    assert "factor" not in repr(sf.Friction(1.0)) and "name='T'" in repr(sf.Friction(1.0, factor="T"))  # type: ignore[arg-type]
+    with pytest.raises(sf.DescriptionError, match="level of parameters"):
+        sf.Friction(1.0, sticks=True, factor=2.0)
+
+
 def test_friction_of_nan_speeds_is_nan() -> None:
     for friction in (sf.Friction(1.0), sf.Friction(1.0, 2.0)):
         assert np.isnan(forces(slider(friction), np.array([np.nan]))[0])

@@ -125,6 +125,8 @@ def _friction(lowering: Lowering, friction: Friction, v: Edge) -> Edge:
         flank = g.mul(g.mul(g.constant(0.5), width), g.sub(ONE, square))
         fallen = g.sub(g.call("exp", -g.mul(y, y)), g.add(ONE, g.mul(flank, flank)))
         level = g.add(level, g.mul(g.sub(lowering.value(static), dynamic), g.add(rise, fallen)))
+    if friction.factor != 1.0:
+        level = g.mul(level, g.call("max", lowering.value(friction.factor), ZERO))
     return -g.add(g.mul(level, xi), g.mul(lowering.value(friction.viscous), v))
 
 
