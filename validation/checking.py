@@ -33,7 +33,6 @@ from .comparison.regular import (
     judge_omissions,
     judge_undefined,
     regular_states,
-    released,
     unsampled_motion,
 )
 from .comparison.relations import Related, judge_relations
@@ -178,7 +177,7 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     """
     assembly = subject.assembly
     subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
-    obstacle = unsampled_motion(subject.system, assembly) or released(subject.system)
+    obstacle = unsampled_motion(subject.system, assembly)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
     start = time.perf_counter()

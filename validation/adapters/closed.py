@@ -109,7 +109,9 @@ class ConstrainedEngine:
     def _formed(self, states: States) -> Rows:
         frames = self._kinematics(states)
         parts = [self._one(item, frames, states) for item in self._subject.system.constraints]
-        stacked = [np.concatenate(arrays, axis=1) for arrays in zip(*parts, strict=True)]
+        shares = [engaged(self._subject.system, item.name) for item in self._subject.system.constraints]
+        scaled = [[share * array for array in part] for part, share in zip(parts, shares, strict=True)]
+        stacked = [np.concatenate(arrays, axis=1) for arrays in zip(*scaled, strict=True)]
         return Rows(*stacked)
 
     def _kinematics(self, states: States) -> dict[str, _Kinematics]:
@@ -153,6 +155,12 @@ class ConstrainedEngine:
 
     def _number(self, value: sf.Expression | float) -> float:
         return float(sf.evaluate(value, self._subject.system.parameter_values()))
+
+
+def engaged(system: sf.System, name: str) -> float:
+    """Whether a constraint holds at the stated parameters, 1, or is released, 0; what it holds is the stated pose."""
+    formulas = [switch.engaged for switch in system.switches if switch.constraint == name]
+    return float(sf.evaluate(formulas[0], system.parameter_values())) if formulas else 1.0
 
 
 def joined_frames(assembly: Assembly, system: sf.System) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 
 from ..adapters import Missing, Route, factory_of, rotors, route_of
-from ..adapters.closed import ConstrainedEngine, condition, joined_frames
+from ..adapters.closed import ConstrainedEngine, condition, engaged, joined_frames
 from ..adapters.compiled import SymofrosEngine
 from ..contract.interface import Engine, EngineFactory, States, Subject, TreeEngine, Unsupported
 from ..contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
@@ -107,6 +107,11 @@ def _built(
     """The engine; one that knows trees gets rotors from a second model of its own, and constraints in NumPy."""
     if isinstance(factory, Missing):
         return Unsupported(factory.reason)
+    loose = [item.name for item in subject.system.constraints if not engaged(subject.system, item.name)]
+    if route.loops and loose:
+        return Unsupported(
+            f"constraint '{loose[0]}': released by its switch, which engines that close loops do not know"
+        )
     if route.loops or not route.independent:
         return factory(subject)
     if rotors.has_rotors(subject.system):

@@ -3,7 +3,7 @@
 Left out are states where one algorithm may find another rank than the next, and states where G does not exist: a disc
 that lies flat has no lowest point. Neither may hide a fault of ours. A state where only our G is not a finite number
 counts against us, and so does leaving out more states than a mechanism's singular postures explain. Some mechanisms
-have none to be compared at: those whose motion is prescribed, or whose constraints are released.
+have none to be compared at: those whose motion is prescribed.
 """
 
 from __future__ import annotations
@@ -127,14 +127,4 @@ def unsampled_motion(system: sf.System, assembly: Assembly) -> str:
             return f"joint '{joint.name}': a prescribed motion with a quaternion, which the states do not have"
     if driven and any(isinstance(item, sf.Coupling | sf.Nonholonomic) for item in system.constraints):
         return f"joint '{driven[0].name}': a prescribed motion beside a condition by formula"
-    return ""
-
-
-def released(system: sf.System) -> str:
-    """The reason why a constraint that does not hold prevents a comparison; "" if all hold at the stated values."""
-    for switch in system.switches:
-        if sf.evaluate(switch.engaged, system.parameter_values()) != 1.0:
-            return (
-                f"constraint '{switch.constraint}': released by its switch, which engines do not know; set it to hold"
-            )
     return ""

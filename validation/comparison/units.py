@@ -76,7 +76,10 @@ class Rescaled:
         Raises:
             ValueError: It has numbers whose units are not known; the message says which.
         """
-        given = {name: self.of(getattr(self.stated, name), name) for name in ("bodies", "connections", "constraints")}
+        given = {
+            name: self.of(getattr(self.stated, name), name)
+            for name in ("bodies", "connections", "constraints", "switches")
+        }
         return replace(
             self.stated, parameters=(), gravity=self._entry(sf.System, "gravity", self.stated.gravity, []), **given
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from itertools import permutations
 from typing import Any
@@ -103,6 +104,32 @@ def test_a_condition_by_formula_beside_a_last_joint_with_a_quaternion_is_compare
     found = check(subject(("revolute", last), CONSTRAINTS[name]), Settings(states=20))
     assert found.ok, [row for row in found.comparisons if not row.ok]
     assert {"pinocchio", "mujoco", "exudyn"} <= {row.engine for row in found.compared if row.quantity in CONSTRAINED}
+
+
+@pytest.mark.parametrize("held", [(1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])
+def test_released_constraints_have_rows_of_zeros(held: tuple[float, float]) -> None:
+    """Of engines that know trees; what closes loops by itself refuses where one is released."""
+    one = subject(("revolute", "free"), CONSTRAINTS["rod"])
+    names = ("taut", "geared")
+    system = replace(
+        one.system,
+        parameters=tuple(sf.Parameter(name, value) for name, value in zip(names, held, strict=True)),
+        constraints=(*one.system.constraints, sf.Closure("l", A, B)),
+        switches=(sf.Switch("k", names[0], "moment"), sf.Switch("l", names[1])),
+    )
+    one = replace(one, system=system)
+    assembly = assemble(system)
+    states = sample(assembly, 0, 12)
+    found = engines(one, assembly)
+    assert {"pinocchio", "mujoco", "exudyn", "interpreted"} <= found.keys()
+    assert ("exudyn-loops" in found) == (min(held) == 1.0)
+    for quantity in sorted(CONSTRAINED - {"multipliers"}):
+        ours = getattr(found["interpreted"], QUANTITIES[quantity].method or quantity)(states)
+        for engine in ("pinocchio", "mujoco", "exudyn"):
+            theirs = getattr(found[engine], QUANTITIES[quantity].method or quantity)(states)
+            np.testing.assert_allclose(theirs, ours, rtol=0, atol=CLOSE * (np.abs(ours).max() + 1.0))
+    G = found["interpreted"].constraint_jacobian(states)  # type: ignore[attr-defined]
+    assert [bool(np.abs(G[:, rows]).max() > 0.0) for rows in (0, slice(1, 4))] == [share == 1.0 for share in held]
 
 
 @pytest.mark.parametrize("order", list(permutations(("ball", "free", "planar"), 2)))

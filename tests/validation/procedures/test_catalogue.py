@@ -13,6 +13,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
+from validation.comparison.units import Rescaled, Units
 from validation.mechanics.assembly import assemble
 from validation.procedures import (
     analyses,
@@ -28,7 +29,7 @@ from validation.procedures import (
     zeros,
 )
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
-from validation.procedures.scene import Cell, Scene
+from validation.procedures.scene import Cell, Manifold, Scene
 
 
 def scene(name: str) -> Scene:
@@ -68,6 +69,18 @@ def test_a_wrong_sign_of_the_gyroscopic_terms_shows(monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(type(top.model), "linearize", turned)
     assert wrong(analyses.linearised(top)) == ["A of the kinematics"]
+
+
+def test_a_mechanism_with_switches_is_asked_for_derivatives_and_in_other_units() -> None:
+    """By parameters that have values near their own; switches are numbers in other units, which know no parameters."""
+    system = MODELS["docking"]
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    q, v = model.random_state(np.random.default_rng(2))
+    one = Scene(model, system, Manifold.of(assemble(system)), q, v, lambda *_: np.array([0.4]))
+    assert not wrong(analyses.differentiated(one))
+    (rope,) = (item for item in system.constraints if item.name == "rope")
+    roped = replace(system, constraints=(rope,), switches=system.switches[-1:])
+    assert [switch.engaged for switch in Rescaled(roped, Units(length=2.0)).system().switches] == [0.0]
 
 
 def test_a_trajectory_of_a_batch_that_takes_other_inputs_shows(monkeypatch: pytest.MonkeyPatch) -> None:
