@@ -95,6 +95,19 @@ def test_vectors_of_two_units_have_one_for_each_entry(how: str) -> None:
         assert linear[0] != angular[0]
 
 
+@pytest.mark.parametrize(("kind", "lengths", "rotations"), [("free", 3, 4), ("ball", 0, 4), ("planar", 2, 0)])
+def test_coordinates_of_a_rotation_have_no_unit(kind: Any, lengths: int, rotations: int) -> None:
+    """Nor do entries of a quaternion; a coordinate after them has its own."""
+    first = sf.RigidBody("first", sf.Joint("root", kind), sf.Inertia(1.0))
+    second = sf.RigidBody("second", sf.Joint("slide", "prismatic", "first", axis=(1, 0, 0)), sf.Inertia(1.0))
+    diagram = sf.Diagram("units")
+    diagram.add_model("m", sf.System("s", (first, second)))
+    diagram.add(lib.ForwardDynamics(name="b", model="m"))
+    (port,) = (port for port in draft(diagram).ports["b"].outputs if port.name == "q")
+    turns = ("1",) * rotations if rotations else ("rad",)
+    assert port.units == ("m",) * lengths + turns + ("m",)
+
+
 def wired(controller: Block, units: dict[str, str], model: str = "") -> list[str]:
     """What is wrong with a controller whose inputs have these units."""
     diagram = sf.Diagram("loop")

@@ -130,6 +130,20 @@ def test_prescribed_motions_of_wires_are_judged_by_their_values(rate: float, not
         assert noted == any("prescribe no one motion" in note for note in run.outcome.notes)
 
 
+@pytest.mark.parametrize(("q", "dq"), [(0.1667, 0.35), (1 / 6, 0.350002), (0.1667, 0.350002), (1 / 6, 0.35)])
+def test_stated_starts_beside_prescribed_motions_are_noted_where_they_change(q: float, dq: float) -> None:
+    """In a diagram: coordinates and speeds, each where its last digits were taken otherwise."""
+    hoist = sf.RigidBody("hoist", sf.Joint("th", "revolute", axis=(0, 1, 0), prescribed=True), sf.Inertia(1.0))
+    bob = sf.RigidBody("bob", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -0.5)))
+    geared = sf.System("plant", (hoist, bob), constraints=(sf.Coupling("gear", "q - th/2"),))
+    diagram = moving(geared, start={"q": q, "dq": dq}, u="th.y")
+    diagram.add(blocks.Ramp(name="th", slope=[0.7, 0.0, 0.0], start=[1 / 3, 0.7, 0.0]))
+    run = sf.Simulation(diagram).run(0.01, dt=1e-3)
+    noted = {note.split(" = ")[0].split()[-1]: note for note in run.outcome.notes if "was taken as" in note}
+    assert set(noted) == ({"q"} if q != 1 / 6 else set()) | ({"dq"} if dq != 0.35 else set())
+    assert all(f"{value:g} was taken as" in noted[name] for name, value in {"q": q, "dq": dq}.items() if name in noted)
+
+
 @pytest.mark.parametrize("samples", [3, _INTERVALS, 5 * _INTERVALS])
 def test_intervals_between_samples_reach_over_the_run(samples: int) -> None:
     """All of a few, some of many."""

@@ -64,6 +64,22 @@ def test_the_sign_of_a_coordinate_takes_its_limits_along() -> None:
     assert {item.entry for item in kept.differences} == {"sign of the coordinate", "lower limit", "upper limit"}
 
 
+@pytest.mark.parametrize("offset", [0.4, 2.8, -2.0])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_signs_of_coordinates_are_seen_beyond_another_zero(offset: float, sign: float) -> None:
+    """Where the second file has its zero half a turn away, axes beyond that joint point the other way in its world."""
+
+    def arm(offset: float, sign: float) -> sf.System:
+        inertia = sf.Inertia(2.0, (0.1, 0.2, 0.5), (0.3, 0.2, 0.1))
+        yaw = sf.Joint("yaw", "revolute", rotation=sf.Rotation.rpy(0, 0, offset), axis=(0, 0, 1))
+        pitch = sf.Joint("pitch", "revolute", "base", position=(0.3, 0.1, 0.2), axis=(sign, 0, 0))
+        return sf.System("arm", (sf.RigidBody("base", yaw, inertia), sf.RigidBody("upper", pitch, inertia)))
+
+    found = sf.diff(arm(0.0, 1.0), arm(offset, sign))
+    assert found.same and max(found.errors.values()) < 1e-12, str(found)
+    assert {name: way for name, _, way, _ in found.coordinates} == {"yaw": 1.0} | ({} if sign > 0 else {"pitch": -1.0})
+
+
 def test_what_changes_no_motion_is_called_so() -> None:
     """A body that turns about a vertical axis alone shows its moment about that axis, and nothing else."""
     one, two = pendulum(axis=(0, 0, 1)), pendulum(axis=(0, 0, 1))
