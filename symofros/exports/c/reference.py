@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.rotations import normalized
 from symofros.exports.material import Check
 from symofros.runtime import manifold
 from symofros.runtime.calls import Kernel
@@ -41,6 +42,7 @@ def checks(
             if key[0] == "project":
                 move = _NEAR * rng.standard_normal(len(record.v_names))
                 given["q"] = manifold.integrate(record.segments, closed, move)
+                given["u"] = np.array(record.u_default, dtype=np.float64)  # Which prescribe where that is closed.
             for name, size in kernel.signature.inputs:
                 if name not in given:  # Cotangents, directions: any numbers.
                     given[name] = rng.standard_normal(size)
@@ -57,9 +59,9 @@ def _flat(arrays: Sequence[Array]) -> tuple[float, ...]:
 def _point(record: ModelRecord, rng: np.random.Generator) -> dict[str, Array]:
     q, v = manifold.random_state(record, rng)
     nv, nc = len(record.v_names), record.nc
-    u = np.array(record.u_default, dtype=np.float64)
-    efforts = len(u) - record.driven
-    u[:efforts] = rng.standard_normal(efforts)
+    u = rng.standard_normal(len(record.u_default))
+    for first in record.quaternion_inputs:
+        u[first : first + 4] = normalized(u[first : first + 4])
     return {
         "q": q,
         "v": v,

@@ -359,6 +359,17 @@ def test_units_and_dependencies_are_declared(made: Any, version: int) -> None:
     outputs = {output.variable.name: output.dependencies for output in description.outputs}
     assert outputs["p.tool.z"] == []  # It moves in the plane.
     assert {variable.name for variable in outputs["p.tool.x"]} >= {"q.q1", "q.'link.bend_y[0]'"}
+    assert float(description.defaultExperiment.stepSize) == 0.01  # Ten steps of the unit's own.
+
+
+def test_places_of_frames_depend_on_what_moves_them_anywhere(made: Any) -> None:
+    """On prescribed motions, and on coordinates that move a frame along an axis where those are not zero, too."""
+    description = fmpy.read_model_description(str(made("driven", VERSIONS["driven"])))
+    prescribed = {v.name for v in description.modelVariables if v.causality == "input"} - {"u.q1"}
+    assert len(prescribed) == 9
+    for output in description.outputs:
+        if output.variable.name.startswith("p."):
+            assert {v.name for v in output.dependencies} == prescribed | {"q.q1"}, output.variable.name
 
 
 def test_a_missing_fmpy_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
