@@ -10,6 +10,8 @@ import pinocchio as pin
 
 import symofros as sf
 
+from .messages import parser_messages
+
 
 def description(path: Path, floating_base: bool) -> sf.System:
     """A file as Pinocchio reads it: joints, inertias with the welded links', frames of links, limits, armatures.
@@ -21,7 +23,8 @@ def description(path: Path, floating_base: bool) -> sf.System:
     if path.suffix.lower() == ".xml":
         model: Any = pin.buildModelFromMJCF(str(path), *root)
     else:
-        model = pin.buildModelFromUrdf(str(path), *root)
+        with parser_messages():  # What it refuses it raises, too.
+            model = pin.buildModelFromUrdf(str(path), *root)
     links: dict[int, list[Any]] = {k: [] for k in range(model.njoints)}
     for frame in model.frames:
         if frame.type == pin.FrameType.BODY:

@@ -13,6 +13,7 @@ from ...engines.plugins.pinocchio import CLOSING, WAYS
 from ...engines.plugins.writing.source import Source, SourceModel
 from ...mechanics.assembly import Assembly, Mover, assemble
 from ..charted import ChartedEngine
+from .messages import parser_messages
 
 NAME = "pinocchio-urdf"
 _ROOT_JOINT = "root_joint"
@@ -31,9 +32,10 @@ def build(subject: Subject) -> ChartedEngine | Unsupported:
 def _read(source: UrdfSource, assembly: Assembly) -> ChartedEngine | Unsupported:
     root = (pin.JointModelFreeFlyer(), _ROOT_JOINT) if source.floating_base else ()
     try:
-        model = pin.buildModelFromXML(source.text.decode(), *root)
+        with parser_messages() as said:
+            model = pin.buildModelFromXML(source.text.decode(), *root)
     except (ValueError, RuntimeError) as error:
-        return Unsupported(str(error))
+        return Unsupported("; ".join([str(error), *said[:1]]))
     model.gravity.linear = assembly.gravity
     if any(joint.shortname() == "JointModelPlanar" for joint in model.joints):
         return Unsupported("a planar joint, whose speeds are the body's own in Pinocchio")
