@@ -471,6 +471,15 @@ PLUGIN = SourcePlugin(
             "coriolis_forces|coriolis_symmetry",
             lambda tree, text: any(joint.mimics for link in tree.links for joint in link.joints),
         ),
+        Statement(
+            "precondition",
+            "z of a frame from end to end is from the first towards the second point, as MJCF's page says; MuJoCo's "
+            "own compiler takes the opposite",
+            "https://mujoco.readthedocs.io/en/stable/XMLreference.html#body-geom, fromto; "
+            "https://github.com/newton-physics/newton/pull/3667",
+            "frame_poses",
+            lambda tree, text: "<site" in text and "fromto" in text,
+        ),
         UNIT_AXIS,
     ),
 )
