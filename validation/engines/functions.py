@@ -301,7 +301,18 @@ def _measured() -> dict[str, Function]:
         "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
         "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
         "frame_poses": ("positions and rows of R (n, 12)", derived.frame_poses),
-        "accelerometers_driven": ("accelerometers at the accelerations that tau makes (n, 3)", derived.driven),
+        "accelerometers_driven": (
+            "accelerometers at the accelerations that tau makes (n, 3)",
+            derived.driven(derived.accelerometers),
+        ),
+        "angular_accelerations_driven": (
+            "angular_accelerations at the accelerations that tau makes (n, 3)",
+            derived.driven(derived.angular_accelerations),
+        ),
+        "wrench_sensors_driven": (
+            "wrench_sensors at the accelerations that tau makes (n, 6)",
+            derived.driven(derived.wrench_sensors),
+        ),
         "applied_wrenches": (
             "forces (nv) that do what the wrench (1, -2, 3; 0.5, -0.25, 0.75) does at each frame, along its axes",
             derived.applied_wrenches,
@@ -368,6 +379,11 @@ FUNCTIONS["flexible_relation"] = Function(
 )
 FUNCTIONS["constraint_diagonal"] = Function(
     "diagonal of J M^-1 J^T (m)", lambda t, s: np.diag(constraints.delassus(t, s.q)), ("a lone body",)
+)
+FUNCTIONS["step_bound"] = Function(
+    "v+ (nv) after a step from q, v2: M (v+ - v2) = h (tau - (bias)) + J^T impulse, J v+ = 0",
+    constraints.after_step,
+    ("a bound pair",),
 )
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")

@@ -161,12 +161,14 @@ class Wrap(NamedTuple):
         end: Its frame: the centre of a sphere, or a point of a cylinder's axis, which is z.
         radius: Its radius [m].
         is_sphere: Whether it is a sphere; otherwise a cylinder, as long as need be.
+        side: Point of that frame outside of it, on whose side the tendon passes; () for the shortest way.
     """
 
     after: int
     end: End
     radius: float
     is_sphere: bool
+    side: tuple[float, ...] = ()
 
 
 class Muscle(NamedTuple):

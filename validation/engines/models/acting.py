@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
+from ..interface import ORIGIN, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
 from .kinds import OBLIQUE, link, placed, shifted, turned
 from .readers import about
 
@@ -86,6 +86,25 @@ def _wrapped() -> list[Tree]:
     ]
 
 
+def _sided() -> list[Tree]:
+    """Tendons that pass a surface on the side of a point: the nearer side, the farther, beside their plane.
+
+    The ends stand on either side of the surface, where the ways on both sides of it cross themselves nowhere.
+    """
+    ball, drum = Wrap(0, End(""), 0.5, True), Wrap(0, End("", R=about((1.0, 0.0, 0.0), 0.25)), 0.5, False)
+    sides = {
+        "on one side of a sphere": ball._replace(side=(0.0, 0.5, 1.0)),
+        "on the other side of a sphere": ball._replace(side=(0.0, -0.5, -1.0)),
+        "on the side of a point beside its plane": ball._replace(side=(0.0, 3.0, -1.25)),
+        "on one side of a cylinder": drum._replace(side=(0.0, 1.0, 0.5)),
+        "on the other side of a cylinder": drum._replace(side=(0.0, -1.0, 0.5)),
+    }
+    slider = link(np.random.default_rng(23), "a", -1, Joint("prismatic", p=(3.0, 0.0, 0.0), axis=(1.0, 0.0, 0.0)))
+    ends = (End("", p=(-1.0, 0.125, 0.25)), End("a", p=(0.25, 0.125, 0.25)))
+    path = Tendon("path", ends, stiffness=4.0, damping=0.5, rest=0.25)
+    return [Tree(f"tendon {name}", (slider,), tendons=(replace(path, wraps=(wrap,)),)) for name, wrap in sides.items()]
+
+
 def _heavy() -> list[Tree]:
     links = _chain("heavy tendons", _HINGE, _SLIDE, _HINGE)
     ends = tuple(End(one.name) for one in links)
@@ -143,6 +162,21 @@ def _actuators() -> list[Tree]:
     ]
 
 
+def _plain_actuators() -> list[Tree]:
+    """Actuators of bodies of equal moments: velocity feedback, and what is disabled, alone and beside others."""
+    inertia = ((0.125, 0.0, 0.0), (0.0, 0.125, 0.0), (0.0, 0.0, 0.125))
+    slide, hinge = Joint("prismatic", axis=(1.0, 0.0, 0.0)), Joint("revolute", axis=(0.0, 0.0, 1.0))
+    links = (Link("a", -1, (slide,), 2.0, ORIGIN, inertia), Link("b", 0, (hinge,), 1.0, (0.5, 0.0, 0.0), inertia))
+    brake = Actuator("a", gear=2.0, gain=1.5, bias=(0.0, 0.0, -1.5), control=0.5)
+    off = replace(brake, is_disabled=True)
+    return [
+        Tree("velocity feedback", links, actuators=(brake,)),
+        Tree("velocity feedback disabled", links, actuators=(off,)),
+        Tree("velocity feedback disabled beside others", links, actuators=(off, replace(brake, link="b"))),
+        Tree("servo disabled beside others", links, actuators=(brake, replace(off, link="b", bias=(0.0, -1.5, 0.0)))),
+    ]
+
+
 def _muscles() -> list[Tree]:
     """Muscles on joints whose coordinates go from -1 to 1: within the lengths that they pull at, and beyond."""
     links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
@@ -193,5 +227,6 @@ def trees() -> dict[str, Tree]:
     """All of them, by name."""
     return {
         tree.name: tree
-        for tree in (*_passive(), *_tendons(), *_wrapped(), *_heavy(), *_actuators(), *_muscles(), *_remote())
+        for family in (_passive, _tendons, _wrapped, _sided, _heavy, _actuators, _plain_actuators, _muscles, _remote)
+        for tree in family()
     }

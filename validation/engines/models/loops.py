@@ -54,6 +54,14 @@ def _lone_body() -> Tree:
     return Tree("weld of a ball", (body,), constraints=(Constraint("weld", (End("a"), End(""))),), asked="a lone body")
 
 
+def _pair(kind: str) -> Tree:
+    """Two free bodies that are bound to each other, aside of their origins and along axes of their own."""
+    draw = np.random.default_rng(37)
+    links = tuple(link(draw, name, -1, Joint("free")) for name in "ab")
+    bound = Constraint(kind, (_end(draw, "a"), _end(draw, "b")))
+    return Tree(f"{kind} between free bodies", links, constraints=(bound,), asked="a bound pair")
+
+
 def _two_points() -> Tree:
     draw = np.random.default_rng(31)
     links = _branches(draw, 0, -1, 4, 4)
@@ -110,6 +118,8 @@ def trees() -> dict[str, Tree]:
         _scaled("weld between branches with a torque scale", "b3", 4, 4),
         _scaled("weld on the world with a torque scale", "", 7),
         _lone_body(),
+        _pair("weld"),
+        _pair("point"),
         _two_points(),
         _four_bar(),
         _of_joint("point beyond a slide", Joint("prismatic", axis=OBLIQUE)),

@@ -224,6 +224,11 @@ def _geoms() -> Iterator[tuple[str, Reading]]:
     yield second("geoms without mass", f'<geom size="0.1"/>{light}', ball)
     unseen = '<geom size="0.1" contype="0" conaffinity="0" group="2"/>'
     yield second("geom that meets nothing", unseen, ball)
+    shown_only = 'contype="0" conaffinity="0" group="2"'
+    visual = two.replace("/>", f" {shown_only}/>")
+    yield second("mass of a visual geom beside a solid one", one + visual, pair)
+    alone = replace(NEXT, mass=2.0, com=ORIGIN, inertia=diagonal(0.008, 0.008, 0.008))
+    yield second("mass of a visual geom", f'<geom size="0.1" mass="2" {shown_only}/>', alone)
     ground = '<worldbody><geom type="plane" size="1 1 1"/><geom size="2" mass="5"/>'
     yield _of("geoms of the world", _file().replace("<worldbody>", ground), _FIRST, NEXT)
 

@@ -29,6 +29,17 @@ def _locked(name: str, *joints: Joint, base: bool = False) -> Tree:
     return Tree(name, tuple(links))
 
 
+def _fused_at_one_point() -> Tree:
+    """Fixed links whose origins and mass centres are one point, turned: nothing but their inertias adds up."""
+    draw = np.random.default_rng(13)
+    first, second, carried = (
+        link(draw, name, parent, _hinge(draw)) for name, parent in (("a", -1), ("b", 0), ("c", 1))
+    )
+    held = replace(placed(draw, Joint("fixed")), p=ORIGIN)
+    parts = (replace(first, com=ORIGIN), replace(second, com=ORIGIN, joints=(held,)), carried)
+    return Tree("fixed links fused at one point", parts, fused=True)
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     free, held = Joint("revolute", axis=OBLIQUE), Joint("revolute", axis=OBLIQUE, locked=0.75)
@@ -45,6 +56,7 @@ def trees() -> dict[str, Tree]:
         Tree("attached chain", parts[:4], attached="c"),
         Tree("attached branches", parts, attached="c"),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
+        _fused_at_one_point(),
     )
     changed = tuple(
         Tree(f"{what} changed", parts[:2], changed=what) for what in ("mass", "inertia", "frame", "gravity")

@@ -13,6 +13,7 @@ from .readers import (
     ASKEW,
     BODY,
     IDENTITY,
+    LOSSES,
     NEXT,
     OBLONG,
     PASSIVE,
@@ -151,6 +152,20 @@ def _kinds() -> Iterator[tuple[str, Reading]]:
     yield _of("planar", _chain(f'planar|{_AT}<axis xyz="0 0 1"/>', _SECOND), replace(BODY, joints=(plane,)), NEXT)
 
 
+def _losses() -> Iterator[tuple[str, Reading]]:
+    """Dampers and dry friction of joints, which no function of M and g shows."""
+    text, lost = '<dynamics damping="0.7" friction="0.3"/>', {"damping": 0.7, "friction": 0.3}
+
+    def second(name: str, text: str, **changes: object) -> tuple[str, Reading]:
+        return _of(name, _chain(_FIRST, text), BODY, hung(NEXT, **changes), asked=LOSSES)
+
+    yield second("losses of a hinge", _SECOND + text, **lost)
+    yield second("losses of a hinge without limits", _SECOND.replace("revolute", "continuous") + text, **lost)
+    yield second("losses of a slide", _SECOND.replace("revolute", "prismatic") + text, kind="prismatic", **lost)
+    yield second("friction alone", _SECOND + '<dynamics friction="0.3"/>', friction=0.3)
+    yield second("damping alone", _SECOND + '<dynamics damping="0.7"/>', damping=0.7)
+
+
 def _trees() -> Iterator[tuple[str, Reading]]:
     """Links that don't move, links without mass, names and order."""
     still = hung(BODY, kind="fixed")
@@ -200,4 +215,4 @@ def _from_shapes() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_inertias(), *_placements(), *_kinds(), *_trees(), *_from_shapes()])
+    return dict([*_inertias(), *_placements(), *_kinds(), *_losses(), *_trees(), *_from_shapes()])

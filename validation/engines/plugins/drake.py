@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import STEP, Array, Convention, Joint, Slot, Tendon, Tree, Unsupported
+from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree, Unsupported
 from .loops import drake_forces as forces
 from .loops.drake_forces import FORCES, QV, Q
 from .writing import urdf
@@ -189,6 +190,12 @@ def _spring(tree: Tree, tendon: Tendon) -> str:
     return f"p.AddForceElement(drake.LinearSpringDamper({ends}, {numbers}))"
 
 
+_BINDINGS: dict[str, tuple[str, Callable[[End], str]]] = {
+    "weld": ("AddWeldConstraint", lambda end: f"X({_array(end.R)}, {_array(end.p)})"),
+    "point": ("AddBallConstraint", lambda end: _array(end.p)),
+}
+
+
 def _bound(tree: Tree) -> list[str]:
     """Statements that close loops, for the discrete solver that knows such conditions."""
     bodies = {link.name: f"b{k}" for k, link in enumerate(tree.links)} | {"": "p.world_body()"}
@@ -199,8 +206,8 @@ def _bound(tree: Tree) -> list[str]:
         "    p.set_discrete_contact_solver(drake.DiscreteContactSolver.kSap)",
     ]
     for one in tree.constraints:
-        (first, second), placed = one.ends, [f"X({_array(end.R)}, {_array(end.p)})" for end in one.ends]
-        lines.append(f"p.AddWeldConstraint({bodies[first.link]}, {placed[0]}, {bodies[second.link]}, {placed[1]})")
+        add, place = _BINDINGS[one.kind]
+        lines.append(f"p.{add}({', '.join(f'{bodies[end.link]}, {place(end)}' for end in one.ends)})")
     return lines
 
 
@@ -375,11 +382,12 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS | forces.WAYS,
     write=write,
-    constraints={"weld": "AddWeldConstraint"},
+    constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={
         "sensors": "Accelerometer, Gyroscope",
+        "a bound pair": "AddWeldConstraint, AddBallConstraint",
         "changed mass": "SetSpatialInertiaInBodyFrame",
         "changed inertia": "SetSpatialInertiaInBodyFrame",
         "changed frame": "SetPoseInParentFrame",

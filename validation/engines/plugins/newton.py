@@ -166,9 +166,21 @@ def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[st
     return f"b.add_joint_d6({{ends}}, linear_axes=[{', '.join(linear)}], angular_axes=[{', '.join(angular)}])", parts
 
 
+def _builder(tree: Tree) -> str:
+    """A builder, with gravity where it is not the standard one: before 1.1 it was a number."""
+    return (
+        f"b = newton.ModelBuilder({'' if tree.gravity == Tree('', ()).gravity else f'gravity={list(tree.gravity)!r}'})"
+    )
+
+
+def _has_tiny_moments(tree: Tree, text: str) -> bool:
+    """Whether a link has mass and a moment of inertia below 1e-6 kg m^2."""
+    return any(link.mass and np.linalg.eigvalsh(np.array(link.inertia))[0] < 1e-6 for link in tree.links)
+
+
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds an articulation."""
-    lines = [*_IMPORTS, f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})"]
+    lines = [*_IMPORTS, _builder(tree)]
     slots: list[tuple[Slot, ...]] = []
     nq = nv = 0
     for k, link in enumerate(tree.links):
@@ -225,7 +237,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     lines = (
         *_IMPORTS,
         f"TEXT = {text!r}",
-        f"b = newton.ModelBuilder(gravity={list(tree.gravity)!r})" if form == "urdf" else "b = newton.ModelBuilder()",
+        _builder(tree) if form == "urdf" else "b = newton.ModelBuilder()",
         "newton.solvers.SolverMuJoCo.register_custom_attributes(b)",
         _READERS[form],
         'm = b.finalize(device="cpu")',
@@ -293,6 +305,7 @@ PLUGIN = SourcePlugin(
             "repairs",
             "inertias that are too small are made larger",
             "newton 1.8, newton/_src/sim/builder.py: ModelBuilder.finalize, its warning",
+            holds=_has_tiny_moments,
             warned="Inertia validation corrected",
         ),
     ),

@@ -7,8 +7,18 @@ import numpy as np
 from ..interface import Array, Convention, Slot, Tree, Unsupported, Vector
 from .writing.source import Source, SourcePlugin, Way, numbered
 
+# Before 1.1 robots of elementary transforms had a class of their own.
+_ROBOT = "Robot = getattr(rtb, 'ERobot', None) if getattr(rtb.Robot, '__abstractmethods__', ()) else rtb.Robot"
 _CHARTS = {"revolute": "angle", "prismatic": "length"}
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
+# In the axes of the link: those of the robot's frame are turned where the axis is oblique.
+_IN_LINKS = """value = np.zeros((len(links), 6, robot.n))
+for J, (name, (A, path)) in zip(value, links.items()):
+    J[:, path] = np.kron(np.eye(2), A) @ robot."""
+# Its first index is the coordinate that is differentiated by.
+_HESSIANS = """value = np.zeros((len(links), 6, robot.n, robot.n))
+for H, (name, (_, path)) in zip(value, links.items()):
+    H[np.ix_(range(6), path, path)] = np.transpose(robot."""
 WAYS = {
     "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
     # The call takes the links from the robot: each call has a robot of its own.
@@ -28,6 +38,16 @@ value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T
 for J, (name, (_, path)) in zip(value, links.items()):
     J[:, path] = robot.jacob0(q, end=name)""",
     ),
+    "link_jacobians:ETS": Way(
+        "ETS.jacob0",
+        """value = np.zeros((len(links), 6, robot.n))
+for J, (name, (_, path)) in zip(value, links.items()):
+    J[:, path] = robot.ets(end=name).jacob0(q[path])""",
+    ),
+    "jacobian_local": Way("jacobe", f"{_IN_LINKS}jacobe(q, end=name)"),
+    "jacobian_local:ETS": Way("ETS.jacobe", f"{_IN_LINKS}ets(end=name).jacobe(q[path])"),
+    "jacobian_dq_aligned": Way("hessian0", f"{_HESSIANS}hessian0(q, end=name), (1, 2, 0))"),
+    "jacobian_dq_aligned:ETS": Way("ETS.hessian0", f"{_HESSIANS}ets(end=name).hessian0(q[path]), (1, 2, 0))"),
 }
 
 
@@ -99,7 +119,7 @@ def write(tree: Tree) -> Source | Unsupported:
         turns.append(turn)
     every = ", ".join(line.split(" =")[0] for line in lines)
     robot = f"robot = Robot([{every}], gravity={list(tree.gravity)!r})"
-    setup = ("import numpy as np", "from roboticstoolbox import ET, ETS, Link, Robot")
+    setup = ("import numpy as np", "import roboticstoolbox as rtb", "from roboticstoolbox import ET, ETS, Link", _ROBOT)
     # Turn of each link's frame, and the joints that move it.
     pairs = zip(tree.links, turns, paths, strict=True)
     links = f"links = {{{', '.join(f'{link.name!r}: ({turn.tolist()!r}, {path})' for link, turn, path in pairs)}}}"
@@ -119,7 +139,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     setup = (
         "import io",
         "import numpy as np",
-        "from roboticstoolbox import Robot",
+        "import roboticstoolbox as rtb",
+        _ROBOT,
         "from roboticstoolbox.models.URDF.URDFRobot import URDF_file",
         f"TEXT = {text!r}",
     )

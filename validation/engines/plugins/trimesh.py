@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..interface import Convention, Tree, Unsupported
+from ..interface import Array, Convention, Link, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
 
 _SOLIDS = {
@@ -13,7 +13,13 @@ _SOLIDS = {
     "box by its corners, the other way round": "trimesh.creation.box(bounds=[{high}, {low}])",
     "box by its triangles": "trimesh.Trimesh(*triangles({low}, {high}))",
     "box that is moved": "trimesh.creation.box(extents={size}).apply_translation({middle})",
+    "primitive box": "trimesh.primitives.Box(extents={size}, transform={pose})",
+    "primitive box by its corners": "trimesh.primitives.Box(bounds=[{low}, {high}])",
+    "primitive box by its corners, the other way round": "trimesh.primitives.Box(bounds=[{high}, {low}])",
+    "primitive ball": "trimesh.primitives.Sphere(radius={radius}, center={middle})",
+    "primitive cylinder": "trimesh.primitives.Cylinder(radius={radius}, height={length}, transform={pose})",
 }
+_OF_A_DENSITY = " of a density"
 _TRIANGLES = (
     "def triangles(low, high):",
     "    corners = [[(low, high)[k >> j & 1][j] for j in range(3)] for k in range(8)]",
@@ -31,21 +37,46 @@ WAYS = {
         "I -= m * (c @ c * np.eye(3) - np.outer(c, c))\n"
         "value = [m, *c, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
     ),
+    # Of a ball and a cylinder these are formulas; all else is of the triangles that stand for them.
+    "solid_inertia:primitive": Way(
+        "primitives: volume, moment_inertia",
+        "I = solid.moment_inertia\nm = density * solid.volume\n"
+        "value = [m, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
+    ),
 }
+
+
+def _pose(R: Array, p: Array) -> Array:
+    return np.block([[R, p[:, np.newaxis]], [np.zeros((1, 3)), np.ones((1, 1))]])
+
+
+def _sizes(name: str, body: Link) -> dict[str, Array]:
+    """What the moments of a solid about its middle say of its sizes, and its volume."""
+    moments = np.diag(np.array(body.inertia)) / body.mass
+    if "ball" in name:
+        radius = np.sqrt(2.5 * moments[0])
+        return {"radius": radius, "volume": 4.0 / 3.0 * np.pi * radius**3}
+    if "cylinder" in name:
+        radius = np.sqrt(2.0 * moments[2])
+        length = np.sqrt(12.0 * moments[0] - 3.0 * radius**2)
+        return {"radius": radius, "length": length, "volume": np.pi * radius**2 * length}
+    size, middle = np.sqrt(6.0 * (moments.sum() - 2.0 * moments)), np.array(body.joints[0].p)
+    return {"size": size, "low": middle - size / 2.0, "high": middle + size / 2.0, "volume": np.prod(size)}
 
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that makes a solid."""
-    if tree.name not in _SOLIDS:
+    name = tree.name.removesuffix(_OF_A_DENSITY)
+    if name not in _SOLIDS:
         return Unsupported("no such solid", offered=False)
     (body,) = tree.links
-    moments = np.diag(np.array(body.inertia))
-    # Of a box: the squares of its sizes follow from its moments.
-    size = np.sqrt(6.0 / body.mass * (moments.sum() - 2.0 * moments))
-    low, high = body.com - size / 2.0, body.com + size / 2.0
-    parts = {"size": size, "low": low, "high": high, "middle": np.array(body.com)}
-    solid = _SOLIDS[tree.name].format(**{name: np.round(value, 12).tolist() for name, value in parts.items()})
-    density = body.mass / float(np.prod(size))
+    (joint,) = body.joints
+    middle = np.array(joint.p) + 0.0
+    parts = {"pose": _pose(np.array(joint.R), middle), "middle": middle}
+    parts |= {part: np.round(value, 12) for part, value in _sizes(name, body).items()}
+    volume, is_round = parts.pop("volume"), "radius" in parts
+    solid = _SOLIDS[name].format(**{part: value.tolist() for part, value in parts.items()})
+    density = body.mass / float(volume)
     lines = (
         "import numpy as np",
         "import trimesh",
@@ -53,7 +84,8 @@ def write(tree: Tree) -> Source | Unsupported:
         f"density = {round(density, 12)!r}",
         f"solid = {solid}",
     )
-    return Source((*lines, "solid.density = density"), ((),), 0, 0)
+    lacks = ("solid_inertia", "solid_inertia:volume") if is_round else ("solid_inertia:primitive",)
+    return Source((*lines, "solid.density = density"), ((),), 0, 0, lacks=lacks)
 
 
 PLUGIN = SourcePlugin(

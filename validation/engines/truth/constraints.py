@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, Constraint, HasLayout, State, Tree, Unsupported
+from ..interface import STEP, Array, Constraint, HasLayout, State, Tree, Unsupported
 from .arithmetic import Exact, exact, eye, many_digits, root, skew, solve, zeros
 from .dynamics import Point, Truth, digits, random_state
 from .kinematics import Kinematics
@@ -186,6 +186,12 @@ def _unique(f: Exact | None) -> Exact:
 def after_impact(t: Truth, q: Exact, v: Exact, restitution: Exact) -> Exact:
     """Speeds after the constraints have struck: J v+ = -e J v."""
     return _bound(t, q, v, -restitution * (jacobian(t, q) @ v))[0]
+
+
+def after_step(t: Truth, s: Point) -> Exact:
+    """Speeds after a step of `STEP` from q and v2 under tau, at whose end J(q) v+ = 0 (docs/engines.md, (5))."""
+    free = s.v2 + exact(STEP)[()] * t.FD(s.q, s.v2, s.tau)
+    return after_impact(t, s.q, free, exact(0.0)[()])
 
 
 def impulses(t: Truth, q: Exact, v: Exact) -> Exact:

@@ -100,9 +100,9 @@ def angular_accelerations(truth: Truth, s: Point) -> Exact:
     return _sensed_accelerations(truth, s)[:, 3:]
 
 
-def driven(truth: Truth, s: Point) -> Exact:
-    """Readings of accelerometers at the accelerations that the forces make (n, 3)."""
-    return accelerometers(truth, s._replace(a=truth.FD(s.q, s.v, s.tau)))
+def driven(reading: TruthOf) -> TruthOf:
+    """A reading of sensors at the accelerations that the forces make."""
+    return lambda truth, s: reading(truth, s._replace(a=truth.FD(s.q, s.v, s.tau)))
 
 
 def frame_poses(truth: Truth, s: Point) -> Exact:
@@ -125,11 +125,11 @@ def applied_wrenches(truth: Truth, s: Point) -> Exact:
 
 
 def solid_inertia(truth: Truth, s: Point) -> Exact:
-    """Mass, mass centre, moments about it (10) of the only link, as it is stated."""
-    (link,) = truth.tree.links
-    stated = exact(link.inertia)
+    """Mass, mass centre, moments about it (10) of the only link, along the world's axes."""
+    (link,), ((R, p),) = truth.tree.links, truth.kinematics.poses(s.q)
+    stated = R @ exact(link.inertia) @ R.T
     moments = [stated[place] for place in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
-    return np.array([exact(link.mass)[()], *exact(link.com), *moments])
+    return np.array([exact(link.mass)[()], *(p + R @ exact(link.com)), *moments])
 
 
 def wrench_sensors(truth: Truth, s: Point) -> Exact:

@@ -139,8 +139,10 @@ class Kinematics:
         frame, radius = self.held(q, wrap.end), exact(wrap.radius)[()]
         (a, at_a), (b, at_b) = (self.seen(q, end, frame) for end in (first, second))
 
+        side = exact(wrap.side) if wrap.side else None
+
         def length(points: Exact) -> Exact:
-            return np.array([around(points[:3], points[3:], radius, wrap.is_sphere)], dtype=object)
+            return np.array([around(points[:3], points[3:], radius, wrap.is_sphere, side)], dtype=object)
 
         points, unit = np.concatenate([a, b]), eye(6)
         slopes = np.array([rate(length, points, unit[k])[0] for k in range(6)], dtype=object)
@@ -199,11 +201,12 @@ class Kinematics:
         return self._motions[key]
 
 
-def around(a: Exact, b: Exact, radius: Exact, is_sphere: bool) -> Exact:
+def around(a: Exact, b: Exact, radius: Exact, is_sphere: bool, side: Exact | None = None) -> Exact:
     """The shortest way from a to b around a sphere about the origin, or a cylinder about z; straight where it can be.
 
     Of a sphere it lies in the plane of a, b and the centre: two tangents, and between them a part of a circle. A
     cylinder unrolls: the way across z is that around a circle, and the rise along z makes a right triangle with it.
+    Where a point `side` is given, the way passes on its side in that plane, though the other be shorter.
     """
     rise = (b - a) if is_sphere else (b - a)[2:]
     flat_a, flat_b = (a, b) if is_sphere else (a[:2], b[:2])
@@ -213,11 +216,26 @@ def around(a: Exact, b: Exact, radius: Exact, is_sphere: bool) -> Exact:
     tangents = [root(square) for square in squares]
     normal = cross(a, b) if is_sphere else np.array([flat_a[0] * flat_b[1] - flat_a[1] * flat_b[0]])
     between = arc(flat_a @ flat_b, root(normal @ normal))
-    rest = between - sum(arc(radius, one) for one in tangents)
+    tangent_arcs = sum(arc(radius, one) for one in tangents)
+    rest = between - tangent_arcs
+    if side is not None and _is_beyond(flat_a, flat_b, side, normal):
+        rest = 2 * _half_turn() - between - tangent_arcs
     if rest <= 0:
         return root((b - a) @ (b - a))
     way = sum(tangents) + radius * rest
     return way if is_sphere else root(way * way + rise @ rise)
+
+
+def _is_beyond(a: Exact, b: Exact, side: Exact, normal: Exact) -> bool:
+    """Whether a point is on the other side of the centre than the nearest point from a to b, in their plane."""
+    flat = side[: len(a)] if len(a) == 2 else side - normal * (normal @ side) / (normal @ normal)
+    along = b - a
+    part = min(max(-(a @ along) / (along @ along), Decimal(0)), Decimal(1))
+    return bool((a + part * along) @ flat < 0)
+
+
+def _half_turn() -> Exact:
+    return arc(Decimal(-1), Decimal(0))
 
 
 def _locked(joint: Joint) -> Pose:

@@ -8,9 +8,9 @@ from ..writing.source import Way
 QV = "p.SetPositions(c, q)\np.SetVelocities(c, v)\n"
 Q = "p.SetPositions(c, q)\n"
 FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
-_SIMULATION = f"""c.SetTime(0.0)
-sim = drake.Simulator(p, c)
-INTEGRATOR{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+# A simulator has a context of its own: it may take one that it is given for good.
+_SIMULATOR = "sim = drake.Simulator(p)\nc = sim.get_mutable_context()\n"
+_SIMULATION = f"""{_SIMULATOR}INTEGRATOR{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
 sim.AdvanceTo({STEP})
 value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
 _FIXED = f"""drake.ResetIntegratorFromFlags(sim, 'NAME', {STEP})
@@ -37,10 +37,18 @@ WAYS: dict[str, Way] = {
     # Loops are closed but for roundings, which the solver's regularisation makes into speeds.
     "step_at_rest": Way(
         "AdvanceTo with a constraint",
-        f"c.SetTime(0.0)\np.SetPositions(c, q)\np.SetVelocities(c, 0 * v)\nsim = drake.Simulator(p, c)\n"
+        f"{_SIMULATOR}p.SetPositions(c, q)\np.SetVelocities(c, 0 * v)\n"
         f"sim.AdvanceTo({STEP})\nvalue = np.r_[p.GetPositions(c), p.GetVelocities(c)]",
         1e-9,
         (("p.Finalize()", "p.mutable_gravity_field().set_gravity_vector([0, 0, 0]); p.Finalize()"),),
+    ),
+    # SAP's solver, in the near-rigid regime for constraints that are stiff: what is left of J v is some 1e-4 of it.
+    "step_bound": Way(
+        "AdvanceTo: speeds",
+        f"{_SIMULATOR}p.SetPositions(c, q)\np.SetVelocities(c, v2)\n"
+        "p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        f"sim.AdvanceTo({STEP})\nvalue = p.GetVelocities(c)",
+        1e-3,
     ),
     "passive_forces": Way(
         "CalcForceElementsContribution",

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...interface import STEP, Actuator, Array, Constraint, End, Joint, Muscle, Tendon, Tree, Wrap
+from ...interface import STEP, Actuator, Array, Constraint, End, Joint, Muscle, Tendon, Tree, Wrap, vector
 from ..writing.source import Way
 
 KINDS = {
@@ -34,7 +34,12 @@ def _surface(name: str, wrap: Wrap) -> str:
     R, kind = np.array(wrap.end.R), "sphere" if wrap.is_sphere else "cylinder"
     size = f"{wrap.radius!r}" if wrap.is_sphere else f"{wrap.radius!r} 1"
     at = f'pos="{_text(wrap.end.p)}" xyaxes="{_text([*R[:, 0], *R[:, 1]])}"'
-    return f'<geom name="{name}" type="{kind}" size="{size}" {at} mass="0" contype="0" conaffinity="0"/>'
+    aside = _site(f"{name}_side", End("", p=vector(np.array(wrap.end.p) + R @ wrap.side))) if wrap.side else ""
+    return f'<geom name="{name}" type="{kind}" size="{size}" {at} mass="0" contype="0" conaffinity="0"/>{aside}'
+
+
+def _wrapped(name: str, wrap: Wrap) -> str:
+    return f'<geom geom="{name}"' + (f' sidesite="{name}_side"' if wrap.side else "") + "/>"
 
 
 def sites(tree: Tree, link: str) -> str:
@@ -145,12 +150,15 @@ def controls(tree: Tree) -> list[str]:
 
 
 def _equality(number: int, one: Constraint) -> str:
-    if one.torque_scale != 1.0:  # By bodies: the second's own frame is at a pose in the first.
-        first, second = one.ends
+    first, second = (*one.ends, *one.ends)[:2]
+    if one.kind == "weld" and second == End(
+        second.link
+    ):  # By bodies: the second's own frame is at a pose in the first.
         others = f' body2="{second.link}"' if second.link else ""
         w, x, y, z = quaternion_of(np.array(first.R))
         pose = f'relpose="{_text([*first.p, w, x, y, z])}"'
-        return f'<weld body1="{first.link}"{others} {pose} torquescale="{one.torque_scale!r}" {_HARD}/>'
+        scale = f' torquescale="{one.torque_scale!r}"' if one.torque_scale != 1.0 else ""
+        return f'<weld body1="{first.link}"{others} {pose}{scale} {_HARD}/>'
     if one.kind in ("point", "weld"):
         name = {"point": "connect", "weld": "weld"}[one.kind]
         return f'<{name} site1="s{number}_0" site2="s{number}_1" {_HARD}/>'
@@ -180,11 +188,15 @@ def _tendon(number: int, one: Constraint) -> str:
 def _line(name: str, sites: str, one: Constraint | Tendon, more: str = "") -> str:
     """A tendon, spatial over sites or fixed."""
     if one.kind == "path":
-        wraps = {wrap.after: k for k, wrap in enumerate(one.wraps)} if isinstance(one, Tendon) else {}
+        wraps = (
+            {wrap.after: _wrapped(f"w{sites[1:]}_{k}", wrap) for k, wrap in enumerate(one.wraps)}
+            if isinstance(one, Tendon)
+            else {}
+        )
         via = ""
         for place in range(len(one.ends)):
             via += f'<site site="{sites}_{place}"/>'
-            via += f'<geom geom="w{sites[1:]}_{wraps[place]}"/>' if place in wraps else ""
+            via += wraps.get(place, "")
         return f'<spatial name="{name}"{more}>{via}</spatial>'
     parts = zip(one.ends, one.coefficients, strict=True)
     inside = "".join(f'<joint joint="{end.link}" coef="{coefficient!r}"/>' for end, coefficient in parts)
@@ -210,7 +222,9 @@ def optional(tree: Tree) -> dict[str, tuple[str, ...]]:
     for number, one in enumerate(tree.constraints):
         turns += [f"{1 if one.kind in ('coupling', 'path') else 3} * [1]"]
         way = f"sign('s{number}_0', 's{number}_1')"
-        if one.torque_scale != 1.0:  # The pose has a quaternion of its own, with w > 0.
+        if one.kind == "weld" and one.ends[1] == End(
+            one.ends[1].link
+        ):  # The pose has a quaternion of its own, with w > 0.
             way += f" * np.sign(m.site('s{number}_0').quat[0])"
         turns += [f"3 * [{way}]"] * (one.kind == "weld")
         if one.kind in ("point", "weld"):

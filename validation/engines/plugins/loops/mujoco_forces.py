@@ -13,6 +13,13 @@ QVA = f"{QV}d.qacc[:] = a\n"
 _MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
 # What forces make of accelerations, and what accelerometers read then.
 _DRIVEN = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
+_DRIVEN_AGAIN = f"""{_DRIVEN.replace(", tau", ", a")}mj.mj_step1(m, d); mj.mj_step2(m, d)
+d.qpos[:], d.qvel[:] = q, v
+mj.mj_step1(m, d)
+d.qfrc_applied[:] = tau
+mj.mj_step2(m, d)
+"""
+_WRENCHES = "value = [[*data('force', k), *data('torque', k)] for k in sensed]"
 _ACCELEROMETERS = "value = [data('accelerometer', k) for k in sensed]"
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
@@ -64,12 +71,25 @@ for b in bs:
     "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in sensed]"),
     "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in sensed]"),
     "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in sensed]"),
-    "wrench_sensors": Way(
-        "force, torque", f"{_MEASURED}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
-    ),
+    "wrench_sensors": Way("force, torque", f"{_MEASURED}{_WRENCHES}"),
     "accelerometers_driven": Way("mj_forward, accelerometer", f"{_DRIVEN}mj.mj_forward(m, d)\n{_ACCELEROMETERS}"),
     "accelerometers_driven:mj_step2": Way(
         "mj_step1, mj_step2, accelerometer", f"{_DRIVEN}mj.mj_step1(m, d); mj.mj_step2(m, d)\n{_ACCELEROMETERS}"
+    ),
+    # Other forces before, then forces that are known after the first half of a step only.
+    "accelerometers_driven:mj_step2 again": Way(
+        "mj_step1, mj_step2 with other forces, accelerometer", f"{_DRIVEN_AGAIN}{_ACCELEROMETERS}"
+    ),
+    "angular_accelerations_driven": Way(
+        "mj_forward, frameangacc", f"{_DRIVEN}mj.mj_forward(m, d)\nvalue = [data('frameangacc', k) for k in sensed]"
+    ),
+    "angular_accelerations_driven:mj_step2 again": Way(
+        "mj_step1, mj_step2 with other forces, frameangacc",
+        f"{_DRIVEN_AGAIN}value = [data('frameangacc', k) for k in sensed]",
+    ),
+    "wrench_sensors_driven": Way("mj_forward, force, torque", f"{_DRIVEN}mj.mj_forward(m, d)\n{_WRENCHES}"),
+    "wrench_sensors_driven:mj_step2 again": Way(
+        "mj_step1, mj_step2 with other forces, force, torque", f"{_DRIVEN_AGAIN}{_WRENCHES}"
     ),
     "accelerometers_driven:mj_step": Way("mj_step, accelerometer", f"{_DRIVEN}mj.mj_step(m, d)\n{_ACCELEROMETERS}"),
     "frame_poses": Way(
