@@ -138,6 +138,31 @@ def test_controllers_accept_ports_of_matching_units(make: Callable[[], Block], r
 
 
 @pytest.mark.parametrize("make", CONTROLLERS)
+@pytest.mark.parametrize(("right", "unit"), [("rad", "N m"), ("deg", "N m"), ("m", "N"), ("none", "")])
+def test_efforts_of_controllers_are_those_of_what_is_connected(
+    make: Callable[[], Block], right: str, unit: str
+) -> None:
+    diagram = sf.Diagram("loop")
+    for port, of in RIGHT[right].items():
+        diagram.add(lib.Constant(name=port, value=[0.0], unit=of))
+    diagram.add(make(), **{port: f"{port}.y" for port in RIGHT[right]})
+    (effort,) = (port for port in draft(diagram).ports["c"].outputs if port.name == "effort")
+    assert set(effort.entry_units) == {unit}
+
+
+def test_joined_signals_keep_their_units() -> None:
+    """Those of each input for as many entries as it has; where the block states one, all have that."""
+    diagram = sf.Diagram("joined")
+    diagram.add(lib.Constant(name="angles", value=[0.1, 0.2], unit="rad"))
+    diagram.add(lib.Constant(name="length", value=0.3, unit="m"))
+    diagram.add(lib.Join(name="mixed"), u1="angles.y", u2="length.y")
+    diagram.add(lib.Join(name="same", unit="rad"), u1="angles.y", u2="angles.y")
+    ports = draft(diagram).ports
+    units = {name: [port.entry_units for port in ports[name].outputs] for name in ("mixed", "same")}
+    assert units == {"mixed": [("rad", "rad", "m")], "same": [("rad",)]}
+
+
+@pytest.mark.parametrize("make", CONTROLLERS)
 @pytest.mark.parametrize("right", ["rad", "deg", "m"])
 @pytest.mark.parametrize("port", ["q_desired", "v_desired", "q", "v"])
 def test_one_wrong_wire_of_a_controller_is_refused(make: Callable[[], Block], right: str, port: str) -> None:

@@ -12,6 +12,7 @@ import symofros as sf
 from symofros.base.functions import FUNCTIONS
 from symofros.description.yaml.yaml_writer import write_yaml
 from symofros.simulation.analysis.kinematics.facing import facings
+from symofros.simulation.stepping.bound_run import BoundRun
 from tests.simulation.mechanisms import slide
 
 _SIDE = sf.Inertia(1.0, (0.5, 0.02, 0.01), (0.01, 0.1, 0.11))
@@ -267,6 +268,30 @@ def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: 
         assert run.outcome.kind == "interrupted" and run.outcome.t == found.t
         assert "'strike' brings bodies to rest on each other" in run.outcome.reason
         assert "need a constraint that engages" in run.outcome.advice
+
+
+@pytest.mark.parametrize("failure", [LookupError("no such thing"), KeyboardInterrupt()])
+def test_what_a_check_raises_within_a_run_is_no_refusal(
+    failure: BaseException, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It can't pass through C: the run ends there, and the exception is raised, or Ctrl-C said, behind it."""
+    check, calls = BoundRun.check_changed, list[int]()
+
+    def raising_once(run: BoundRun, par: np.ndarray) -> None:
+        calls.append(0)
+        if len(calls) == 1:
+            raise failure
+        check(run, par)
+
+    monkeypatch.setattr(BoundRun, "check_changed", raising_once)
+    system = slide(sf.Spring(sf.formula("k")), parameters=(sf.Parameter("k", 1.0),))
+    model, events = sf.compile(system), {"stiffer": sf.Event("t - 0.305", action={"k": 2.0})}
+    if isinstance(failure, LookupError):
+        with pytest.raises(LookupError, match="no such thing"):
+            sf.simulate(model, [1.0], t_end=1.0, dt=0.01, events=events)
+        return
+    run = sf.simulate(model, [1.0], t_end=1.0, dt=0.01, events=events)
+    assert run.outcome.kind == "interrupted" and run.t[-1] == pytest.approx(0.305)
 
 
 def test_what_is_refused() -> None:

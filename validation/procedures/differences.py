@@ -213,15 +213,17 @@ def _remapped(original: sf.System) -> Iterator[Cell]:
         wrong = first is None or first.link != "hand" or first.entry != entry
         yield Cell(f"diff of {what}, frames turned", float(wrong), SAME, str(found)[:200] if wrong else "")
     plain = _joint("upper", limits=None, elements=())(original)
-    angle = 0.4
-    x, y, z = np.array([0.0, 0.6, 0.8]) * math.sin(angle / 2)
-    turned = _joint("upper", limits=None, elements=(), rotation=sf.Rotation.quaternion(x, y, z, math.cos(angle / 2)))
+    turned, far = (
+        _joint("upper", limits=None, elements=(), rotation=sf.Rotation.axis_angle((0.0, 0.6, 0.8), angle))
+        for angle in (0.4, 2.8)
+    )
     reversed_axis = _joint("upper", limits=None, elements=(), axis=(0, -0.6, -0.8))
     slid = _joint("lower", position=(0.3 + 0.8 * 0.05, 0.03, 0.1), rotation=sf.Rotation())
     straight = _joint("lower", rotation=sf.Rotation())
     cases = {
         "a sign": (plain, reversed_axis(original)),
         "a zero": (plain, turned(original)),
+        "a zero far away": (plain, far(original)),
         "a zero of a slide": (straight(plain), slid(plain)),
     }
     both = turned(_joint("lower", axis=(-0.8, -0.6, 0.0))(original))

@@ -124,6 +124,9 @@ def on_motions(_: Scene) -> Iterator[Cell]:
     speeds = rf"the speed of 'x' exceeds its limits, {_NUMBER} to {_NUMBER}, at t = [\d.]+ s, by up to {_NUMBER}:"
     yield _told("limits that are left", run, (places, (0.4, 2.0)), (speeds, (-2.0, 2.0, 1.0)))
     yield _told("limits that are kept", sf.simulate(limited, [0.0], [0.5], t_end=1.0, dt=0.1))
+    driven = sf.simulate(_slide(sf.Damper(-2.0)), [0.0], [1.0], t_end=10.0, dt=1e-3, method="rk4")
+    yield _told("speeds that a force drives", driven)
+    yield Cell("growth by a force", float(driven.v[-1, 0] / math.exp(20.0)) - 1.0, 1e-6)
     creeping = _slide(sf.Friction(1.0, minimum_velocity=1e-3), effort="0.5")
     run = sf.simulate(creeping, [0.0], t_end=1.0, dt=1e-3)
     said = rf"'x' ends at {_NUMBER}, where friction carries {_NUMBER} of the {_NUMBER} that it reaches"

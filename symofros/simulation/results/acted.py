@@ -10,7 +10,7 @@ from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
 from symofros.simulation.events import Event, ModeEvent
-from symofros.simulation.results.ends import ENDS
+from symofros.simulation.results.ends import ENDS, INTERRUPTED
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found
@@ -44,7 +44,11 @@ def notes_of(met: Met) -> tuple[str, ...]:
 
 
 def failure_of(run: BoundRun, met: Met) -> Outcome | None:
-    """Why a run ends at an event, where its action has failed."""
+    """Why a run ends at an event, where its action has failed.
+
+    Raises:
+        BaseException: What the check of the parameters that the action sets raised, which is no refusal.
+    """
     event, done, t = run.events[met.which], met.done, met.t
     if done is None or done.status >= 0:
         return None
@@ -58,6 +62,10 @@ def failure_of(run: BoundRun, met: Met) -> Outcome | None:
         return ENDS[done.status].outcome(t, reason=reason)
     if done.status != Status.ACTION_REFUSED:
         return ENDS[done.status].outcome(t)
+    if isinstance(run.failure, KeyboardInterrupt):
+        return INTERRUPTED.outcome(t)
+    if run.failure is not None:
+        raise run.failure
     problem = _refused(run, event, met, done)
     reason = f"what event '{event.name}' sets is refused: {problem.what}; {problem.rule}"
     return Outcome(ENDS[done.status].kind, t, reason, problem.remedy)

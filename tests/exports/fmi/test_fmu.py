@@ -315,6 +315,11 @@ def test_parameters_that_the_description_refuses_are_refused(unit: Any, value: f
         it.start()
 
 
+def test_the_condition_that_a_parameter_does_not_meet_is_named(made: Any, version: int) -> None:
+    done, log = simulated(str(made("four_bar", version)), stop_time=0.01, start_values={"par.m": -5.0})
+    assert done is None and "mass >= 0" in "".join(log), log
+
+
 def test_calls_forbidden_by_the_standard_are_refused(unit: Any) -> None:
     it = unit("four_bar", cosim=True)
     forbidden = [

@@ -5,11 +5,14 @@ from __future__ import annotations
 import itertools
 import math
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.stepping.methods import METHODS, stability_limit
 from symofros.simulation.stepping.resolution import TOLERANCE
 from tests.models import GUESSES, compiled
@@ -59,6 +62,37 @@ def test_a_note_names_limit_mode_and_energy(method: str) -> None:
     assert f"oscillates at {1.05 * limit / H:.4g} rad/s" in note
     appeared = float(note.split(" J appeared")[0].split()[-1])
     assert appeared == pytest.approx(run.energy[-1] - run.energy[0], rel=0.01)
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "rk4"])
+def test_a_run_that_its_steps_let_diverge_says_so_and_what_mends_it(method: str) -> None:
+    """That the states have grown is not the reason; an input that is no number is another one."""
+    limit = METHODS[method].imaginary_limit
+    run, _ = oscillation(method, 1.6 * limit, 0.0, 3000)
+    assert run.outcome.kind == "diverged" and run.t[-1] < 3000 * H
+    assert f"past the limit of stability of '{method}'" in run.outcome.reason
+    assert f"dt below {H / 1.6:.3g} s" in run.outcome.advice, run.outcome
+    k = (1.6 * limit / H) ** 2
+    broken = sf.simulate(oscillator(), [1.0], t_end=1.0, method=method, dt=H, par=[k, 0.0], u={"x": "sqrt(0.055 - t)"})
+    assert broken.outcome.kind == "input failed" and "sqrt" in broken.outcome.reason
+
+
+@pytest.mark.parametrize("speed", [1.0, 1e-3])
+def test_displacements_are_judged_by_how_far_a_motion_comes(speed: float) -> None:
+    """To and fro by a millimetre at 1 m/s for 10 s is no way of 10 m; at 1 mm/s the way is the shorter of both."""
+    n, reach = 41, 2e-3
+    t = np.linspace(0.0, 10.0, n)
+    v, nothing = np.full((n, 1), speed), np.zeros((n, 0))
+    q = 1e-3 * np.sin(t)[:, np.newaxis]
+    run: Any = SimpleNamespace(
+        model=SimpleNamespace(difference=lambda a, b: b - a),
+        norms=lambda q, u, x: np.abs(x)[:, 0],
+        rounding=lambda states: 1e-12,
+        fastest=speed,
+        reach=reach,
+    )
+    found = ExaminedRun.change_in_part(run, [t, q + 1e-3, v, nothing], [t, q, v, nothing])
+    assert found == pytest.approx(1e-3 / min(reach, 10.0 * speed) / 3.0)
 
 
 @pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler"])
