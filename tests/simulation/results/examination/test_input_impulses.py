@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.simulation.results.examination.input_impulses import nodes
+from symofros.simulation.results.examination.input_impulses import _held, _misjudged, nodes
 from symofros.simulation.stepping.methods import METHODS
 from tests.simulation.mechanisms import slide
 
@@ -72,6 +72,18 @@ def test_inputs_that_steps_resolve_get_no_note(method: str, kind: str) -> None:
     fine = sf.simulate(sf.compile(CART), t_end=SPAN, u={"x": law}, method="dop853", rtol=1e-10, atol=1e-12)
     assert abs(run.v[-1, 0] - fine.v[-1, 0]) < 0.05 * np.abs(fine.v).max()
     assert run.outcome.ok and not run.outcome.notes, run.outcome.notes
+
+
+@pytest.mark.parametrize("name", ["rk4", "euler", "dopri5"])
+def test_pushes_to_both_sides_are_misjudged_by_as_much(name: str) -> None:
+    """By samples of an input as by their negatives."""
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        t = np.concatenate([[0.0], np.sort(rng.uniform(0.0, 1.0, 5))])
+        values = rng.standard_normal(6)
+        pair = [_misjudged(_held(0, t, sign * values), METHODS[name], 0.0, 1.0, 0.1) for sign in (1.0, -1.0)]
+        one, other = ((0.0, 0.0, 0.0) if x is None else (x.t, x.missed, x.whole) for x in pair)
+        assert one == pytest.approx(other, rel=1e-12)
 
 
 def test_missed_impulses_of_small_effect_are_not_noted() -> None:
