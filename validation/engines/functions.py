@@ -301,6 +301,7 @@ def _measured() -> dict[str, Function]:
         "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
         "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
         "frame_poses": ("positions and rows of R (n, 12)", derived.frame_poses),
+        "frame_jacobians": ("Jacobians of the frames along the world's axes (n, 6, nv)", derived.frame_jacobians),
         "accelerometers_driven": (
             "accelerometers at the accelerations that tau makes (n, 3)",
             derived.driven(derived.accelerometers),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from validation.engines.functions import STEPS
-from validation.engines.interface import ORIGIN, STEP, Tree
+from validation.engines.interface import ORIGIN, STEP, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
@@ -70,6 +70,19 @@ def test_a_sensor_that_forgets_where_it_stands_is_a_red_cell() -> None:
         assert expected is not None
         verdicts.append(judge("planted", tree, name, np.asarray(given[name].answer.value), expected).verdict)
     assert verdicts == ["wrong", "wrong", "wrong", "right"]
+
+
+@pytest.mark.parametrize("reading", ["accelerometers", "angular_accelerations", "wrench_sensors"])
+def test_a_reading_that_keeps_the_forces_of_before_is_a_red_cell(reading: str) -> None:
+    ways = [f"{reading}_driven", f"{reading}_driven:mj_step2 again"]
+    one, again = (_judged("mujoco", SENSED["sensors on hinges"], way)[way] for way in ways)
+    assert one.want is not None and one.cell.verdict == again.cell.verdict == "right"
+    plugin, state = OWN["mujoco"], one.answer.state
+    assert state is not None
+    model = plugin.build(SENSED["sensors on hinges"])
+    assert not isinstance(model, Unsupported)
+    stale = model.call(ways[0], replace(state, tau=state.a))
+    assert judge("planted", SENSED["sensors on hinges"], ways[0], np.asarray(stale), one.want).verdict == "wrong"
 
 
 @pytest.mark.parametrize("kind", ["revolute oblique", "ball", "free", "three hinges"])

@@ -12,7 +12,7 @@ from validation.engines.matrix import cells
 from validation.engines.models import flexible, single
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import turns
+from validation.engines.truth import derived, turns
 from validation.engines.truth.arithmetic import Exact, arc, cos_sin, exact, many_digits
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.engines.truth.kinematics import around
@@ -68,6 +68,38 @@ def test_a_line_rises_around_a_cylinder_and_not_around_a_sphere() -> None:
         flat = around(a, exact((1.0, 0.0, 0.0)), exact(0.5)[()], False)
         risen = around(a, b, exact(0.5)[()], False)
     assert float(risen) == pytest.approx(math.hypot(float(flat), 1.0), rel=1e-15)
+
+
+@pytest.mark.parametrize("is_sphere", [True, False])
+def test_a_line_passes_a_surface_on_the_side_of_a_point(is_sphere: bool) -> None:
+    radius, tangent = 0.5, math.sqrt(1.0625 - 0.25)
+    # Both ends are 0.25 above the centre: the arc over it is shorter than that beneath by four times their elevation.
+    over = math.pi - 2 * math.atan(0.25) - 2 * math.acos(radius / math.sqrt(1.0625))
+    under = over + 4 * math.atan(0.25)
+    with many_digits():
+        a, b = _points((-1.0, 0.25, 0.0), (1.0, 0.25, 0.0))
+        # The last stands near the normal of the plane of the ends and the centre: its part in that plane counts.
+        for side, way in (((0.0, 1.0, 0.0), over), ((0.3, -1.0, 0.5), under), ((0.0, 0.125, 3.0), over)):
+            length = around(a, b, exact(radius)[()], is_sphere, exact(side))
+            assert float(length) == pytest.approx(2 * tangent + radius * way, rel=1e-15)
+        # Above the surface the line is straight on the side above only.
+        a, b = _points((-1.0, 0.75, 0.0), (1.0, 0.75, 0.0))
+        assert float(around(a, b, exact(radius)[()], is_sphere, exact((0.0, 1.0, 0.0)))) == 2.0
+        assert float(around(a, b, exact(radius)[()], is_sphere, exact((0.0, -1.0, 0.0)))) > 2.5
+
+
+def test_a_solid_stands_where_its_joint_puts_it() -> None:
+    tree = single.trees()["primitive cylinder of a density"]
+    (body,) = tree.links
+    layout = Layout(0, 0, ((),))
+    mass, *rest = digits(Truth(tree, layout).value(derived.solid_inertia, Point.of(random_state(tree, layout, 1))))
+    assert mass == pytest.approx(2.0 * math.pi * 0.25 * 2.0, rel=1e-15)
+    np.testing.assert_array_equal(rest[:3], body.joints[0].p)
+    xx, yy, zz, xy, xz, yz = rest[3:]
+    moments = np.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    across = mass * (0.25 / 4.0 + 4.0 / 12.0)
+    np.testing.assert_allclose(moments, [mass * 0.125, across, across], rtol=1e-14)
+    assert abs(xy) > 0.05
 
 
 def test_a_line_that_passes_a_surface_or_begins_in_it_is_straight() -> None:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from validation.engines.identities import held
-from validation.engines.interface import Unsupported
+from validation.engines.interface import STEP, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, judged
 from validation.engines.models.loops import trees
 from validation.engines.plugins import OWN
-from validation.engines.truth import constraints
-from validation.engines.truth.arithmetic import exact
+from validation.engines.truth import constraints, derived
+from validation.engines.truth.arithmetic import Exact, exact
 from validation.engines.truth.dynamics import Point, Truth, digits
 from validation.engines.workers import Job, answered
 
@@ -29,9 +29,10 @@ def _judged(engine: str, name: str, *functions: str) -> dict[str, Judged]:
 
 def _closed(name: str) -> tuple[Truth, Point]:
     """A truth and a state that satisfies its constraints."""
-    (answer,) = answered(Job("mujoco", TREES[name], ("sizes",), SEED))
+    tree = replace(TREES[name], asked="")
+    (answer,) = answered(Job("mujoco", tree, ("sizes",), SEED))
     assert answer.layout is not None and answer.state is not None
-    return Truth(TREES[name], answer.layout), Point.of(answer.state)
+    return Truth(tree, answer.layout), Point.of(answer.state)
 
 
 @pytest.mark.parametrize("name", ["point between branches", "weld on the world", "cable over four points"])
@@ -54,6 +55,25 @@ def test_constraint_forces_have_no_power_on_a_closed_state() -> None:
         lambda t, s: np.array([constraints.forces(t, s.q, s.v, s.tau) @ (constraints.jacobian(t, s.q) @ s.v)]), s
     )
     assert abs(float(power[0])) < 1e-12
+
+
+@pytest.mark.parametrize("kind", ["weld", "point"])
+def test_bodies_that_are_bound_in_a_step_keep_their_momentum(kind: str) -> None:
+    name = f"{kind} between free bodies"
+    truth, s = _closed(name)
+
+    def closing(t: Truth, s: Point) -> Exact:
+        return constraints.jacobian(t, s.q) @ constraints.after_step(t, s)
+
+    def left(t: Truth, s: Point) -> Exact:
+        """What the bodies' linear momenta gain together, which the constraint has no part in."""
+        free = s.v2 + exact(STEP)[()] * t.FD(s.q, s.v2, s.tau)
+        return (derived.centroidal_matrix(t, s.q) @ (constraints.after_step(t, s) - free))[:3]
+
+    assert np.max(np.abs(digits(truth.value(closing, s)))) < 1e-30
+    assert np.max(np.abs(digits(truth.value(left, s)))) < 1e-13
+    assert np.max(np.abs(digits(truth.value(lambda t, s: constraints.jacobian(t, s.q) @ s.v2, s)))) > 0.1
+    assert set(asked(OWN["drake"], TREES[name])) == {"step_bound"} and not asked(OWN["pinocchio"], TREES[name])
 
 
 def test_redundant_equations_leave_one_acceleration_and_no_one_force() -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from ..interface import ORIGIN, Joint, Link, Tree
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed
+from .readers import diagonal
 
 
 def _hinge(draw: np.random.Generator, **changes: float) -> Joint:
@@ -30,13 +31,14 @@ def _locked(name: str, *joints: Joint, base: bool = False) -> Tree:
 
 
 def _fused_at_one_point() -> Tree:
-    """Fixed links whose origins and mass centres are one point, turned: nothing but their inertias adds up."""
+    """Fixed links whose origins and mass centres are one point, with principal inertias that one turn lies between."""
     draw = np.random.default_rng(13)
     first, second, carried = (
         link(draw, name, parent, _hinge(draw)) for name, parent in (("a", -1), ("b", 0), ("c", 1))
     )
     held = replace(placed(draw, Joint("fixed")), p=ORIGIN)
-    parts = (replace(first, com=ORIGIN), replace(second, com=ORIGIN, joints=(held,)), carried)
+    along = {"com": ORIGIN, "inertia": diagonal(0.25, 0.1875, 0.125)}
+    parts = (replace(first, **along), replace(second, joints=(held,), **along), carried)
     return Tree("fixed links fused at one point", parts, fused=True)
 
 

@@ -267,6 +267,10 @@ WAYS = {
         "pin.framesForwardKinematics(m, d, q)\n"
         "value = np.array([np.r_[d.oMf[f].translation, d.oMf[f].rotation.ravel()] for f in fs])",
     ),
+    "frame_jacobians": Way(
+        "computeFrameJacobian",
+        "value = [pin.computeFrameJacobian(m, d, q, f, pin.LOCAL_WORLD_ALIGNED) for f in sensed]",
+    ),
     "frame_poses": Way(
         "framesForwardKinematics",
         "pin.framesForwardKinematics(m, d, q)\n"

@@ -111,6 +111,11 @@ def frame_poses(truth: Truth, s: Point) -> Exact:
     return np.array([np.concatenate([p, R.reshape(9)]) for R, p, _ in frames])
 
 
+def frame_jacobians(truth: Truth, s: Point) -> Exact:
+    """Jacobians of the sensors' frames, along the world's axes (n, 6, nv)."""
+    return np.array([truth.kinematics.held(s.q, end).J for end in truth.tree.sensors])
+
+
 # Force, then moment about the frame's origin, along its axes.
 WRENCH = (1.0, -2.0, 3.0, 0.5, -0.25, 0.75)
 

@@ -92,5 +92,11 @@ for j in js:
     "accelerometers": _sensors(
         "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
     ),
+    "frame_jacobians": Way(
+        "CalcJacobianSpatialVelocity of points",
+        f"{Q}W, V = p.world_frame(), drake.JacobianWrtVariable.kV\nlinks\n"
+        "value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, links[k].body_frame(), r, W, W), 3, axis=0)"
+        " for k, R, r in sensed]",
+    ),
     "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
 }

@@ -96,6 +96,11 @@ for b in bs:
         "site_xpos, site_xmat",
         f"{Q}own = [m.site(f'o{{k}}').id for k in sensed]\nvalue = np.hstack([d.site_xpos[own], d.site_xmat[own]])",
     ),
+    "frame_jacobians": Way(
+        "mj_jacSite",
+        f"{Q}value = np.zeros((len(sensed), 6, m.nv))\n"
+        "for J, k in zip(value, sensed): mj.mj_jacSite(m, d, J[:3], J[3:], m.site(f'o{k}').id)",
+    ),
     "applied_wrenches": Way(
         "mj_applyFT",
         f"""{Q}value = np.zeros(m.nv)
