@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Joint, Link, Tree
+from ..interface import ORIGIN, Joint, Link, Rows, Tree
 from .hostile import trees as hostile_trees
-from .kinds import OBLIQUE, link, placed
-from .readers import diagonal
+from .kinds import OBLIQUE, link, placed, turned
+from .readers import diagonal, in_series
 
 
 def _hinge(draw: np.random.Generator, **changes: float) -> Joint:
@@ -30,16 +31,13 @@ def _locked(name: str, *joints: Joint, base: bool = False) -> Tree:
     return Tree(name, tuple(links))
 
 
-def _fused_at_one_point() -> Tree:
+def _fused_at_one_point(name: str, *turn: Rows) -> Tree:
     """Fixed links whose origins and mass centres are one point, with principal inertias that one turn lies between."""
     draw = np.random.default_rng(13)
-    first, second, carried = (
-        link(draw, name, parent, _hinge(draw)) for name, parent in (("a", -1), ("b", 0), ("c", 1))
-    )
-    held = replace(placed(draw, Joint("fixed")), p=ORIGIN)
-    along = {"com": ORIGIN, "inertia": diagonal(0.25, 0.1875, 0.125)}
-    parts = (replace(first, **along), replace(second, joints=(held,), **along), carried)
-    return Tree("fixed links fused at one point", parts, fused=True)
+    principal = diagonal(0.125, 0.1875, 0.25)
+    first = Link("a", -1, (_hinge(draw),), 1.5, inertia=principal)
+    held = Joint("fixed", R=turn[0] if turn else turned(draw))
+    return Tree(name, (first, Link("b", 0, (held,), 0.75, inertia=principal)), fused=True)
 
 
 def trees() -> dict[str, Tree]:
@@ -58,7 +56,8 @@ def trees() -> dict[str, Tree]:
         Tree("attached chain", parts[:4], attached="c"),
         Tree("attached branches", parts, attached="c"),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
-        _fused_at_one_point(),
+        _fused_at_one_point("fixed links fused at one point"),
+        _fused_at_one_point("fixed links fused at a quarter turn", in_series(("z", math.pi / 2.0))),
     )
     changed = tuple(
         Tree(f"{what} changed", parts[:2], changed=what) for what in ("mass", "inertia", "frame", "gravity")

@@ -13,11 +13,14 @@ QVA = f"{QV}d.qacc[:] = a\n"
 _MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_sensorAcc(m, d)\n"
 # What forces make of accelerations, and what accelerometers read then.
 _DRIVEN = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
-_DRIVEN_AGAIN = f"""{_DRIVEN.replace(", tau", ", a")}mj.mj_step1(m, d); mj.mj_step2(m, d)
-d.qpos[:], d.qvel[:] = q, v
-mj.mj_step1(m, d)
-d.qfrc_applied[:] = tau
-mj.mj_step2(m, d)
+# On data that are new: what was computed before hides what isn't computed again.
+_DRIVEN_AGAIN = """e = mj.MjData(m)
+e.qpos[:], e.qvel[:], e.qfrc_applied[:] = q, v, a
+mj.mj_step1(m, e); mj.mj_step2(m, e)
+e.qpos[:], e.qvel[:] = q, v
+mj.mj_step1(m, e)
+e.qfrc_applied[:] = tau
+mj.mj_step2(m, e)
 """
 _WRENCHES = "value = [[*data('force', k), *data('torque', k)] for k in sensed]"
 _ACCELEROMETERS = "value = [data('accelerometer', k) for k in sensed]"
@@ -78,18 +81,20 @@ for b in bs:
     ),
     # Other forces before, then forces that are known after the first half of a step only.
     "accelerometers_driven:mj_step2 again": Way(
-        "mj_step1, mj_step2 with other forces, accelerometer", f"{_DRIVEN_AGAIN}{_ACCELEROMETERS}"
+        "mj_step1, mj_step2 with other forces, accelerometer",
+        _DRIVEN_AGAIN + "value = [e.sensor(f'accelerometer{k}').data for k in sensed]",
     ),
     "angular_accelerations_driven": Way(
         "mj_forward, frameangacc", f"{_DRIVEN}mj.mj_forward(m, d)\nvalue = [data('frameangacc', k) for k in sensed]"
     ),
     "angular_accelerations_driven:mj_step2 again": Way(
         "mj_step1, mj_step2 with other forces, frameangacc",
-        f"{_DRIVEN_AGAIN}value = [data('frameangacc', k) for k in sensed]",
+        _DRIVEN_AGAIN + "value = [e.sensor(f'frameangacc{k}').data for k in sensed]",
     ),
     "wrench_sensors_driven": Way("mj_forward, force, torque", f"{_DRIVEN}mj.mj_forward(m, d)\n{_WRENCHES}"),
     "wrench_sensors_driven:mj_step2 again": Way(
-        "mj_step1, mj_step2 with other forces, force, torque", f"{_DRIVEN_AGAIN}{_WRENCHES}"
+        "mj_step1, mj_step2 with other forces, force, torque",
+        _DRIVEN_AGAIN + "value = [[*e.sensor(f'force{k}').data, *e.sensor(f'torque{k}').data] for k in sensed]",
     ),
     "accelerometers_driven:mj_step": Way("mj_step, accelerometer", f"{_DRIVEN}mj.mj_step(m, d)\n{_ACCELEROMETERS}"),
     "frame_poses": Way(
