@@ -22,6 +22,7 @@ EXTRAS = (
     "exudyn",
     "frax",
     "idyntree",
+    "mujoco-warp",
     "pybullet",
     "pykdl",
     "roboticstoolbox",
@@ -79,3 +80,13 @@ def test_casadi_differentiates_and_solves_right(kind: str) -> None:
     """All its functions: derivatives of forces by coordinates and speeds, along quaternions, too."""
     plugin = OWN["casadi"]
     assert {cell.verdict for cell in cells(plugin, tree_of(kind), tuple(plugin.functions))} <= {"right", "not offered"}
+
+
+@pytest.mark.parametrize(
+    ("integrator", "stands_still"), (("step_dampers_implicit", False), ("step_dampers_implicit:njmax_0", True))
+)
+def test_mujoco_warp_stands_still_without_room_for_constraints(integrator: str, stands_still: bool) -> None:
+    """The stated cause: as made by default its data step right; with room for no rows the speeds stay as they are."""
+    _installed("mujoco-warp")
+    (cell,) = cells(OWN["mujoco-warp"], tree_of("revolute x"), (integrator,))
+    assert cell.verdict == ("wrong" if stands_still else "right")

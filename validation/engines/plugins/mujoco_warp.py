@@ -1,0 +1,182 @@
+"""MuJoCo Warp: MuJoCo in Warp, on the CPU, from MuJoCo's own compiler."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
+from . import mujoco
+from .loops.mujoco_forces import COPY, EXPLICIT
+from .writing.source import Source, SourcePlugin, Way
+
+# Trees without constraints need no room for their rows; Warp then compiles no kernels of the solver.
+_SETUP = """import warp as wp
+wp.config.quiet = True
+import mujoco_warp as mjw
+def put(data, **fields):
+    for name, value in fields.items():
+        getattr(data, name).assign(np.asarray(value, np.float32)[None])
+def got(data, name): return getattr(data, name).numpy()[0]
+def made(model, **room):
+    data = mjw.make_data(model, **room)
+    if model.nu: put(data, ctrl=d.ctrl)
+    return mjw.put_model(model), data
+wp.set_device('cpu')
+mw, dw = made(m, njmax=0, nconmax=0)"""
+_SENSED = (
+    "sensed = range({count})",
+    "def data(kind, k):\n    one = m.sensor(f'{{kind}}{{k}}')\n"
+    "    return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]",
+)
+_Q = "put(dw, qpos=q)\nmjw.fwd_position(mw, dw)\n"
+_QV = "put(dw, qpos=q, qvel=v)\nmjw.fwd_position(mw, dw)\nmjw.fwd_velocity(mw, dw)\n"
+_FORWARD = "put(dw, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.forward(mw, dw)\n"
+_INVERSE = "put(dw, qpos=q, qvel=v, qacc=a)\nmjw.inverse(mw, dw)\n"
+# Rows by MuJoCo's numbering of M, of which the lower triangle is kept.
+_FULL = """value, M = np.zeros((m.nv, m.nv)), got(dw, 'M')
+for i in range(m.nv):
+    row = slice(m.M_rowadr[i], m.M_rowadr[i] + m.M_rownnz[i])
+    value[i, m.M_colind[row]] = value[m.M_colind[row], i] = M[row]"""
+_COLUMNS = """value = np.zeros((m.nv, m.nv))
+x, y = wp.zeros((1, m.nv), dtype=float), wp.zeros((1, m.nv), dtype=float)
+for row, unit in zip(value, np.eye(m.nv, dtype=np.float32)):
+    y.assign(unit[None])
+    mjw.{call}(mw, dw, x, y)
+    row[:] = x.numpy()[0]"""
+_JACOBIANS = """value = np.zeros((len(bs), 6, m.nv))
+Jp, Jr = wp.zeros((1, 3, m.nv), dtype=float), wp.zeros((1, 3, m.nv), dtype=float)
+for k, b in enumerate(bs):
+    point = wp.array(got(dw, 'xpos')[b][None], dtype=wp.vec3)
+    mjw.jac(mw, dw, Jp, Jr, point, wp.array([b], dtype=int))
+    value[k] = np.vstack([Jp.numpy()[0], Jr.numpy()[0]])"""
+
+
+def _step(integrator: str, settings: str = "", room: str = "") -> Way:
+    """A step with options of a model of its own."""
+    made = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}\n{settings}"
+    made += f"nw, dn = made(n{room})\n"
+    code = (
+        "put(dn, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.step(nw, dn)\nvalue = np.r_[got(dn, 'qpos'), got(dn, 'qvel')]"
+    )
+    return Way(f"step, {integrator}{room}", f"{made}{code}")
+
+
+def _reading(field: str, before: str = _QV) -> Way:
+    """A field of the data."""
+    return Way(field, f"{before}value = got(dw, '{field}')")
+
+
+def _sensor(kind: str, before: str = _INVERSE) -> Way:
+    return Way(kind, f"{before}value = [data('{kind}', k) for k in sensed]")
+
+
+WAYS = {
+    "mass_matrix": Way("crb", f"{_Q}{_FULL}"),
+    "mass_matrix:mul_m": Way("mul_m", f"{_Q}{_COLUMNS.format(call='mul_m')}"),
+    "mass_matrix_inverse": Way("solve_m", f"{_Q}{_COLUMNS.format(call='solve_m')}"),
+    "bias": _reading("qfrc_bias"),
+    "gravity": _reading("qfrc_bias", _QV.replace("qvel=v", "qvel=0 * v")),
+    "inverse_dynamics": Way("inverse", f"{_INVERSE}value = got(dw, 'qfrc_inverse')"),
+    "forward_dynamics": Way("forward", f"{_FORWARD}value = got(dw, 'qacc')"),
+    "kinetic_energy": Way("energy_vel", f"{_QV}mjw.energy_vel(mw, dw)\nvalue = got(dw, 'energy')[1]"),
+    "potential_energy": Way("energy_pos", f"{_Q}mjw.energy_pos(mw, dw)\nvalue = got(dw, 'energy')[0]"),
+    "link_poses": Way(
+        "xpos, xmat", f"{_Q}value = np.hstack([got(dw, 'xpos')[bs], got(dw, 'xmat')[bs].reshape(-1, 9)])"
+    ),
+    "mass_centre": Way("subtree_com", f"{_Q}value = got(dw, 'subtree_com')[0]"),
+    "link_jacobians": Way("jac", f"{_Q}{_JACOBIANS}"),
+    "centroidal_momentum": Way(
+        "subtree_vel",
+        f"{_QV}mjw.subtree_vel(mw, dw)\n"
+        "value = np.r_[m.body_subtreemass[0] * got(dw, 'subtree_linvel')[0], got(dw, 'subtree_angmom')[0]]",
+    ),
+    "subtree_momenta": Way(
+        "subtree_vel",
+        f"{_QV}mjw.subtree_vel(mw, dw)\nlinear, angular = got(dw, 'subtree_linvel'), got(dw, 'subtree_angmom')\n"
+        "value = [[*(m.body_subtreemass[b] * linear[b]), *angular[b]] for b in bs]",
+    ),
+    # About the mass centre of the whole mechanism that the body is in.
+    "joint_wrenches": Way(
+        "rne_postconstraint: cfrc_int",
+        f"""{_INVERSE}mjw.rne_postconstraint(mw, dw)
+value = []
+for b in bs:
+    moment, force = got(dw, 'cfrc_int')[b].reshape(2, 3)
+    R, arm = got(dw, 'xmat')[b], got(dw, 'subtree_com')[m.body_rootid[b]] - got(dw, 'xpos')[b]
+    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
+    ),
+    "step_dampers_implicit": _step("mjINT_EULER"),
+    "step_dampers_implicit:njmax_0": _step("mjINT_EULER", room=", njmax=0"),
+    "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
+    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
+    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+    "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
+    "step_rk4_manifold": _step("mjINT_RK4"),
+    "accelerometers": _sensor("accelerometer"),
+    "gyroscopes": _sensor("gyro"),
+    "velocimeters": _sensor("velocimeter"),
+    "angular_accelerations": _sensor("frameangacc"),
+    "accelerometers_driven": _sensor("accelerometer", _FORWARD),
+    "wrench_sensors": Way(
+        "force, torque", f"{_INVERSE}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
+    ),
+    "frame_poses": Way(
+        "site_xpos, site_xmat",
+        f"{_Q}own = [m.site(f'o{{k}}').id for k in sensed]\n"
+        "value = np.hstack([got(dw, 'site_xpos')[own], got(dw, 'site_xmat')[own].reshape(-1, 9)])",
+    ),
+    "passive_forces": _reading("qfrc_passive"),
+    "tendon_lengths": _reading("ten_length"),
+    "tendon_arms": Way(
+        "ten_J",
+        f"{_QV}value, J = np.zeros((m.ntendon, m.nv)), got(dw, 'ten_J')\n"
+        "for row, n, first in zip(value, m.ten_J_rownnz, m.ten_J_rowadr):\n"
+        "    row[m.ten_J_colind[first:first + n]] = J[first:first + n]",
+    ),
+    "actuator_lengths": _reading("actuator_length"),
+    "actuator_arms": Way(
+        "actuator_moment",
+        f"{_QV}value = np.zeros((m.nu, m.nv))\n"
+        "parts = (got(dw, name) for name in ('moment_rownnz', 'moment_rowadr', 'moment_colind', 'actuator_moment'))\n"
+        "rows, firsts, columns, arms = parts\n"
+        "for row, n, first in zip(value, rows, firsts):\n"
+        "    row[columns[first:first + n]] = arms[first:first + n]",
+    ),
+    "actuator_forces": _reading("actuator_force", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+    "actuated_forces": _reading("qfrc_actuator", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+}
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The text that builds the tree in MuJoCo, and puts it into Warp."""
+    source = mujoco.write(tree)
+    if isinstance(source, Unsupported):
+        return source
+    optional = dict(source.optional)
+    if tree.sensors:
+        optional["sensed"] = tuple(line.format(count=len(tree.sensors)) for line in _SENSED)
+    return replace(source, lines=(*source.lines, *_SETUP.split("\n")), optional=optional)
+
+
+_UNOFFERED = ("flexible bodies", "scaled welds", "a lone body")
+PLUGIN = SourcePlugin(
+    name="mujoco-warp",
+    package="mujoco-warp",
+    extra="symofros[engine-mujoco-warp]",
+    conventions=(
+        Convention("model", "of MuJoCo's compiler; conventions are MuJoCo's"),
+        Convention("data", "arrays of worlds, of which one is asked"),
+        Convention("precision", "single"),
+    ),
+    kinds=mujoco.PLUGIN.kinds,
+    ways=WAYS,
+    write=write,
+    demands={
+        name: words
+        for name, words in mujoco.PLUGIN.demands.items()
+        if name not in _UNOFFERED and not name.startswith("changed")
+    },
+    statements=tuple(one for one in mujoco.PLUGIN.statements if not one.functions.startswith("inverse_dynamics:")),
+    roundoff=SINGLE,
+    calls=4,
+)
