@@ -108,7 +108,7 @@ TRIALS: dict[str, tuple[str, ...]] = {
     "engines": (_ENGINE.format("adam --engine dart --engine drake"),),
     "all": (_CHECK, 'python -c "import viser, casadi, jax, gymnasium, fmpy, zenoh"'),
 }
-for _name in "adam dart drake dynibo frax idyntree mjx mujoco-warp newton pybullet roboticstoolbox".split():
+for _name in "adam dart drake dynibo frax idyntree mjx mujoco-warp newton pybullet roboticstoolbox sapien".split():
     TRIALS[f"engine-{_name}"] = (_ENGINE.format(_name),)
 
 

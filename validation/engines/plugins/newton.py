@@ -90,7 +90,7 @@ def _array(values: object) -> str:
     return repr(np.asarray(values, dtype=float).tolist())
 
 
-def _quaternion(R: Array) -> Array:
+def quaternion(R: Array) -> Array:
     """Quaternion (x, y, z, w) of a rotation."""
     w = np.sqrt(max(0.0, 1.0 + np.trace(R))) / 2.0
     if w > 0.1:
@@ -103,7 +103,7 @@ def _quaternion(R: Array) -> Array:
 
 
 def _placement(R: Array, p: Array) -> str:
-    numbers = ", ".join(repr(float(x)) for x in _quaternion(R))
+    numbers = ", ".join(repr(float(x)) for x in quaternion(R))
     return f"wp.transform({_array(p)}, wp.quat({numbers}))"
 
 
