@@ -110,6 +110,7 @@ TRIALS: dict[str, tuple[str, ...]] = {
 }
 for _name in "adam dart drake dynibo frax idyntree mjx mujoco-warp newton pybullet roboticstoolbox sapien".split():
     TRIALS[f"engine-{_name}"] = (_ENGINE.format(_name),)
+TRIALS["engine-basilisk"] = (_ENGINE.format("basilisk").replace("revolute x", "rotations"),)
 
 
 def extras() -> tuple[str, ...]:

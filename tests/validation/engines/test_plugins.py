@@ -10,6 +10,7 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Joint, Link, Tree, Unsupported
 from validation.engines.matrix import cells
+from validation.engines.models import single
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 
@@ -109,3 +110,10 @@ def test_sapien_moves_right_but_for_its_stated_causes(
 ) -> None:
     _installed("sapien")
     assert {cell.verdict for cell in cells(OWN["sapien"], tree_of(kind), functions)} == verdicts
+
+
+def test_basilisk_turns_right_by_every_set_of_parameters() -> None:
+    _installed("basilisk")
+    found = list(cells(OWN["basilisk"], single.trees()["rotations"], tuple(OWN["basilisk"].functions)))
+    assert {cell.verdict for cell in found} == {"right"}
+    assert len(found) == len(OWN["basilisk"].functions)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..interface import EnginePlugin
 from . import (
     adam,
+    basilisk,
     casadi,
     dart,
     drake,
@@ -33,6 +34,7 @@ _MODULES = (
     exudyn,
     exudyn_joints,
     adam,
+    basilisk,
     casadi,
     dart,
     drake,
