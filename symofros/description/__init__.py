@@ -55,3 +55,4 @@ from symofros.description.values import as_value as as_value
 from symofros.description.values import as_vector as as_vector
 from symofros.description.values import symbols as symbols
 from symofros.description.visual import Visual as Visual
+from symofros.description.visual import color_of as color_of

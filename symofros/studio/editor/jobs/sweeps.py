@@ -96,7 +96,8 @@ def _motions(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
     t_end = number_of(options.get("t_end", 1.0), "t_end")
     chosen: Json = {"method": options["method"]} if options.get("method") else {}
     chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
-    laws, notes, motions = laws_of(options.get("inputs")), [], {}
+    laws, motions = laws_of(options.get("inputs")), {}
+    notes: list[str] = []
     signals = {symbol_of(each): ("q", i) for i, each in enumerate(model.names.q)}
     signals |= {speed_column(each, model.names.q): ("v", i) for i, each in enumerate(model.names.v)}
     curves: dict[str, list[Json]] = {each: [] for each in signals}

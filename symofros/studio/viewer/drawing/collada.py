@@ -2,14 +2,17 @@
 
 Robots come with meshes from anywhere, and pycollada trusts its file: it unpacks archives, opens what is referred to,
 follows instances of nodes without limit and ignores strides. So it is handed a copy of the part that is drawn, checked
-beforehand: geometries and the nodes that place them; no materials, images, lights, skins and animations.
+beforehand: geometries and the nodes that place them; no images, lights, skins and animations. Of materials the colour
+of diffuse light is read here: a texture's place is in a picture, which is not opened.
 """
 
 from __future__ import annotations
 
 import io
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from importlib import import_module
 from typing import Any
 from xml.etree import ElementTree
@@ -17,6 +20,8 @@ from xml.etree import ElementTree
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.description import color_of
+from symofros.studio.viewer.drawing.drawing import Color
 from symofros.studio.viewer.drawing.meshes import Faces, Mesh, merged
 
 # Rotations from the axes of a file to ours, z upwards.
@@ -54,8 +59,10 @@ def read_collada(data: bytes, most_faces: int) -> Mesh:
     except ImportError:
         raise ValueError("pycollada is not installed; pip install 'symofros[view]'") from None
     try:
-        document = collada.Collada(io.BytesIO(_drawn_part(data)))
-        return _to_metres(merged(list(_placed(document, most_faces))), document.assetInfo)
+        root = ElementTree.fromstring(data, ElementTree.XMLParser(target=_Builder()))
+        colors = _colors(root)
+        document = collada.Collada(io.BytesIO(_drawn_part(root)))
+        return _to_metres(merged(list(_placed(document, most_faces, colors))), document.assetInfo)
     except ValueError:
         raise
     except Exception as error:  # noqa: BLE001 - pycollada raises whatever a bad file makes it stumble over.
@@ -75,14 +82,35 @@ class _Builder(ElementTree.TreeBuilder):
         raise ValueError("document types are refused")
 
 
-def _drawn_part(data: bytes) -> bytes:
-    """The XML text of geometries and nodes alone.
+def _colors(root: Element) -> dict[str, Color]:
+    """Diffuse colour by the names that primitives have for materials; of two scenes' bindings of a name the first."""
+    of_effect: dict[str, Color] = {}
+    for effect in root.iter("effect"):
+        text = next((found for diffuse in effect.iter("diffuse") if (found := diffuse.findtext("color"))), "")
+        with suppress(ValueError):  # The shape is drawn without a colour that is none.
+            shares = [float(share) for share in text.split()[:3]]
+            if len(shares) == 3 and all(map(math.isfinite, shares)):
+                of_effect[effect.get("id", "")] = color_of(shares)
+    of_material: dict[str, Color] = {}
+    for material in root.iter("material"):
+        instance = material.find("instance_effect")
+        effect_id = "" if instance is None else instance.get("url", "").removeprefix("#")
+        if effect_id in of_effect:
+            of_material[material.get("id", "")] = of_effect[effect_id]
+    bound: dict[str, Color] = {}
+    for use in root.iter("instance_material"):
+        target = use.get("target", "").removeprefix("#")
+        if target in of_material:
+            bound.setdefault(use.get("symbol", ""), of_material[target])
+    return of_material | bound
+
+
+def _drawn_part(root: Element) -> bytes:
+    """The XML text of a document's geometries and nodes alone; the others are taken out of it.
 
     Raises:
         ValueError: Reading it would take without bound, or give another mesh than the file describes.
-        ElementTree.ParseError: It is no XML.
     """
-    root = ElementTree.fromstring(data, ElementTree.XMLParser(target=_Builder()))
     if root.tag != "COLLADA":
         raise ValueError(f"the root element is <{root.tag[:40]}>, not <COLLADA>")
     for element in list(root.iter()):
@@ -149,7 +177,7 @@ def _nodes_below(element: Element, by_id: dict[str, Element], depth: int) -> Ite
             yield from _nodes_below(child, by_id, depth + 1)
 
 
-def _placed(document: Any, most_faces: int) -> Iterator[Mesh]:
+def _placed(document: Any, most_faces: int, colors: Mapping[str, Color]) -> Iterator[Mesh]:
     """The meshes of a document where its scene places them; each once at the origin where it has no scene.
 
     Raises:
@@ -163,18 +191,18 @@ def _placed(document: Any, most_faces: int) -> Iterator[Mesh]:
     faces = 0
     for geometry, T in instances:
         if id(geometry) not in meshes:
-            meshes[id(geometry)] = [mesh for primitive in geometry.primitives for mesh in _triangles(primitive)]
+            meshes[id(geometry)] = [mesh for primitive in geometry.primitives for mesh in _triangles(primitive, colors)]
         for mesh in meshes[id(geometry)]:
             faces += len(mesh.faces)
             if faces > most_faces:
                 raise ValueError("too many triangles")
             seen_from_outside = mesh.faces if np.linalg.det(T[:3, :3]) >= 0.0 else mesh.faces[:, ::-1]
-            yield Mesh(mesh.vertices @ T[:3, :3].T + T[:3, 3], seen_from_outside)
+            yield Mesh(mesh.vertices @ T[:3, :3].T + T[:3, 3], seen_from_outside, mesh.colors)
     if faces == 0:
         raise ValueError("no triangles")
 
 
-def _triangles(primitive: Any) -> Iterator[Mesh]:
+def _triangles(primitive: Any, colors: Mapping[str, Color]) -> Iterator[Mesh]:
     """The triangles of one set of triangles or polygons, with the vertices that they use; nothing for an empty set."""
     triangles = primitive.triangleset() if hasattr(primitive, "triangleset") else primitive
     if len(triangles) == 0:
@@ -184,7 +212,9 @@ def _triangles(primitive: Any) -> Iterator[Mesh]:
         raise ValueError("a vertex with a negative number")
     used, faces = np.unique(corners, return_inverse=True)
     vertices: Array = np.array(triangles.vertex, dtype=np.float64)[used]
-    yield Mesh(vertices, faces.reshape(-1, 3))
+    color = colors.get(primitive.material or "")
+    of_faces = None if color is None else np.tile(np.array(color, np.int16), (len(corners), 1))
+    yield Mesh(vertices, faces.reshape(-1, 3), of_faces)
 
 
 def _to_metres(mesh: Mesh, asset: Any) -> Mesh:
@@ -192,4 +222,4 @@ def _to_metres(mesh: Mesh, asset: Any) -> Mesh:
     scale = 1.0 if asset.unitmeter is None else float(asset.unitmeter)
     z_up = any(_AXES_NOT_MEANT in (contributor.authoring_tool or "") for contributor in asset.contributors)
     rotation = np.eye(3) if z_up else _UPWARDS.get(asset.upaxis, np.eye(3))
-    return Mesh(scale * mesh.vertices @ rotation.T, mesh.faces)
+    return mesh._replace(vertices=scale * mesh.vertices @ rotation.T)

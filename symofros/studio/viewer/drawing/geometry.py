@@ -239,8 +239,12 @@ class _DrawingBuilder:
                 frame = frame_of(self.tree, body.name)
                 mesh = mesh.transformed(np.array(visual.position), self.numbers.rotation(visual.rotation))
                 mesh = mesh.transformed(*placed(frame.placement, self.numbers))
-                color, element = visual.color or self._color(frame.link), self._element(body.name)
-                yield DrawnPart(f"visuals/{body.name}.{k}", "visuals", frame.link, mesh, color, element)
+                element = self._element(body.name)
+                # A color of the description goes before those of the file.
+                parts = [(visual.color, mesh)] if visual.color else mesh.by_color()
+                for i, (stated, part) in enumerate(parts):
+                    name = f"visuals/{body.name}.{k}" + (f".{i}" if len(parts) > 1 else "")
+                    yield DrawnPart(name, "visuals", frame.link, part, stated or self._color(frame.link), element)
 
     # Beams.
 

@@ -12,6 +12,7 @@ from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
 
 Faces = npt.NDArray[np.int64]
+Colors = npt.NDArray[np.int16]
 
 _SIDES = 12  # Of anything round: few enough for hundreds of them in a browser.
 _WHEEL = 48  # Of discs, which may be the largest thing there is.
@@ -24,22 +25,48 @@ class Mesh(NamedTuple):
     Attributes:
         vertices: (V, 3) [m].
         faces: Indices of corners (F, 3).
+        colors: Red, green, blue of each face, 0 to 255, -1 where its file states none (F, 3); None without such.
     """
 
     vertices: Array
     faces: Faces
+    colors: Colors | None = None
 
     def transformed(self, position: Array, rotation: Array) -> Mesh:
         """The mesh as seen from the frame in which its own stands at a position (3) and rotation (3, 3)."""
-        return Mesh(self.vertices @ rotation.T + position, self.faces)
+        return self._replace(vertices=self.vertices @ rotation.T + position)
+
+    def by_color(self) -> list[tuple[tuple[int, int, int] | None, Mesh]]:
+        """The faces of each color as a mesh of their own, None those without one."""
+        if self.colors is None:
+            return [(None, self)]
+        colors, of = np.unique(self.colors, axis=0, return_inverse=True)
+        parts: list[tuple[tuple[int, int, int] | None, Mesh]] = []
+        for i, (red, green, blue) in enumerate(colors.tolist()):
+            used, faces = np.unique(self.faces[of.ravel() == i], return_inverse=True)
+            part = Mesh(self.vertices[used], faces.reshape(-1, 3).astype(np.int64))
+            parts.append(((red, green, blue) if red >= 0 else None, part))
+        return parts
+
+
+def on_grid(vertices: Array, size: float) -> Array:
+    """Corners (V, 3) on a grid of steps that are a power of two and at most size / 4096 [m].
+
+    Nobody sees a step of a mechanism of that size, and numbers with few digits are packed by a third.
+    """
+    step = 2.0 ** np.floor(np.log2(size / 4096))
+    snapped: Array = np.round(vertices / step) * step
+    return snapped
 
 
 def merged(meshes: list[Mesh]) -> Mesh:
     """Several meshes as one; at least one."""
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
+    unstated = [np.full((len(mesh.faces), 3), -1, np.int16) if mesh.colors is None else mesh.colors for mesh in meshes]
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
         np.concatenate([mesh.faces + start for mesh, start in zip(meshes, first, strict=True)]),
+        None if all(mesh.colors is None for mesh in meshes) else np.concatenate(unstated),
     )
 
 

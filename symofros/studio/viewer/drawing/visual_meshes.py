@@ -51,7 +51,8 @@ def visual_mesh(visual: Visual) -> Mesh | None:
 
 def _scaled(mesh: Mesh, factors: Array) -> Mesh:
     """Seen from outside also where it is mirrored."""
-    return Mesh(mesh.vertices * factors, mesh.faces if np.prod(factors) > 0.0 else mesh.faces[:, ::-1])
+    faces = mesh.faces if np.prod(factors) > 0.0 else mesh.faces[:, ::-1]
+    return mesh._replace(vertices=mesh.vertices * factors, faces=faces)
 
 
 @lru_cache(maxsize=256)
@@ -70,12 +71,13 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
         raise ValueError(f"more than {MAX_BYTES} bytes")
-    vertices, faces = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    mesh = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    vertices, faces = mesh.vertices, mesh.faces
     if not 0 < len(faces) <= MAX_FACES or not np.all(np.isfinite(vertices)):
         raise ValueError(f"{len(faces)} triangles; 1 to {MAX_FACES} with finite corners")
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise ValueError("a triangle without a corner")
-    return Mesh(vertices, faces)
+    return mesh
 
 
 def _loaded(suffix: str, data: bytes) -> Mesh:

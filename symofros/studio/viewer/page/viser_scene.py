@@ -14,7 +14,7 @@ from symofros.mechanics.topology import BASE
 from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnConnector, DrawnPart
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
 from symofros.studio.viewer.drawing.layers import LAYERS
-from symofros.studio.viewer.drawing.meshes import tube, tube_stations
+from symofros.studio.viewer.drawing.meshes import on_grid, tube, tube_stations
 from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, connector_sweep
 from symofros.studio.viewer.render.camera import Camera
 
@@ -177,7 +177,7 @@ class ViserScene:
     def _add_mesh(self, part: DrawnPart, name: str) -> None:
         node = self.server.scene.add_mesh_simple(
             name,
-            part.mesh.vertices,
+            on_grid(part.mesh.vertices, self.drawing.size) if part.kind == "visuals" else part.mesh.vertices,
             part.mesh.faces,
             color=part.color,
             opacity=SEE_THROUGH if part.kind == "inertias" else None,

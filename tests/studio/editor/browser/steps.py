@@ -86,6 +86,14 @@ def saved(page: Page) -> None:
     expect(page.get_by_role("banner").get_by_text("unsaved")).to_have_count(0)
 
 
+def autosaved(page: Page) -> None:
+    """Wait until the server has answered the first edit: it writes unsaved work before it answers.
+
+    A field shows what was typed at once, before the request is on its way.
+    """
+    expect(page.get_by_role("banner").get_by_text("unsaved")).to_be_visible()
+
+
 def port(page: Page, name: str) -> Locator:
     """A port of a block of a diagram, such as `input u of speed`."""
     return page.locator(f'.react-flow__handle[aria-label^="{name}"]')

@@ -73,6 +73,27 @@ def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults
     expect(steps.results(page).get_by_role("img", name="dq2: L2 = 0.2")).to_be_visible()
     assert not faults()
     picture("swept")
+    plot = steps.results(page).get_by_role("img", name="q1: L2 = 0.2")
+    last = plot.locator(".tick text").last
+    expect(last).to_have_text("5")
+    box = plot.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 60)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 60, steps=3)
+    page.mouse.up()
+    expect(last).not_to_have_text("5")
+    with page.expect_download() as saved:
+        steps.results(page).get_by_role("button", name="CSV of q1: L2 = 0.2").click()
+    head, first, *rest = saved.value.path().read_text("utf-8").splitlines()
+    assert head.startswith("t [s],L2 = 0.2,") and float(first.split(",")[0]) == 0.0 and len(rest) == 400
+    with page.expect_download() as saved:
+        steps.results(page).get_by_role("button", name="SVG of q1: L2 = 0.2").click()
+    svg = saved.value.path().read_text("utf-8")
+    assert svg.startswith("<svg") and "L2 = 0.2" in svg and svg.count('class="series') == 5
+    assert not faults()
+    steps.results(page).get_by_role("button", name="Whole").click()
+    expect(last).to_have_text("5")
     steps.run(page, "Simulate…")
     steps.window(page).get_by_role("button", name="Add an event").click()
     expect(steps.window(page).get_by_role("button", name="Simulate", exact=True)).to_be_disabled()

@@ -132,3 +132,46 @@ def zipped(data: bytes) -> bytes:
 def test_invalid_collada_files_are_refused(data: bytes, expected: str) -> None:
     with pytest.raises(ValueError, match=expected):
         read_collada(data, 100)
+
+
+EFFECT = '<effect id="{0}-e"><profile_COMMON><technique><phong>{1}</phong></technique></profile_COMMON></effect>'
+DIFFUSE = "<diffuse><color>{}</color></diffuse>"
+
+
+def painted(effects: str, bound: str = "") -> bytes:
+    """Three materials of which two sets of triangles use one each, under the symbol `skin` and the name `bone`."""
+    effect = EFFECT.format("red", DIFFUSE.format("1 0 0 1")) + EFFECT.format("blue", effects)
+    library = f"<library_effects>{effect}</library_effects><library_materials>" + "".join(
+        f'<material id="{name}"><instance_effect url="#{name}-e"/></material>' for name in ("red", "blue")
+    )
+    pieces = "".join(
+        f'<triangles count="1" material="{name}"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>0 1 {k}</p></triangles>"
+        for name, k in (("skin", 4), ("blue", 2))
+    )
+    use = f"<bind_material><technique_common>{bound}</technique_common></bind_material>"
+    shown = f'<node><instance_geometry url="#g">{use}</instance_geometry></node>'
+    text = (
+        document(pieces, nodes=shown)
+        .decode()
+        .replace("<library_geometries>", f"{library}</library_materials><library_geometries>")
+    )
+    return text.encode()
+
+
+BOUND = '<instance_material symbol="skin" target="#red"/>'
+
+
+def test_triangles_have_the_colours_of_their_materials() -> None:
+    """By the symbol that the scene binds, else by the material's name; what states no colour has none."""
+    mesh = read_collada(painted(DIFFUSE.format("0 0.5 1 1"), BOUND), 100)
+    assert mesh.colors is not None and mesh.colors.tolist() == [[255, 0, 0], [0, 128, 255]]
+    parts = dict(mesh.by_color())
+    assert {color: len(part.faces) for color, part in parts.items()} == {(255, 0, 0): 1, (0, 128, 255): 1}
+    assert parts[255, 0, 0].vertices.tolist() == [[0, 0, 0], [1, 0, 0], [0, 0, 3]]
+    textured = read_collada(painted('<diffuse><texture texture="t" texcoord="c"/></diffuse>', BOUND), 100)
+    assert textured.colors is not None and textured.colors.tolist() == [[255, 0, 0], [-1, -1, -1]]
+    assert [color for color, _ in textured.by_color()] == [None, (255, 0, 0)]
+    for wrong in ("0 nan 1", "a b c", "1 0"):
+        assert read_collada(painted(DIFFUSE.format(wrong)), 100).colors is None
+    assert read_collada(document(), 100).by_color()[0][0] is None

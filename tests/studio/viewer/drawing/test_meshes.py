@@ -74,3 +74,13 @@ def test_a_tube_moves_as_its_stations_do() -> None:
     stations = meshes.tube_stations(4, len(outline))
     moved = np.einsum("vij,vj->vi", R[stations], at_rest.vertices - straight[stations]) + LINE[stations]
     assert np.allclose(moved, meshes.tube(outline, LINE, R).vertices)
+
+
+def test_corners_on_a_grid_stay_where_nobody_sees_a_step() -> None:
+    """Half a step of at most size / 4096 off, and with few digits in single precision."""
+    vertices = np.random.default_rng(1).uniform(-1.0, 1.0, (1000, 3))
+    snapped = meshes.on_grid(vertices, 2.0)
+    off = np.abs(snapped - vertices).max()
+    assert 2.0**-14 < off <= 2.0**-12 and np.array_equal(snapped.astype(np.float32), snapped)
+    assert np.array_equal(meshes.on_grid(snapped, 2.0), snapped)
+    assert meshes.on_grid(1e-6 * vertices, 2e-6) == pytest.approx(1e-6 * vertices, abs=2.5e-10)

@@ -12,7 +12,8 @@ import { completed, tidy } from "../src/model/layout";
 import { merged } from "../src/model/merge";
 import { fresh } from "../src/model/names";
 import { difference, isMap } from "../src/model/paths";
-import { line, span, ticks } from "../src/model/plot";
+import { line, span, ticks, within } from "../src/model/plot";
+import { csv } from "../src/model/table";
 import { asked, fitted } from "../src/model/sizes";
 
 const arm: JsonMap = {
@@ -286,6 +287,24 @@ describe("texts changed at two places", () => {
 });
 
 describe("plots", () => {
+  test("a part of a curve has the points beside it", () => {
+    const x = [0, 1, 2, 3, 4];
+    const y = [0, 10, 20, 30, 40];
+    expect(within(x, y, null).x).toBe(x);
+    expect(within(x, y, [1.5, 2.5])).toEqual({ x: [1, 2, 3], y: [10, 20, 30] });
+    expect(within(x, y, [-1, 0.5])).toEqual({ x: [0, 1], y: [0, 10] });
+    expect(within(x, y, [3.5, 9])).toEqual({ x: [3, 4], y: [30, 40] });
+    expect(within(x, y, [1.2, 1.4])).toEqual({ x: [1, 2], y: [10, 20] });
+  });
+
+  test("tables are files with all digits", () => {
+    const rows = [
+      ['a "b", c', 0.1 + 0.2],
+      ["d", null],
+    ];
+    expect(csv(["name", "x"], rows)).toBe('name,x\n"a ""b"", c",0.30000000000000004\nd,\n');
+  });
+
   test.each([
     [[0, 1], 5],
     [[-3.2, 7.9], 6],

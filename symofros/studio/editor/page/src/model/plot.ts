@@ -73,6 +73,19 @@ export function line(
   return path;
 }
 
+/** The points of a curve inside a span, with the ones beside it, so that lines go on to its ends. */
+export function within(
+  x: readonly (number | null)[],
+  y: readonly (number | null)[],
+  range: Span | null,
+): { x: readonly (number | null)[]; y: readonly (number | null)[] } {
+  if (range === null) return { x, y };
+  const first = x.findIndex((at) => at !== null && at >= range[0]);
+  const last = x.findLastIndex((at) => at !== null && at <= range[1]);
+  const [from, to] = [Math.max(0, (first < 0 ? x.length : first) - 1), last + 2];
+  return { x: x.slice(from, to), y: y.slice(from, to) };
+}
+
 /** The place of the value that is nearest to one, in a list that rises. */
 export function nearest(values: readonly (number | null)[], value: number): number {
   let [low, high] = [0, values.length - 1];

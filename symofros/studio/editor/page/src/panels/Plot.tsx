@@ -1,8 +1,10 @@
-import { memo } from "react";
+import { memo, useId, useRef } from "react";
 
-import { type Box, brief, equal, line, nearest, type Span, span, ticks } from "../model/plot";
+import { saveCurves, savePlot } from "../files/plot";
+import { type Box, brief, equal, line, nearest, type Span, span, ticks, within } from "../model/plot";
 import { pause, setTime } from "../store/playing";
 import { useStore } from "../store/store";
+import { pointed, usePlotZoom } from "./usePlotZoom";
 
 export interface PlotCurve {
   name: string;
@@ -65,21 +67,39 @@ function Legend({ curves, xs, plane }: { curves: readonly PlotCurve[]; xs: Span;
 export const Plot = memo(function Plot({ curves, label, xTitle, unit, title = "", plane = false }: Props) {
   const height = plane ? 380 : 200;
   const box = { x: 56, y: 8, width: WIDTH - 64, height: height - 34 };
-  const natural = [span(curves.flatMap(({ x }) => x)), span(curves.flatMap(({ y }) => y))] as const;
+  const zoom = usePlotZoom();
+  const clip = useId();
+  const picture = useRef<SVGSVGElement>(null);
+  const seen =
+    zoom.range === null ? curves : curves.map((each) => ({ ...each, ...within(each.x, each.y, zoom.range) }));
+  const natural = [zoom.range ?? span(curves.flatMap(({ x }) => x)), span(seen.flatMap(({ y }) => y))] as const;
   const [xs, ys] = plane ? equal(...natural, box) : natural;
   const x = (value: number): number => toX(value, xs, box);
   const y = (value: number): number => box.y + box.height * (1 - (value - ys[0]) / (ys[1] - ys[0]));
   const follow = (event: React.PointerEvent<SVGSVGElement>): void => {
-    const frame = event.currentTarget.getBoundingClientRect();
-    const share = (((event.clientX - frame.left) / frame.width) * WIDTH - box.x) / box.width;
-    if (plane || share < 0 || share > 1) return;
+    const at = pointed(event, WIDTH, box, xs);
+    if (plane || zoom.move(at) || at === null || !isOfTime) return;
     pause();
-    setTime(xs[0] + share * (xs[1] - xs[0]));
+    setTime(at);
   };
+  const isOfTime = xTitle.startsWith("t ");
+  const [from, to] = zoom.drag ?? [0, 0];
   return (
     <figure className={plane ? "plot plane" : "plot"}>
       {title === "" ? null : <h3>{title}</h3>}
-      <svg viewBox={`0 0 ${WIDTH} ${height}`} role="img" aria-label={label} onPointerMove={follow}>
+      <svg
+        ref={picture}
+        viewBox={`0 0 ${WIDTH} ${height}`}
+        role="img"
+        aria-label={label}
+        onPointerMove={follow}
+        onPointerDown={(event) => zoom.down(plane ? null : pointed(event, WIDTH, box, xs))}
+        onPointerUp={() => zoom.up(xs)}
+        onDoubleClick={zoom.all}
+      >
+        <clipPath id={clip}>
+          <rect {...box} />
+        </clipPath>
         {ticks(ys, 5).map((tick) => (
           <g key={tick} className="tick">
             <path d={`M${box.x},${y(tick)}h${box.width}`} />
@@ -102,12 +122,48 @@ export const Plot = memo(function Plot({ curves, label, xTitle, unit, title = ""
         <text className="unit" x={WIDTH - 8} y={height - 3} textAnchor="end">
           {xTitle}
         </text>
-        {curves.map((each, i) => (
-          <path key={each.name} className={`series ${colour(curves, i)}`} d={line(each.x, each.y, xs, ys, box)} />
-        ))}
-        <Cursor xs={xs} box={box} plane={plane} />
+        <g clipPath={`url(#${clip})`}>
+          {seen.map((each, i) => (
+            <path key={each.name} className={`series ${colour(curves, i)}`} d={line(each.x, each.y, xs, ys, box)} />
+          ))}
+        </g>
+        {zoom.drag === null ? null : (
+          <rect
+            className="zoomed"
+            x={x(Math.min(from, to))}
+            y={box.y}
+            width={Math.abs(x(to) - x(from))}
+            height={box.height}
+          />
+        )}
+        <Cursor xs={xs} box={box} plane={plane || !isOfTime} />
       </svg>
-      <Legend curves={curves} xs={xs} plane={plane} />
+      <Legend curves={curves} xs={xs} plane={plane || !isOfTime} />
+      <p className="plot-tools">
+        {zoom.range === null ? null : (
+          <button type="button" className="small" onClick={zoom.all}>
+            Whole
+          </button>
+        )}
+        <button
+          type="button"
+          className="small"
+          aria-label={`SVG of ${label}`}
+          title="The plot as SVG; drag over the plot to look at a part of it"
+          onClick={() => picture.current !== null && savePlot(picture.current, title || label, curves)}
+        >
+          SVG
+        </button>
+        <button
+          type="button"
+          className="small"
+          aria-label={`CSV of ${label}`}
+          title="The plot's curves as CSV"
+          onClick={() => saveCurves(title || label, xTitle, curves)}
+        >
+          CSV
+        </button>
+      </p>
     </figure>
   );
 });
