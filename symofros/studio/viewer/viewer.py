@@ -144,6 +144,7 @@ class Viewer(ViewerPage):
             self._discard()
             self._player = None
             self._scene_state.change(mechanism)
+            self._keep_handle()
             self._panel = self._new_panel()
             self._judge_bending()
 

@@ -185,6 +185,39 @@ class TestMove:
         assert viewer.state.par[index] == 0.8 and np.flatnonzero(viewer.state.par != before).tolist() == [index]
 
 
+def test_a_dragged_frame_is_followed_as_near_as_it_gets(viewer: sf.Viewer) -> None:
+    """The tool goes to where its handle is; out of reach it points there; beams keep their bending."""
+    moved: list[int] = []
+    viewer.drag("tool", lambda: moved.append(viewer.painted))
+    handle = viewer._handle
+    assert handle is not None
+    model = handle.model
+    reach = float(np.linalg.norm(model.frame_pose("tool", model.neutral())[0]))
+    bend = 0.01
+    viewer.move({"link1.bend_y[2]": bend})
+    for place in (np.array([0.5, 0.6, 0.0]) * reach, np.array([0.0, 3.0, 0.0]) * reach):
+        handle._is_dragged = True
+        handle.node.position = place
+        viewer._dragged(False)
+        tool = np.asarray(model.frame_pose("tool", viewer.state.q)[0])
+        if np.linalg.norm(place) < reach:
+            assert tool == pytest.approx(place, abs=1e-6)
+        assert viewer.state.q[model.names.q.index("link1.bend_y[2]")] == bend
+        assert tool @ place > 0.95 * np.linalg.norm(tool) * np.linalg.norm(place)
+    assert len(moved) == 2 and np.asarray(handle.node.position) == pytest.approx(place)
+    handle._is_dragged = False
+    viewer._dragged(True)
+    assert np.asarray(handle.node.position) == pytest.approx(tool, abs=1e-6)
+    viewer.reset()
+    assert np.asarray(handle.node.position) == pytest.approx([reach, 0.0, 0.0], abs=1e-6)
+    viewer.set_system(MODELS["planar_robot"])
+    assert viewer._handle is not None and viewer._handle.frame == "tool"
+    viewer.set_system(MODELS["double_pendulum"])
+    assert viewer._handle is None
+    with pytest.raises(UnknownNameError):
+        viewer.drag("nose")
+
+
 def test_a_slider_leaves_the_picture_where_loops_cannot_be_closed() -> None:
     stop = sf.Rod("rod", ("world", None), ("b", "end"), 1.0)
     body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0), (sf.Frame("end"),))

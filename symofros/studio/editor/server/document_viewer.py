@@ -49,7 +49,8 @@ class DocumentViewer:
 
         Args:
             tell: Called with the name of an event and its data: "picked", the element that somebody clicks in the
-                picture; "zoom", the height of the picture at the depth of what its camera looks at [m].
+                picture; "zoom", the height of the picture at the depth of what its camera looks at [m]; "posed", where
+                everything stands after somebody dragged a frame.
         """
         self._turn, self._tell = Lock(), tell
         self._viewer: Viewer | None = None
@@ -104,7 +105,8 @@ class DocumentViewer:
         """Move it or change its looks.
 
         Args:
-            body: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `marked` elements, `reset`.
+            body: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `marked` elements, `reset`,
+                `drag`: a frame that gets a handle, "" for none.
 
         Returns:
             Where everything stands then, and why loops could not be closed.
@@ -135,6 +137,8 @@ class DocumentViewer:
             if factor is not None:
                 viewer.exaggeration = float(factor)
             try:
+                if isinstance(body.get("drag"), str):
+                    viewer.drag(body["drag"] or None, lambda: self._tell("posed", {**_stand(viewer), "why": ""}))
                 why = viewer.move(q, par) if q or par else ""
             except SymofrosError as error:
                 raise EditError(_problem(error_of(error))) from None

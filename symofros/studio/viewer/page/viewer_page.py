@@ -10,6 +10,7 @@ from typing import Any
 from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.poses import Mechanism, State
+from symofros.studio.viewer.page.frame_handle import FrameHandle
 from symofros.studio.viewer.page.panel import Panel
 from symofros.studio.viewer.page.scene_state import SceneState
 from symofros.studio.viewer.playing.motion import finite, positive
@@ -52,6 +53,8 @@ class ViewerPage:
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
         self._height: float | None = None
+        self._handle: FrameHandle | None = None
+        self._on_drag: Callable[[], None] | None = None
         self.bendings: tuple[BeamBending, ...] = ()
         self._panel = self._new_panel()
         self._judge_bending()
@@ -128,6 +131,43 @@ class ViewerPage:
         """
         with self._painting:
             self._scene_state.scene.mark(elements)
+
+    def drag(self, frame: str | None, on_move: Callable[[], None] | None = None) -> None:
+        """Show a handle at a frame: whoever drags it moves the mechanism by inverse kinematics, as near as it gets.
+
+        Args:
+            frame: Name of the frame; None for no handle.
+            on_move: Called, in a thread of the server, when that has moved the mechanism.
+
+        Raises:
+            UnknownNameError: There is no such frame.
+        """
+        with self._painting:
+            if self._handle is not None:
+                self._handle.remove()
+                self._handle = None
+            if frame is not None:
+                size = self._scene_state.scene.drawing.size
+                self._handle = FrameHandle(self._server, self.mechanism, frame, self.state, size, self._dragged)
+            self._on_drag = on_move
+
+    def _dragged(self, is_over: bool) -> None:
+        """Move the mechanism after its handle, or put the handle where the mechanism got."""
+        with self._painting:
+            if self._handle is None:
+                return
+            if is_over:
+                self._handle.follow(self.state)
+            else:
+                self._stand(self._handle.reached(self.state))
+            tell = self._on_drag
+        if tell is not None:
+            tell()
+
+    def _keep_handle(self) -> None:
+        """Put the handle onto the same frame of another mechanism, where it has one."""
+        frame = None if self._handle is None else self._handle.frame
+        self.drag(frame if frame in self.mechanism.model.names.frames else None, self._on_drag)
 
     def set_exaggeration(self, factor: float) -> None:
         """Multiply elastic coordinates in the picture."""
@@ -223,6 +263,8 @@ class ViewerPage:
 
     def _paint(self, state: State) -> None:
         self.painted += self._scene_state.paint(state)
+        if self._handle is not None:
+            self._handle.follow(self._scene_state.state)
 
     def _follow(self) -> None:
         self._panel.follow(self._scene_state.values, self._player)

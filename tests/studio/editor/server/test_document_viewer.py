@@ -9,14 +9,18 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pyarrow.parquet as parquet
 import pytest
 from PIL import Image
 from starlette.testclient import TestClient, WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
+import symofros as sf
 from symofros.studio.editor.document.session import Session
+from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.server.app import Editor, application
+from symofros.studio.editor.server.document_viewer import DocumentViewer
 from symofros.studio.editor.server.relay import MAX_SOCKETS
 from tests.late import require
 from tests.studio.editor.conftest import BASE, PORT, TOKEN, finished, look, pose
@@ -279,3 +283,26 @@ def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: T
     assert client.get(f"{address}/more").status_code == 401
     wrong = finished(client, "page", method="cvode")
     assert wrong["state"] == "failed" and "cvode" in wrong["error"]["object"]
+
+
+def test_a_frame_is_dragged_and_pages_are_told_where_it_leads() -> None:
+    """The loop stays closed, all of it moves; an unknown frame is refused."""
+    told: list[tuple[str, Json]] = []
+    view = DocumentViewer(lambda kind, data: told.append((kind, data)))
+    try:
+        view.follow(sf.load(FILES["four_bar"]))
+        before = view.pose({"drag": "crank.end"})["q"]
+        viewer = view._viewer
+        assert viewer is not None and viewer._handle is not None
+        place = np.asarray(viewer._handle.node.position)
+        viewer._handle.node.position = place + [0.05, 0.0, -0.1]
+        viewer._dragged(False)
+        kind, posed = told[-1]
+        assert kind == "posed" and posed["gap"] < 1e-9 and posed["why"] == ""
+        assert all(abs(posed["q"][name] - before[name]) > 1e-3 for name in before)
+        with pytest.raises(EditError, match="nose"):
+            view.pose({"drag": "nose"})
+        view.pose({"drag": ""})
+        assert viewer._handle is None
+    finally:
+        view.close()

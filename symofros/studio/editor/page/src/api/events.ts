@@ -2,6 +2,7 @@
 
 import { withToken } from "./client";
 import type { Job, Samples } from "./jobs";
+import type { Posed } from "./types";
 
 export interface Listener {
   document(revision: number, name: string): void;
@@ -12,6 +13,8 @@ export interface Listener {
   picked(element: string): void;
   /** How high the picture of the 3-D view is at the depth of what its camera looks at [m]. */
   zoomed(height: number | null): void;
+  /** Where the 3-D view stands after somebody dragged a frame. */
+  posed(posed: Posed): void;
   lost(): void;
 }
 
@@ -32,6 +35,7 @@ export function listen(listener: Listener): void {
   source.addEventListener("zoom", (event) => {
     listener.zoomed((JSON.parse(event.data as string) as { height: number | null }).height);
   });
+  source.addEventListener("posed", (event) => listener.posed(JSON.parse(event.data as string) as Posed));
   source.addEventListener("disk", () => listener.disk());
   source.addEventListener("samples", (event) => listener.samples(JSON.parse(event.data as string) as Samples));
   source.addEventListener("job", (event) => listener.job(JSON.parse(event.data as string) as Job));

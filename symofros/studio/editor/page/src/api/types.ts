@@ -309,6 +309,8 @@ export interface Pose {
   par?: Record<string, number>;
   exaggeration?: number;
   reset?: boolean;
+  /** A frame that gets a handle, by which it is dragged; "" for none. */
+  drag?: string;
   dark?: boolean;
   /** Whether frames are drawn, and their names; bodies are seen through then. */
   frames?: boolean;

@@ -3,6 +3,7 @@ import { useEffect, useState } from "react";
 import type { Coordinate, Fault, View } from "../api/types";
 import { badge } from "../model/bending";
 import { startTexts } from "../model/motion";
+import { allFrames } from "../model/names";
 import { scaleBar } from "../model/scale";
 import { askedSimulation, keepSimulation } from "../store/asked";
 import { setTime } from "../store/playing";
@@ -110,6 +111,28 @@ function Loops({ view }: { view: View }) {
   );
 }
 
+/** A frame with a handle in the picture: dragged by it, the mechanism follows as near as it gets. */
+function Dragged() {
+  const { data, diagram } = useDocument();
+  const [frame, setFrame] = useState("");
+  const frames = allFrames(data);
+  const isThere = frames.includes(frame);
+  const shown = isThere ? frame : "";
+  useEffect(() => void move({ drag: shown }), [shown]);
+  if (diagram !== null) return null;
+  return (
+    <label className="dragged" title="Arrows at this frame: drag them, and the joints follow by inverse kinematics">
+      Drag{" "}
+      <select value={shown} onChange={({ target }) => setFrame(target.value)}>
+        <option value="">no frame</option>
+        {frames.map((name) => (
+          <option key={name}>{name}</option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
 /** Opens the window of simulations, with the pose that is shown as the start. */
 function StartHere({ view }: { view: View }) {
   const { data, diagram } = useDocument();
@@ -151,6 +174,7 @@ function Controls({ view }: { view: View }) {
           />{" "}
           Frames
         </label>
+        <Dragged />
         <StartHere view={view} />
         <Loops view={view} />
       </div>

@@ -8,7 +8,7 @@ import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
 import { explain, ordered } from "./requests";
 import { notify, now, update } from "./store";
-import { pick, zoom } from "./view";
+import { pick, takePose, zoom } from "./view";
 
 const PAUSE = 1000;
 
@@ -23,6 +23,7 @@ async function attend(): Promise<void> {
         samples: hearSamples,
         picked: pick,
         zoomed: zoom,
+        posed: takePose,
         lost,
       });
     });

@@ -49,6 +49,12 @@ export function pick(element: string): void {
   if (shownView() !== null && document?.diagram === null && elementIds(document).has(element)) reveal(element);
 }
 
+/** Takes over where the view stands after somebody dragged a frame in it. */
+export function takePose({ why, ...stand }: Posed): void {
+  const view = shownView();
+  if (view !== null) update({ view: { ...view, ...stand }, stuck: why });
+}
+
 export function zoom(height: number | null): void {
   const view = shownView();
   if (view !== null) update({ view: { ...view, height } });
