@@ -36,8 +36,10 @@ PACKAGES = {
     "exudyn": {"exudyn"},
     "idyntree": {"idyntree"},
     "mujoco": {"mujoco"},
+    "mujoco-mjx": {"jax", "mujoco"},
     "newton": {"newton"},
     "pin": {"pinocchio"},
+    "pybullet": {"pybullet"},
     "roboticstoolbox-python": {"roboticstoolbox"},
     "spatialmath-python": {"spatialmath"},
     "sympy": {"sympy"},
@@ -106,7 +108,7 @@ def faults() -> dict[str, Fault]:
 
 
 def frozen() -> frozenset[str]:
-    """Names of the half that the harness is judged by, and must not be made with."""
+    """Names of the faults that the harness is judged by, and must not be made with."""
     lines = FROZEN.read_text(encoding="utf-8").splitlines() if FROZEN.is_file() else []
     return frozenset(line for line in lines if line and not line.startswith("#"))
 
