@@ -51,7 +51,7 @@ def measure(
     run: Run,
     names: Annotated[list[str] | None, typer.Argument(metavar="[NAMES]...", help="Only these faults.")] = None,
     half: Annotated[
-        bool | None, typer.Option("--frozen/--working", help="The half that judges the harness, or the other.")
+        bool | None, typer.Option("--frozen/--working", help="The faults that judge the harness, or the others.")
     ] = None,
     smoke: Annotated[bool, typer.Option("--smoke", help="At most a minute for each release.")] = False,
     suite: Annotated[

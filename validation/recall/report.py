@@ -20,8 +20,8 @@ function or is of the family of the fault's class. **half a hit**: such groups a
 {LOST} new groups or more. **miss**: neither. Where no release is right yet, a group has to name the function. **false
 alarm**: a group that is red at the right release and not, or less, at the wrong one, which neither a cause that is
 stated of the engine nor another fault of the set explains. Groups are found from the cells alone. How names are
-compared is told at the beginning of `validation/recall/scoring.py`. The frozen half was drawn before the harness was
-changed for any fault."""
+compared is told at the beginning of `validation/recall/scoring.py`. The frozen faults were chosen before the
+harness was changed for any of them (`validation/faults/frozen.txt`); the others were worked with."""
 Row = Mapping[str, Any]
 
 
@@ -32,7 +32,7 @@ def compose(data: Data) -> Report:
     alarms = sum(row["alarms"] for row in rows)
     asked = [row for row in rows if row["right"] and row["score"] != "not asked"]
     lines = [_tally(name, own) for name, own in halves.items() if own]
-    # The frozen half decides; where it was not asked, the other.
+    # The frozen faults decide; where they were not asked, the others.
     decisive = "frozen" if halves["frozen"] else "working"
     met = [not alarms, not data["failures"], _part(halves[decisive]) >= _WANTED]
     who = (
