@@ -20,8 +20,10 @@ function or is of the family of the fault's class. **half a hit**: such groups a
 {LOST} new groups or more. **miss**: neither. Where no release is right yet, a group has to name the function. **false
 alarm**: a group that is red at the right release and not, or less, at the wrong one, which neither a cause that is
 stated of the engine nor another fault of the set explains. Groups are found from the cells alone. How names are
-compared is told at the beginning of `validation/recall/scoring.py`. The frozen faults were chosen before the
-harness was changed for any of them (`validation/faults/frozen.txt`); the others were worked with."""
+compared is told at the beginning of `validation/recall/scoring.py`. A hit does not say that the group has the fault's
+cause: faults that one release mended may be taken for each other, and what a script calls to set up counts as its
+names; the sections below show the groups. The frozen faults were chosen before the harness was changed for any of them
+(`validation/faults/frozen.txt`); the others were worked with."""
 Row = Mapping[str, Any]
 
 
