@@ -30,20 +30,20 @@ Row = Mapping[str, Any]
 def compose(data: Data) -> Report:
     """The report of its JSON."""
     rows: Sequence[Row] = data["faults"]
-    halves = {"frozen": [row for row in rows if row["frozen"]], "working": [row for row in rows if not row["frozen"]]}
+    sets = {"frozen": [row for row in rows if row["frozen"]], "working": [row for row in rows if not row["frozen"]]}
     alarms = sum(row["alarms"] for row in rows)
     asked = [row for row in rows if row["right"] and row["score"] != "not asked"]
-    lines = [_tally(name, own) for name, own in halves.items() if own]
+    lines = [_tally(name, own) for name, own in sets.items() if own]
     # The frozen faults decide; where they were not asked, the others.
-    decisive = "frozen" if halves["frozen"] else "working"
-    met = [not alarms, not data["failures"], _part(halves[decisive]) >= _WANTED]
+    decisive = "frozen" if sets["frozen"] else "working"
+    met = [not alarms, not data["failures"], _part(sets[decisive]) >= _WANTED]
     who = (
         f"`{data['suite']}`"
         if data["suite"]
         else "The harness" + (", within a minute a release," if data["smoke"] else "")
     )
-    said = "; ".join(f"{_hits(own)} of {len(own)} of the {name} half" for name, own in halves.items() if own)
-    head = "half | faults | hit | half a hit | miss | not asked | hit, of all | false alarms"
+    said = "; ".join(f"{_hits(own)} of {len(own)} of the {name} set" for name, own in sets.items() if own)
+    head = "set | faults | hit | half a hit | miss | not asked | hit, of all | false alarms"
     overview = Table.of(head, lines)
     failures = Bullets(tuple(f"{name}: {why}" for name, why in data["failures"].items()))
     return Report(
@@ -52,7 +52,7 @@ def compose(data: Data) -> Report:
         all(met),
         (_TEXT,),
         (
-            Section("Halves", (overview, failures), "halves"),
+            Section("Sets", (overview, failures), "sets"),
             Section("Faults", (Table.of(_HEAD, map(_line, rows)), Text(_COLUMNS, "soft")), "faults", all(met)),
             Section("By class", (Table.of(f"class | {_CLASSES}", _by("kind", rows)),), "classes"),
             Section("By engine", (Table.of(f"engine | {_CLASSES}", _by("engine", rows)),), "engines"),
@@ -62,10 +62,10 @@ def compose(data: Data) -> Report:
             *(
                 Fact(
                     f"{_part(own):.0%}",
-                    f"of the {name} half are hit",
+                    f"of the {name} set are hit",
                     _part(own) >= _WANTED if name == decisive else None,
                 )
-                for name, own in halves.items()
+                for name, own in sets.items()
                 if own
             ),
             Fact(str(alarms), f"false alarms on {counted(len(asked), 'right release')}", not alarms),

@@ -120,5 +120,5 @@ def test_the_report_counts_each_half() -> None:
     ]
     data = {"faults": rows, "failures": {}, "unfinished": [], "suite": "", "smoke": False, "half": "all"}
     report = TOPIC.compose(data)
-    assert report.ok is False and "1 of 2 of the frozen half; 0 of 1 of the working half" in report.summary
+    assert report.ok is False and "1 of 2 of the frozen set; 0 of 1 of the working set" in report.summary
     assert TOPIC.compose(data | {"faults": rows[:1]}).ok is True
