@@ -21,6 +21,7 @@ def analysed(page: Page, what: str, says: str) -> None:
 
 def test_a_model_is_analysed_and_its_modes_play(arm: Server, page: Page, faults: Faults, picture: Picture) -> None:
     """The double pendulum hangs down, swings in two modes and is simulated from there."""
+    steps.job(page, "Simulate", Speed_of_q1="3", Duration="0.1")  # Speeds of a run are not those of a rest.
     analysed(page, "Equilibrium", "Equilibrium after")
     expect(steps.results(page).get_by_role("row", name="q1 [rad]")).to_contain_text("1.571")
     steps.run(page, "Analyse…")

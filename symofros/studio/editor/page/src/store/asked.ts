@@ -29,7 +29,10 @@ export const isAdaptive = (method: string): boolean =>
   now().catalogue?.methods.find(({ name }) => name === method)?.adaptive === true;
 
 /** What a simulation is asked of the server: start and method, to which the motion's end, inputs and events belong. */
-export function simulationOptions(asked: AskedSimulation): { from: object; course: object } {
+export function simulationOptions(asked: AskedSimulation): {
+  from: { method: string; q0: Record<string, number>; v0: Record<string, number> };
+  course: object;
+} {
   const data = now().document?.data ?? {};
   const { end, step, tolerance, method, events, stopAtLimits } = asked;
   const accuracy = isAdaptive(method) ? { rtol: Number(tolerance) } : { dt: Number(step) };

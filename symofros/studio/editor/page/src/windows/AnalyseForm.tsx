@@ -68,7 +68,8 @@ export function AnalyseForm() {
     const outputs = asked.outputs.map((each) => ({ ...each, absolute: Number(each.absolute) }));
     const range = { parameter, of, low: Number(asked.low), high: Number(asked.high), count: Number(count) };
     const more = what === "sweep" ? { ...course, ...range } : what === "advise" ? { ...course, outputs } : {};
-    void run("analyse", { ...from, ...more, what, about, held, u: numbers(u) });
+    // Of a rest the window states no speeds: those of the window Simulate are not meant.
+    void run("analyse", { ...(isMotion ? from : { q0: from.q0 }), ...more, what, about, held, u: numbers(u) });
   };
   const { what } = asked;
   const isMotion = what === "advise" || (what === "sweep" && asked.of === "motion");
