@@ -20,8 +20,7 @@ print(f"{T_END / run.cost.worked:.1f} s of motion a second")
 for met in run.events["plant"]:
     print(f"{met.t:5.1f} s  {met.name:14} {met.energy_lost:8.1e} J lost, impulse {np.abs(met.impulse).max():8.1e}")
 print("spare part at the end [m]", run["spare.p"][-1].round(3))
-print("film:", sf.record(run, folder / "exchange.html", speed=4.0, rate=15.0))  # A page; .mp4 and .gif are films, too.
-sf.record(run, folder / "exchange.html", block="plant", speed=4.0, rate=5.0)  # A film, as a page to turn and to play.
+print("film:", sf.record(run, folder / "exchange.html", speed=4.0, rate=5.0))  # A page; .mp4 and .gif are films, too.
 
 package = sf.export(diagram, "c", folder / "c", dt=1e-3)
 subprocess.run(["cmake", "-S", folder / "c", "-B", folder / "build"], check=True, stdout=subprocess.DEVNULL)
