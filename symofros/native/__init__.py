@@ -14,6 +14,7 @@ HEADERS = (
     "stepping/symofros_instance.h",
     "stepping/symofros_batch.h",
     "stepping/symofros_hand.h",
+    "stepping/symofros_posture.h",
     "diagrams/symofros_diagram.h",
     "diagrams/symofros_program.h",
     "tape/symofros_tape.h",

@@ -7,6 +7,7 @@ from symofros.runtime.calls.binding import constants as constants
 from symofros.runtime.calls.binding import native_library as native_library
 from symofros.runtime.calls.binding import native_library_is_loaded as native_library_is_loaded
 from symofros.runtime.calls.extension import step_type as step_type
+from symofros.runtime.calls.interpreted import InterpretedFunction as InterpretedFunction
 from symofros.runtime.calls.kernel import Kernel as Kernel
 from symofros.runtime.calls.kernel import LaneOptions as LaneOptions
 from symofros.runtime.calls.kernel import Precision as Precision

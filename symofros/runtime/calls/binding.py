@@ -15,6 +15,7 @@ from symofros.native import HEADERS, amalgamated, native_text
 from symofros.runtime.build.prebuilt import machine_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls.declarations import interface
+from symofros.runtime.calls.interpreted import InterpretedFunction
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.calls.library import CompiledKernel
 
@@ -25,6 +26,8 @@ _ENUMS = (
     "sym_event_sizes",
     "sym_instant_kind",
     "sym_instant_sizes",
+    "sym_posture_sizes",
+    "sym_speed_kind",
 )
 _FLAGS = (*DEFAULT_FLAGS, "-O3", "-pthread")
 
@@ -141,10 +144,28 @@ class NativeMemory:
         call.function, call.init = compiled.function, compiled.model.init
         call.pre = self.doubles(compiled.prepare(par.reshape(1, -1)))
         call.work = self.zeros(compiled.work)
-        for i, (name, shape) in enumerate(compiled.signature.outputs):
-            call.out[i] = outputs[name] if outputs and name in outputs else self.zeros(int(np.prod(shape)))
-        self.keep(compiled)
+        self._place_outputs(call, kernel, outputs or {})
         return compiled
+
+    def bind_interpreted(self, call: Any, kernel: Kernel, par: Array) -> InterpretedFunction:
+        """Fill a sym_call with a function that calls back into Python; C binds the inputs by name.
+
+        Args:
+            call: The sym_call.
+            kernel: The function.
+            par: Run-time parameters (npar).
+        """
+        made = InterpretedFunction(kernel)
+        call.function, call.init = made.function, self.ffi.NULL
+        call.pre, call.work = self.doubles(made.prepare(par)), self.zeros(1)
+        self._place_outputs(call, kernel, {})
+        self.keep(made)
+        return made
+
+    def _place_outputs(self, call: Any, kernel: Kernel, outputs: Mapping[str, Any]) -> None:
+        for i, (name, shape) in enumerate(kernel.signature.outputs):
+            call.out[i] = outputs[name] if name in outputs else self.zeros(int(np.prod(shape)))
+        self.keep(kernel)
 
 
 def callable_from_c(kernel: Kernel) -> CompiledKernel:

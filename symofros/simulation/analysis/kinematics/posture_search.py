@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.analysis.kinematics.least_squares import End, FreeLimits, damped_least_squares, polished
 from symofros.simulation.analysis.kinematics.nearest_posture import FromRest, FromTargets, NearestPosture, Restore, pull
-from symofros.simulation.analysis.kinematics.restarts import drawn_starts, nearest_turns, used_speeds
+from symofros.simulation.analysis.kinematics.restarts import start_again
 from symofros.simulation.analysis.kinematics.targets import Task
 from symofros.simulation.analysis.states import given_inputs
 
@@ -20,9 +21,9 @@ from symofros.simulation.analysis.states import given_inputs
 STARTS = 96
 # Most steps from a drawn start; from those that lead to a solution fewer than 20 are the rule.
 _DRAWN_STEPS = 60
-# Where no start reaches the targets: ends of drawn ones that steps go on from, most steps of a descent, and
-# relative differences of what is missed that do not tell one end from another.
-_PROMISING, _NEWTON_STEPS, _ALIKE = 2, 60, 1e-6
+# Where no start reaches the targets: most steps of a descent, and relative differences of what is missed that do not
+# tell one end from another.
+_NEWTON_STEPS, _ALIKE = 60, 1e-6
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,24 @@ class Posture:
     gradient: float = 0.0
     wrong_way_round: bool = False
     starts: int = 1
+
+
+class _Again(NamedTuple):
+    """What drawn starts lead to.
+
+    Attributes:
+        solutions: The nearest solution (nq) of the first round that has any; none otherwise.
+        promising: Ends (nq) that are nearest to meeting the task, without it.
+        used: Free speeds that the targets depend on, by themselves or through loops.
+        steps: Steps taken.
+        starts: Number of starts.
+    """
+
+    solutions: list[Array]
+    promising: list[Array]
+    used: Indices
+    steps: int
+    starts: int
 
 
 @dataclass(frozen=True)
@@ -80,32 +99,28 @@ class PostureSearch:
         if self.rest is not None and not self.held and not np.array_equal(self.rest, self.guess):
             ends.append(self._least_squares(self.rest, self.iterations))
         solutions, given = self._solutions(ends), len(ends)
-        drawn: list[End] = []
+        if solutions:
+            found = self._nearest_to_rest(solutions)
+            return replace(found, steps=found.steps + sum(end.steps for end in ends), starts=given)
+        again = self._started_again(starts - 1)
+        solutions = again.solutions
         if not solutions:
-            used = used_speeds(self.task, self.guess, self.free)
-            drawn, solutions = self._started_again(used, starts - 1)
-            if not solutions:
-                ends += [self._least_squares(end.q, self.iterations) for end in self._promising(drawn)]
-                solutions = self._nearest(self._solutions(ends[given:]))
-        found = self._nearest_to_rest(solutions) if solutions else self._nearest_miss(ends, used)
-        return replace(found, steps=found.steps + sum(end.steps for end in (*ends, *drawn)), starts=given + len(drawn))
+            ends += [self._least_squares(q, self.iterations) for q in again.promising]
+            solutions = self._nearest(self._solutions(ends[given:]))
+        found = self._nearest_to_rest(solutions) if solutions else self._nearest_miss(ends, again.used)
+        steps = found.steps + again.steps + sum(end.steps for end in ends)
+        return replace(found, steps=steps, starts=given + again.starts)
 
-    def _started_again(self, used: Indices, most: int) -> tuple[list[End], list[Array]]:
-        """Ends of steps from random starts, and the nearest solution of the first round that has any."""
-        ends: list[End] = []
-        within = FreeLimits(self.task.model, self.free).within(self.guess)
-        for starts in drawn_starts(self.task, within, used, most if used.size else 0):
-            round_ends = [self._least_squares(start, min(self.iterations, _DRAWN_STEPS)) for start in starts]
-            ends += round_ends
-            solutions = self._nearest(self._solutions(round_ends))
-            if solutions:
-                return ends, solutions
-        return ends, []
-
-    def _promising(self, ends: Sequence[End]) -> list[End]:
-        """The ends that are nearest to meeting the task: steps go on from there."""
-        finite = [end for end in ends if np.all(np.isfinite(end.error))]
-        return sorted(finite, key=lambda end: float(end.error @ end.error))[:_PROMISING]
+    def _started_again(self, most: int) -> _Again:
+        """The nearest solution of the first round of drawn starts that has any."""
+        solver = self.task.solver
+        refused = self._wrong_way_round if any(closure.parallel for closure in self.task.model.record.closures) else None
+        near = self.guess if self.rest is None else self.rest
+        within, steps = FreeLimits(self.task.model, self.free).within(self.guess), min(self.iterations, _DRAWN_STEPS)
+        found = start_again(solver, within, near, most, steps, refused)
+        kept = [np.array(q[: solver.nq]) for q in solver.kept[: solver.posture.n_kept]]
+        posture = solver.posture
+        return _Again([solver.end()] if found else [], kept, solver.used(), int(posture.steps), int(posture.starts))
 
     def _least_squares(self, start: Array, most: int) -> End:
         return damped_least_squares(self.task, start, self.free, self.tolerance, most)
@@ -116,8 +131,7 @@ class PostureSearch:
 
     def _nearest(self, solutions: Sequence[Array]) -> list[Array]:
         """Of some solutions the one nearest to rest, or to the guess without; none of none."""
-        turned = [nearest_turns(self.task, q, self.guess) for q in solutions]
-        return [min(turned, key=self._distance)] if turned else []
+        return [min(solutions, key=self._distance)] if solutions else []
 
     def _distance(self, q: Array) -> float:
         """Distance from rest, or from the guess without."""

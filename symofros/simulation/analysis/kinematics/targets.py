@@ -10,10 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import CheckedCalls
-from symofros.base.arrays import Array, real_array
+from symofros.base.arrays import Array, real_array, vector
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.kinematics.posture_solver import PostureSolver, Wish, solver_of
+from symofros.simulation.analysis.states import given_inputs
 
 # Deviation of a target's matrix from a rotation, max |R R^T - 1|, up to which the nearest rotation stands for it.
 # Entries in single precision (6e-8) or typed with seven digits pass, as they do in descriptions; what is farther off is
@@ -38,10 +40,10 @@ class Target(metaclass=CheckedCalls):
 
 
 class Task:
-    """Errors of targets and constraints, and how speeds change them.
+    """Errors of targets and constraints, and how speeds change them: evaluated by C, in the thread that makes it.
 
     Args:
-        model: Model.
+        model: Model, in double precision.
         targets: Frame -> where it is wanted.
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
@@ -49,13 +51,34 @@ class Task:
     Raises:
         ShapeError: A position or a rotation has the wrong shape, or is not of finite numbers.
         SymofrosError: A matrix is not a rotation, or a target is not one.
+        UnknownNameError: There is no such frame.
     """
 
     def __init__(self, model: Model, targets: Mapping[str, Target], u: ArrayLike | None, par: ArrayLike | None) -> None:
         self.model = model
         self.wanted = {frame: _checked(frame, target) for frame, target in targets.items()}
         self.inputs: dict[str, Any] = {"u": u, "par": par}
-        self.coordinates = [i for i, n in enumerate(model.names.constraints) if n not in model.record.speed_conditions]
+        wishes = tuple(Wish(frame, p is not None, R is not None) for frame, (p, R) in self.wanted.items())
+        self._u = vector("u", given_inputs(model, u), model.nu) if model.nu else None
+        self._par = model.parameter_values if par is None else vector("par", model.checked_parameters(par), model.npar)
+        self._solver = solver_of(model, wishes, self._par)
+        self.coordinates = self._solver.conditions
+
+    @property
+    def solver(self) -> PostureSolver:
+        """The searches of this task, in C."""
+        solver = self._solver
+        if solver.loaded is not self:
+            solver.loaded = self
+            solver.set_parameters(self._par)
+            if self._u is not None:
+                solver.u[...] = self._u
+            for row, (position, rotation) in zip(solver.wanted, self.wanted.values(), strict=True):
+                if position is not None:
+                    row[:3] = position
+                if rotation is not None:
+                    row[3:] = rotation.reshape(-1)
+        return solver
 
     @property
     def measures(self) -> Measures:
@@ -79,55 +102,20 @@ class Task:
     @property
     def wishes(self) -> int:
         """Number of rows of the targets, which come before those of the constraints."""
-        return 3 * sum(wanted is not None for pose in self.wanted.values() for wanted in pose)
+        return self._solver.wishes
 
     def bounds(self, tolerance: float) -> Array:
         """Largest entries of the error that count as met: constraints are closed however coarse the targets may be."""
         of_constraints = np.full(len(self.coordinates), min(tolerance, CLOSED_TO))
         return np.concatenate([np.full(self.wishes, tolerance), of_constraints])
 
-    def position_errors(self, q: Array) -> Array:
-        """Errors of the targets' positions [m] at a configuration (nq)."""
-        units = np.array(self.measures.unit[: self.wishes], dtype=np.intp)
-        return np.asarray(self.error(q)[: self.wishes][units == LENGTH])
-
     def error(self, q: Array) -> Array:
-        """Errors, targets minus poses: positions [m], rotation vectors [rad] in world axes; -phi of constraints."""
-        parts = [np.zeros(0)]
-        for frame, (position, rotation) in self.wanted.items():
-            p, R = self.model.frame_pose(frame, q, **self.inputs)
-            if position is not None:
-                parts.append(position - p)
-            if rotation is not None:
-                parts.append(rotation_vector(rotation @ R.T))
-        if self.coordinates:
-            parts.append(-self.model.constraint(q, **self.inputs)[self.coordinates])
-        return np.concatenate(parts)
+        """Errors (m), targets minus poses: positions [m], rotation vectors [rad] in world axes; -phi of constraints."""
+        return self.solver.residual(q)[0]
 
     def jacobian(self, q: Array) -> Array:
-        """Jacobian of the error: the speeds' effect on each row of the task, valid where the error is small."""
-        parts = [np.zeros((0, self.model.nv))]
-        for frame, (position, rotation) in self.wanted.items():
-            J = self.model.frame_jacobian(frame, q, **self.inputs)
-            parts += [J[:3]] if position is not None else []
-            parts += [J[3:]] if rotation is not None else []
-        if self.coordinates:
-            parts.append(self.model.constraint_jacobian(q, **self.inputs)[self.coordinates])
-        return np.concatenate(parts)
-
-
-def rotation_vector(R: Array) -> Array:
-    """Axis times angle (3,) of a rotation (3, 3), the angle in [0, pi]."""
-    twice = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
-    sine, cosine = 0.5 * float(np.linalg.norm(twice)), 0.5 * (float(np.trace(R)) - 1.0)
-    angle = np.arctan2(sine, cosine)
-    if sine > 1e-7:
-        return np.asarray(twice * (0.5 * angle / sine))
-    if cosine > 0.0:
-        return 0.5 * twice
-    # Half a turn: the axis is a column of R + 1.
-    column = (R + np.eye(3))[:, int(np.argmax(np.diag(R)))]
-    return np.asarray(angle * column / np.linalg.norm(column))
+        """How speeds (nv) take of the error (m, nv): docs/theory/constraints.md, (18c)."""
+        return self.solver.residual(q, jacobian=True)[1]
 
 
 def finite_array(what: str, values: npt.ArrayLike, shape: tuple[int | str, ...], remedy: str) -> Array:
