@@ -67,18 +67,45 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
     """
     signature, title = inspect.signature(function), function.__qualname__.removesuffix(".__init__")
     rest = {p.name for p in signature.parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
+    by_name = _Names(signature)
 
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
-        given = bound(title, signature, args, kwargs)
         kinds = _kinds(function)
-        for name, value in given.items():
-            kind = None if name in rest else kinds.get(name)
-            if kind is not None and not kind.allows(value):
-                raise _refusal(f"{title}: {name}", value, kind)
+        given = by_name.given(args, kwargs)
+        if given is None or not all(kind is None or kind.allows(given[name]) for name, kind in kinds.items() if name in given):
+            for name, value in bound(title, signature, args, kwargs).items():
+                kind = None if name in rest else kinds.get(name)
+                if kind is not None and not kind.allows(value):
+                    raise _refusal(f"{title}: {name}", value, kind)
         return function(*args, **kwargs)
 
     return call
+
+
+class _Names:
+    """Arguments by name where a call is plain: a tenth of the time of `inspect.Signature.bind`.
+
+    Args:
+        signature: Signature of the function.
+    """
+
+    def __init__(self, signature: inspect.Signature) -> None:
+        parameters = signature.parameters.values()
+        self._plain = all(p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) for p in parameters)
+        self._positional = tuple(p.name for p in parameters if p.kind == p.POSITIONAL_OR_KEYWORD)
+        self._names = frozenset(signature.parameters)
+        self._required = frozenset(p.name for p in parameters if p.default is p.empty)
+
+    def given(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any] | None:
+        """The arguments by name; None where the call does not fit, or the signature takes any number of them."""
+        if not self._plain or len(args) > len(self._positional):
+            return None
+        given = dict(zip(self._positional, args, strict=False))
+        if not given.keys().isdisjoint(kwargs) or not self._names.issuperset(kwargs):
+            return None
+        given.update(kwargs)
+        return given if self._required.issubset(given) else None
 
 
 def check_fields(stated: Any) -> None:

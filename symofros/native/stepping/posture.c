@@ -46,6 +46,38 @@ SYM_EXPORT void sym_posture_start(sym_posture *p, double *memory) {
     sym_posture_lay_out(p, &arena);
 }
 
+/* R <- R (3 - R^T R) / 2, twice: the nearest rotation, from one that is so to seven digits. */
+static void sym_nearest_rotation(double *R) {
+    int32_t pass, i, j, k;
+    for (pass = 0; pass < 2; ++pass) {
+        double S[9], X[9];
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3; ++j) S[3 * i + j] = 1.5 * (i == j) - 0.5 * (R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j]);
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3; ++j)
+                for (X[3 * i + j] = 0.0, k = 0; k < 3; ++k) X[3 * i + j] += R[3 * i + k] * S[3 * k + j];
+        memcpy(R, X, sizeof X);
+    }
+}
+
+SYM_EXPORT int64_t sym_posture_poses(int64_t first, int64_t n, double most, double *poses) {
+    for (; first < n; ++first) {
+        double *p = poses + SYM_POSTURE_POSE * first, *R = p + 3, off = 0.0, c[3];
+        int32_t i, j;
+        for (i = 0; i < 3; ++i)
+            for (j = 0; j < 3; ++j) {
+                const double s = R[i] * R[j] + R[3 + i] * R[3 + j] + R[6 + i] * R[6 + j] - (i == j);
+                off += s * s;
+            }
+        sym_cross(R, R + 3, c);
+        if (!(off <= most * most) || !(c[0] * R[6] + c[1] * R[7] + c[2] * R[8] > 0.0)) return first;
+        for (i = 0; i < 3; ++i)
+            if (!(fabs(p[i]) < HUGE_VAL)) return first;
+        sym_nearest_rotation(R);
+    }
+    return n;
+}
+
 /* e <- log(W R^T), W wanted: axis times angle, the angle in [0, pi]; (18b). */
 static void sym_rotation_missing(const double *W, const double *R, double *e) {
     double E[9], sine, cosine, angle, size = 0.0;

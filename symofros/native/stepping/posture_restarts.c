@@ -164,19 +164,22 @@ SYM_EXPORT int32_t sym_posture_again(sym_posture *p, const double *guess, const 
 
 SYM_EXPORT void sym_posture_batch_run(sym_posture *p, const sym_posture_batch *batch, int64_t first, int64_t end) {
     const size_t nq = (size_t)p->system->nq;
+    const double *own = p->wanted;
     int64_t i;
     for (i = first; i < end; ++i) {
-        double *guess = batch->q + (size_t)i * nq;
+        const double *given = batch->guess + (size_t)i * batch->guess_stride;
+        double *guess = batch->q + (size_t)i * nq; /* within the limits */
         p->wanted = batch->wanted + (size_t)i * batch->wanted_stride;
         p->steps = 0, p->starts = 1;
-        memcpy(p->q, batch->guess + (size_t)i * batch->guess_stride, nq * sizeof *p->q);
-        memcpy(guess, p->q, nq * sizeof *p->q);
+        memcpy(p->q, given, nq * sizeof *p->q);
+        memcpy(guess, given, nq * sizeof *p->q);
         if (!sym_posture_descend(p, batch->most) && batch->n_starts > 1) {
             sym_posture_limit(p, guess);
-            if (sym_posture_windows(p, guess)) sym_posture_again(p, guess, guess, 0, batch->n_starts - 1, batch->most_drawn);
+            if (sym_posture_windows(p, guess)) sym_posture_again(p, guess, given, 0, batch->n_starts - 1, batch->most_drawn);
         }
         memcpy(batch->q + (size_t)i * nq, p->q, nq * sizeof *p->q);
         batch->error[i] = p->error, batch->gap[i] = p->gap, batch->met[i] = p->met;
         batch->steps[i] = p->steps, batch->starts[i] = p->starts;
     }
+    p->wanted = own;
 }

@@ -61,6 +61,10 @@ typedef struct sym_posture_batch {
     int64_t *steps, *starts;    /* (n) */
 } sym_posture_batch;
 
+/* Poses (n, SYM_POSTURE_POSE) as wanted ones: finite, their matrices the rotations nearest to them. Returns the number of the
+ * first, from `first` on, that is not finite or whose matrix misses a rotation by more than `most` in the Frobenius norm of
+ * R^T R - 1; n where there is none. */
+int64_t sym_posture_poses(int64_t first, int64_t n, double most, double *poses);
 /* Doubles of memory that a search needs. */
 size_t sym_posture_size(sym_posture *p);
 /* Lay it out. */

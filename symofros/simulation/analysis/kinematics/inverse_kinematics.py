@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
@@ -105,16 +106,21 @@ def inverse_kinematics(
         SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts is out of range.
     """
     model = model.with_precision("double")
-    _check_starts(starts)
+    check_starts(starts)
     task = Task(model, targets, u, par)
-    free = free_speeds(model, held)
+    solver = task.solver
+    free = free_speeds(model, held) if held else solver.everything
     resting = None if rest is None else _configuration(model, "rest", rest)
     if q is not None:
         guess = _configuration(model, "q", q)
     else:
         guess = default_start(model) if resting is None else resting
-    _refuse_nan(task, task.error(guess))
     search = PostureSearch(task, guess, resting, free, tuple(held), tolerance, iterations)
+    if rest is None and not solver.facing and not solver.elastic:  # What is left is what C knows.
+        end = search.from_guess()
+        if end.met:
+            return Reached(end.q, float(solver.posture.error), True, end.steps, gap=float(solver.posture.gap))
+    _refuse_nan(task, task.error(guess))
     return _judged(task, search.best(starts), tolerance, beam_limit)
 
 
@@ -219,7 +225,12 @@ def joint_motion(
     return np.array(qs), np.array(vs), np.array(accs)
 
 
-def _check_starts(starts: int) -> None:
+def check_starts(starts: int) -> None:
+    """Refuse a number of starts that would take hours, or is none.
+
+    Raises:
+        SymofrosError: It is.
+    """
     if not 1 <= starts <= _MAX_STARTS:
         raise SymofrosError(
             Problem(
@@ -233,6 +244,9 @@ def _check_starts(starts: int) -> None:
 
 def _configuration(model: Model, name: str, values: ArrayLike) -> Array:
     """A configuration (nq) on the manifold."""
+    if type(values) is np.ndarray and values.dtype == np.float64 and values.shape == (model.nq,):
+        if not model.record.quaternions and math.isfinite(float(values @ values)):
+            return values
     remedy = f"give one number for each of {', '.join(model.names.q[:8])}" + (", …" if model.nq > 8 else "")
     q = finite_array(f"inverse kinematics: {name}", model.by_name("q", values), (model.nq,), remedy)
     return at_unit_length(model.record, "q", q, name)

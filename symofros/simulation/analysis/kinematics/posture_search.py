@@ -20,7 +20,7 @@ from symofros.simulation.analysis.states import given_inputs
 # Most starts: of 300 reachable poses of each of five arms with six and seven joints the hardest took 73.
 STARTS = 96
 # Most steps from a drawn start; from those that lead to a solution fewer than 20 are the rule.
-_DRAWN_STEPS = 60
+DRAWN_STEPS = 60
 # Where no start reaches the targets: most steps of a descent, and relative differences of what is missed that do not
 # tell one end from another.
 _NEWTON_STEPS, _ALIKE = 60, 1e-6
@@ -89,13 +89,17 @@ class PostureSearch:
     tolerance: float
     iterations: int
 
+    def from_guess(self) -> End:
+        """Where the steps from the guess alone end."""
+        return self._least_squares(self.guess, self.iterations)
+
     def best(self, starts: int) -> Posture:
         """The posture that the guess leads to, or else the best of what other starts lead to.
 
         Args:
             starts: Most starts.
         """
-        ends = [self._least_squares(self.guess, self.iterations)]
+        ends = [self.from_guess()]
         if self.rest is not None and not self.held and not np.array_equal(self.rest, self.guess):
             ends.append(self._least_squares(self.rest, self.iterations))
         solutions, given = self._solutions(ends), len(ends)
@@ -116,7 +120,7 @@ class PostureSearch:
         solver = self.task.solver
         refused = self._wrong_way_round if any(closure.parallel for closure in self.task.model.record.closures) else None
         near = self.guess if self.rest is None else self.rest
-        within, steps = FreeLimits(self.task.model, self.free).within(self.guess), min(self.iterations, _DRAWN_STEPS)
+        within, steps = FreeLimits(self.task.model, self.free).within(self.guess), min(self.iterations, DRAWN_STEPS)
         found = start_again(solver, within, near, most, steps, refused)
         kept = [np.array(q[: solver.nq]) for q in solver.kept[: solver.posture.n_kept]]
         posture = solver.posture

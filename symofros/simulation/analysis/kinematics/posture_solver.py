@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
@@ -48,6 +48,9 @@ class PostureSolver:
         par: Run-time parameters (npar).
 
     Attributes:
+        everything: Indices of all speeds (nv).
+        elastic: Whether the model has elastic beams.
+        facing: Whether a closure may be closed the wrong way round.
         posture: The sym_posture.
         q: Configuration (carried.nq) of the search: its start, then its end.
         wanted: Wanted poses (n, 12): p_WF, R_WF row by row.
@@ -62,11 +65,14 @@ class PostureSolver:
         self.loaded: object = None
         self.interpreted: list[InterpretedFunction] = []
         self._pre: list[tuple[Kernel, Any, InterpretedFunction | None]] = []
-        self.par = par.copy()
+        self.par, self._given_par = par.copy(), par
         self.posture = self.ffi.new("sym_posture *")
         # The model itself is not kept: it keeps its solvers.
         carried, self.nq, self.nv = model.carried, model.nq, model.nv
         self._carried_nq, self._carried_nv = carried.nq, carried.nv
+        self.everything = np.arange(model.nv)
+        self.elastic = bool(model.beams(par))
+        self.facing = any(closure.parallel for closure in model.record.closures)
         self._fill_system(carried)
         self._fill_tables(carried)
         self._fill_functions(carried, wishes)
@@ -140,9 +146,10 @@ class PostureSolver:
 
     def set_parameters(self, par: Array) -> None:
         """Run-time parameters (npar) from here on."""
-        if np.array_equal(par, self.par):
+        if par is self._given_par and not par.flags.writeable or np.array_equal(par, self.par):
             return
         self.par[...] = par
+        self._given_par = par
         for kernel, pointer, made in self._pre:
             pre = kernel.prepare(par.reshape(1, -1)) if made is None else made.prepare(par)
             self.memory.view(pointer, pre.size)[...] = pre.reshape(-1)
@@ -181,6 +188,10 @@ class PostureSolver:
         self.posture.steps = 0
         self.done(self.native.sym_posture_descend(self.posture, steps))
         return self.end()
+
+    def search(self, batch: Any, first: int, end: int) -> None:
+        """Searches `first` to `end` of a sym_posture_batch."""
+        self.native.sym_posture_batch_run(self.posture, batch, first, end)
 
     def windows(self, guess: Array) -> bool:
         """Begin further starts about a guess (carried.nq) within the limits; whether any speed is of use."""
@@ -239,6 +250,22 @@ def drawn(nv: int, turning: tuple[int, ...], count: int) -> Array:
         axes = normal[:, :3] / np.linalg.norm(normal[:, :3], axis=1, keepdims=True)
         table[:, first : first + 3] = axes * np.pi * table[:, first : first + 1]
     return table
+
+
+def settled(poses: Array, most: float, refused: Callable[[int], Array]) -> Array:
+    """Wanted poses (n, 12) in place, their matrices the rotations nearest to them.
+
+    Args:
+        poses: p_WF, R_WF row by row.
+        most: Frobenius norm of R^T R - 1 beyond which a matrix is looked at by `refused`.
+        refused: Gives the nearest rotation (3, 3) of the pose of a number, or raises.
+    """
+    at, n, native, memory = 0, len(poses), native_library(), NativeMemory()
+    rows = memory.shared(poses)
+    while (at := native.sym_posture_poses(at, n, most, rows)) < n:
+        poses[at, 3:] = refused(at).reshape(-1)
+        at += 1
+    return poses
 
 
 class _Solvers(threading.local):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from symofros.base.arrays import Array, real_array, vector
 from symofros.base.measures import ANGLE, LENGTH, Measures
 from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
-from symofros.simulation.analysis.kinematics.posture_solver import PostureSolver, Wish, solver_of
+from symofros.simulation.analysis.kinematics.posture_solver import POSE, PostureSolver, Wish, settled, solver_of
 from symofros.simulation.analysis.states import given_inputs
 
 # Deviation of a target's matrix from a rotation, max |R R^T - 1|, up to which the nearest rotation stands for it.
@@ -31,8 +32,9 @@ class Target(metaclass=CheckedCalls):
     """Where a frame is wanted.
 
     Attributes:
-        position: p_WF (3,) [m]; None if it does not matter.
-        rotation: R_WF (3, 3); None if it does not matter. Rounded to seven digits, it stands for the nearest rotation.
+        position: p_WF (3,) [m]; None if it does not matter. Of a batch (n, 3), or one for all.
+        rotation: R_WF (3, 3); None if it does not matter. Of a batch (n, 3, 3), or one for all. Rounded to seven digits,
+            it stands for the nearest rotation.
     """
 
     position: npt.ArrayLike | None = None
@@ -56,12 +58,11 @@ class Task:
 
     def __init__(self, model: Model, targets: Mapping[str, Target], u: ArrayLike | None, par: ArrayLike | None) -> None:
         self.model = model
-        self.wanted = {frame: _checked(frame, target) for frame, target in targets.items()}
         self.inputs: dict[str, Any] = {"u": u, "par": par}
-        wishes = tuple(Wish(frame, p is not None, R is not None) for frame, (p, R) in self.wanted.items())
-        self._u = vector("u", given_inputs(model, u), model.nu) if model.nu else None
-        self._par = model.parameter_values if par is None else vector("par", model.checked_parameters(par), model.npar)
-        self._solver = solver_of(model, wishes, self._par)
+        self._wishes = wishes_of(targets)
+        self.poses = poses_of(targets, self._wishes, None)[0]
+        self._u, self._par = task_inputs(model, u, par)
+        self._solver = solver_of(model, self._wishes, self._par)
         self.coordinates = self._solver.conditions
 
     @property
@@ -71,13 +72,8 @@ class Task:
         if solver.loaded is not self:
             solver.loaded = self
             solver.set_parameters(self._par)
-            if self._u is not None:
-                solver.u[...] = self._u
-            for row, (position, rotation) in zip(solver.wanted, self.wanted.values(), strict=True):
-                if position is not None:
-                    row[:3] = position
-                if rotation is not None:
-                    row[3:] = rotation.reshape(-1)
+            solver.u[...] = self._u
+            solver.wanted[...] = self.poses
         return solver
 
     @property
@@ -85,9 +81,9 @@ class Task:
         """Measures of the rows and columns of `jacobian`."""
         group: list[int] = []
         unit: list[int] = []
-        for position, rotation in self.wanted.values():
-            for wanted, of in ((position, LENGTH), (rotation, ANGLE)):
-                if wanted is not None:
+        for wish in self._wishes:
+            for wanted, of in ((wish.position, LENGTH), (wish.rotation, ANGLE)):
+                if wanted:
                     group += [len(group)] * 3
                     unit += [of] * 3
         of_constraints = self.model.record.measures.of_rows(self.coordinates)
@@ -171,24 +167,77 @@ def rotations_checked(what: str, R: Array) -> Array:
     return np.asarray(U @ Vt)
 
 
-def _checked(frame: str, target: Target) -> tuple[Array | None, Array | None]:
-    """Position (3,) and rotation (3, 3) of a target."""
-    what = f"target of frame '{frame}'"
-    if not isinstance(target, Target) or (target.position is None and target.rotation is None):
-        raise SymofrosError(
-            Problem(
-                f"{what}: says nothing of where the frame is wanted",
-                f"{target!r:.80}",
-                "a target is a Target with a position, a rotation or both",
-                "write Target(position), Target(rotation=R) or Target(position, R)",
+def task_inputs(model: Model, u: ArrayLike | None, par: ArrayLike | None) -> tuple[Array | tuple[float, ...], Array]:
+    """Inputs (nu) and run-time parameters (npar) that a task is evaluated with; the defaults where none are given."""
+    return (
+        model.record.u_default if u is None else vector("u", given_inputs(model, u), model.nu),
+        model.parameter_values if par is None else vector("par", model.checked_parameters(par), model.npar),
+    )
+
+
+def wishes_of(targets: Mapping[str, Target]) -> tuple[Wish, ...]:
+    """What is wanted of each frame.
+
+    Raises:
+        SymofrosError: Nothing is.
+    """
+    wishes = []
+    for frame, target in targets.items():
+        if not isinstance(target, Target) or (target.position is None and target.rotation is None):
+            raise SymofrosError(
+                Problem(
+                    f"target of frame '{frame}': says nothing of where the frame is wanted",
+                    f"{target!r:.80}",
+                    "a target is a Target with a position, a rotation or both",
+                    "write Target(position), Target(rotation=R) or Target(position, R)",
+                )
             )
-        )
-    position, rotation = target.position, target.rotation
-    if position is not None:
-        position = finite_array(
-            f"{what}: position", position, (3,), "give x, y and z in world axes, in metres; planar targets too"
-        )
-    if rotation is not None:
-        remedy = "give the matrix R_WF; sf.Rotation forms and quaternions are converted before"
-        rotation = rotations_checked(what, finite_array(f"{what}: rotation", rotation, (3, 3), remedy))
-    return position, rotation
+        wishes.append(Wish(frame, target.position is not None, target.rotation is not None))
+    return tuple(wishes)
+
+
+def poses_of(targets: Mapping[str, Target], wishes: Sequence[Wish], n: int | None) -> Array:
+    """Wanted poses (n, targets, 12): p_WF, R_WF row by row; what is not wanted is 0 and 1.
+
+    Args:
+        targets: Frame -> where it is wanted.
+        wishes: What is wanted of each.
+        n: Number of poses of each frame, some of one for all; None: one each.
+
+    Raises:
+        ShapeError: A position or a rotation has the wrong shape, or is not of finite numbers.
+        SymofrosError: A matrix is not a rotation.
+    """
+    poses = np.zeros((1 if n is None else n, len(wishes), POSE))
+    poses[:, :, 3::4] = 1.0
+    for k, (frame, target) in enumerate(targets.items()):
+        if target.position is not None:
+            remedy = "give x, y and z in world axes, in metres; planar targets too"
+            poses[:, k, :3] = _numbers(f"target of frame '{frame}': position", target.position, (3,), n, remedy)
+        if target.rotation is not None:
+            remedy = "give the matrix R_WF; sf.Rotation forms and quaternions are converted before"
+            R = _numbers(f"target of frame '{frame}': rotation", target.rotation, (3, 3), n, remedy)
+            poses[:, k, 3:] = R.reshape(*R.shape[:-2], 9)
+
+    def looked_at(i: int) -> Array:
+        at = "" if n is None else f" {i // len(wishes)}"
+        return rotations_checked(f"target{at} of frame '{wishes[i % len(wishes)].frame}'", _rows(poses)[i, 3:].reshape(3, 3))
+
+    if wishes:
+        settled(_rows(poses), ROTATION_TOLERANCE, looked_at)
+    return poses
+
+
+def _rows(poses: Array) -> Array:
+    return poses.reshape(-1, POSE)
+
+
+def _numbers(what: str, values: npt.ArrayLike, shape: tuple[int, ...], n: int | None, remedy: str) -> Array:
+    """Finite numbers of that shape; with n, or of n times that shape."""
+    if type(values) is np.ndarray and values.dtype == np.float64 and values.shape == shape:
+        flat = values.reshape(-1)
+        if math.isfinite(float(flat @ flat)):
+            return values
+    if n is None or np.ndim(values) == len(shape):  # type: ignore[arg-type]  # Of anything.
+        return finite_array(what, values, shape, remedy)
+    return finite_array(what, values, (n, *shape), remedy)
