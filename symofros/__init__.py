@@ -94,8 +94,9 @@ if TYPE_CHECKING:
     from symofros.simulation.analysis.base_parameters import base_parameters as base_parameters
     from symofros.simulation.analysis.equilibrium import equilibrium as equilibrium
     from symofros.simulation.analysis.kinematics.assembly import assemble as assemble
-    from symofros.simulation.analysis.kinematics.inverse_batch import ReachedBatch as ReachedBatch
-    from symofros.simulation.analysis.kinematics.inverse_batch import inverse_kinematics_batch as inverse_kinematics_batch
+    from symofros.simulation.analysis.kinematics.inverse_batch import (
+        inverse_kinematics_batch as inverse_kinematics_batch,
+    )
     from symofros.simulation.analysis.kinematics.inverse_kinematics import Target as Target
     from symofros.simulation.analysis.kinematics.inverse_kinematics import inverse_kinematics as inverse_kinematics
     from symofros.simulation.analysis.kinematics.inverse_kinematics import joint_motion as joint_motion

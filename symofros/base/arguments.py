@@ -73,7 +73,9 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         kinds = _kinds(function)
         given = by_name.given(args, kwargs)
-        if given is None or not all(kind is None or kind.allows(given[name]) for name, kind in kinds.items() if name in given):
+        if given is None or not all(
+            kind is None or kind.allows(given[name]) for name, kind in kinds.items() if name in given
+        ):
             for name, value in bound(title, signature, args, kwargs).items():
                 kind = None if name in rest else kinds.get(name)
                 if kind is not None and not kind.allows(value):

@@ -16,6 +16,8 @@
 #define SYM_LARGEST_STEP 0.5
 /* Share of a diagonal entry of J J^T that is added to it, so that rows that repeat each other leave a pivot. */
 #define SYM_GRAM_ROUNDING 1e-14
+/* Frobenius norm of R^T R - 1 that rounding leaves: such a matrix stays as it is, so that a pose that was settled is settled. */
+#define SYM_ROTATION_ROUNDING 4e-15
 
 static void sym_posture_lay_out(sym_posture *p, sym_arena *arena) {
     const size_t nq = (size_t)p->system->nq, nv = (size_t)p->system->nv;
@@ -32,6 +34,7 @@ static void sym_posture_lay_out(sym_posture *p, sym_arena *arena) {
     p->J = sym_allocate(arena, m * nv), p->A = sym_allocate(arena, smaller * smaller), p->y = sym_allocate(arena, smaller);
     p->wish = sym_allocate(arena, nv), p->step = sym_allocate(arena, nv), p->theta = sym_allocate(arena, nv);
     p->tried = sym_allocate(arena, nq), p->movable = sym_allocate(arena, nv), p->depends = sym_allocate(arena, m * nv);
+    p->packed = sym_allocate(arena, m * nv), p->columns = sym_allocate_bytes(arena, nv * sizeof(int32_t));
 }
 
 SYM_EXPORT size_t sym_posture_size(sym_posture *p) {
@@ -73,7 +76,7 @@ SYM_EXPORT int64_t sym_posture_poses(int64_t first, int64_t n, double most, doub
         if (!(off <= most * most) || !(c[0] * R[6] + c[1] * R[7] + c[2] * R[8] > 0.0)) return first;
         for (i = 0; i < 3; ++i)
             if (!(fabs(p[i]) < HUGE_VAL)) return first;
-        sym_nearest_rotation(R);
+        if (off > SYM_ROTATION_ROUNDING * SYM_ROTATION_ROUNDING) sym_nearest_rotation(R);
     }
     return n;
 }
@@ -229,38 +232,43 @@ static void sym_solve_gram(int32_t n, double *A, double *b) {
     }
 }
 
-/* p->step <- the least |J step - e|^2 + mu^2 |step|^2 with the movable speeds, mu = damping |J|: (18d), by the smaller of
+/* Packs the columns of J that may move and are not zero: p->columns, p->packed (m, n). */
+static void sym_posture_pack(sym_posture *p) {
+    const int32_t m = p->m, nv = p->system->nv;
+    int32_t i, k, n = 0;
+    for (k = 0; k < nv; ++k) {
+        double size = 0.0;
+        for (i = 0; p->movable[k] != 0.0 && i < m; ++i) size += fabs(p->J[SYM_INDEX(i, nv, k)]);
+        if (size > 0.0) p->columns[n++] = k;
+    }
+    for (i = 0; i < m; ++i)
+        for (k = 0; k < n; ++k) p->packed[SYM_INDEX(i, n, k)] = p->J[SYM_INDEX(i, nv, p->columns[k])];
+    p->n_packed = n;
+}
+
+/* p->step <- the least |J step - e|^2 + mu^2 |step|^2 of the packed columns, mu = damping |J|: (18d), by the smaller of
  * J J^T and J^T J. */
 static void sym_posture_step(sym_posture *p, double damping) {
-    const int32_t m = p->m, nv = p->system->nv, by_rows = m <= nv, n = by_rows ? m : nv;
-    double *A = p->A, mu = 0.0;
+    const int32_t m = p->m, n = p->n_packed, by_rows = m <= n, size = by_rows ? m : n;
+    const double *J = p->packed, mu = damping * damping * sym_squared_norm(m * n, J) + 1e-300;
+    double *A = p->A, *y = p->y;
     int32_t i, j, k;
-    for (i = 0; i < m; ++i)
-        for (k = 0; k < nv; ++k) mu += p->movable[k] * p->J[SYM_INDEX(i, nv, k)] * p->J[SYM_INDEX(i, nv, k)];
-    mu = damping * damping * mu + 1e-300;
-    for (i = 0; i < n; ++i)
+    for (i = 0; i < size; ++i)
         for (j = 0; j <= i; ++j) {
             double s = 0.0;
-            if (by_rows) {
-                const double *a = p->J + SYM_INDEX(i, nv, 0), *b = p->J + SYM_INDEX(j, nv, 0);
-                for (k = 0; k < nv; ++k) s += p->movable[k] * a[k] * b[k];
-            } else {
-                for (k = 0; k < m; ++k) s += p->J[SYM_INDEX(k, nv, i)] * p->J[SYM_INDEX(k, nv, j)];
-                s *= p->movable[i] * p->movable[j];
-            }
-            A[SYM_INDEX(i, n, j)] = i == j ? s * (1.0 + SYM_GRAM_ROUNDING) + mu : s;
+            if (by_rows)
+                for (k = 0; k < n; ++k) s += J[i * n + k] * J[j * n + k];
+            else
+                for (k = 0; k < m; ++k) s += J[k * n + i] * J[k * n + j];
+            A[i * size + j] = i == j ? s * (1.0 + SYM_GRAM_ROUNDING) + mu : s;
         }
-    if (!by_rows) {
-        for (k = 0; k < nv; ++k) p->step[k] = p->movable[k] * p->wish[k];
-        sym_solve_gram(n, A, p->step);
-        return;
-    }
-    memcpy(p->y, p->e, (size_t)m * sizeof *p->y);
-    sym_solve_gram(n, A, p->y);
-    for (k = 0; k < nv; ++k) {
-        double s = 0.0;
-        for (i = 0; i < m; ++i) s += p->J[SYM_INDEX(i, nv, k)] * p->y[i];
-        p->step[k] = p->movable[k] * s;
+    for (i = 0; i < size; ++i) y[i] = by_rows ? p->e[i] : p->wish[p->columns[i]];
+    sym_solve_gram(size, A, y);
+    memset(p->step, 0, (size_t)p->system->nv * sizeof *p->step);
+    for (k = 0; k < n; ++k) {
+        double s = by_rows ? 0.0 : y[k];
+        for (i = 0; by_rows && i < m; ++i) s += J[i * n + k] * y[i];
+        p->step[p->columns[k]] = s;
     }
 }
 
@@ -312,7 +320,7 @@ SYM_EXPORT int32_t sym_posture_descend(sym_posture *p, int32_t most) {
     square = judged = sym_squared_norm(p->m, p->e);
     while (!sym_posture_judge(p, p->e) && count < most && square < HUGE_VAL) {
         if (!fresh && !sym_posture_gradient(p)) break;
-        if (!fresh) sym_posture_movable(p, p->q);
+        if (!fresh) sym_posture_movable(p, p->q), sym_posture_pack(p);
         sym_posture_step(p, damping);
         sym_posture_try(p);
         sym_posture_error(p, p->tried, p->e_tried);

@@ -48,6 +48,8 @@ typedef struct sym_posture {
     double *low, *high;         /* (nv) windows that starts are drawn in */
     double *e, *e_tried, *J, *A, *y;
     double *wish, *step, *theta, *tried, *movable, *depends;
+    int32_t n_packed, *columns; /* columns of J that may move and are not zero: their number and indices, */
+    double *packed;             /* and (m, n_packed) they themselves */
 } sym_posture;
 
 /* Many searches with the same targets' frames. */

@@ -11,6 +11,7 @@ import numpy as np
 from symofros.runtime.calls.declarations import interface
 from symofros.runtime.calls.kernel import Array, Kernel
 
+
 class InterpretedFunction:
     """A sym_function that calls back into Python.
 
@@ -31,7 +32,10 @@ class InterpretedFunction:
         self._kept: list[Any] = []
         inputs = self._arrays([("pre", (0,)), *((name, (size,)) for name, size in kernel.signature.inputs)])
         self.function = self._keep(self._ffi.new("sym_function *"))
-        self.function.name, self.function.out = self._text(kernel.signature.name), self._arrays(kernel.signature.outputs)
+        self.function.name, self.function.out = (
+            self._text(kernel.signature.name),
+            self._arrays(kernel.signature.outputs),
+        )
         self.function.n_in, self.function.n_out = len(inputs), len(kernel.signature.outputs)
         setattr(self.function, "in", inputs)  # A keyword of Python.
         kind = dict(self._ffi.typeof("sym_function").fields)["eval"].type
@@ -65,7 +69,8 @@ class InterpretedFunction:
 
     def _arrays(self, arrays: Iterable[tuple[str, tuple[int, ...]]]) -> Any:
         rows = [
-            (self._text(name), len(shape), *(*shape, 1, 1)[:2]) for name, shape in arrays  # Both sizes of a scalar are 1.
+            (self._text(name), len(shape), *(*shape, 1, 1)[:2])
+            for name, shape in arrays  # Both sizes of a scalar are 1.
         ]
         return self._keep(self._ffi.new("sym_array[]", rows))
 

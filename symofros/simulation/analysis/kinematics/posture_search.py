@@ -118,7 +118,9 @@ class PostureSearch:
     def _started_again(self, most: int) -> _Again:
         """The nearest solution of the first round of drawn starts that has any."""
         solver = self.task.solver
-        refused = self._wrong_way_round if any(closure.parallel for closure in self.task.model.record.closures) else None
+        refused = (
+            self._wrong_way_round if any(closure.parallel for closure in self.task.model.record.closures) else None
+        )
         near = self.guess if self.rest is None else self.rest
         within, steps = FreeLimits(self.task.model, self.free).within(self.guess), min(self.iterations, DRAWN_STEPS)
         found = start_again(solver, within, near, most, steps, refused)

@@ -33,8 +33,8 @@ class Target(metaclass=CheckedCalls):
 
     Attributes:
         position: p_WF (3,) [m]; None if it does not matter. Of a batch (n, 3), or one for all.
-        rotation: R_WF (3, 3); None if it does not matter. Of a batch (n, 3, 3), or one for all. Rounded to seven digits,
-            it stands for the nearest rotation.
+        rotation: R_WF (3, 3); None if it does not matter. Of a batch (n, 3, 3), or one for all. Rounded to seven
+            digits, it stands for the nearest rotation.
     """
 
     position: npt.ArrayLike | None = None
@@ -221,7 +221,9 @@ def poses_of(targets: Mapping[str, Target], wishes: Sequence[Wish], n: int | Non
 
     def looked_at(i: int) -> Array:
         at = "" if n is None else f" {i // len(wishes)}"
-        return rotations_checked(f"target{at} of frame '{wishes[i % len(wishes)].frame}'", _rows(poses)[i, 3:].reshape(3, 3))
+        return rotations_checked(
+            f"target{at} of frame '{wishes[i % len(wishes)].frame}'", _rows(poses)[i, 3:].reshape(3, 3)
+        )
 
     if wishes:
         settled(_rows(poses), ROTATION_TOLERANCE, looked_at)
@@ -238,6 +240,6 @@ def _numbers(what: str, values: npt.ArrayLike, shape: tuple[int, ...], n: int | 
         flat = values.reshape(-1)
         if math.isfinite(float(flat @ flat)):
             return values
-    if n is None or np.ndim(values) == len(shape):  # type: ignore[arg-type]  # Of anything.
+    if n is None or np.ndim(values) == len(shape):
         return finite_array(what, values, shape, remedy)
     return finite_array(what, values, (n, *shape), remedy)

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.simulation.analysis.kinematics.restarts import _window, default_start, nearest_turns
+from symofros.base.arrays import Array
+from symofros.simulation.analysis.kinematics.restarts import default_start
 from symofros.simulation.analysis.kinematics.targets import Task
 from tests.simulation.mechanisms import links
 
@@ -21,7 +22,15 @@ LIMIT = 4.0  # Of the wrist, which has room for a little more than a turn.
 def arm() -> sf.Model:
     bodies = links((1.0, 0.8, 0.6), "l", axis=(0, 1, 0), limits={2: sf.Limits(-LIMIT, LIMIT)})
     functions = ("frame_pose", "frame_jacobian")
-    return sf.compile(sf.System("arm", bodies), sf.Options(functions, backend="interpreter"))
+    return sf.compile(sf.System("arm", (*bodies,)), sf.Options(functions, backend="interpreter"))
+
+
+def turned(task: Task, q: Array, guess: Array) -> Array:
+    """What a search makes of a solution."""
+    solver = task.solver
+    solver.round[0], solver.round_met[0] = q, 1.0
+    assert solver.nearest(guess, guess, 1)
+    return solver.end()
 
 
 OFF = st.floats(-3.1, 3.1)  # Less than half a turn.
@@ -40,7 +49,7 @@ def test_angles_end_within_half_a_turn_of_the_guess_where_limits_let_them(
     m, near = arm(), np.add(guess[:2], off)
     q = np.array([*(near + 2.0 * np.pi * np.array(turns)), wrist])
     task = Task(m, {"l2.end": sf.Target(m.frame_pose("l2.end", q)[0])}, None, None)
-    found = nearest_turns(task, q, np.array(guess))
+    found = turned(task, q, np.array(guess))
     assert found[:2] == pytest.approx(near, abs=1e-12)
     assert -LIMIT <= found[2] <= LIMIT
     whole = (wrist - found[2]) / (2.0 * np.pi)
@@ -53,7 +62,7 @@ def test_searches_start_within_limits() -> None:
     """Neutral where that is allowed, amid two limits, at the only one."""
     limits = {0: sf.Limits(1.0, 3.0), 1: sf.Limits(0.5), 2: sf.Limits(None, -0.25), 3: sf.Limits(-1.0, 2.0)}
     m = sf.compile(
-        sf.System("arm", links((1.0,) * 4, limits=limits)), sf.Options(("mass_matrix",), backend="interpreter")
+        sf.System("arm", (*links((1.0,) * 4, limits=limits),)), sf.Options(("mass_matrix",), backend="interpreter")
     )
     np.testing.assert_array_equal(default_start(m), [2.0, 0.5, -0.25, 0.0])
 
@@ -61,12 +70,23 @@ def test_searches_start_within_limits() -> None:
 SIDE = st.one_of(st.just(np.inf), st.floats(0.0, 10.0))
 
 
-@given(lower=SIDE, upper=SIDE, far=st.floats(0.1, 8.0))
-def test_starts_are_drawn_from_as_much_room_beside_a_limit_as_far_from_it(
-    lower: float, upper: float, far: float
-) -> None:
-    """Within the limits, and nearer to the guess than what is left out."""
-    low, high = _window(-lower, upper, far)
-    assert -lower <= low <= 0.0 <= high <= upper
-    assert high - low == pytest.approx(min(lower + upper, 2.0 * far), rel=1e-12)
-    assert low == -far or low == -lower or high == upper
+@given(lower=SIDE, upper=SIDE)
+def test_starts_are_drawn_from_as_much_room_beside_a_limit_as_far_from_it(lower: float, upper: float) -> None:
+    """Within the limits, and nearer to the guess than what is left out: half a turn, or all that there is."""
+    task = Task(arm(), {"l2.end": sf.Target([1.0, 0.0, 0.0])}, None, None)
+    solver, guess = task.solver, np.array([0.1, 0.2, 0.3])
+    solver.use(solver.everything, 1e-10, 1e-10)
+    solver.reserve_starts(8)
+    limits = [solver.memory.view(x, 3) for x in (solver.posture.lower, solver.posture.upper)]
+    kept = [side.copy() for side in limits]
+    try:
+        limits[0][1], limits[1][1] = guess[1] - lower, guess[1] + upper
+        assert solver.windows(guess)
+        low, high = (float(solver.memory.view(x, 3)[1]) for x in (solver.posture.low, solver.posture.high))
+    finally:
+        for side, values in zip(limits, kept, strict=True):
+            side[...] = values
+    room = float(guess[1] - (guess[1] - lower)), float((guess[1] + upper) - guess[1])  # As rounding leaves it.
+    assert -room[0] <= low <= 0.0 <= high <= room[1]
+    assert high - low == pytest.approx(min(sum(room), 2.0 * np.pi), rel=1e-12)
+    assert low in (-np.pi, -room[0]) or high == room[1]
