@@ -117,11 +117,12 @@ def test_singular_postures_are_reached(seed: int) -> None:
 
 def test_parameters_and_inputs_are_those_of_the_call() -> None:
     """A search is bound once, and serves other values after others."""
+    length: Any = "L"
     system = sf.System(
         "arm",
         (
-            sf.RigidBody("a", sf.Joint("a", "revolute"), sf.Inertia(1.0), (sf.Frame("e", ("L", 0, 0)),)),
-            sf.RigidBody("b", sf.Joint("b", "revolute", "a", "e"), sf.Inertia(1.0), (sf.Frame("tip", ("L", 0, 0)),)),
+            sf.RigidBody("a", sf.Joint("a", "revolute"), sf.Inertia(1.0), (sf.Frame("e", (length, 0, 0)),)),
+            sf.RigidBody("b", sf.Joint("b", "revolute", "a", "e"), sf.Inertia(1.0), (sf.Frame("tip", (length, 0, 0)),)),
         ),
         parameters=(sf.Parameter("L", 1.0),),
     )
