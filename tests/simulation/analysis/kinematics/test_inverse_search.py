@@ -159,3 +159,16 @@ def test_what_an_interpreted_function_raises_ends_the_search(monkeypatch: pytest
         with pytest.raises(KeyboardInterrupt):
             sf.inverse_kinematics(m, target, [0.2, -0.4])
     assert sf.inverse_kinematics(m, target, [0.2, -0.4]).converged
+
+
+@pytest.mark.parametrize(("side", "ends"), [(-2.0, [-0.5, -0.6, -0.2]), (2.0, [0.3, 0.8, 1.2])])
+def test_each_coordinate_stops_at_its_own_limit(side: float, ends: list[float]) -> None:
+    """Of a start beyond all limits, and of steps that would lead there."""
+    limits = {i: sf.Limits(*pair) for i, pair in enumerate([(-0.5, 0.3), (-0.6, 0.8), (-0.2, 1.2)])}
+    m = sf.compile(sf.System("arm", (*links((1.0, 0.8, 0.6), limits=limits),)), FUNCTIONS)
+    curled = m.frame_pose("b2.end", np.full(3, side) * [1.0, 0.5, 0.5])[0]
+    solver = Task(m, {"b2.end": sf.Target(curled)}, None, None).solver
+    solver.use(solver.everything, 1e-10, 1e-10)
+    np.testing.assert_array_equal(solver.descend(np.full(3, side), 0), ends)
+    q = solver.descend(np.zeros(3), 60)
+    assert np.all(q >= m.record.q_lower) and np.all(q <= m.record.q_upper)
