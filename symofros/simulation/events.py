@@ -33,7 +33,10 @@ class Event(metaclass=CheckedCalls):
         once: Whether only the first crossing counts.
         restitution: Newton's coefficient e, 0 to 1, of an action that lets constraints strike: they hold for the
             instant alone, and what they take of the speeds comes back e times; parameters are then as before. With 0
-            the run ends there unless forces part the bodies again.
+            the run ends there unless forces part the bodies again, or `rests` is given.
+        rests: Force of the constraint that strikes, as a formula that is above zero where the bodies press:
+            "lam.floor.z". Where strikes accumulate, and after one without rebound, the contact then persists, and opens
+            where the force falls to zero, an event of its own, "NAME opens" (docs/theory/constraints.md, 13).
     """
 
     formula: Any
@@ -43,6 +46,7 @@ class Event(metaclass=CheckedCalls):
     action: Mapping[str, Any] | None = None
     once: bool = False
     restitution: float | None = None
+    rests: Any = None
 
     def __post_init__(self) -> None:
         """The direction must be known, restitution a share, and have an action."""
@@ -51,6 +55,18 @@ class Event(metaclass=CheckedCalls):
             found = f"restitution = {self.restitution}, action = {self.action!r:.60}"
             rule = "restitution is a number from 0 to 1, of an action that engages what strikes"
             raise SymofrosError(Problem("event: no restitution", found, rule, "action={'contact': 1}, restitution=0.8"))
+        if self.rests is not None:
+            self._check_contact()
+
+    def _check_contact(self) -> None:
+        """What comes to rest is one contact, that one parameter engages, and has a direction."""
+        values = list((self.action or {}).values())
+        fits = len(values) == 1 and isinstance(values[0], (int, float)) and values[0] == 1
+        if self.restitution is None or self.direction == "both" or self.once or self.terminal or not fits:
+            found = f"direction = '{self.direction}', action = {self.action!r:.60}, restitution = {self.restitution}"
+            rule = "a contact that rests is engaged by one parameter set to 1, again and again, from one side"
+            remedy = "Event('gap', 'falling', action={'contact': 1}, restitution=0.5, rests='lam.floor.z')"
+            raise SymofrosError(Problem("event: no contact that rests", found, rule, remedy))
 
     @property
     def sign(self) -> int:
@@ -128,7 +144,24 @@ def mode_events(record: ModelRecord) -> tuple[ModeEvent, ...]:
 
 
 def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:
-    """Events by name; a bare formula is an event in both directions that ends nothing."""
-    return tuple(
-        replace(event if isinstance(event, Event) else Event(event), name=name) for name, event in (given or {}).items()
-    )
+    """Events by name; a bare formula is an event in both directions that ends nothing.
+
+    Behind one of a contact that rests there is that of its opening. While the contact holds, the strike's formula is
+    away from zero by one, as that of the opening is while it does not.
+    """
+    named: list[Event] = []
+    for name, event in (given or {}).items():
+        one = replace(event if isinstance(event, Event) else Event(event), name=name)
+        if one.rests is None:
+            named.append(one)
+            continue
+        (held,) = one.action or {}
+        formula = f"({one.formula}) {'-' if one.sign > 0 else '+'} {held}"
+        opening = Event(f"({one.rests}) + 1 - {held}", "falling", name=f"{name} opens", action={held: 0})
+        named += [replace(one, formula=formula), opening]
+    return tuple(named)
+
+
+def opens_of(events: Sequence[Event]) -> list[int]:
+    """Index of the event at which the contact of each one opens; -1: of none."""
+    return [-1 if event.rests is None else i + 1 for i, event in enumerate(events)]

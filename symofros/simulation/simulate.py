@@ -142,7 +142,7 @@ def _act(stepper: Stepper, phases: list[_Phase]) -> bool:
     """Do the actions that the last phase has come to; whether the run ends with them."""
     phase, (status, met) = phases[-1], stepper.act()
     phase.met[len(phase.met) - len(met) :] = [found_of(stepper, one) for one in met]
-    phase.notes += tuple(note for one in met for note in notes_of(one))
+    phase.notes += tuple(note for one in met for note in notes_of(one, stepper.accumulation))
     if status < 0:
         phase.outcome = next(failure for one in met if (failure := failure_of(stepper, one)) is not None)
         return True

@@ -12,7 +12,7 @@ from symofros.errors import ExportError, Problem
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord, SwitchRecord
 from symofros.simulation.actions import StatedActions, places_of, plan_actions
-from symofros.simulation.events import Event, events_of
+from symofros.simulation.events import Event, events_of, opens_of
 
 # Targets whose steps look for events.
 _TARGETS = ("c", "fmu2", "fmu3", "mex")
@@ -132,13 +132,14 @@ def _lines(
         for rows, places_of in (tuple(zip(*switch.offsets, strict=True)) or ((), ()),)
     ]
     counts = f"{len(places)}, {len(switches)}, {len(frames)}"
-    pointers = ", ".join(f"{name}_event_{key}" for key in (*arrays, "restitution"))
+    pointers = ", ".join(f"{name}_event_{key}" for key in (*arrays, "restitution", "opens"))
     models = f"{name}_events_model, {f'{name}_actions_model' if actions else 'NULL'}"
     return [
         *(f'#include "{file}"' for file in files),
         f"static const char *const {name}_event_names[] = {{{strings([event.name for event in events])}}};",
         *(f"static const int32_t {name}_event_{key}[] = {{{integers(of)}}};" for key, of in arrays.items()),
         f"static const double {name}_event_restitution[] = {{{doubles(restitution)}}};",
+        f"static const int32_t {name}_event_opens[] = {{{integers(opens_of(events))}}};",
         f"static const sym_assignment {name}_assignments[] = {{{', '.join(places) or '{0, 0, 0, 0}'}}};",
         *held,
         f"static const sym_switch {name}_switches[] = {{{_switches(name, switches)}}};",

@@ -270,6 +270,7 @@ static int fmu_step(fmu *f, double t) {
     case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
     case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;
     case SYM_ENGAGED_APART: return strcpy(f->message, "constraints engage while they are apart"), FMU_BEYOND_THEORY;
+    case SYM_WRONG_CONTACT: return strcpy(f->message, "a contact that rests is penetrated, or holds by a force that draws"), FMU_BEYOND_THEORY;
     case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
     case SYM_ACTS_WITHOUT_END:
         return strcpy(f->message, "an event acts again and again at the same instant, or leaves bodies at rest on each other"), FMU_BEYOND_THEORY;

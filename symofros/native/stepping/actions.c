@@ -106,24 +106,44 @@ static int32_t sym_parts_again(sym_run *r, const sym_done *done) {
     return along < -SYM_ACCELERATION_ROUNDING * size ? 0 : SYM_ACTS_WITHOUT_END;
 }
 
-/* Parameters and speeds that an action has set take effect: the constraints that hold now take the speeds onto them.
- * Returns 0 or a status, with nothing changed then. */
-static int32_t sym_impact(sym_run *r, double e, const sym_done *done) {
+/* Times what counts as an instant within which strikes follow each other where they accumulate; what has become of the last. */
+#define SYM_ACCUMULATION 1e3
+#define SYM_RESTS 2.0
+
+/* A contact that presses stays: parameters are those that its action has set. The force by which it will open has to
+ * press as well. Returns 0 or a status. */
+static int32_t sym_rest(sym_run *r, int32_t opens, const sym_done *done) {
+    const sym_system *s = r->system;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * s->n_events;
+    int32_t status;
+    sym_run_set_parameters(r, done->par_set);
+    sym_load_state(r);
+    status = sym_event_values(r, values);
+    if (status != 0) return status;
+    return values[opens] > 0.0 ? 0 : SYM_ACTION_REFUSED;
+}
+
+/* Parameters and speeds that an action has set take effect: the constraints that hold now take the speeds onto them; e is
+ * Newton's coefficient of those that strike. Returns 0 or a status, with nothing changed then. */
+static int32_t sym_impact(sym_run *r, double e, int32_t opens, const sym_done *done) {
     const size_t nv = (size_t)r->system->nv;
-    int32_t status = 0;
+    int32_t status = 0, rests = 0;
     size_t i;
     sym_run_set_parameters(r, done->par_set);
     memcpy(done->v_after, r->v, nv * sizeof *r->v);
     memcpy(r->v, done->v_set, nv * sizeof *r->v);
     if (r->system->nc > 0) status = sym_run_engage(r, done->gap);
-    if (status == 0 && e == 0.0) status = sym_parts_again(r, done);
+    if (status == 0 && e == 0.0) {
+        status = sym_parts_again(r, done);
+        if (status == SYM_ACTS_WITHOUT_END && opens >= 0) status = sym_rest(r, opens, done), rests = status == 0;
+    }
     if (status != 0) memcpy(r->v, done->v_after, nv * sizeof *r->v);
     for (i = 0; status == 0 && e >= 0.0 && i < nv; ++i) r->v[i] += e * (r->v[i] - done->v_set[i]); /* (32) */
-    if (status != 0 || e >= 0.0) sym_run_set_parameters(r, done->par);
+    if (status != 0 || (e >= 0.0 && !rests)) sym_run_set_parameters(r, done->par);
     if (status != 0) return status;
     memcpy(done->q_after, r->q, (size_t)r->system->nq * sizeof *r->q);
     memcpy(done->v_after, r->v, nv * sizeof *r->v);
-    *done->acted = 1.0;
+    *done->acted = rests ? SYM_RESTS : 1.0;
     return 0;
 }
 
@@ -131,11 +151,13 @@ static int32_t sym_impact(sym_run *r, double e, const sym_done *done) {
 static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
     const sym_actions *a = r->actions;
     sym_system *s = r->system;
-    const double e = a->restitution[event];
+    const int32_t opens = a->opens[event];
+    double e = a->restitution[event];
     const size_t par_size = (size_t)a->npar * sizeof(double), v_size = (size_t)s->nv * sizeof(double);
     int32_t engaging, refused;
     memcpy(done->par, r->par, par_size), memcpy(done->par_set, r->par, par_size), memcpy(done->v_set, r->v, v_size);
-    if (r->t - r->acted_at[event] <= a->at_once) return SYM_ACTS_WITHOUT_END;
+    if (opens >= 0 && r->t - r->acted_at[event] <= SYM_ACCUMULATION * a->at_once) e = 0.0;
+    else if (r->t - r->acted_at[event] <= a->at_once) return SYM_ACTS_WITHOUT_END;
     r->acted_at[event] = r->t;
     sym_load_state(r);
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
@@ -147,7 +169,7 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
         return SYM_ACTION_REFUSED;
     }
     sym_let_go(s, done->par_set);
-    return sym_impact(r, e, done);
+    return sym_impact(r, e, opens, done);
 }
 
 /* Rows of a step's events -> those at which it has been cut, in the order in which the events are stated. */

@@ -54,6 +54,22 @@ static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, do
     return 0;
 }
 
+/* Gap [m, rad] and force [N, N m] of a contact that are rounding. */
+#define SYM_TOUCHING 1e-9
+
+/* Whether contacts that rest are where they can begin: not penetrated, or pressing. Returns 0 or a status. */
+static int32_t sym_check_contacts(const sym_run *r) {
+    const sym_system *s = r->system;
+    int32_t i;
+    for (i = 0; i < s->n_events && r->actions != NULL; ++i) {
+        const int32_t opens = r->actions->opens[i];
+        if (opens < 0) continue;
+        if (s->event_direction[i] * r->event_values[i] > SYM_TOUCHING) return SYM_WRONG_CONTACT;
+        if (r->event_values[opens] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
+    }
+    return 0;
+}
+
 /* Values of the events at the present state, from which a search may begin; those before are unknown. Returns 0 or a
  * status. */
 static int32_t sym_restart_events(sym_run *r) {
@@ -104,6 +120,12 @@ static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, 
     return sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
 }
 
+/* Whether the step begins as bodies leave a contact that can come to rest, near to which they turn then. */
+static int sym_leaves_contact(const sym_run *r, int32_t i) {
+    const int32_t opens = r->actions == NULL ? -1 : r->actions->opens[i];
+    return opens >= 0 && (r->acted_at[i] == r->t || r->acted_at[opens] == r->t);
+}
+
 /* Keep what was noted of the events of a step, the first of each kind: one that turns at x nearer to zero than the errors of
  * the state let it be known, one that was not followed. Returns 0 or a status. */
 static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search *search) {
@@ -113,7 +135,7 @@ static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search
     int32_t status, is_rounding, is_zero = 0;
     if (r->unresolved_event < 0 && search->unresolved >= 0)
         r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
-    if (r->touched_event >= 0 || i < 0) return 0;
+    if (r->touched_event >= 0 || i < 0 || sym_leaves_contact(r, i)) return 0;
     status = sym_event_is_rounding(step, i, search->touched_x, &is_rounding);
     if (status != 0 || is_rounding) return status;
     status = sym_event_is_at_zero(step, i, search->touched_x, rtol, atol, &is_zero);

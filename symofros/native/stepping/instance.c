@@ -128,7 +128,7 @@ static int32_t sym_instance_allocate_actions(sym_instance *instance, sym_arena *
     a->assignments = plan->assignments, a->switches = plan->switches;
     a->first_mode = plan->first_mode;
     a->modes = sym_allocate(arena, (size_t)a->npar + 2 * (size_t)plan->n_sticking);
-    a->acts = plan->acts, a->once = plan->once, a->restitution = plan->restitution;
+    a->acts = plan->acts, a->once = plan->once, a->restitution = plan->restitution, a->opens = plan->opens;
     a->refuses = sym_instance_refuses, a->data = instance;
     a->engaged = sym_allocate(arena, (size_t)plan->n_switches);
     a->poses = sym_allocate_bytes(arena, (size_t)plan->n_poses * sizeof *a->poses);

@@ -80,6 +80,7 @@ static int32_t sym_begin_motion(sym_run *r, sym_workspace *w) {
     if (status != 0) return status;
     sym_keep_diagnostic_state(r, 0);
     status = sym_restart_events(r);
+    if (status == 0) status = sym_check_contacts(r);
     if (status != 0) return status;
     r->next_step = r->h;
     if (!r->adaptive || r->h > 0.0) return 0;

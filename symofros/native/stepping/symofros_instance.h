@@ -26,6 +26,7 @@ typedef struct sym_event_plan { /* events of a package, and what they do: symofr
     const int32_t *direction, *cut;       /* (n) as sym_system's event_direction, event_terminal at first */
     const int32_t *acts, *once;           /* (n) as in sym_actions, as what follows */
     const double *restitution;
+    const int32_t *opens;
     int32_t n_assignments, n_switches, n_poses;
     const sym_assignment *assignments;
     const sym_switch *switches;

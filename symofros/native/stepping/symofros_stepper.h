@@ -30,7 +30,8 @@ typedef enum sym_status {
     SYM_ACTION_REFUSED = -12,    /* an event's action sets what is not allowed, or its restitution lets nothing strike */
     SYM_ACTS_WITHOUT_END = -13,  /* an event's action brings the event about again at the same instant, or bodies to rest */
     SYM_MODES_UNDECIDED = -14,   /* no modes of friction that sticks agree with what they bring about */
-    SYM_HELD_TWICE = -15         /* friction holds what it or constraints hold already: what it takes is not determined */
+    SYM_HELD_TWICE = -15,        /* friction holds what it or constraints hold already: what it takes is not determined */
+    SYM_WRONG_CONTACT = -16      /* a contact that rests is penetrated, or holds by a force that draws */
 } sym_status;
 
 typedef enum sym_method {
@@ -120,6 +121,7 @@ typedef struct sym_actions {
     const sym_switch *switches;
     const int32_t *acts, *once;      /* (n_events) whether one has an action; whether it has it once only */
     const double *restitution;       /* (n_events) Newton's coefficient; below 0: none */
+    const int32_t *opens;            /* (n_events) the event at which a contact that came to rest by this one opens; below 0: none */
     int32_t (*refuses)(void *data, const double *par); /* whether parameters are not allowed */
     void *data;
     double at_once;                  /* an event that acts twice within this time acts without end [s] */
@@ -131,7 +133,7 @@ typedef struct sym_actions {
 
 /* What the action at a row of events has done. */
 typedef struct sym_done {
-    double *acted;                   /* 1; 0: nothing; a status: failed */
+    double *acted;                   /* 1; SYM_RESTS; 0: nothing; a status: failed */
     double *gap;                     /* as of sym_run_engage */
     double *u;                       /* (nu) inputs by which it acted */
     double *v_set, *v_after;         /* (nv) speeds that it set; those that the impact left */

@@ -31,16 +31,27 @@ def found_event(event: Event, model: Model, met: Met) -> Found:
     """An event that was met, with what its action did: energies and impulse where the model has functions for them."""
     done = met.done
     found = Found(event.name, met.t, met.q, met.v)
-    if done is None or done.status != Status.FINISHED:
+    if done is None or done.status <= 0:
         return found
     if isinstance(event, ModeEvent):
         found = found._replace(name=event.said(done.par_set))
     return found._replace(v_after=done.v_after, **_effects(model, met, done))
 
 
-def notes_of(met: Met) -> tuple[str, ...]:
-    """A remark on the gap that constraints have closed as they engaged, where it is more than rounding."""
-    return engaging_notes(met.t, met.done.gap) if met.done is not None and met.done.status > 0 else ()
+def notes_of(met: Met, threshold: float = 0.0) -> tuple[str, ...]:
+    """Remarks on what an action did: a gap that was closed beyond rounding, a contact that came to rest.
+
+    Args:
+        met: The event.
+        threshold: Time within which strikes that follow each other are the last ones [s]; 0: not known.
+    """
+    if met.done is None or met.done.status <= 0:
+        return ()
+    notes = engaging_notes(met.t, met.done.gap)
+    if met.done.rests:
+        within = f", where strikes would follow within {threshold:.3g} s" if threshold else ""
+        notes += (f"a contact persists from t = {met.t:.12g} s on{within}",)
+    return notes
 
 
 def failure_of(run: BoundRun, met: Met) -> Outcome | None:
@@ -82,12 +93,22 @@ def _refused(run: BoundRun, event: Event, met: Met, done: Done) -> Problem:
         run.check_changed(done.par_set)
     except SymofrosError as error:
         return error.problem
+    if event.rests is not None and done.v_set.size and run.model.nc and _engages(run, met, done):
+        what, rule = "its `rests` does not press as the bodies do", "the force is above zero where bodies press"
+        return Problem(what, f"{event.rests}", rule, "the other sign, or the multiplier of what the action engages")
     if event.restitution is not None:
         rule = "restitution is that of constraints which the action engages"
         return Problem("no constraint engages", "restitution", rule, "a Switch by what the action sets")
     i = int(np.argmax(np.abs(done.v_set)))
     what, found = f"action sets speed '{run.model.names.v[i]}'", f"{done.v_set[i]:.3g}"
     return Problem(what, found, "no motion is as fast", "mend its formula")
+
+
+def _engages(run: BoundRun, met: Met, done: Done) -> bool:
+    """Whether what an action sets engages a constraint."""
+    return run.actions is not None and bool(
+        run.actions.engaging(done.par, done.par_set, (met.t, met.q, met.v, done.u))
+    )
 
 
 def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:

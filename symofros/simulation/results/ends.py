@@ -94,6 +94,11 @@ ENDS: dict[int, End] = {
         "in a closed loop friction that sticks at no more joints than the loop has degrees of freedom; sticks=False at"
         " the others",
     ),
+    Status.WRONG_CONTACT: End(
+        "input failed",
+        "a contact that can come to rest is penetrated here, or is held though its force draws",
+        "a start on the free side of the gap; engaged only where it presses; `rests` above zero where bodies press",
+    ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."
     ),

@@ -112,7 +112,7 @@ class Trajectories(BatchResults):
         """Samples from which on one run has other parameters: as of `Trajectory`."""
         events = () if self.examination is None else self.examination.initial.events
         acted = [(met, met.done) for met in self._met(index) if met.done is not None and met.done.status > 0]
-        lasting = [(met, done) for met, done in acted if events[met.which].restitution is None]
+        lasting = [(met, done) for met, done in acted if events[met.which].restitution is None or done.rests]
         times = self.t[self._reached(index)]
         return tuple((int(np.searchsorted(times, met.t, side="right")), done.par_set) for met, done in lasting)
 

@@ -14,7 +14,7 @@ from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constan
 from symofros.runtime.model import Model
 from symofros.runtime.record import HELD
 from symofros.simulation.actions import Actions, plan_actions
-from symofros.simulation.events import Event
+from symofros.simulation.events import Event, opens_of
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.tableaus import fill_tableau
@@ -192,6 +192,7 @@ class BoundRun:
         plan.acts = memory.own("int32_t[]", [int(event.acts) for event in events])
         plan.once = memory.own("int32_t[]", [int(event.once) for event in events])
         plan.restitution = memory.doubles([event.coefficient for event in events])
+        plan.opens = memory.own("int32_t[]", opens_of(events))
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
         plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
         plan.first_mode, plan.modes = actions.stated.first_mode, memory.zeros(model.npar + 2 * sticking)

@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from symofros.base.arrays import Array
+from symofros.native import native_number
+
+_RESTS = int(native_number("stepping/actions.c", "SYM_RESTS"))
 
 
 class Done(NamedTuple):
     """What an action has done: sym_done.
 
     Attributes:
-        status: 1, Status.FINISHED; below zero: why it has failed.
+        status: 1, or 2 where a contact came to rest; below zero: why it has failed.
         gap: |phi| by weight that engaging has closed.
         u: Inputs by which it acted (nu).
         v_set: Speeds that it set (nv).
@@ -29,6 +32,11 @@ class Done(NamedTuple):
     q_after: Array
     par: Array
     par_set: Array
+
+    @property
+    def rests(self) -> bool:
+        """Whether a contact came to rest by it: SYM_RESTS."""
+        return self.status == _RESTS
 
     @classmethod
     def of(cls, row: Array, sizes: tuple[int, int, int, int]) -> Done | None:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.native import native_number
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls import constants
 from symofros.simulation.stepping.bound_run import BoundRun
@@ -19,6 +20,8 @@ from symofros.simulation.stepping.status import Status
 _EVENT_ROWS = 64
 # An event that acts twice within this share of a run acts without end: smaller spans are not resolved within steps.
 _AT_ONCE = 1e-9
+# Times that, strikes follow each other where they accumulate.
+_ACCUMULATION = native_number("stepping/actions.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
 
@@ -88,6 +91,11 @@ class Stepper(BoundRun):
         """Time of the motion [s], of which a small share is an instant to actions that bring about each other."""
         if self.actions is not None:
             self.run.actions.at_once = _AT_ONCE * span
+
+    @property
+    def accumulation(self) -> float:
+        """Time within which strikes of a contact that rests are its last ones [s]."""
+        return _ACCUMULATION * float(self.run.actions.at_once) if self.actions is not None else 0.0
 
     def ignore_event(self, which: int) -> None:
         """An event is not looked for any more."""
