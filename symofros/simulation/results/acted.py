@@ -106,9 +106,7 @@ def _refused(run: BoundRun, event: Event, met: Met, done: Done) -> Problem:
 
 def _engages(run: BoundRun, met: Met, done: Done) -> bool:
     """Whether what an action sets engages a constraint."""
-    return run.actions is not None and bool(
-        run.actions.engaging(done.par, done.par_set, (met.t, met.q, met.v, done.u))
-    )
+    return run.actions is not None and bool(run.actions.engaging(done.par, done.par_set, (met.t, met.q, met.v, done.u)))
 
 
 def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:

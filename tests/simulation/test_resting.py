@@ -1,0 +1,123 @@
+"""Contacts that come to rest and open again (docs/theory/constraints.md, section 13)."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+
+G, E = 9.81, 0.5
+
+
+@cache
+def ball() -> sf.Model:
+    """A ball of 1 kg above a floor, and under a ceiling at 1 m, at which an input pulls."""
+    body = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), actuated=True), sf.Inertia(1.0))
+    walls = (sf.Coupling("floor", "z"), sf.Coupling("ceiling", "z - 1"))
+    switches = (sf.Switch("floor", "down"), sf.Switch("ceiling", "up"))
+    parameters = (sf.Parameter("down", 0), sf.Parameter("up", 0))
+    return sf.compile(sf.System("ball", (body,), parameters, constraints=walls, switches=switches))
+
+
+def floor(e: float = E, **changes: Any) -> dict[str, sf.Event]:
+    """The contact of ball and floor."""
+    stated: dict[str, Any] = {"formula": "z", "direction": "falling", "action": {"down": 1}}
+    return {"strike": sf.Event(**stated | {"restitution": e, "rests": "lam.floor"} | changes)}
+
+
+def instants(h: float, n: int) -> Any:
+    """Instants of the first n strikes from rest at a height, and the one at which they accumulate."""
+    first = np.sqrt(2 * h / G)
+    return first * (1 + 2 * E * (1 - E ** np.arange(n)) / (1 - E)), first * (1 + E) / (1 - E)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_a_bouncing_ball_comes_to_rest_and_is_lifted(method: str) -> None:
+    """By the closed form to 1e-12 until the strikes accumulate; it rests until the pull is its weight, then flies."""
+    options: dict[str, Any] = {"method": method, "dt": 1e-2, "rtol": 1e-10, "atol": 1e-13}
+    run = sf.simulate(ball(), [0.7], t_end=2.6, u={"z": "20*(t - 1.5)"}, events=floor(), **options)
+    assert [found.name for found in run.events[-2:]] == ["strike", "strike opens"]
+    # Up to the first strike the pull is felt, too: without it the closed form holds.
+    free = sf.simulate(ball(), [0.7], t_end=2.0, events=floor(), **options)
+    met, (known, end) = np.array([found.t for found in free.events]), instants(0.7, len(free.events))
+    assert len(met) > 15 and met == pytest.approx(known, abs=1e-12) and abs(met[-1] - end) < 2e-6
+    assert free.outcome.kind == "finished" and all(found.energy_lost >= 0.0 for found in free.events)
+    (note,) = free.outcome.notes
+    assert f"persists from t = {met[-1]:.12g} s on, where strikes would follow within 2e-06 s" in note
+    still = free.t > met[-1]
+    assert np.abs(free.q[still]).max() < 1e-15 and not free.v[still].any()
+    assert free.lam[still][1:, 0] == pytest.approx(G, abs=1e-12) and free.par_over_time[-1, 0] == 1
+    opened = run.events[-1].t
+    assert opened == pytest.approx(1.5 + G / 20, abs=1e-12) and not run.par_over_time[-1].any()
+    assert run.q[-1, 0] == pytest.approx(20 / 6 * (2.6 - opened) ** 3, abs=1e-12)
+
+
+def test_a_plastic_strike_rests_at_once_and_residuals_of_complementarity_are_rounding() -> None:
+    """Gap and force are never below zero, and one of them is zero, over openings and strikes."""
+    pull = {"z": "12*sin(2*t)"}
+    run = sf.simulate(ball(), [0.3], t_end=6.0, u=pull, events=floor(0.0), method="dopri5", rtol=1e-10)
+    assert [found.name for found in run.events] == ["strike", "strike opens"] * 2 + ["strike"]
+    gap, force = run.q[:, 0], run.lam[:, 0]
+    assert gap.min() > -1e-12 and force.min() > -1e-12 * G and np.minimum(abs(gap), abs(force) / G).max() < 1e-12
+
+
+def test_a_ball_between_two_planes() -> None:
+    """It strikes both in turn, comes to rest below, is drawn up and rests above."""
+    ceiling = sf.Event("z - 1", "rising", action={"up": 1}, restitution=E, rests="-lam.ceiling")
+    events = floor() | {"knock": ceiling}
+    run = sf.simulate(ball(), [0.5], [7.0], 6.0, u={"z": "8*(t - 2)"}, events=events, method="dopri5", rtol=1e-10)
+    rested = [note for note in run.outcome.notes if "persists" in note]
+    assert run.events[0].name == "knock" and run.events[1].name == "strike" and rested
+    assert [found.name for found in run.events if "opens" in found.name] == ["strike opens"]
+    assert run.q[-1] == pytest.approx([1.0], abs=1e-12) and run.par_over_time[-1] == pytest.approx([0, 1])
+    assert run.q.min() > -1e-12 and run.q.max() < 1 + 1e-12
+
+
+def test_what_is_refused() -> None:
+    """What is no contact as it is stated; starts that penetrate or draw, and forces of the wrong sign, as outcomes."""
+    wrong: tuple[dict[str, Any], ...] = (
+        {"direction": "both"},
+        {"once": True},
+        {"terminal": True},
+        {"action": {"down": 1, "up": 1}},
+        {"action": {"down": "1"}},
+        {"action": {"down": 0}},
+        {"restitution": None},
+    )
+    for changes in wrong:
+        with pytest.raises(sf.SymofrosError, match="no contact that rests"):
+            floor(**changes)
+    for e in (-0.1, 1.1):
+        with pytest.raises(sf.SymofrosError, match="restitution is a number from 0 to 1"):
+            floor(e)
+
+    def outcome(z: float, rests: str = "lam.floor", **given: Any) -> sf.Outcome:
+        return sf.simulate(ball(), [z], t_end=2.0, events=floor(rests=rests), dt=1e-2, **given).outcome
+
+    assert outcome(-1e-3).kind == "input failed" and "penetrated" in outcome(-1e-3).reason
+    drawn = outcome(0.0, u={"z": 10.0}, par={"down": 1})
+    assert drawn.kind == "input failed" and "force draws" in drawn.reason
+    assert "`rests` does not press" in outcome(0.5, "-lam.floor").reason
+    assert outcome(0.0, par={"down": 1}).kind == "finished"
+
+
+def test_steppers_and_batches_rest_as_a_run_does() -> None:
+    """To the last bit, with the same parameters behind."""
+    options: dict[str, Any] = {"events": floor(), "dt": 1e-2, "method": "rk4"}
+    run = sf.simulate(ball(), [0.2], t_end=1.2, **options)
+    stepper = sf.Stepper(ball(), **options)
+    stepper.reset([0.2])
+    while stepper.t < 1.2 - 1e-9 and stepper.step([0.0]):
+        pass
+    assert stepper.par[0] == 1 and abs(stepper.q[0]) < 1e-15
+    many = sf.simulate_batch(ball(), [[0.2], [0.1]], t_end=1.2, **options)
+    assert [found.t for found in many.events(0)] == [found.t for found in run.events]
+    assert many[0].par_over_time[-1] == pytest.approx([1, 0]) and many[0].outcome.kind == "finished"
+    assert any("a contact persists" in note for note in many[0].outcome.notes)
+    while stepper.t < 1.4 - 1e-9 and stepper.step([20.0]):
+        pass
+    assert stepper.par[0] == 0 and stepper.q[0] == pytest.approx(0.5 * (20 - G) * 0.2**2, abs=1e-9)
