@@ -49,6 +49,20 @@ Side = Literal["wrong", "right"]
 
 
 @dataclass(frozen=True)
+class Subject:
+    """What of an engine is wrong; what its script calls besides is not.
+
+    Attributes:
+        functions: The engine's names of the functions whose values are wrong, or the matrix's where the engine has one
+            name for several; none where a reader makes a wrong mechanism, which shows in all of them.
+        shown_in: Words for trees or files that the fault shows in; none where it shows in all that have the function.
+    """
+
+    functions: list[str]
+    shown_in: list[str]
+
+
+@dataclass(frozen=True)
 class Fault:
     """A wrong number of a release, as its file states it.
 
@@ -61,6 +75,7 @@ class Fault:
         thread: Issue, pull request, commit or changelog; or "none found".
         kind: What the fault is about, one of `KINDS` (`class` in the file).
         fault: What is wrong, in one sentence.
+        subject: What of the engine is wrong.
         expected: The right value.
         follows: How the right value follows.
         tolerance: Largest error that counts as right.
@@ -77,6 +92,7 @@ class Fault:
     thread: str
     kind: str
     fault: str
+    subject: Subject
     expected: float
     follows: str
     tolerance: float
@@ -124,7 +140,7 @@ def read(path: Path) -> Fault:
     names = {field.name for field in fields(Fault)}
     if set(stated) != names:
         raise ValueError(f"{path.name}: entries missing or unknown: {sorted(names ^ set(stated))}")
-    fault = Fault(**stated)
+    fault = Fault(**stated | {"subject": Subject(**stated["subject"])})
     for broken, rule in _rules(fault):
         if broken:
             raise ValueError(f"{path.name}: {rule}")
@@ -138,6 +154,7 @@ def _rules(fault: Fault) -> list[tuple[bool, str]]:
         (fault.engine not in PACKAGES, f"the engine is one of {', '.join(PACKAGES)}"),
         (fault.kind not in KINDS, f"the class is one of {', '.join(KINDS)}"),
         (len(fault.script.splitlines()) > LINES, f"a script has at most {LINES} lines"),
+        (not (fault.subject.functions or fault.subject.shown_in), "a subject names functions, or what it is shown in"),
         (bool(foreign), f"a script imports its engine and numpy alone, not {', '.join(sorted(foreign))}"),
         (fault.is_right(fault.reproduced), "the wrong release's value differs from the right one"),
         ((fault.right is None) != (fault.corrected is None), "a right release has a value, and only that"),

@@ -12,7 +12,6 @@ import typer
 
 from ..engines.causes.cause import stated as causes
 from ..engines.causes.grouping import Group
-from ..engines.models.readers import Reading
 from ..engines.releases import Release, opened, plugins_of
 from ..engines.study import SMOKE, about, in_turn, questions
 from ..engines.verdicts import Cell
@@ -21,7 +20,7 @@ from ..faults.environment import NotAskedError, default_folder, kept, size_of
 from ..reporting.command import Run, known
 from ..reporting.record import Data
 from . import suites
-from .scoring import Names, Scored, grouped, has, named, scored
+from .scoring import Scored, grouped, has, scored, shows
 
 NO_PLUGIN = "the harness has no plug-in for it"
 
@@ -161,15 +160,16 @@ def _releases(fault: Fault) -> list[tuple[str, str]]:
 
 def _score(fault: Fault, wrong: Asked, right: Asked | None, by_suite: bool) -> Scored:
     """The score of a fault whose releases were asked."""
-    forms = {} if by_suite else {name: one.form for name, one in questions().items() if isinstance(one, Reading)}
-    names, version = Names(wrong.natives, forms), fault.right or fault.wrong
+    natives, version = wrong.natives, fault.right or fault.wrong
 
     def explained(group: Group) -> str:
         """The cause of a group that is new at the right release: stated of the engine, or another fault of the set."""
         cause = next((cause for cause in causes() if all(map(cause.explains, group.cells))), None)
         others = (one for one in faults().values() if one.engine == fault.engine and one is not fault)
-        other = next((one for one in others if has(one, version) and named(one, group, names)), None)
+        called = [natives.get(name, name) for name in group.functions]
+        left = (one for one in others if has(one, version))
+        other = next((one for one in left if shows(one, group.functions, called, group.models)), None)
         return cause.what if cause else other.name if other else ""
 
     cells = None if right is None else right.cells
-    return scored(fault, wrong.cells, cells, names, explained, suites.apart if by_suite else grouped)
+    return scored(fault, wrong.cells, cells, natives, explained, suites.apart if by_suite else grouped)

@@ -15,14 +15,12 @@ from .scoring import LOST
 _WANTED = 0.8
 _TEXT = f"""A fault is a wrong number of a public release (`validation/faults/entries`), found in its tracker, in its
 changelog, or by a harness. The same harness asks the wrong release and the first right one, each in an environment of
-its own. **hit**: a group of cells that is red at the wrong release and not, or less, at the right one names the
-function or is of the family of the fault's class. **half a hit**: such groups are imprecise only, or are lost among
-{LOST} new groups or more. **miss**: neither. Where no release is right yet, a group has to name the function. **false
+its own. **hit**: a group of cells that is red at the wrong release and not, or less, at the right one shows what
+the fault's file states as its subject. **half a hit**: such groups are imprecise only, or are lost among
+{LOST} new groups or more. **miss**: neither. **false
 alarm**: a group that is red at the right release and not, or less, at the wrong one, which neither a cause that is
-stated of the engine nor another fault of the set explains. Groups are found from the cells alone. How names are
-compared is told at the beginning of `validation/recall/scoring.py`. A hit does not say that the group has the fault's
-cause: faults that one release mended may be taken for each other, and what a script calls to set up counts as its
-names; the sections below show the groups. The frozen faults were chosen before the harness was changed for any of them
+stated of the engine nor another fault of the set explains. Groups are found from the cells alone. Names are
+compared by `validation/recall/scoring.py`. The frozen faults were chosen before the harness was changed for any of them
 (`validation/faults/frozen.txt`); the others were worked with."""
 Row = Mapping[str, Any]
 
@@ -111,14 +109,13 @@ def _by(name: str, rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
 
 def _line(row: Row) -> tuple[str, ...]:
     """A fault's line."""
-    naming = next((one for one in row["groups"] if one["names"]), None)
+    naming = next((one for one in row["groups"] if one["shows"]), None)
     seen = _functions(naming) if naming and row["score"] in ("hit", "half a hit") else ""
     why = f": {row['why'].splitlines()[0]}" if row["why"] else ""
     link = f"[{row['name']}](#{row['name']})" if _shown(row) else row["name"]
     stated = link, row["engine"], row["wrong"], row["right"] or "none yet", row["kind"]
     numbers = (str(len(row["groups"])), verdict(row["alarms"], not row["alarms"]), f"{row['minutes']:.1f}")
-    by = f" by {naming['names']}" if seen and naming else ""
-    return *stated, f"{row['score']}{by}{why}", seen, *numbers, str(row["memory"]), str(row["disk"])
+    return *stated, f"{row['score']}{why}", seen, *numbers, str(row["memory"]), str(row["disk"])
 
 
 def _functions(group: Row) -> str:
@@ -130,9 +127,16 @@ def _functions(group: Row) -> str:
 
 def _shown(row: Row) -> tuple[Any, ...]:
     """What a fault's section has: new groups, and those of the right release."""
-    head = "release | names | verdict | functions | trees and files | explained by"
+    head = "release | shows it | verdict | functions | trees and files | explained by"
     lines = [
-        (release, one["names"], one["verdict"], ", ".join(one["natives"]), "; ".join(one["models"]), one["explained"])
+        (
+            release,
+            "yes" if one["shows"] else "",
+            one["verdict"],
+            ", ".join(one["natives"]),
+            "; ".join(one["models"]),
+            one["explained"],
+        )
         for release, groups in ((row["wrong"], row["groups"]), (row["right"], row["others"]))
         for one in groups
     ]

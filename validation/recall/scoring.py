@@ -1,84 +1,39 @@
 """From what is red at a fault's wrong release and at its right one to a score.
 
 A red cell is *new* where it is red at the wrong release and at the right one is not asked, or less red; where there is
-no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *names* the
-fault if the engine's own name of one of its functions is in the fault's sentence or script, or if the names of most of
-its trees have a word of the fault's sentence that few faults have. It is of its *family* if a word of the fault's class
-(`FAMILIES`) is in the name of a function or a tree, or, for what readers make of files, if the engine read a file of
-the script's format; unless it names another fault that went between the same releases. No entry states by hand what it
-is to be seen in, so that a frozen one is judged as any other.
+no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *shows* the
+fault if one of its functions is one that the fault's file states as its subject, and if most of its trees are of those
+that the subject is shown in (`validation.faults.entry.Subject`); what a reader makes of a file shows in files of that
+format alone. What else a script calls, and what else the same release mended, is no part of it.
 
-hit: some new group names the fault or is of its family; without a right release, names it. half a hit: all such groups
-are imprecise only, or they are lost among `LOST` new groups or more. miss: neither. A false alarm is a group of cells
+hit: some new group shows the fault. half a hit: all such groups are imprecise only, or they are lost among `LOST` new
+groups or more. miss: neither. A false alarm is a group of cells
 that are red at the right release, where the wrong one's answer was right, or less wrong, and which neither another
 fault of the set that the right release still has nor a cause that is stated of the engine explains.
 """
 
 from __future__ import annotations
 
-import ast
 import re
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
-from functools import cache
+from dataclasses import asdict, dataclass
 from itertools import takewhile
 from typing import Literal
 
 from ..engines.causes.grouping import Group, causes_of
 from ..engines.verdicts import RED, Cell
-from ..faults.entry import Fault, faults
+from ..faults.entry import Fault
 
 LOST = 20
 # From the mildest to the worst; what is no number is as bad as a wrong one.
 _BADNESS = {"imprecise": 1}
 _WORST = 2
 _ANSWERED = ("right", "imprecise")
-# Class of a fault -> words that names of functions or trees have where they are about it.
-FAMILIES: Mapping[str, tuple[str, ...]] = {
-    "dynamics": (
-        *("mass_matrix", "bias", "gravity", "coriolis", "dynamics", "energy", "regressor"),
-        *("centroidal", "momentum", "delassus", "kkt", "armature"),
-    ),
-    "kinematics": (
-        *("pose", "jacobian", "velocit", "acceleration", "mass_centre", "integrate", "difference", "interpolate"),
-        *("frame", "rotation", "angle", "quaternion"),
-    ),
-    "step": ("step", "integrator"),
-    "reaction": ("wrench", "reaction", "constraint_force", "impulse"),
-    "sensor": ("sensor", "accelerometer", "gyro", "velocimeter"),
-    "reader": (),
-    "writer": ("writ", "round trip"),
-    "constraint": ("constrain", "impact", "impulse", "weld", "loop"),
-    "actuator": ("actuat", "motor", "muscle", "transmission", "moment arm", "moment_arm", "tendon"),
-    "passive force": ("passive", "friction", "damp", "stiff", "spring", "compensat"),
-    "flexible body": ("flex", "beam", "shell", "elastic"),
-    "mass properties": ("mass", "inertia", "density", "volume"),
-}
-# Classes that are about what a reader makes of a file.
-_READ = ("reader", "mass properties")
+# Classes that are about files.
+_READ = ("reader", "writer", "mass properties")
 # Format -> what a script has where it states such a file.
 _FORMATS = {"mjcf": "<mujoco", "urdf": "<robot", "sdf": "<sdf", "usd": "#usda"}
-# What nearly every script calls: a name of nothing.
-_SETUP = {"mj_forward", "mj_step", "value", "World"}
-_SHORTEST = 4
-# Letters of a word that can tell faults apart, and how many of them it may be of.
-_LONG, _FEW = 5, 3
-_NAMING = ("function", "words", "family", "")
 Score = Literal["hit", "half a hit", "miss", "not asked"]
-
-
-@dataclass(frozen=True)
-class Names:
-    """What cells of an engine are called elsewhere.
-
-    Attributes:
-        natives: Name of a function -> what the engine calls it.
-        forms: Name of a file -> its format.
-    """
-
-    natives: Mapping[str, str] = field(default_factory=dict)
-    forms: Mapping[str, str] = field(default_factory=dict)
 
 
 def grouped(cells: Sequence[Cell]) -> list[Group]:
@@ -95,7 +50,7 @@ class Shown:
         natives: What the engine calls them.
         models: Trees and files.
         verdict: The worst verdict.
-        names: What of the fault it names: "function", "words", "family" or "".
+        shows: Whether it shows the fault.
         explained: Why it is no false alarm; "" for no reason, or where that was not asked.
     """
 
@@ -103,7 +58,7 @@ class Shown:
     natives: list[str]
     models: list[str]
     verdict: str
-    names: str
+    shows: bool
     explained: str = ""
 
 
@@ -114,7 +69,7 @@ class Scored:
     Attributes:
         score: The score.
         why: Why it is no hit; "" for a hit.
-        groups: New groups at the wrong release, those that name the fault first.
+        groups: New groups at the wrong release, those that show the fault first.
         others: Groups that are new at the right release.
     """
 
@@ -137,7 +92,7 @@ def scored(
     fault: Fault,
     wrong: Sequence[Cell],
     right: Sequence[Cell] | None,
-    names: Names,
+    natives: Mapping[str, str],
     explained: Callable[[Group], str],
     together: Callable[[Sequence[Cell]], list[Group]] = grouped,
 ) -> Scored:
@@ -147,27 +102,31 @@ def scored(
         fault: The fault.
         wrong: All cells at the wrong release.
         right: All cells at the right one; None where there is none yet.
-        names: What they are called elsewhere.
+        natives: Name of a function -> what the engine calls it.
         explained: Why a group that is new at the right release is no false alarm; "" for no reason.
         together: Puts red cells together.
     """
-    groups = [_shown(fault, group, names) for group in together(new(wrong, right or ()))]
-    groups.sort(key=lambda one: _NAMING.index(one.names))
+    groups = [_shown(fault, group, natives) for group in together(new(wrong, right or ()))]
     answered = {(cell.model, cell.function) for cell in wrong if cell.verdict in _ANSWERED}
     alarming = [cell for cell in new(right or (), wrong) if (cell.model, cell.function) in answered]
     at_right = together(alarming)
-    others = tuple(_shown(fault, group, names, explained(group)) for group in at_right)
-    # Of what no release is right yet, more is red than this fault.
-    wanted = _NAMING[:3] if right is not None or fault.kind in _READ else _NAMING[:2]
-    naming = [one for one in groups if one.names in wanted]
-    if not naming:
-        said = f"{len(groups)} new groups, none of which names it" if groups else "nothing new is red"
-        return Scored("miss", said, tuple(groups), others)
-    if all(one.verdict == "imprecise" for one in naming):
-        return Scored("half a hit", "imprecise only", tuple(groups), others)
-    if len(groups) >= LOST:
-        return Scored("half a hit", f"lost among {len(groups)} new groups", tuple(groups), others)
-    return Scored("hit", "", tuple(groups), others)
+    return judged(groups, [_shown(fault, group, natives, explained(group)) for group in at_right])
+
+
+def judged(groups: Sequence[Shown], others: Sequence[Shown]) -> Scored:
+    """The score that groups make: new ones at the wrong release, and others at the right one."""
+    groups = sorted(groups, key=lambda one: not one.shows)
+    showing = [one for one in groups if one.shows]
+    score: Score = "half a hit"
+    if not showing:
+        score, why = "miss", f"{len(groups)} new groups, none of which shows it" if groups else "nothing new is red"
+    elif all(one.verdict == "imprecise" for one in showing):
+        why = "imprecise only"
+    elif len(groups) >= LOST:
+        why = f"lost among {len(groups)} new groups"
+    else:
+        score, why = "hit", ""
+    return Scored(score, why, tuple(groups), tuple(others))
 
 
 def new(cells: Sequence[Cell], than: Sequence[Cell]) -> list[Cell]:
@@ -180,69 +139,43 @@ def _badness(cell: Cell) -> int:
     return _BADNESS.get(cell.verdict, _WORST) if cell.verdict in RED else 0
 
 
-def _shown(fault: Fault, group: Group, names: Names, explained: str = "") -> Shown:
+def _shown(fault: Fault, group: Group, natives: Mapping[str, str], explained: str = "") -> Shown:
     worst = max(group.cells, key=_badness).verdict
-    own = list(dict.fromkeys(names.natives.get(name, name) for name in group.functions))
-    return Shown(list(group.functions), own, list(group.models), worst, named(fault, group, names), explained)
+    functions, models = list(group.functions), list(group.models)
+    own = list(dict.fromkeys(natives.get(name, name) for name in functions))
+    return Shown(functions, own, models, worst, shows(fault, functions, own, models), explained)
 
 
-def named(fault: Fault, group: Group, names: Names) -> str:
-    """What of a fault a group names: "function", "words", "family" or ""."""
-    if said := _named_itself(fault, group, names):
-        return said
-    between = (one for one in faults().values() if one.engine == fault.engine and one is not fault)
-    gone = [one for one in between if has(one, fault.wrong) and fault.right and not has(one, fault.right)]
-    if any(_named_itself(one, group, names) for one in gone):
-        return ""
-    of_format = {form for form, mark in _FORMATS.items() if mark in fault.script}
-    for cell in group.cells:
-        form, text = names.forms.get(cell.model, ""), f"{cell.function} {cell.model}".lower()
-        is_read = fault.kind in _READ and form != "" and (not of_format or form in of_format)
-        if is_read or any(word in text for word in FAMILIES[fault.kind]):
-            return "family"
-    return ""
+def shows(fault: Fault, functions: Sequence[str], natives: Sequence[str], models: Sequence[str]) -> bool:
+    """Whether a group shows a fault.
+
+    Args:
+        fault: The fault.
+        functions: Names of the group's functions.
+        natives: What the engine calls them.
+        models: Names of its trees and files.
+    """
+    wanted, asked = set(fault.subject.functions), " ".join((*functions, *natives))
+    if wanted and not wanted & set(re.findall(r"[A-Za-z_]\w*", asked)):
+        return False
+    if not any(models):  # The checks of another suite have names alone, and no trees.
+        return _has_words(fault, asked)
+    return 2 * sum(_is_shown_in(fault, model) for model in models) >= len(models)
 
 
-def _named_itself(fault: Fault, group: Group, names: Names) -> str:
-    """Whether a group names this fault alone, by "function" or by "words"."""
-    known, rare = _identifiers(fault), _plain_words(fault.fault) - _frequent()
-    shared: Counter[str] = Counter()
-    for cell in group.cells:
-        native = names.natives.get(cell.function, cell.function)
-        if known & {name for word in _words(native) for name in (word, f"{word}_fun")}:  # CasADi's functions.
-            return "function"
-        shared.update(rare & _plain_words(cell.model))
-    return "words" if 2 * max(shared.values(), default=0) >= len(group.cells) else ""
+def _is_shown_in(fault: Fault, name: str) -> bool:
+    """Whether a tree or file is one that a fault shows in."""
+    form = next((form for form in _FORMATS if re.match(rf"{form}\b", name)), "")
+    if fault.kind in _READ:
+        stated = {form for form, mark in _FORMATS.items() if mark in fault.script}
+        if stated and form not in stated and (form or not fault.subject.shown_in):
+            return False
+    return (fault.kind != "writer" or "written" in name) and _has_words(fault, name)
 
 
-def _plain_words(text: str) -> set[str]:
-    """The longer words of a text, without the s of a plural; names of code are none."""
-    return {word.lower().removesuffix("s") for word in re.findall(r"\b[A-Za-z][a-z]+\b", text) if len(word) >= _LONG}
-
-
-@cache
-def _frequent() -> set[str]:
-    """Words that more than `_FEW` faults have in their sentences."""
-    counted = Counter(word for fault in faults().values() for word in _plain_words(fault.fault))
-    return {word for word, number in counted.items() if number > _FEW}
-
-
-def _words(text: str) -> set[str]:
-    """Identifiers in a text that can name something."""
-    found = re.findall(r"[A-Za-z_]\w*", text)
-    return {word for word in found if len(word) >= _SHORTEST} - _SETUP
-
-
-def _identifiers(fault: Fault) -> set[str]:
-    """What a fault's sentence and script name: words that look like code, and what the script uses."""
-    used = set()
-    for node in ast.walk(ast.parse(fault.script)):
-        if isinstance(node, ast.Attribute):
-            used.add(node.attr)
-        elif isinstance(node, ast.Name):
-            used.add(node.id)
-    said = {word for word in _words(fault.fault) if "_" in word or not word.islower() and not word.istitle()}
-    return {word for word in used | said if len(word) >= _SHORTEST} - _SETUP
+def _has_words(fault: Fault, text: str) -> bool:
+    words = fault.subject.shown_in
+    return not words or any(re.search(rf"\b{re.escape(word)}", text, re.IGNORECASE) for word in words)
 
 
 def has(fault: Fault, version: str) -> bool:

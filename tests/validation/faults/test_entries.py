@@ -11,7 +11,7 @@ from validation.__main__ import app
 from validation.faults.entry import FOLDER, faults, frozen, read
 from validation.faults.environment import NotAskedError, printed
 
-EXAMPLE = next(iter(FOLDER.glob("*.yaml")))
+EXAMPLE = FOLDER / "adam_jacobian_rate.yaml"
 
 
 def installed(package: str) -> str | None:
@@ -39,6 +39,7 @@ def test_frozen_faults_are_still_there() -> None:
         ("class: ", "class: other ", "the class is one of"),
         ("thread: ", "thread: see ", "a thread is an address"),
         ("tolerance: ", "tolerance: 1e9  # ", "differs from the right one"),
+        ("subject: {functions: [jacobian_dot]", "subject: {functions: []", "a subject names"),
         ("follows: ", "because: ", "missing or unknown"),
     ],
 )
