@@ -60,7 +60,7 @@ class ForwardDynamics(Block):
         return ("engaged",) if self.engaged else ()
 
     def ports(self, environment: Environment) -> Ports:
-        """Efforts and prescribed motions u (nu); q, v, a, friction (nv), under constraints lam (nc)."""
+        """Efforts and prescribed motions u (nu); q, v, a, friction (nv), and lam (nc), z (nz) where there are some."""
         record = environment.model(self.model)
         inputs = [motion_port("u", record, "u", record.u_default)]
         for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
@@ -85,6 +85,7 @@ class ForwardDynamics(Block):
             motion_port("friction", record, "effort"),
         ]
         outputs += [Port("lam", (record.nc,))] if record.nc else []
+        outputs += [Port("z", (len(record.state_names),))] if record.state_names else []
         for function in self.tells:
             told = told_ports(self.name, function, record)
             outputs += [replace(port, name=name) for port, name in zip(told, _told(function), strict=True)]
@@ -138,10 +139,12 @@ class ForwardDynamics(Block):
     def compute(self, context: EvaluationContext) -> Values:
         """States, accelerations and forces."""
         record = context.environment.model(self.model)
-        effort = friction(context, self.model, context.q, context.v)
-        signals = {"q": context.q, "v": context.v, "a": context.a, "friction": effort}
+        nq, nv = len(record.q_names), len(record.v_names)
+        motion = {"q": context.q[:nq], "v": context.v[:nv], "a": context.a[:nv]}
+        states = {"z": context.v[nv:]} if record.state_names else {}
+        signals = {**motion, "friction": friction(context, self.model, motion["q"], motion["v"], **states), **states}
         signals |= {"lam": context.lam} if record.nc else {}
-        given = {"q": context.q, "v": context.v, "a": context.a, "u": context.inputs["u"], "t": context.t}
+        given = {**motion, **states, "u": context.inputs["u"], "t": context.t}
         for function in self.tells:
             values = context.call(self.model, function, lam=context.lam, **given)
             signals |= {
@@ -175,12 +178,24 @@ class InverseDynamics(Block):
         return {"tau": tau if self.with_friction else tau + friction(context, self.model, q, v)}
 
 
-def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor) -> Tensor:
-    """The friction forces on a model's joints (nv), as generalized forces: against the motion."""
+def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor, **states: Tensor) -> Tensor:
+    """The friction forces on a model's joints (nv), as generalized forces: against the motion.
+
+    Args:
+        context: Where they are written.
+        model: The model.
+        q: Its configuration (nq).
+        v: Its speeds (nv).
+        states: z (nz), where its forces have states.
+    """
     has_friction = context.environment.has_friction(model)
     if not any(has_friction):
         return context.numbers([0.0] * len(has_friction))
-    force = context.call(model + FRICTION, "generalized_force", q=q, v=v, t=context.t)["Q"]
+    given = {"q": q, "v": v, "t": context.t}
+    if states and (needed := context.environment.model(model + FRICTION).state_names):
+        names = context.environment.model(model).state_names
+        given["z"] = joined([states["z"][names.index(name)] for name in needed])
+    force = context.call(model + FRICTION, "generalized_force", **given)["Q"]
     return force * [float(rubs) for rubs in has_friction]
 
 

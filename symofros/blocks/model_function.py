@@ -49,13 +49,15 @@ class ModelFunction(Block):
             raise refuse(self.name, f"frame of '{self.function}'", stated, rule, "state it, or leave it out")
 
     def ports(self, environment: Environment) -> Ports:
-        """The inputs of the function but the time, zero but for q where nothing is connected; its outputs."""
+        """The inputs of the function but the time, states of forces z, zero but for q if not connected; its outputs."""
         record, row = environment.model(self.model), OFFERED[self.function]
         if self.frame:
             environment.frame(self.model, self.frame)
         outputs = told_ports(self.name, self.function, record)
         groups = [*row.inputs, *(["u"] if record.driven and "u" not in row.inputs else [])]
         inputs = [_input(group, record) for group in groups if group != "t" and _entries(group, record)]
+        if record.state_names:
+            inputs.append(Port("z", (len(record.state_names),), "", 0.0))
         return Ports(tuple(inputs), outputs)
 
     def compute(self, context: EvaluationContext) -> Values:

@@ -34,7 +34,7 @@ class Surroundings:
 
     def start(self, name: str) -> tuple[Array, Array]:
         """The first q (nq) and v (nv) of a model."""
-        return self._models.start(name)
+        return self._models.own_start(name)
 
     def frame(self, model: str, frame: str) -> str:
         """The public name of a model's frame."""

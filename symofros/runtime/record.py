@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -218,6 +218,41 @@ class ModelRecord:
     def nc(self) -> int:
         """Number of constraints."""
         return len(self.constraint_names)
+
+    def without_states(self) -> ModelRecord:
+        """Sizes and names of the mechanism alone: no states among the speeds, no idle coordinates beside them."""
+        n = len(self.state_names)
+        if not n:
+            return self
+        return replace(
+            self,
+            segments=self.segments[:-1],
+            measures=self.measures._replace(speed=self.measures.speed[:-n]),
+            q_names=self.q_names[:-n],
+            v_names=self.v_names[:-n],
+            q_neutral=self.q_neutral[:-n],
+            q_lower=self.q_lower[:-n],
+            q_upper=self.q_upper[:-n],
+            periodic=self.periodic[:-n],
+        )
+
+    def own_entries(self, size: str, total: int) -> list[int]:
+        """Entries of the mechanism alone along an axis of an output.
+
+        Args:
+            size: The axis as the table of functions states it: "nq", "nv", "nv + nc".
+            total: Its length, with the states of forces and idle coordinates.
+
+        Raises:
+            SymofrosError: The states are in the middle of it.
+        """
+        first, *others = size.split(" + ")
+        if not self.state_names or "nv" not in size and "nq" not in size:
+            return list(range(total))
+        if first not in ("nq", "nv"):
+            self.refuse_states(f"a function of {size} values")
+        end, nz = len(self.q_names if first == "nq" else self.v_names), len(self.state_names)
+        return [*range(end - nz), *(range(end, total) if others else ())]
 
     def refuse_sticking(self, what: str) -> None:
         """Refuse friction that sticks where nothing chooses its modes.

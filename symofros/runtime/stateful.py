@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -17,7 +16,6 @@ from symofros.runtime.functions import ArrayLike, Key
 from symofros.runtime.methods.linear import Output, StateMatrices, state_matrices
 from symofros.runtime.methods.routes import Routes
 from symofros.runtime.model import Model
-from symofros.runtime.record import ModelRecord
 
 
 class StatefulModel(Model):
@@ -29,7 +27,7 @@ class StatefulModel(Model):
 
     def __init__(self, carried: Model) -> None:
         super().__init__(
-            _without_states(carried.record),
+            carried.record.without_states(),
             None,
             par=carried.parameter_values,
             threads=carried.threads,
@@ -112,14 +110,10 @@ class StatefulModel(Model):
     def _cut(self, name: str, output: Numbers, shape: Sequence[str]) -> Numbers:
         """An output without the rows and columns of states."""
         for axis, text in enumerate(shape, output.ndim - len(shape)):
-            first, *others = text.split(" + ")
-            if first not in ("nq", "nv"):
-                if "nv" in text:
-                    raise self._refusal(f"{name} has derivatives by them among its own")
-                continue
-            n, total = {"nq": self.nq, "nv": self.nv}[first], output.shape[axis]
-            kept = np.r_[0:n, n + self.nz : total] if others else np.arange(n)
-            output = np.take(output, kept, axis=axis)
+            total = output.shape[axis]
+            kept = self._carried.record.own_entries(text, total)
+            if len(kept) < total:
+                output = np.take(output, kept, axis=axis)
         return output
 
     def carry(
@@ -185,16 +179,3 @@ class StatefulModel(Model):
 def stated(model: Model) -> Model:
     """The model as it is called: with its states apart, where it has some."""
     return StatefulModel(model) if model.record.state_names else model
-
-
-def _without_states(record: ModelRecord) -> ModelRecord:
-    n = len(record.state_names)
-    return replace(
-        record,
-        segments=record.segments[:-1],
-        measures=record.measures._replace(speed=record.measures.speed[:-n]),
-        **{
-            name: getattr(record, name)[:-n]
-            for name in ("q_names", "v_names", "q_neutral", "q_lower", "q_upper", "periodic")
-        },
-    )

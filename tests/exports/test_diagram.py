@@ -14,6 +14,7 @@ import symofros as sf
 from symofros import blocks
 from symofros.diagrams.settings import RunSettings
 from tests.diagrams.parts import Ball, Counter, Lag, Spoken, arm
+from tests.diagrams.run.test_states_of_forces import driven
 from tests.exports.cases import build, run
 from tests.models import sampled
 from tests.pulses import SHAPES, cart
@@ -82,11 +83,12 @@ CASES: dict[str, tuple[Any, list[str]]] = {
     "table": (table, ["given", "lag", "held"]),
     "ball": (ball, ["ball.height", "ball.bounces", "ticks"]),
     "still": (still, ["ticks"]),
+    "bristles": (lambda: driven("bristles"), ["plant.q", "plant.v", "plant.z"]),
 }
 
 
-# A model under control, one with a loop, events; the others' blocks are among theirs.
-SAMPLED = sampled(tuple(CASES), ("pendulum", "loop", "table", "ball"))
+# A model under control, one with a loop, events, states of forces; the others' blocks are among theirs.
+SAMPLED = sampled(tuple(CASES), ("pendulum", "loop", "table", "ball", "bristles"))
 
 
 @pytest.mark.parametrize("case", SAMPLED)

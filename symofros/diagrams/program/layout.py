@@ -103,6 +103,7 @@ class Layout:
         q: Block -> its mechanism's configuration.
         v: Block -> its mechanism's speeds.
         lam: Block -> multipliers of its constraints.
+        state_counts: Block -> number of states of its mechanism's forces, the last of its speeds.
         states: (block, state) -> the speeds that it is.
         held: (block, output) of sampled blocks -> inputs.
         memory: (block, memory) -> inputs.
@@ -132,6 +133,7 @@ class Layout:
     q: dict[str, Place] = field(default_factory=dict)
     v: dict[str, Place] = field(default_factory=dict)
     lam: dict[str, Place] = field(default_factory=dict)
+    state_counts: dict[str, int] = field(default_factory=dict)
     states: dict[tuple[str, str], Place] = field(default_factory=dict)
     held: dict[Source, Place] = field(default_factory=dict)
     memory: dict[tuple[str, str], Place] = field(default_factory=dict)
@@ -216,7 +218,8 @@ class Layout:
             UnknownNameError: It moves none.
         """
         if block in self.q:
-            return self.q[block], self.v[block]
+            q, v, of_forces = self.q[block], self.v[block], self.state_counts[block]
+            return Place(q.start, (q.size - of_forces,)), Place(v.start, (v.size - of_forces,))
         known = ", ".join(self.q) or "none"
         what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, self.q) or "name a plant's"
         raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
@@ -280,10 +283,11 @@ def _keep(layout: Layout, wired: Wired, piece: Piece, index: tuple[int, ...]) ->
 def _mechanism(layout: Layout, wired: Wired, piece: Piece) -> None:
     if not piece.block.mechanism():
         return
-    name, record = piece.name, wired.models.record(piece.block.mechanism())
+    name, record = piece.name, wired.models.carried(piece.block.mechanism())
     q, v = len(layout.q0), len(layout.v0)
     layout.q[name], layout.v[name] = Place(q, (len(piece.q),)), Place(v, (len(piece.v),))
     layout.lam[name] = Place(len(layout.condition_names), (piece.nc,))
+    layout.state_counts[name] = len(record.state_names)
     layout.measures[name] = record.measures
     layout.driven |= record.driven > 0
     layout.segments += [Segment(s.kind, s.q + q, s.v + v, s.size) for s in record.segments]

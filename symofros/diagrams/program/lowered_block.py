@@ -110,7 +110,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
     g = Graph()
     states, memory = _arrays(block.states(known)), _arrays(block.memory(known))
     mechanism = block.mechanism()
-    q0, v0 = known.start(mechanism) if mechanism else (np.zeros(0), np.zeros(0))
+    q0, v0 = wired.models.start(mechanism) if mechanism else (np.zeros(0), np.zeros(0))
     at = _context(g, wired, name, known, (states, memory, parameters))
     terms = block.motion(at)
     if terms.a is not None:  # Else they are known after the constraints' equations are solved.
@@ -175,7 +175,7 @@ def _context(
     mechanism, (states, memory, parameters) = wired.blocks[name].mechanism(), own
     nq = nv = nc = 0
     if mechanism:
-        record = wired.models.record(mechanism)
+        record = wired.models.carried(mechanism)
         nq, nv, nc = len(record.q_names), len(record.v_names), record.nc
     return EvaluationContext(
         g,

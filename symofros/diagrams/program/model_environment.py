@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.functions import FRAME_FUNCTIONS
+from symofros.base.functions import FRAME_FUNCTIONS, FUNCTIONS, OutputArray
 from symofros.base.names import coordinate_of, speed_of
 from symofros.base.options import Options
 from symofros.compiler import Compilation, compile_system
 from symofros.description import Friction, System
 from symofros.diagrams.block import ModelSetup
 from symofros.diagrams.program.variants import FRICTION, friction_only
-from symofros.diagrams.tensor import Tensor
+from symofros.diagrams.tensor import Tensor, joined
 from symofros.errors import DescriptionError, ParameterError, Problem, ShapeError, did_you_mean
-from symofros.expr import Edge, Factors, Graph, Program, copy_into
+from symofros.expr import Edge, Factors, Graph, Program, copy_into, needed_nodes
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -45,6 +46,7 @@ class Models:
         self._compilations: dict[str, Compilation] = {}
         self._models: dict[tuple[str, str, tuple[str, ...]], Model] = {}
         self._constraints: dict[str, Model] = {}
+        self._records: dict[str, ModelRecord] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
     @property
@@ -80,11 +82,16 @@ class Models:
         """A model's description, checked and numbered, and what can be formed of it."""
         if name not in self._compilations:
             self._compilations[name] = Compilation(self.system(name))
-            self._compilations[name].record.refuse_states(f"diagram '{self._diagram}'")
         return self._compilations[name]
 
     def record(self, name: str) -> ModelRecord:
-        """Sizes and names of a model."""
+        """Sizes and names of a model, as blocks see it: its states of forces apart."""
+        if name not in self._records:
+            self._records[name] = self.carried(name).without_states()
+        return self._records[name]
+
+    def carried(self, name: str) -> ModelRecord:
+        """Sizes and names of a model, as it moves: states of forces last among its speeds, beside idle coordinates."""
         return self.compilation(name).record
 
     def parameters(self, name: str) -> Array:
@@ -118,16 +125,21 @@ class Models:
         return [replace(problem, what=f"{what}: {problem.what}") for problem in problems]
 
     def start(self, name: str) -> tuple[Array, Array]:
-        """The first q (nq) and v (nv) of a model."""
-        record = self.record(name)
+        """The first q and v of a model as it moves: with its states of forces and the idle coordinates."""
+        record = self.carried(name)
         q, v = np.array(record.q_neutral, dtype=np.float64), np.zeros(len(record.v_names))
         for key, value in self.setup(name).start.items():
-            if coordinate := coordinate_of(key, record.q_names):
+            if coordinate := coordinate_of(key, self.record(name).q_names):
                 q[record.q_names.index(coordinate)] = value
             else:
                 speed = speed_of(key, record.v_names) or key
                 v[self._index(name, "coordinate or speed", speed, record.v_names)] = value
         return at_unit_length(record, "q", q, "the start"), v
+
+    def own_start(self, name: str) -> tuple[Array, Array]:
+        """The first q (nq) and v (nv) of a model, as blocks see it."""
+        record, (q, v) = self.record(name), self.start(name)
+        return q[: len(record.q_names)], v[: len(record.v_names)]
 
     def energies(self, name: str, options: Options) -> Model:
         """A model of a mechanism that has its energies only."""
@@ -141,14 +153,16 @@ class Models:
     def _chosen(self, name: str, options: Options, *functions: str) -> Model:
         key = name, options.backend, functions
         if key not in self._models:
-            self._models[key] = compile_system(self.system(name), replace(options, functions=functions))
+            self._models[key] = compile_system(self.system(name), replace(options, functions=functions)).carried
         return self._models[key]
 
     def constraints(self, name: str) -> Model:
         """A model of a mechanism that can close its loops; interpreted, because a start needs no compiler."""
         if name not in self._constraints:
             functions = "constraint", "constraint_rate", "constraint_jacobian", "frame_pose"
-            self._constraints[name] = compile_system(self.system(name), Options(functions, backend="interpreter"))
+            self._constraints[name] = compile_system(
+                self.system(name), Options(functions, backend="interpreter")
+            ).carried
         return self._constraints[name]
 
     def linear(self, name: str, u: Array) -> StateSpace:
@@ -159,6 +173,7 @@ class Models:
         """
         # Evaluated once: interpreted, it needs no compiler.
         model = compile_system(self.system(name), Options(backend="interpreter"))
+        model.record.refuse_states(f"diagram '{self._diagram}': a linearised model")
         (q, v), par = self.start(name), self.parameters(name)
         stated = stated_names(model.names.q, model.names.v, self.setup(name).start)
         start = closed_start(model, q, v, *stated, u=u, par=par)
@@ -167,7 +182,7 @@ class Models:
     def momentum(self, name: str) -> Array:
         """The momentum M v (nv) of a model at its first state."""
         model = compile_system(self.system(name), Options(("mass_matrix",), backend="interpreter"))
-        q, v = self.start(name)
+        q, v = self.own_start(name)
         return np.asarray(model.mass_matrix(q, par=self.parameters(name)) @ v)
 
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
@@ -201,25 +216,54 @@ class Models:
             model: Name of the model.
             function: Function as of the methods of sf.Model.
             frame: Frame of frame functions.
-            groups: q, v, a, u, t, gains, as the function takes them; t and u have defaults.
+            groups: q, v, a, u, t, gains, as the function takes them; t and u have defaults. Of a model whose forces
+                have states: q, v and a of the mechanism beside z (nz), or with the states behind them, as it moves.
 
         Returns:
-            Output -> values; under constraints, "forward_dynamics" gives the terms M, r, G, c.
+            Output -> values, with states behind them where q is given so; under constraints, "forward_dynamics" gives
+            the terms M, r, G, c.
+
+        Raises:
+            DescriptionError: The function depends on states of forces, which are not given.
         """
         if function in FRAME_FUNCTIONS:
             frame = self.frame(model, frame)
         key = model, function, frame
         if key not in self._programs:
             self._programs[key] = self.compilation(model).programs.formulas(function, frame)
-        program = self._programs[key]
+        program, record = self._programs[key], self.carried(model)
         stated = program.functions[0]
+        entries = {output.name: Tensor.of(program.graph, output.edges, output.shape) for output in stated.outputs}
+        if record.state_names and ("q" not in groups or groups["q"].size != len(record.q_names)):
+            entries = {
+                o.name: _own(record, o, entries[o.name]) for o in FUNCTIONS[function].outputs if o.name in entries
+            }
+            if "z" not in groups:
+                self._refuse_unknown_states(model, function, program, entries)
+            groups = _with_states(g, record, groups)
         replacement = self._bound(g, model, program, stated.inputs, groups)
-        edges = copy_into(g, program.graph, stated.edges()[: sum(len(o.edges) for o in stated.outputs)], replacement)
+        edges = copy_into(g, program.graph, [edge for one in entries.values() for edge in one.flat], replacement)
         outputs, at = {}, 0
-        for output in stated.outputs:
-            outputs[output.name] = Tensor.of(g, edges[at : at + len(output.edges)], output.shape)
-            at += len(output.edges)
+        for name, one in entries.items():
+            outputs[name] = Tensor.of(g, edges[at : at + one.size], one.shape)
+            at += one.size
         return outputs
+
+    def _refuse_unknown_states(
+        self, model: str, function: str, program: Program, outputs: Mapping[str, Tensor]
+    ) -> None:
+        """Refuse a function that depends on states of forces, for a block that has none."""
+        record, g = self.carried(model), program.graph
+        wanted = [edge for one in outputs.values() for edge in one.flat]
+        nodes = {abs(arg) for node in needed_nodes(g, wanted) for arg in g.args[node]} | set(map(abs, wanted))
+        first = len(record.v_names) - len(record.state_names)
+        slots = (g.slot[node] for node in nodes if node in g.slot)
+        found = [record.v_names[slot.index] for slot in slots if slot.group == "v" and slot.index >= first]
+        if found:
+            rule = "a block without an input of these states is of models whose forces have none"
+            remedy = "add the model once more without these elements for this block, or use ModelFunction with z"
+            what = f"diagram '{self._diagram}': {function} of model '{model}' depends on states of forces"
+            raise DescriptionError(Problem(what, ", ".join(sorted(found)[:8]), rule, remedy))
 
     def formulas(self, g: Graph, model: str, formulas: Sequence[Any], reactions: bool, **groups: Tensor) -> Tensor:
         """Formulas over a model's names at a point of a graph (n).
@@ -269,8 +313,7 @@ class Models:
     def _bound(
         self, g: Graph, model: str, program: Program, inputs: tuple[str, ...], groups: Mapping[str, Tensor]
     ) -> dict[Edge, Edge]:
-        record = self.record(model)
-        given = {"u": Tensor.numbers(g, record.u_default), **groups}
+        given = {"u": Tensor.numbers(g, self.record(model).u_default), **groups}
         replacement: dict[Edge, Edge] = {}
         for name in inputs:
             size = program.sizes[name]
@@ -287,3 +330,22 @@ class Models:
             replacement |= {program.graph.input(name, i): edge for i, edge in enumerate(given[name].flat)}
         own = {program.graph.input("par", i): g.input(parameter_group(model), i) for i in range(program.sizes["par"])}
         return replacement | own
+
+
+def _own(record: ModelRecord, stated: OutputArray, values: Tensor) -> Tensor:
+    """An output of a model with states of forces, without their rows and columns."""
+    kept = [record.own_entries(size, n) for size, n in zip(stated.shape, values.shape, strict=True)]
+    entries = [values[index] for index in product(*kept)]
+    return Tensor.of(values.g, [edge for one in entries for edge in one.flat], tuple(map(len, kept)))
+
+
+def _with_states(g: Graph, record: ModelRecord, groups: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    """Inputs of a mechanism beside z as those of the model that moves; idle coordinates and rates of states zero."""
+    given = dict(groups)
+    none = Tensor.numbers(g, np.zeros(len(record.state_names)))
+    z = given.pop("z", none)
+    given.setdefault("v", Tensor.numbers(g, np.zeros(len(record.v_names) - none.size)))
+    for name, states in (("q", none), ("v", z), ("a", none)):
+        if name in given:
+            given[name] = joined([given[name], states])
+    return given

@@ -60,7 +60,7 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
         DescriptionError: An event can't be located, or its action done.
     """
     model = block.mechanism()
-    record = models.record(model) if model else None
+    record = models.carried(model) if model else None
     if record is None or not (block.mechanism_events() or record.sticking):
         return None
     if block.lock_inputs():

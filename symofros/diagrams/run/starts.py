@@ -43,7 +43,7 @@ def stated_entries(resolved: Resolved, part: Part) -> tuple[list[int], list[int]
     q: list[int] = []
     v: list[int] = []
     for block, model, _ in _looped(resolved, part):
-        record = models.record(model)
+        record = models.carried(model)
         coordinates, speeds = stated_names(record.q_names, record.v_names, models.setup(model).start)
         q += [layout.q[block].start + record.q_names.index(name) for name in coordinates]
         v += [layout.v[block].start + record.v_names.index(name) for name in speeds]
@@ -85,7 +85,7 @@ def changes_of_driven(resolved: Resolved, part: Part, asked: Start, found: Start
     for block, name, is_driven in _looped(resolved, part):
         if not is_driven:
             continue
-        q, v, record = layout.q[block].slice, layout.v[block].slice, models.record(name)
+        q, v, record = layout.q[block].slice, layout.v[block].slice, models.carried(name)
         stated = stated_names(record.q_names, record.v_names, models.setup(name).start)
         ends = (asked.q[q], asked.v[v]), (found.q[q], found.v[v])
         said = changes(name, (record.q_names, record.v_names), stated, *ends)

@@ -14,6 +14,7 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
+from tests.diagrams.run.test_states_of_forces import driven
 from tests.diagrams.run.test_switching import CASES
 from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
@@ -143,6 +144,25 @@ def test_a_unit_does_the_actions_of_the_run(version: int, case: str, tmp_path: P
             unit.fmu.doStep(k * h, h)
             found.append(unit.get(*names))
         np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-10)
+        if attempt == 0:
+            (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_unit_carries_states_of_forces(version: int, tmp_path: Path) -> None:
+    """From their first values, and after a state that was saved: bristles and their bend are parts of it."""
+    of, steps, h = driven("lugre"), 10, 0.02
+    path = sf.export(of, f"fmu{version}", tmp_path / "fmu", outputs=["plant.q", "plant.z"], dt=1e-3).files[0]  # type: ignore[arg-type]
+    unit = Unit(path, version, True, tmp_path / "unit")
+    run = sf.Simulation(of).run(steps * h, dt=1e-3, record=h)
+    wanted = np.concatenate([run["plant.q"], run["plant.z"]], axis=1)
+    unit.start()
+    np.testing.assert_allclose(unit.get("plant.q[0]", "plant.z[0]"), wanted[0], rtol=1e-12)
+    saved = unit.fmu.getFMUState() if version == 3 else unit.fmu.getFMUstate()
+    for attempt in range(2):
+        for k in range(steps):
+            unit.fmu.doStep(k * h, h)
+            np.testing.assert_allclose(unit.get("plant.q[0]", "plant.z[0]"), wanted[k + 1], rtol=1e-10)
         if attempt == 0:
             (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
 

@@ -1,0 +1,147 @@
+"""Mechanisms whose forces have states, in diagrams: as `sf.simulate` has them (docs/theory/states.md)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+
+_LUGRE = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05, viscous=0.3)
+_FLOOR = sf.Contact("floor", ("ball", None), ("world", None), 1e4, exponent=1.0, dissipation=2.0, friction=0.5,
+                    bristle_stiffness=1e4, bristle_damping=50.0)  # fmt: skip
+_PUSH = "4*sin(3*t)"
+
+
+def slide(*elements: Any, **fields: Any) -> sf.System:
+    """A block on a level slide, with a force as input."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=elements, actuated=True)
+    return sf.System("slide", (sf.RigidBody("block", joint, sf.Inertia(1.5)),), **fields)
+
+
+@cache
+def system(kind: str) -> sf.System:
+    """A mechanism with an actuated joint x and the elements of that kind."""
+    if kind == "lugre":
+        return slide(_LUGRE)
+    if kind == "hysteresis":
+        return slide(sf.Hysteresis(300.0, 1.0, 2.0), sf.Hysteresis(100.0, 2.0), sf.Friction(0.1))
+    if kind == "formula":
+        drag: Any = {"dx": "-0.5*(1 + T)*dx"}
+        heat: Any = "dx*dx - 2*T"
+        return slide(states=(sf.ForceState("T", heat),), virtual_power=(sf.VirtualPower("drag", drag),))
+    along, fall = (
+        sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True),
+        sf.Joint("z", "prismatic", parent="cart", axis=(0, 0, 1)),
+    )
+    cart, ball = sf.RigidBody("cart", along, sf.Inertia(0.5)), sf.RigidBody("ball", fall, sf.Inertia(1.0))
+    return sf.System("bouncing", (cart, ball), connections=(_FLOOR,), gravity=(0.0, 0.0, -9.81))
+
+
+STARTS: dict[str, dict[str, float]] = {
+    "lugre": {"x": 0.1, "x.bristle": 1e-4},
+    "hysteresis": {"x": 0.1, "dx": 0.2, "x.slip2": 2e-3},
+    "formula": {"dx": 0.3, "T": 0.4},
+    "bristles": {"z": 5e-3, "dx": 0.1},
+}
+
+
+def driven(kind: str, **fields: Any) -> sf.Diagram:
+    d = sf.Diagram("driven")
+    d.add_model("m", system(kind), STARTS[kind])
+    d.add(blocks.Formula(name="push", formulas=[_PUSH]))
+    d.add(blocks.ForwardDynamics(name="plant", model="m", **fields), u="push.y")
+    return d
+
+
+def simulated(kind: str, **settings: Any) -> sf.Trajectory:
+    """The same by `sf.simulate`."""
+    model, start = sf.compile(system(kind)), STARTS[kind]
+    first: dict[str, Any] = {
+        "q0": [start.get(name, 0.0) for name in model.names.q],
+        "v0": [start.get(f"d{name}", 0.0) for name in model.names.v],
+        "z0": [start.get(name, 0.0) for name in model.names.z],
+    }
+    return sf.simulate(model, u={"x": _PUSH}, **first, **settings)
+
+
+def same(found: np.ndarray, expected: np.ndarray) -> None:
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-12 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("kind", STARTS)
+def test_a_diagram_moves_as_simulate_does(kind: str, method: str) -> None:
+    settings: dict[str, Any] = {
+        "dt": 5e-4,
+        "method": method,
+        "rtol": 1e-9,
+        "atol": 1e-11,
+        "t_end": 0.25,
+        "record": 0.25,
+    }
+    run, plain = sf.Simulation(driven(kind)).run(realtime=False, **settings), simulated(kind, **settings)
+    assert run.outcome.kind == "finished"
+    for port, expected in (("q", plain.q), ("v", plain.v), ("z", plain.z)):
+        assert run[f"plant.{port}"].shape == expected.shape
+        same(run[f"plant.{port}"][-1], expected[-1])
+    q, v = run.motion("plant")
+    assert np.array_equal(q, run["plant.q"]) and np.array_equal(v, run["plant.v"])
+
+
+def test_a_file_states_where_they_begin(tmp_path: Path) -> None:
+    first = driven("lugre")
+    sf.save_diagram(first, tmp_path / "d.yaml")
+    assert "x.bristle" in (tmp_path / "d.yaml").read_text()
+    again = sf.load_diagram(tmp_path / "d.yaml")
+    runs = [sf.Simulation(of).run(0.05, dt=1e-3, realtime=False) for of in (first, again)]
+    assert runs[0]["plant.z"][0] == [1e-4] and np.array_equal(runs[0]["plant.z"], runs[1]["plant.z"])
+
+
+@pytest.mark.parametrize("kind", STARTS)
+def test_functions_of_the_block_know_them(kind: str) -> None:
+    """Told by the plant, and by ModelFunction given z, they are those of the model at q, v and z."""
+    diagram = driven(kind, tells=("potential_energy", "generalized_force"))
+    diagram.add(blocks.ModelFunction(name="load", model="m", function="generalized_force"),
+                q="plant.q", v="plant.v", u="push.y", z="plant.z")  # fmt: skip
+    run, model = sf.Simulation(diagram).run(0.02, dt=5e-4, realtime=False), sf.compile(system(kind))
+    given = run["plant.q"], run["plant.v"]
+    z, u = run["plant.z"], run["push.y"]
+    same(run["plant.potential_energy"], model.potential_energy(given[0], z=z))
+    force = model.generalized_force(*given, u, z=z)
+    same(run["plant.generalized_force"], force)
+    same(run["load.Q"], force)
+    same(run["plant.a"], model.forward_dynamics(*given, u, z=z))
+    friction = -0.1 * np.tanh(given[1] / 1e-3) if kind == "hysteresis" else np.zeros_like(given[1])
+    assert run["plant.friction"] == pytest.approx(friction, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("block", "words"),
+    [
+        (
+            blocks.InverseDynamics(name="b", model="m"),
+            r"inverse_dynamics of model 'm'.*found:  x\.bristle.*without these",
+        ),
+        (blocks.LQR(name="b", model="m", state_weights=1.0, input_weights=1.0), r"has states of forces.*linear"),
+    ],
+)
+def test_blocks_that_have_no_states_refuse_them(block: Any, words: str) -> None:
+    diagram = driven("lugre")
+    wires = ("q", "v") if isinstance(block, blocks.LQR) else ("q", "v", "a")
+    diagram.add(block, **{name: f"plant.{name}" for name in wires})
+    with pytest.raises(sf.SymofrosError, match=f"(?s){words}"):
+        sf.Simulation(diagram)
+
+
+def test_idle_coordinates_are_not_stated() -> None:
+    diagram = driven("lugre")
+    diagram.models["m"] = replace(diagram.models["m"], start={"x.bristle.integral": 1.0})
+    with pytest.raises(sf.DescriptionError, match="no coordinate or speed 'x.bristle.integral'"):
+        sf.Simulation(diagram)
