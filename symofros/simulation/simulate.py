@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -24,6 +23,7 @@ from symofros.simulation.prescribed_motions import contradiction, recorded_notes
 from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
 from symofros.simulation.results.examination.diagnosis import diagnose
+from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
@@ -142,7 +142,7 @@ def _act(stepper: Stepper, phases: list[_Phase]) -> bool:
     """Do the actions that the last phase has come to; whether the run ends with them."""
     phase, (status, met) = phases[-1], stepper.act()
     phase.met[len(phase.met) - len(met) :] = [found_of(stepper, one) for one in met]
-    phase.notes += tuple(note for one in met for note in notes_of(one, stepper.accumulation))
+    phase.notes += tuple(note for one in met for note in notes_of(stepper, one))
     if status < 0:
         phase.outcome = next(failure for one in met if (failure := failure_of(stepper, one)) is not None)
         return True
@@ -213,10 +213,6 @@ def _after(phase: _Phase, stepper: Stepper) -> _Phase:
     return replace(phase, states=states, par=stepper.par, met=[], statistics=none, notes=(), acted=False)
 
 
-# Numbers within notes: of notes that differ in them alone, the first is kept.
-_NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
-
-
 def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
     """The run that phases make."""
     last, statistics = phases[-1], phases[0].statistics
@@ -226,11 +222,9 @@ def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
     t, q, v, u = (np.concatenate(arrays) for arrays in parts) if len(phases) > 1 else last.states
     outcome, met = last.outcome, tuple(found for phase in phases for found in phase.met)
     if len(phases) > 1 or last.notes:
-        notes: dict[str, str] = {}
-        for note in (note for phase in phases for note in (*phase.outcome.notes, *phase.notes)):
-            notes.setdefault(_NUMBER.sub("#", note), note)
+        notes = distinct(note for phase in phases for note in (*phase.outcome.notes, *phase.notes))
         reason = outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
-        outcome = replace(outcome, notes=tuple(notes.values()), reason=reason)
+        outcome = replace(outcome, notes=notes, reason=reason)
     firsts = np.cumsum([len(phase.states[0]) for phase in phases]).tolist()
     pairs = zip(firsts, phases, phases[1:], strict=False)
     changes = tuple((first, after.par) for first, before, after in pairs if before.acted)

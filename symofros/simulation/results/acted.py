@@ -17,6 +17,7 @@ from symofros.simulation.results.trajectory import Found
 from symofros.simulation.stepping.bound_run import BoundRun
 from symofros.simulation.stepping.met import Done, Met
 from symofros.simulation.stepping.status import Status
+from symofros.simulation.stepping.stepper import Stepper
 
 # Combinations of rows of G of a smaller share of the largest one are rounding: their impulse is none.
 _RANK = 1e-12
@@ -38,19 +39,15 @@ def found_event(event: Event, model: Model, met: Met) -> Found:
     return found._replace(v_after=done.v_after, **_effects(model, met, done))
 
 
-def notes_of(met: Met, threshold: float = 0.0) -> tuple[str, ...]:
-    """Remarks on what an action did: a gap that was closed beyond rounding, a contact that came to rest.
-
-    Args:
-        met: The event.
-        threshold: Time within which strikes that follow each other are the last ones [s]; 0: not known.
-    """
+def notes_of(run: Stepper, met: Met) -> tuple[str, ...]:
+    """Remarks on what an action did: a gap that was closed beyond rounding, a contact that came to rest."""
     if met.done is None or met.done.status <= 0:
         return ()
     notes = engaging_notes(met.t, met.done.gap)
     if met.done.rests:
-        within = f", where strikes would follow within {threshold:.3g} s" if threshold else ""
-        notes += (f"a contact persists from t = {met.t:.12g} s on{within}",)
+        event = run.events[met.which]
+        within = f", where strikes would follow within {run.accumulation:.3g} s" if event.restitution else ""
+        notes += (f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}",)
     return notes
 
 

@@ -2,8 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
+
+_NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
+
+
+def distinct(notes: Iterable[str]) -> tuple[str, ...]:
+    """Of notes that differ in numbers alone the first."""
+    first: dict[str, str] = {}
+    for note in notes:
+        first.setdefault(_NUMBER.sub("#", note), note)
+    return tuple(first.values())
 
 
 class NoteKind(NamedTuple):

@@ -88,6 +88,21 @@ def _bounce() -> Case:
     return Case(system, {"strike": strike}, 1.0, {"z": 0.5})
 
 
+def _rest() -> Case:
+    """A ball that bounces until it rests, and is lifted by a pull that grows."""
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0))
+    system = sf.System(
+        "resting",
+        (ball,),
+        (sf.Parameter("contact", 0),),
+        constraints=(sf.Coupling("floor", "z"),),
+        switches=(sf.Switch("floor", "contact"),),
+        virtual_power=(sf.VirtualPower("pull", {"dz": "30*(t - 0.5)"}),),
+    )
+    strike = sf.Event("z", "falling", action={"contact": 1}, restitution=0.5, rests="lam.floor")
+    return Case(system, {"strike": strike}, 1.0, {"z": 0.05})
+
+
 def _locked_loop() -> Case:
     """A four-bar whose crank is locked in motion and let go again."""
     bars = loop([0.3, 1.0, 0.9], 1.1)
@@ -123,6 +138,7 @@ CASES = {
     "grasp": _grasp(),
     "latch": _latch(),
     "bounce": _bounce(),
+    "rest": _rest(),
     "locked loop": _locked_loop(),
     "stick": _stick(),
     "brake": _brake(),
@@ -165,6 +181,9 @@ def test_a_mechanism_alone_moves_as_it_is_simulated(name: str, options: dict[str
     np.testing.assert_allclose(run["plant.q"][-1], alone.q[-1], **near)
     np.testing.assert_allclose(run["plant.v"][-1], alone.v[-1], **near)
     np.testing.assert_allclose(run["plant.lam"][-1], alone.lam[-1], rtol=1e-7, atol=1e-7)
+    assert [one for one in run.outcome.notes if "persists" in one] == [
+        one.replace("'strike'", "'plant.strike'") for one in alone.outcome.notes if "persists" in one
+    ]
 
 
 def _handed(events: Mapping[str, Any], **model: Any) -> sf.Diagram:

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.stepping.status import Status
+from tests.diagrams.run.test_switching import CASES
 from tests.exports.cases import build, run, sources
 from tests.simulation.mechanisms import slide
 from tests.simulation.test_actions import grabbing
@@ -56,6 +57,32 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
     assert numbers == pytest.approx(
         np.concatenate([again.q[-1], again.v[-1]]), abs=1e-8 if method == "dopri5" else 1e-12
     )
+
+
+@pytest.mark.parametrize(("method", "span"), [("rk4", 1e-3), ("rk4", 0.05), ("dopri5", 0.05)])
+def test_a_contact_rests_and_opens_in_packages(tmp_path: Path, method: str, span: float) -> None:
+    """At the instants of the run, the last strike among them, where both thresholds are 1e-6 s."""
+    stated = CASES["rest"]
+    options: dict[str, Any] = {"events": stated.events, "dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
+    sf.export(stated.system, "c", tmp_path / "c", name="plan", start=stated.start, **options)
+    (tmp_path / "c" / "main.c").write_text(MAIN)
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    *met, status, state = run(program, repr(span), "1.0", cwd=tmp_path).splitlines()
+    again = sf.simulate(sf.compile(stated.system), [stated.start["z"]], t_end=1.0, **options)
+    assert status == f"status {Status.FINISHED}" and met[-1].startswith("strike opens 0.827")
+    assert [line.rsplit(maxsplit=1)[0] for line in met] == [found.name for found in again.events]
+    assert [float(line.split()[-1]) for line in met] == pytest.approx([found.t for found in again.events], abs=1e-12)
+    numbers = np.array(state.split()[1:], dtype=float)
+    assert numbers == pytest.approx([again.q[-1, 0], again.v[-1, 0]], abs=1e-10)
+
+
+def test_a_package_does_not_start_within_a_floor(tmp_path: Path) -> None:
+    """It says so by its status, as a run does."""
+    stated = CASES["rest"]
+    sf.export(stated.system, "c", tmp_path / "c", name="plan", start={"z": -1e-3}, events=stated.events)
+    (tmp_path / "c" / "main.c").write_text(MAIN)
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    assert f"status {Status.WRONG_CONTACT}" in run(program, "0.01", "0.1", cwd=tmp_path)
 
 
 def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -> None:

@@ -27,6 +27,7 @@ from symofros.simulation.results.examination.constraint_faults import constraint
 from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
+from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded
@@ -95,7 +96,8 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tup
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
     closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
     postures = _posture_notes(ended, again)
-    gaps = [note for met in ended.recorded.events for note in notes_of(met)]
+    # Where events are located, all that moves is one part.
+    gaps = distinct(note for met in ended.recorded.events for note in notes_of(loop.parts[0], met))
     notes = (*postures, *gaps, *bending_notes(bendings), *([loop.fault] if loop.fault else []), *left, *undecided)
     failed_at = ((part, met) for part in loop.parts for met in reversed(ended.recorded.events))
     failure = next((found for part, met in failed_at if (found := failure_of(part, met)) is not None), None)

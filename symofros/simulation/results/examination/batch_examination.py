@@ -19,6 +19,7 @@ from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_run
+from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import InitialStates
@@ -81,7 +82,7 @@ class BatchExamination:
         ended = [one for one in met if self.initial.events[one.which].terminal]
         reason = f"event '{self.initial.events[ended[-1].which].name}'" if ended else ""
         outcome = failure or end.outcome(t, reason=reason if status == Status.TERMINAL_EVENT else "")
-        remarks = (*(note for one in met for note in notes_of(one)), _NOT_EXAMINED)
+        remarks = (*distinct(note for one in met for note in notes_of(self.single, one)), _NOT_EXAMINED)
         return replace(outcome, notes=(*outcome.notes, *remarks))
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
@@ -143,6 +144,7 @@ class BatchExamination:
         model, par = self.model.with_precision("double"), _row(self.initial.par, i)
         stepper = Stepper(model, self.settings.method, plan, self.initial.events, par)
         self.settings.apply(stepper)
+        stepper.set_span(self.settings.span)
         stepper.start(_row(self.initial.q, i), _row(self.initial.v, i), max(1, len(self.settings.grid)))
         return stepper
 
