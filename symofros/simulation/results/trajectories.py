@@ -13,10 +13,10 @@ from symofros.base.arrays import Array
 from symofros.runtime.beams import NOTED_ERROR, BeamBending, bending_notes, largest_bending, worst_bendings
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
-from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.results.acted import found_of
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.batch_examination import BatchExamination
+from symofros.simulation.results.examination.state_notes import state_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.stepping.batch_stepper import BatchResults
@@ -92,11 +92,11 @@ class Trajectories(BatchResults):
             if self.examination.initial.events:
                 return self.examination.outcome_with_events(status, states, self._met(index))
             return self.examination.outcome(self._number(index), status, states, steps, bendings)
-        record, t, worst = self.model.record, float(self.t_last[index]), largest_bending(bendings)
+        t, worst = float(self.t_last[index]), largest_bending(bendings)
         if status == Status.BEYOND_THEORY and worst is not None:
             return ENDS[status].outcome(t, reason=str(worst))
-        left = limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
-        return ENDS[status].outcome(t, (*left, *bending_notes(bendings)))
+        par = self.par[index] if self.par.ndim > 1 else self.par
+        return ENDS[status].outcome(t, (*state_notes(self.model, states, par), *bending_notes(bendings)))
 
     def events(self, index: Index) -> tuple[Found, ...]:
         """Events that one run met, in the order of time, with what their actions did."""

@@ -17,7 +17,7 @@ from symofros.simulation.results.acted import failure_of, notes_of
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
-from symofros.simulation.results.examination.run import ExaminedRun
+from symofros.simulation.results.examination.run import ExaminedRun, Ranks
 from symofros.simulation.results.examination.step_size import examine_run
 from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
@@ -30,7 +30,7 @@ from symofros.simulation.stepping.stepper import Stepper
 # Share of the span after the last state in which an input is looked at, where steps have no length of their own.
 _NEXT = 1e-3
 _NOT_EXAMINED = "the steps of motions with events are not examined in a batch: sf.simulate says more of one"
-# Steps of the longest run that is made once more for its ends of steps, and how many of these are kept.
+# Steps of the longest run that is made once more as a whole, and how many ends of steps are kept.
 _MADE_AGAIN, _KEPT = 100_000, 4096
 
 
@@ -64,7 +64,7 @@ class BatchExamination:
         # Steps come as near to a pole as they like, and beyond it there is no number.
         fault = self._input_fault(i, *last) if status < 0 and status != Status.STEP_TOO_SMALL else ""
         run = self._run(i, states, steps)
-        run = self._with_ends_of_steps(run) if status >= 0 else run
+        run = self._made_again(run, failed=status < 0)
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
         return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
@@ -87,7 +87,7 @@ class BatchExamination:
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
-        run = self._with_ends_of_steps(self._run(i, states, steps))
+        run = self._made_again(self._run(i, states, steps), failed=False)
         return examine_run(run, ended_well=True, failed=False)[1]
 
     def _run(self, i: int, states: tuple[Array, ...], steps: int) -> ExaminedRun:
@@ -95,16 +95,22 @@ class BatchExamination:
         start = _row(self.initial.q, i), _row(self.initial.v, i)
         return ExaminedRun(self._stepper(i), self.settings, start, states, steps)
 
-    def _with_ends_of_steps(self, run: ExaminedRun) -> ExaminedRun:
-        """The run, repeated to record the ends of its steps if it has fewer samples and can be repeated.
+    def _made_again(self, run: ExaminedRun, *, failed: bool) -> ExaminedRun:
+        """The run with ranks of its constraints and, unless it failed, the ends of its steps if it has fewer samples.
 
-        What steps pass over does not depend on what is recorded of them.
+        It is repeated for that. What steps pass over, and what constraints do on the way, does not depend on what is
+        recorded of them. Of many steps the first ones tell the rank.
         """
         begin, every, t = (self.settings.t0, *run.start), -(-run.steps // _KEPT), run.states[0]
-        if not (len(t) < run.steps <= _MADE_AGAIN and run.repeatable):
+        whole, wanted = run.steps <= _MADE_AGAIN, len(t) < run.steps and not failed
+        if not run.steps or not ((whole and wanted) or run.model.nc):
             return run
-        status, ends = run.repeated(begin, float(t[-1]), self.settings.dt, every=every)
-        return replace(run, states=ends) if status == Status.FINISHED and len(ends[0]) > len(t) else run
+        end = float(t[-1]) if whole else begin[0] + (float(t[-1]) - begin[0]) * _MADE_AGAIN / run.steps
+        stepper, recorded = run.made_again(begin, end, self.settings.dt, every=every)
+        ends = recorded.arrays()
+        run = replace(run, counted=Ranks.of(stepper))
+        more = whole and wanted and recorded.status == Status.FINISHED and len(ends[0]) > len(t)
+        return replace(run, states=ends) if more else run
 
     def _input_fault(self, i: int, t: float, q: Array, v: Array) -> str:
         """The input of run i that is not finite about its last state, in words; "" where there is none."""

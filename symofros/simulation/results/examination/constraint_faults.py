@@ -73,16 +73,16 @@ def constraint_notes(examined: ExaminedRun, between: Between | None = None) -> l
         examined: The run.
         between: The motion between two of its records, where the run can't be made once more by itself.
     """
-    run = examined.stepper.run
     if not examined.model.nc:
         return []
-    if 0 <= run.rank_min < run.rank_max:
+    ranks = examined.ranks
+    if 0 <= ranks.least < ranks.most:
         return [
-            f"a singular posture was passed at t = {run.t_rank_min:.6g} s: the constraints' rank fell from"
-            f" {run.rank_max} to {run.rank_min}"
+            f"a singular posture was passed at t = {ranks.when:.6g} s: the constraints' rank fell from"
+            f" {ranks.most} to {ranks.least}"
         ]
     motion = between or partial(_short_steps, examined)
-    close = nearest_to_singular(examined.model, examined.states, examined.stepper.par, int(run.rank_max), motion)
+    close = nearest_to_singular(examined.model, examined.states, examined.stepper.par, ranks.most, motion)
     if not close:
         return []
     when, share = close

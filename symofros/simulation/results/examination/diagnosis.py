@@ -11,14 +11,13 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
-from symofros.simulation.analysis.kinematics.postures import limit_notes
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.examination.constraint_faults import constraint_notes, jump, lost_energy, violation
-from symofros.simulation.results.examination.deep_contacts import deep_contact_notes
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
 from symofros.simulation.results.examination.run import ExaminedRun
+from symofros.simulation.results.examination.state_notes import state_notes
 from symofros.simulation.results.examination.step_size import examine_run, remedy
 from symofros.simulation.results.outcome import Kind, Outcome
 from symofros.simulation.settings import Settings
@@ -50,7 +49,7 @@ def diagnose(
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
     told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = (*constraint_notes(run), *_state_notes(run), *bending_notes(told), *_pace_notes(run))
+    notes = (*_notes_on_the_way(run), *bending_notes(told), *_pace_notes(run))
     fault = input_fault(stepper) if status < 0 else ""
     return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
@@ -68,7 +67,8 @@ def diagnose_one(
         interrupted: Whether Ctrl-C ended it.
     """
     told = () if status == Status.BEYOND_THEORY else bendings
-    return outcome_of(run, status, bendings, (*_state_notes(run), *bending_notes(told)), fault, interrupted=interrupted)
+    notes = (*_notes_on_the_way(run), *bending_notes(told))
+    return outcome_of(run, status, bendings, notes, fault, interrupted=interrupted)
 
 
 @dataclass(frozen=True)
@@ -262,11 +262,9 @@ def _largest(stepper: Stepper, q: np.ndarray, v: np.ndarray) -> str:
     return f"the fastest speed is '{stepper.model.names.v[worst]}', {v[worst]:.3g}"
 
 
-def _state_notes(run: ExaminedRun) -> tuple[str, ...]:
-    """Notes on joint limits that the run exceeded, and on contacts beyond their geometry."""
-    record, states = run.model.record, run.states
-    limits = limit_notes(record.vectors, record.joint_limits, states[0], dict(zip("qvu", states[1:], strict=True)))
-    return (*limits, *deep_contact_notes(run))
+def _notes_on_the_way(run: ExaminedRun) -> tuple[str, ...]:
+    """Notes on postures that the run passed, and on states that it recorded."""
+    return (*constraint_notes(run), *state_notes(run.model, run.states, run.stepper.par))
 
 
 def _pace_notes(examined: ExaminedRun) -> list[str]:

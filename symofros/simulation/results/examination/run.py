@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.inputs import Callback
 from symofros.simulation.results.examination.finer_steps import HeldRun, Part, States
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.loops import run_own
+from symofros.simulation.stepping.loops import Recorded, run_own
 from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.windows import WHOLE, Window
@@ -39,6 +39,20 @@ AT_REST = 1e-11
 _POSITIONS, _ENERGIES = 3.0, 2.0
 
 
+class Ranks(NamedTuple):
+    """Lowest and highest rank of the constraints' Jacobian that a run met, and when it first met the lowest [s]."""
+
+    least: int
+    most: int
+    when: float
+
+    @classmethod
+    def of(cls, stepper: Stepper) -> Ranks:
+        """Those that a stepper has met."""
+        run = stepper.run
+        return cls(int(run.rank_min), int(run.rank_max), float(run.t_rank_min))
+
+
 @dataclass(frozen=True)
 class ExaminedRun(HeldRun):
     """A run of one model, parts of which are held against finer steps.
@@ -49,6 +63,7 @@ class ExaminedRun(HeldRun):
         start: Initial q, v.
         states: Records of the run.
         steps: Number of steps.
+        counted: Ranks of the constraints where another stepper has met them; otherwise those that its own has.
     """
 
     stepper: Stepper
@@ -56,6 +71,12 @@ class ExaminedRun(HeldRun):
     start: tuple[Array, Array]
     states: States
     steps: int
+    counted: Ranks | None = None
+
+    @property
+    def ranks(self) -> Ranks:
+        """Ranks of the constraints' Jacobian that it met."""
+        return self.counted or Ranks.of(self.stepper)
 
     @property
     def model(self) -> Model:
@@ -155,7 +176,21 @@ class ExaminedRun(HeldRun):
         method: Method | None = None,
         **changes: Any,
     ) -> tuple[int, list[Array]]:
-        """Status and states of a part of the run, made once more.
+        """Status and states of a part of the run, made once more; arguments as of `made_again`."""
+        _, recorded = self.made_again(start, t_end, dt, every=every, method=method, **changes)
+        return recorded.status, recorded.arrays()
+
+    def made_again(
+        self,
+        start: Sequence[Any],
+        t_end: float,
+        dt: float,
+        *,
+        every: int = 1,
+        method: Method | None = None,
+        **changes: Any,
+    ) -> tuple[Stepper, Recorded]:
+        """Another stepper that has made a part of the run once more, and what it recorded.
 
         Args:
             start: First t, q, v.
@@ -172,8 +207,7 @@ class ExaminedRun(HeldRun):
         part = replace(part, project=part.project or (method != stepper.method and self.model.nc > 0))
         again = Stepper(self.model, method, stepper.inputs, (), stepper.par)
         part.apply(again)
-        recorded = run_own(again, q, v, part, lambda _: None)
-        return recorded.status, recorded.arrays()
+        return again, run_own(again, q, v, part, lambda _: None)
 
     def in_short_steps(self, start: Sequence[Any], t_end: float, part: float) -> tuple[int, list[Array]]:
         """Status and states of a part of the run, made once more in steps that are no longer than `part` [s].
