@@ -9,7 +9,7 @@ import pytest
 
 from validation.engines.interface import Slot, Tree
 from validation.engines.matrix import cells
-from validation.engines.models import flexible, single
+from validation.engines.models import flexible, mjcf_geoms, single
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth import derived, turns
@@ -100,6 +100,23 @@ def test_a_solid_stands_where_its_joint_puts_it() -> None:
     across = mass * (0.25 / 4.0 + 4.0 / 12.0)
     np.testing.assert_allclose(moments, [mass * 0.125, across, across], rtol=1e-14)
     assert abs(xy) > 0.05
+
+
+def test_a_mesh_has_the_inertia_of_the_box_that_it_is() -> None:
+    """Full: m (y^2 + z^2) / 12. A shell: its walls, each a plate, about the middle of the box."""
+    files = mjcf_geoms.files()
+    x, y, z = 0.5, 0.25, 0.75
+    for scale, name in (((1.0, 1.0, 1.0), "of a mass"), ((2.0, 1.0, 0.5), "that is scaled")):
+        size = np.multiply((x, y, z), scale)
+        link = files[f"mjcf: mesh {name}"].tree.links[1]
+        np.testing.assert_allclose(link.com, size / 2.0, rtol=1e-14)
+        np.testing.assert_allclose(link.inertia, np.diag(size @ size - size**2) / 4.0, rtol=1e-13, atol=1e-15)
+    shell = files["mjcf: mesh that is a shell, of a density"].tree.links[1]
+    walls = 12.0 * np.array([y * z, x * z, x * y])
+    assert shell.mass == pytest.approx(walls.sum(), rel=1e-14)
+    square = np.array([x, y, z]) ** 2
+    second = [sum(walls[i] * square[k] / (4.0 if i == k else 12.0) for i in range(3)) for k in range(3)]
+    np.testing.assert_allclose(shell.inertia, np.diag(sum(second) - np.array(second)), rtol=1e-13, atol=1e-15)
 
 
 def test_a_line_that_passes_a_surface_or_begins_in_it_is_straight() -> None:

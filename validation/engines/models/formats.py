@@ -10,7 +10,7 @@ import numpy as np
 from ..interface import Joint, Tree, Unsupported
 from ..plugins import mujoco
 from ..plugins.writing import sdf, urdf
-from . import mjcf_files, sdf_files, urdf_files, usd_files
+from . import mjcf_files, mjcf_geoms, sdf_files, urdf_files, usd_files
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed
 from .readers import Reading
@@ -56,7 +56,7 @@ def formats() -> dict[str, Reading]:
         for form, text in texts(tree).items():
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
-    urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files()
+    urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files() | mjcf_geoms.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
     return urdf_stated | mjcf_stated | sdf_files.files() | usd_files.files() | made | dict(map(_written, written))
 

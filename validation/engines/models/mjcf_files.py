@@ -31,20 +31,20 @@ from .readers import (
     rpy_rotation,
 )
 
-_RADIAN = '<compiler angle="radian"/>'
+RADIAN = '<compiler angle="radian"/>'
 _MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'
 _MB = '<inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/>'
-_JOINT_A, _JOINT_B = '<joint axis="0 0 1"/>', '<joint axis="0 1 0"/>'
+_JOINT_A, JOINT_B = '<joint axis="0 0 1"/>', '<joint axis="0 1 0"/>'
 _AT_A, _AT_B = 'pos="0.1 0.2 0.3"', 'pos="0 0 0.5"'
 # The first body is not turned.
-_FIRST = hung(BODY, R=IDENTITY)
+FIRST = hung(BODY, R=IDENTITY)
 # Density of geoms that state none [kg/m^3].
 _WATER = 1000.0
 
 _of = partial(readers.reading, "mjcf")
 
 
-def _file(a: str = _JOINT_A + _MA, b: str = _JOINT_B + _MB, head: str = _RADIAN, at: tuple[str, str] = ("", "")) -> str:
+def file(a: str = _JOINT_A + _MA, b: str = JOINT_B + _MB, head: str = RADIAN, at: tuple[str, str] = ("", "")) -> str:
     """Two bodies: what each states inside, what goes before them, and further attributes of each."""
     inner = f'<body name="b" {_AT_B} {at[1]}>{b}</body>'
     return f'<mujoco model="m">{head}<worldbody><body name="a" {_AT_A} {at[0]}>{a}{inner}</body></worldbody></mujoco>'
@@ -56,8 +56,8 @@ def _turns() -> Iterator[tuple[str, Reading]]:
     euler = f'euler="{" ".join(map(str, angles))}"'
     degrees = [math.radians(one) for one in (30.0, -20.0, 50.0)]
 
-    def turned(name: str, attribute: str, R: Rows, head: str = _RADIAN) -> tuple[str, Reading]:
-        return _of(name, _file(head=head, at=(attribute, "")), hung(_FIRST, R=R), NEXT)
+    def turned(name: str, attribute: str, R: Rows, head: str = RADIAN) -> tuple[str, Reading]:
+        return _of(name, file(head=head, at=(attribute, "")), hung(FIRST, R=R), NEXT)
 
     def ordered(sequence: str, R: Rows) -> tuple[str, Reading]:
         return turned(f"eulerseq {sequence}", euler, R, f'<compiler angle="radian" eulerseq="{sequence}"/>')
@@ -81,6 +81,11 @@ def _turns() -> Iterator[tuple[str, Reading]]:
     z = np.cross(x, (0.0, 1.0, 0.0)) / np.linalg.norm(np.cross(x, (0.0, 1.0, 0.0)))
     axes = rows(np.stack([x, np.cross(z, x), z], axis=1))
     yield turned("xyaxes, not at right angles", 'xyaxes="2 1 -2 0 3 0"', axes)
+    first = '<compiler autolimits="true"/>'
+    yield turned("two compiler elements, angle in the second", euler, by("xyz"), first + RADIAN)
+    ordered_next = f'{RADIAN}<compiler eulerseq="zyx"/>'
+    yield turned("two compiler elements, eulerseq in the second", euler, by("zyx"), ordered_next)
+    yield turned("two compiler elements, angle in the first", euler, by("xyz"), RADIAN + first)
     yield turned("zaxis", 'zaxis="1 2 2"', about((-2.0, 1.0, 0.0), math.acos(2.0 / 3.0)))
     yield turned(
         "zaxis against z", 'zaxis="0 1 -0.000001"', about((-1.0, 0.0, 0.0), math.acos(-1e-6 / math.hypot(1, 1e-6)))
@@ -90,13 +95,13 @@ def _turns() -> Iterator[tuple[str, Reading]]:
 def _joints() -> Iterator[tuple[str, Reading]]:
     """What joints state, alone and several to a body."""
 
-    def second(name: str, text: str, *joints: Joint, head: str = _RADIAN) -> tuple[str, Reading]:
+    def second(name: str, text: str, *joints: Joint, head: str = RADIAN) -> tuple[str, Reading]:
         place = Joint("fixed", p=(0.0, 0.0, 0.5))
-        return _of(name, _file(b=text + _MB, head=head), _FIRST, replace(NEXT, joints=(place, *joints)))
+        return _of(name, file(b=text + _MB, head=head), FIRST, replace(NEXT, joints=(place, *joints)))
 
     y, x = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
     hinge, slide = Joint("revolute", axis=y), Joint("prismatic", axis=x)
-    yield _of("plain", _file(), _FIRST, NEXT)
+    yield _of("plain", file(), FIRST, NEXT)
     yield second("axis left out", "<joint/>", Joint("revolute"))
     yield second("slide, axis left out", '<joint type="slide"/>', Joint("prismatic"))
     yield second("axis oblique", '<joint axis="0.6 0 0.8"/>', Joint("revolute", axis=(0.6, 0.0, 0.8)))
@@ -106,8 +111,8 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     ball = Joint("ball")
     yield second("ball", '<joint type="ball"/>', ball)
     yield second("ball with an anchor", '<joint type="ball" pos="0 -0.1 0.2"/>', anchor, ball, back)
-    yield second("two joints of a body", f'{_JOINT_B}<joint type="slide" axis="1 0 0"/>', hinge, slide)
-    yield second("slide before hinge", f'<joint type="slide" axis="1 0 0"/>{_JOINT_B}', slide, hinge)
+    yield second("two joints of a body", f'{JOINT_B}<joint type="slide" axis="1 0 0"/>', hinge, slide)
+    yield second("slide before hinge", f'<joint type="slide" axis="1 0 0"/>{JOINT_B}', slide, hinge)
     anchors = '<joint axis="0 1 0" pos="0 -0.1 0.2"/><joint axis="1 0 0" pos="0.3 0 0"/>'
     between = Joint("fixed", p=(0.3, 0.1, -0.2))
     pair = (anchor, hinge, between, Joint("revolute", axis=x), Joint("fixed", p=(-0.3, 0.0, 0.0)))
@@ -122,9 +127,9 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     heavy = replace(slide, armature=(0.5,))
     yield second("armature of a slide", '<joint type="slide" axis="1 0 0" armature="0.5"/>', heavy)
     losses = '<joint axis="0 1 0" range="-1 1" damping="3" stiffness="7" springref="0.4" frictionloss="0.3"/>'
-    yield _of("limits, springs and dampers", _file(b=losses + _MB), _FIRST, NEXT, asked=PASSIVE)
-    loose = _file().replace(_AT_A, "").replace(_JOINT_A, "<freejoint/>")
-    free = replace(_FIRST, joints=(Joint("free"),))
+    yield _of("limits, springs and dampers", file(b=losses + _MB), FIRST, NEXT, asked=PASSIVE)
+    loose = file().replace(_AT_A, "").replace(_JOINT_A, "<freejoint/>")
+    free = replace(FIRST, joints=(Joint("free"),))
     yield _of("free joint", loose, free, NEXT)
     yield _of("joint of type free", loose.replace("<freejoint/>", '<joint type="free"/>'), free, NEXT)
 
@@ -132,8 +137,8 @@ def _joints() -> Iterator[tuple[str, Reading]]:
 def _inertias() -> Iterator[tuple[str, Reading]]:
     """What bodies state of inertia, and what geoms beside it count for."""
 
-    def first(name: str, inertial: str, head: str = _RADIAN, **changes: object) -> tuple[str, Reading]:
-        return _of(name, _file(_JOINT_A + inertial, head=head), replace(_FIRST, **changes), NEXT)  # type: ignore[arg-type]
+    def first(name: str, inertial: str, head: str = RADIAN, **changes: object) -> tuple[str, Reading]:
+        return _of(name, file(_JOINT_A + inertial, head=head), replace(FIRST, **changes), NEXT)  # type: ignore[arg-type]
 
     full = _MA.replace('diaginertia="0.2 0.3 0.4"', f'fullinertia="{" ".join(map(str, PRODUCTS))}"')
     yield first("inertia in full", full, inertia=OBLONG)
@@ -153,17 +158,17 @@ def _inertias() -> Iterator[tuple[str, Reading]]:
     box = '<geom type="box" size="0.1 0.2 0.3" pos="0.1 -0.2 0.3" mass="3"/>'
     boxed = {"mass": 3.0, "inertia": diagonal(0.13, 0.1, 0.05)}
     always = '<compiler angle="radian" inertiafromgeom="true"/>'
-    text = _file(_JOINT_A + _MA + box, _JOINT_B + box, always)
+    text = file(_JOINT_A + _MA + box, JOINT_B + box, always)
     second = replace(NEXT, com=BODY.com, **boxed)  # type: ignore[arg-type]
-    yield _of("geoms beside inertia, inertiafromgeom true", text, replace(_FIRST, **boxed), second)  # type: ignore[arg-type]
+    yield _of("geoms beside inertia, inertiafromgeom true", text, replace(FIRST, **boxed), second)  # type: ignore[arg-type]
     total = '<compiler angle="radian" settotalmass="6"/>'
-    double = [replace(one, mass=2.0 * one.mass, inertia=diagonal(0.4, 0.6, 0.8)) for one in (_FIRST, NEXT)]
-    yield _of("total mass set", _file(head=total), *double)
+    double = [replace(one, mass=2.0 * one.mass, inertia=diagonal(0.4, 0.6, 0.8)) for one in (FIRST, NEXT)]
+    yield _of("total mass set", file(head=total), *double)
     decoration = '<site name="s" size="0.3" type="box" pos="1 2 3"/><camera pos="1 1 1"/><light pos="1 1 1"/>'
     yield first("sites, cameras and lights", _MA + decoration)
 
 
-def _solid(kind: str, x: float, y: float, z: float) -> tuple[float, Vector]:
+def solid_of(kind: str, x: float, y: float, z: float) -> tuple[float, Vector]:
     """Volume and moments, for unit density, of a shape: radii or half sizes; of those about z: radius, -, half."""
     if kind == "box":
         volume, k = 8.0 * x * y * z, 1.0 / 3.0
@@ -181,69 +186,24 @@ def _solid(kind: str, x: float, y: float, z: float) -> tuple[float, Vector]:
     return volume, (volume * k * (y * y + z * z), volume * k * (x * x + z * z), volume * k * (x * x + y * y))
 
 
-def _dense(solid: tuple[float, Vector], density: float = _WATER, R: Rows = IDENTITY, com: Vector = ORIGIN) -> Link:
+def dense(solid: tuple[float, Vector], density: float = _WATER, R: Rows = IDENTITY, com: Vector = ORIGIN) -> Link:
     """The second link, of one solid."""
     volume, moments = solid
     inertia = along(R, diagonal(*(density * one for one in moments)))
     return replace(NEXT, mass=density * volume, com=com, inertia=inertia)
 
 
-def _geoms() -> Iterator[tuple[str, Reading]]:
-    """Inertia that is inferred from geoms."""
-
-    def second(name: str, geoms: str, link: Link, head: str = _RADIAN) -> tuple[str, Reading]:
-        return _of(name, _file(b=_JOINT_B + geoms, head=head), _FIRST, link)
-
-    ball = _dense(_solid("ellipsoid", 0.1, 0.1, 0.1))
-    yield second("geom, all left out", '<geom size="0.1"/>', ball)
-    yield second(
-        "geom by density", '<geom size="0.1" density="700"/>', _dense(_solid("ellipsoid", 0.1, 0.1, 0.1), 700.0)
-    )
-    for kind in ("box", "ellipsoid", "cylinder", "capsule"):
-        size = (0.1, 0.2 if kind in ("box", "ellipsoid") else 0.0, 0.3)
-        text = " ".join(str(one) for one in size if one)
-        placed = f'<geom type="{kind}" size="{text}" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>'
-        R = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
-        yield second(f"geom {kind}", placed, _dense(_solid(kind, *size), R=R, com=BODY.com))
-    # From (0, 0, 0) to (0.2, 0.4, -0.4): of length 0.6, about the middle.
-    ends, middle = 'fromto="0 0 0 0.2 0.4 -0.4"', (0.1, 0.2, -0.2)
-    R = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
-    for kind in ("cylinder", "capsule"):
-        link = _dense(_solid(kind, 0.1, 0.0, 0.3), R=R, com=middle)
-        yield second(f"geom {kind} from end to end", f'<geom type="{kind}" size="0.1" {ends}/>', link)
-    one, two = (f'<geom size="0.1" pos="0 0 {at}" mass="{mass}"/>' for at, mass in ((0.3, 1), (-0.3, 2)))
-    moment = 3.0 * 0.004
-    across = moment + 1.0 * 0.4**2 + 2.0 * 0.2**2
-    pair = replace(NEXT, mass=3.0, com=(0.0, 0.0, -0.1), inertia=diagonal(across, across, moment))
-    yield second("two geoms", one + two, pair)
-    grouped = '<compiler angle="radian" inertiagrouprange="0 2"/>'
-    shown = '<geom size="0.3" pos="1 1 1" group="3"/>'
-    yield second("geoms of groups that don't count", f'<geom size="0.1"/>{shown}', ball, grouped)
-    yield second("geoms of groups that count", f'<geom size="0.1" group="2"/>{shown}', ball, grouped)
-    light = '<geom size="0.3" pos="1 1 1" mass="0"/><geom size="0.2" pos="1 1 1" density="0"/>'
-    yield second("geoms without mass", f'<geom size="0.1"/>{light}', ball)
-    unseen = '<geom size="0.1" contype="0" conaffinity="0" group="2"/>'
-    yield second("geom that meets nothing", unseen, ball)
-    shown_only = 'contype="0" conaffinity="0" group="2"'
-    visual = two.replace("/>", f" {shown_only}/>")
-    yield second("mass of a visual geom beside a solid one", one + visual, pair)
-    alone = replace(NEXT, mass=2.0, com=ORIGIN, inertia=diagonal(0.008, 0.008, 0.008))
-    yield second("mass of a visual geom", f'<geom size="0.1" mass="2" {shown_only}/>', alone)
-    ground = '<worldbody><geom type="plane" size="1 1 1"/><geom size="2" mass="5"/>'
-    yield _of("geoms of the world", _file().replace("<worldbody>", ground), _FIRST, NEXT)
-
-
 def _defaults() -> Iterator[tuple[str, Reading]]:
     """Classes of defaults, and which of them counts."""
 
     def stated(name: str, classes: str, a: Link, b: Link, text: str = "") -> tuple[str, Reading]:
-        head = f"{_RADIAN}<default>{classes}</default>"
-        return _of(name, (text or _file()).replace(_RADIAN, head), a, b)
+        head = f"{RADIAN}<default>{classes}</default>"
+        return _of(name, (text or file()).replace(RADIAN, head), a, b)
 
     def turning(link: Link, *axis: float) -> Link:
         return hung(link, axis=axis)
 
-    geared = [hung(one, armature=(0.5,)) for one in (_FIRST, NEXT)]
+    geared = [hung(one, armature=(0.5,)) for one in (FIRST, NEXT)]
     yield stated("armature by default", '<joint armature="0.5"/>', geared[0], geared[1])
     x, y = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)
     outer = '<joint axis="1 0 0"/>'
@@ -251,31 +211,31 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
     bare, named, main = "<joint/>", '<joint class="k"/>', '<joint class="main"/>'
 
     def bodies(a: str, b: str, *at: str) -> str:
-        return _file(a + _MA, b + _MB, at=(at[0], at[1]) if at else ("", ""))
+        return file(a + _MA, b + _MB, at=(at[0], at[1]) if at else ("", ""))
 
-    yield stated("axis by default", outer, turning(_FIRST, *x), turning(NEXT, *x), bodies(bare, bare))
-    yield stated("class of a joint", classes, turning(_FIRST, *x), turning(NEXT, *y), bodies(bare, named))
+    yield stated("axis by default", outer, turning(FIRST, *x), turning(NEXT, *x), bodies(bare, bare))
+    yield stated("class of a joint", classes, turning(FIRST, *x), turning(NEXT, *y), bodies(bare, named))
     child = 'childclass="k"'
-    yield stated("childclass of a body", classes, turning(_FIRST, *x), turning(NEXT, *y), bodies(bare, bare, "", child))
+    yield stated("childclass of a body", classes, turning(FIRST, *x), turning(NEXT, *y), bodies(bare, bare, "", child))
     passed = bodies(bare, bare, child, "")
-    yield stated("childclass handed down", classes, turning(_FIRST, *y), turning(NEXT, *y), passed)
+    yield stated("childclass handed down", classes, turning(FIRST, *y), turning(NEXT, *y), passed)
     before = bodies(main, bare, child, "")
-    yield stated("class before childclass", classes, turning(_FIRST, *x), turning(NEXT, *y), before)
+    yield stated("class before childclass", classes, turning(FIRST, *x), turning(NEXT, *y), before)
     own = bodies(bare, '<joint axis="0 0 1"/>', child, "")
-    yield stated("attribute before class", classes, turning(_FIRST, *y), turning(NEXT, 0.0, 0.0, 1.0), own)
+    yield stated("attribute before class", classes, turning(FIRST, *y), turning(NEXT, 0.0, 0.0, 1.0), own)
     nested = '<default class="k"><joint type="slide"/><default class="l"><joint axis="1 0 0"/></default></default>'
     slide = Joint("prismatic", p=(0.0, 0.0, 0.5), axis=x)
-    deep = _file(b='<joint class="l"/>' + _MB)
-    yield stated("class within a class", nested, _FIRST, replace(NEXT, joints=(slide,)), deep)
+    deep = file(b='<joint class="l"/>' + _MB)
+    yield stated("class within a class", nested, FIRST, replace(NEXT, joints=(slide,)), deep)
     solid = '<geom type="box" size="0.1 0.2 0.3" density="500"/>'
-    shaped = _file(b=_JOINT_B + "<geom/>")
-    yield stated("geom by default", solid, _FIRST, _dense(_solid("box", 0.1, 0.2, 0.3), 500.0), shaped)
+    shaped = file(b=JOINT_B + "<geom/>")
+    yield stated("geom by default", solid, FIRST, dense(solid_of("box", 0.1, 0.2, 0.3), 500.0), shaped)
     heavier = '<default class="h"><geom density="2000"/></default><default class="p"/>'
-    plain = _file(b=_JOINT_B + '<geom class="p" type="box" size="0.1 0.2 0.3"/>', at=("", 'childclass="h"'))
-    yield stated("class of a geom before childclass", heavier, _FIRST, _dense(_solid("box", 0.1, 0.2, 0.3)), plain)
+    plain = file(b=JOINT_B + '<geom class="p" type="box" size="0.1 0.2 0.3"/>', at=("", 'childclass="h"'))
+    yield stated("class of a geom before childclass", heavier, FIRST, dense(solid_of("box", 0.1, 0.2, 0.3)), plain)
     massive = '<geom type="box" size="0.1 0.2 0.3"/><default class="k"><geom mass="3"/></default>'
     heavy = replace(NEXT, mass=3.0, com=ORIGIN, inertia=diagonal(0.13, 0.1, 0.05))
-    yield stated("geom of a class", massive, _FIRST, heavy, _file(b=_JOINT_B + '<geom class="k"/>'))
+    yield stated("geom of a class", massive, FIRST, heavy, file(b=JOINT_B + '<geom class="k"/>'))
 
 
 def _losses() -> Iterator[tuple[str, Reading]]:
@@ -285,14 +245,14 @@ def _losses() -> Iterator[tuple[str, Reading]]:
     lost = hung(NEXT, **stated)
     slide = Joint("prismatic", p=(0.0, 0.0, 0.5), axis=(1.0, 0.0, 0.0), **stated)  # type: ignore[arg-type]
 
-    def second(name: str, joint: str, link: Link, head: str = _RADIAN) -> tuple[str, Reading]:
-        return _of(name, _file(b=joint + _MB, head=head), _FIRST, link, asked=LOSSES)
+    def second(name: str, joint: str, link: Link, head: str = RADIAN) -> tuple[str, Reading]:
+        return _of(name, file(b=joint + _MB, head=head), FIRST, link, asked=LOSSES)
 
     yield second("losses of a hinge", f'<joint axis="0 1 0" {text}/>', lost)
     yield second("losses of a hinge, angle left out", f'<joint axis="0 1 0" {text}/>', lost, "")
     yield second("losses of a slide", f'<joint type="slide" axis="1 0 0" {text}/>', replace(NEXT, joints=(slide,)), "")
     classes = f'<default><default class="k"><joint {text}/></default></default>'
-    yield second("losses of a class", '<joint class="k" axis="0 1 0"/>', lost, _RADIAN + classes)
+    yield second("losses of a class", '<joint class="k" axis="0 1 0"/>', lost, RADIAN + classes)
 
 
 def _sites() -> Iterator[tuple[str, Reading]]:
@@ -302,34 +262,34 @@ def _sites() -> Iterator[tuple[str, Reading]]:
 
     def of(name: str, text: str, *ends: End) -> tuple[str, Reading]:
         title = f"mjcf: {name}"
-        return title, Reading("mjcf", text, Tree(title, (_FIRST, NEXT), sensors=ends), asked=PLACED)
+        return title, Reading("mjcf", text, Tree(title, (FIRST, NEXT), sensors=ends), asked=PLACED)
 
-    def on_b(name: str, site: str, end: End, head: str = _RADIAN) -> tuple[str, Reading]:
-        return of(name, _file(b=_JOINT_B + _MB + site, head=head), end)
+    def on_b(name: str, site: str, end: End, head: str = RADIAN) -> tuple[str, Reading]:
+        return of(name, file(b=JOINT_B + _MB + site, head=head), end)
 
     yield on_b("site", '<site name="o0" pos="0.1 -0.2 0.3"/>', End("b", p=p))
     yield on_b("site turned", '<site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>', End("b", R, p))
-    both = _file(
-        _JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', _JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>'
+    both = file(
+        _JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>'
     )
     yield of("sites of two bodies", both, End("a", p=(0.0, 0.5, 0.0)), End("b", p=p))
     # From (0, 0, 0) to (0.2, 0.4, -0.4): z along the way from the end to the beginning, at the middle.
     along_it = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
     ends = End("b", rows(np.array(along_it)), (0.1, 0.2, -0.2))
     yield on_b("site from end to end", '<site name="o0" type="capsule" size="0.1" fromto="0.2 0.4 -0.4 0 0 0"/>', ends)
-    head = f'{_RADIAN}<default><site pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/></default>'
+    head = f'{RADIAN}<default><site pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/></default>'
     yield on_b("site by default", '<site name="o0"/>', End("b", R, p), head)
     fixed = '<body pos="0.2 0.1 0" euler="0.5 0.6 0.7"><site name="o0" pos="0.1 -0.2 0.3"/></body>'
     at = tuple(float(x) for x in np.array((0.2, 0.1, 0.0)) + np.array(R) @ np.array(p))
     yield on_b("site of a body that does not move", fixed, End("b", R, (at[0], at[1], at[2])))
-    world = _file().replace("<worldbody>", '<worldbody><site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>')
+    world = file().replace("<worldbody>", '<worldbody><site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>')
     yield of("site of the world", world, End("", R, p))
 
 
 def _driven() -> Iterator[tuple[str, Reading]]:
     """Actuators that state their numbers, or take them from classes."""
-    links = (_FIRST, NEXT)
-    text = _file('<joint name="a" axis="0 0 1"/>' + _MA, '<joint name="b" axis="0 1 0"/>' + _MB)
+    links = (FIRST, NEXT)
+    text = file('<joint name="a" axis="0 0 1"/>' + _MA, '<joint name="b" axis="0 1 0"/>' + _MB)
     kinds = {
         "motor": ('gear="2"', Actuator("b", gear=2.0, control=0.5)),
         "position": ('kp="3"', Actuator("b", gain=3.0, bias=(0.0, -3.0, 0.0), control=0.5)),
@@ -350,50 +310,66 @@ def _driven() -> Iterator[tuple[str, Reading]]:
         }
         for name, (classes, element) in ways.items():
             title = f"mjcf: {name}"
-            whole = text.replace(_RADIAN, _RADIAN + classes)
+            whole = text.replace(RADIAN, RADIAN + classes)
             whole = whole.replace("</mujoco>", f"<actuator>{element}</actuator></mujoco>")
             yield title, Reading("mjcf", whole, Tree(title, links, actuators=(actuator,)), asked=DRIVEN)
 
 
 def _trees() -> Iterator[tuple[str, Reading]]:
     """Bodies that don't move, frames, copies, gravity."""
-    still = hung(_FIRST, kind="fixed")
-    yield _of("fixed body with mass first", _file(a=_MA), still, NEXT)
-    yield _of("fixed body with mass", _file(b=_MB), _FIRST, hung(NEXT, kind="fixed"))
+    still = hung(FIRST, kind="fixed")
+    yield _of("fixed body with mass first", file(a=_MA), still, NEXT)
+    yield _of("fixed body with mass", file(b=_MB), FIRST, hung(NEXT, kind="fixed"))
     nothing = replace(still, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
-    yield _of("fixed body without inertia first", _file(a=""), nothing, NEXT)
+    yield _of("fixed body without inertia first", file(a=""), nothing, NEXT)
     frame = '<frame pos="0.2 -0.1 0.4" euler="0.3 -0.4 0.5">'
     R = in_series(("x", 0.3), ("y", -0.4), ("z", 0.5))
     p = rows(np.outer(np.ones(3), np.array([0.2, -0.1, 0.4]) + np.array(R) @ np.array([0.1, 0.2, 0.3])))[0]
-    wrapped = _file().replace("<worldbody>", f"<worldbody>{frame}").replace("</worldbody>", "</frame></worldbody>")
-    yield _of("frame around a body", wrapped, hung(_FIRST, R=R, p=p), NEXT)
+    wrapped = file().replace("<worldbody>", f"<worldbody>{frame}").replace("</worldbody>", "</frame></worldbody>")
+    yield _of("frame around a body", wrapped, hung(FIRST, R=R, p=p), NEXT)
     twice = f'{frame}<frame pos="0.1 0.2 0.3">'
     inner = wrapped.replace(frame, twice).replace("</frame>", "</frame></frame>")
     inner = inner.replace(f'name="a" {_AT_A}', 'name="a"')
-    yield _of("frame within a frame", inner, hung(_FIRST, R=R, p=p), NEXT)
-    box = _dense(_solid("box", 0.1, 0.2, 0.3), R=R, com=(0.2, -0.1, 0.4))
-    shaped = _file(b=f'{_JOINT_B}{frame}<geom type="box" size="0.1 0.2 0.3"/></frame>')
-    yield _of("frame around a geom", shaped, _FIRST, box)
-    classes = f'{_RADIAN}<default><default class="k"><joint axis="1 0 0"/></default></default>'
-    classed = _file("<joint/>" + _MA, "<joint/>" + _MB, classes).replace(
+    yield _of("frame within a frame", inner, hung(FIRST, R=R, p=p), NEXT)
+    box = dense(solid_of("box", 0.1, 0.2, 0.3), R=R, com=(0.2, -0.1, 0.4))
+    shaped = file(b=f'{JOINT_B}{frame}<geom type="box" size="0.1 0.2 0.3"/></frame>')
+    yield _of("frame around a geom", shaped, FIRST, box)
+    ball, moved = '<geom size="0.1" mass="5"/>', 'pos="0.2 0 0"'
+    after = f'<frame pos="0 0.4 0"><body name="c">{_JOINT_A}{_MB}</body></frame><frame {moved}>{ball}</frame>'
+    solid = replace(NEXT, mass=5.0, com=(0.2, 0.0, 0.0), inertia=diagonal(0.02, 0.02, 0.02))
+    hanging = Link("c", 1, (Joint("revolute", p=(0.0, 0.4, 0.0), axis=(0.0, 0.0, 1.0)),), 1.0, NEXT.com, NEXT.inertia)
+    yield _of("frame of a geom after the frame of a body", file(b=JOINT_B + after), FIRST, solid, hanging)
+    before = f'<frame {moved}>{ball}</frame><frame pos="0 0.4 0"><body name="c">{_JOINT_A}{_MB}</body></frame>'
+    yield _of("frame of a geom before the frame of a body", file(b=JOINT_B + before), FIRST, solid, hanging)
+    classes = f'{RADIAN}<default><default class="k"><joint axis="1 0 0"/></default></default>'
+    classed = file("<joint/>" + _MA, "<joint/>" + _MB, classes).replace(
         "<worldbody>", '<worldbody><frame childclass="k">'
     )
     classed = classed.replace("</worldbody>", "</frame></worldbody>")
-    along_x = [hung(one, axis=(1.0, 0.0, 0.0)) for one in (_FIRST, NEXT)]
+    along_x = [hung(one, axis=(1.0, 0.0, 0.0)) for one in (FIRST, NEXT)]
     yield _of("childclass of a frame", classed, *along_x)
-    copied = f'<body name="b" {_AT_B}>{_JOINT_B}{_MB}</body>'
+    copied = f'<body name="b" {_AT_B}>{JOINT_B}{_MB}</body>'
     copies = f'<replicate count="2" offset="0 0.3 0" sep="">{copied}</replicate>'
     alone = f'<worldbody><body name="a" {_AT_A}>{_JOINT_A}{_MA}{copies}</body></worldbody>'
-    only = f'<mujoco model="m">{_RADIAN}{alone}</mujoco>'
+    only = f'<mujoco model="m">{RADIAN}{alone}</mujoco>'
     second = replace(hung(NEXT, p=(0.0, 0.3, 0.5)), name="b1")
-    yield _of("replicate", only, _FIRST, replace(NEXT, name="b0"), second)
-    aside = _file(head=f'{_RADIAN}<option gravity="1 -2 -3"/>')
+    yield _of("replicate", only, FIRST, replace(NEXT, name="b0"), second)
+    aside = file(head=f'{RADIAN}<option gravity="1 -2 -3"/>')
     title = "mjcf: gravity aside"
-    yield title, Reading("mjcf", aside, Tree(title, (_FIRST, NEXT), gravity=(1.0, -2.0, -3.0)))
+    yield title, Reading("mjcf", aside, Tree(title, (FIRST, NEXT), gravity=(1.0, -2.0, -3.0)))
 
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
     return dict(
-        [*_joints(), *_turns(), *_inertias(), *_geoms(), *_defaults(), *_losses(), *_sites(), *_driven(), *_trees()]
+        [
+            *_joints(),
+            *_turns(),
+            *_inertias(),
+            *_defaults(),
+            *_losses(),
+            *_sites(),
+            *_driven(),
+            *_trees(),
+        ]
     )

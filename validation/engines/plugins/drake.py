@@ -14,7 +14,7 @@ from .loops import drake_forces as forces
 from .loops.drake_forces import FORCES, QV, Q
 from .writing import urdf
 from .writing.source import Source, SourcePlugin, Way, series
-from .writing.urdf import UNIT_AXIS
+from .writing.urdf import MESH_WITHIN, UNIT_AXIS
 
 
 class _Native(NamedTuple):
@@ -395,5 +395,5 @@ PLUGIN = SourcePlugin(
         "springs": "RevoluteSpring, PrismaticSpring",
         "tendons": "LinearSpringDamper",
     },
-    statements=(UNIT_AXIS,),
+    statements=(UNIT_AXIS, MESH_WITHIN),
 )

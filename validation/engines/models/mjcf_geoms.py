@@ -1,0 +1,119 @@
+"""MJCF: inertia that is inferred from geoms and meshes, of their masses, densities, shapes and defaults."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from ..interface import ORIGIN, Array, Link, rows, vector
+from . import readers
+from .mjcf_files import FIRST, JOINT_B, RADIAN, dense, file, solid_of
+from .readers import BODY, NEXT, Reading, about, diagonal, in_series
+
+_of = partial(readers.reading, "mjcf")
+
+
+def _of_simplices(parts: Sequence[tuple[float, Array]]) -> Link:
+    """The second link, of triangles or tetrahedra: the mass of each, and its corners (k, 3).
+
+    Of a uniform simplex with k corners x and their sum s, the mean of r r^T is (sum of x x^T + s s^T) / (k (k + 1)).
+    """
+    mass = math.fsum(one for one, _ in parts)
+    com = sum(one * x.mean(axis=0) for one, x in parts) / mass
+    second = np.zeros((3, 3))
+    for one, corners in parts:
+        x = corners - com
+        s, k = x.sum(axis=0), len(x)
+        second += one * (x.T @ x + np.outer(s, s)) / (k * (k + 1))
+    return replace(NEXT, mass=mass, com=vector(com), inertia=rows(np.trace(second) * np.eye(3) - second))
+
+
+def _meshes() -> Iterator[tuple[str, Reading]]:
+    """Inertia of a mesh, full or a shell, by mass and by density, of its own and by default.
+
+    It is a box between the origin and a corner of three, so that MuJoCo need not search for principal axes.
+    """
+    corners = np.array([[x, y, z] for z in (0.0, 0.75) for y in (0.0, 0.25) for x in (0.0, 0.5)])
+    squares = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    faces = [three for a, b, c, d in squares for three in ((a, b, c), (a, c, d))]
+    sides = [corners[list(three)] for three in faces]
+    areas = [float(np.linalg.norm(np.cross(x[1] - x[0], x[2] - x[0]))) / 2.0 for x in sides]
+    pieces = [np.vstack([corners.mean(axis=0), x]) for x in sides]
+    volume, parts = 0.5 * 0.25 * 0.75, [abs(float(np.linalg.det(x[1:] - x[0]))) / 6.0 for x in pieces]
+    vertices = "  ".join(" ".join(map(repr, corner)) for corner in corners.tolist())
+    data = f'vertex="{vertices}" face="{"  ".join(" ".join(map(str, three)) for three in faces)}"'
+
+    def uniform(mass: float, shares: Sequence[float], shapes: Sequence[Array]) -> Link:
+        return _of_simplices([(mass * share / math.fsum(shares), x) for share, x in zip(shares, shapes, strict=True)])
+
+    def second(name: str, mesh: str, geom: str, link: Link, head: str = RADIAN) -> tuple[str, Reading]:
+        head += f'<asset><mesh name="t" {data} {mesh}/></asset>'
+        text = file(b=f'{JOINT_B}<geom type="mesh" mesh="t" {geom}/>', head=head)
+        return _of(f"mesh {name}", text, FIRST, link)
+
+    full, thin = uniform(3.0, parts, pieces), uniform(6.0 * math.fsum(areas), areas, sides)
+    yield second("of a mass", "", 'mass="3"', full)
+    yield second("of a mass, shown only", "", 'mass="3" contype="0" conaffinity="0" group="2"', full)
+    yield second("of a density", "", 'density="700"', uniform(700.0 * volume, parts, pieces))
+    yield second("that is a shell, of a density", 'inertia="shell"', 'density="6"', thin)
+    yield second("that is a shell, of a mass", 'inertia="shell"', 'mass="3"', uniform(3.0, areas, sides))
+    scaled = uniform(3.0, parts, [x * np.array([2.0, 1.0, 0.5]) for x in pieces])
+    yield second("that is scaled", 'scale="2 1 0.5"', 'mass="3"', scaled)
+    shells = f'{RADIAN}<default><default class="k"><mesh inertia="shell"/></default></default>'
+    yield second("of a class of shells", 'class="k"', 'density="6"', thin, shells)
+    scales = f'{RADIAN}<default><mesh scale="2 1 0.5"/></default>'
+    yield second("scaled by default", "", 'mass="3"', scaled, scales)
+
+
+def _geoms() -> Iterator[tuple[str, Reading]]:
+    """Inertia that is inferred from geoms."""
+
+    def second(name: str, geoms: str, link: Link, head: str = RADIAN) -> tuple[str, Reading]:
+        return _of(name, file(b=JOINT_B + geoms, head=head), FIRST, link)
+
+    ball = dense(solid_of("ellipsoid", 0.1, 0.1, 0.1))
+    yield second("geom, all left out", '<geom size="0.1"/>', ball)
+    yield second(
+        "geom by density", '<geom size="0.1" density="700"/>', dense(solid_of("ellipsoid", 0.1, 0.1, 0.1), 700.0)
+    )
+    for kind in ("box", "ellipsoid", "cylinder", "capsule"):
+        size = (0.1, 0.2 if kind in ("box", "ellipsoid") else 0.0, 0.3)
+        text = " ".join(str(one) for one in size if one)
+        placed = f'<geom type="{kind}" size="{text}" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>'
+        R = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
+        yield second(f"geom {kind}", placed, dense(solid_of(kind, *size), R=R, com=BODY.com))
+    # From (0, 0, 0) to (0.2, 0.4, -0.4): of length 0.6, about the middle.
+    ends, middle = 'fromto="0 0 0 0.2 0.4 -0.4"', (0.1, 0.2, -0.2)
+    R = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
+    for kind in ("cylinder", "capsule"):
+        link = dense(solid_of(kind, 0.1, 0.0, 0.3), R=R, com=middle)
+        yield second(f"geom {kind} from end to end", f'<geom type="{kind}" size="0.1" {ends}/>', link)
+    one, two = (f'<geom size="0.1" pos="0 0 {at}" mass="{mass}"/>' for at, mass in ((0.3, 1), (-0.3, 2)))
+    moment = 3.0 * 0.004
+    across = moment + 1.0 * 0.4**2 + 2.0 * 0.2**2
+    pair = replace(NEXT, mass=3.0, com=(0.0, 0.0, -0.1), inertia=diagonal(across, across, moment))
+    yield second("two geoms", one + two, pair)
+    grouped = '<compiler angle="radian" inertiagrouprange="0 2"/>'
+    shown = '<geom size="0.3" pos="1 1 1" group="3"/>'
+    yield second("geoms of groups that don't count", f'<geom size="0.1"/>{shown}', ball, grouped)
+    yield second("geoms of groups that count", f'<geom size="0.1" group="2"/>{shown}', ball, grouped)
+    light = '<geom size="0.3" pos="1 1 1" mass="0"/><geom size="0.2" pos="1 1 1" density="0"/>'
+    yield second("geoms without mass", f'<geom size="0.1"/>{light}', ball)
+    unseen = '<geom size="0.1" contype="0" conaffinity="0" group="2"/>'
+    yield second("geom that meets nothing", unseen, ball)
+    shown_only = 'contype="0" conaffinity="0" group="2"'
+    visual = two.replace("/>", f" {shown_only}/>")
+    yield second("mass of a visual geom beside a solid one", one + visual, pair)
+    alone = replace(NEXT, mass=2.0, com=ORIGIN, inertia=diagonal(0.008, 0.008, 0.008))
+    yield second("mass of a visual geom", f'<geom size="0.1" mass="2" {shown_only}/>', alone)
+    ground = '<worldbody><geom type="plane" size="1 1 1"/><geom size="2" mass="5"/>'
+    yield _of("geoms of the world", file().replace("<worldbody>", ground), FIRST, NEXT)
+
+
+def files() -> dict[str, Reading]:
+    """All of them, by name."""
+    return dict([*_geoms(), *_meshes()])
