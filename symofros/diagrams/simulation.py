@@ -18,6 +18,7 @@ from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compil
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.block_functions import Blocks
+from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.interpreted import notes_on_steps
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
@@ -175,6 +176,7 @@ class Simulation:
             run = run_interpreted(blocks, called, course, watch, show, observer)
         run = replace(run, outcome=judge_prescribed(run.outcome, resolved, run.t, run.values.__getitem__))
         notes = joint_limit_notes(resolved, run.t, run.q, run.v)
+        notes += contact_notes(resolved, par, run.t, run.q, run.v)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
         return replace(run, outcome=replace(run.outcome, notes=(*closing, *run.outcome.notes, *notes)))

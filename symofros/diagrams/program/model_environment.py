@@ -150,6 +150,14 @@ class Models:
         jacobian = ("constraint_jacobian",) if self.record(name).nc else ()
         return self._chosen(name, options, "kinetic_energy", "potential_energy", "mass_matrix", *jacobian)
 
+    def dynamics(self, name: str) -> Model:
+        """A model of a mechanism that has its mass matrix and forces; interpreted, as `contacts`."""
+        return self._chosen(name, Options(backend="interpreter"), "dynamics")
+
+    def contacts(self, name: str) -> Model:
+        """A model of a mechanism that has the forces of its contacts; interpreted, because a run asks for them once."""
+        return self._chosen(name, Options(backend="interpreter"), "contact_forces")
+
     def _chosen(self, name: str, options: Options, *functions: str) -> Model:
         key = name, options.backend, functions
         if key not in self._models:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
+
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.energy_balance import energy_note
 from symofros.diagrams.run.examination.examined import Examined
 from symofros.diagrams.run.python_blocks import NotKeptError
+from symofros.simulation.results.examination.creep import creep_at
 from symofros.simulation.results.examination.finer_steps import finer_steps_note
 from symofros.simulation.stepping.resolution import Resolution
 
@@ -16,14 +21,21 @@ _ALLOWED, _MOTION = 0.1, 100.0
 
 
 def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
-    """Notes on the steps of a run: on finer ones, or on energy.
+    """Notes on the steps of a run, on finer ones or on energy; and on joints that creep at its end.
 
     Args:
         run: Run.
         modes: How well its steps resolve the modes at some states.
     """
-    layout, states, worst = run.layout, run.states, modes.worst
-    if not layout.v or run.steps < 1 or len(states[0]) < 2 or (worst is not None and worst.amplified):
+    if not run.layout.v or run.steps < 1 or len(run.states[0]) < 2:
+        return ()
+    return (*_on_steps(run, modes), *_creeping(run))
+
+
+def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:
+    """The note on finer steps, or on energy, if there is one."""
+    worst = modes.worst
+    if worst is not None and worst.amplified:
         return ()
     try:
         # No mode at a few states knows of contacts.
@@ -32,6 +44,27 @@ def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
         return (note,) if note else ()
     except NotKeptError:  # External blocks were called more often than is kept.
         return ()
+
+
+def _creeping(run: Examined) -> Iterator[str]:
+    """At most one note a mechanism; those with prescribed motions, which are signals here, are not looked at."""
+    resolved, layout, (t, q, v) = run.energies.resolved, run.layout, (x[-1] for x in run.states[:3])
+    for name, place in layout.q.items():
+        mechanism, at = resolved.pieces[name].block.mechanism(), layout.v[name].slice
+        record = resolved.wired.models.record(mechanism)
+        if record.driven or not record.friction_speeds:
+            continue
+        model, par = resolved.wired.models.dynamics(mechanism), layout.parameters_of(name, mechanism, run.energies.par)
+        state = (t, q[place.slice], v[at], np.zeros(model.nu))
+
+        def acceleration(at: slice = at) -> Array | None:
+            with suppress(NotKeptError):
+                return run.accelerations(np.array([len(run.states[0]) - 1]))[0, at]
+            return None
+
+        note = creep_at(model, state, par, acceleration, f"{name}.")
+        if note:
+            yield note
 
 
 def _is_loose(run: Examined) -> bool:

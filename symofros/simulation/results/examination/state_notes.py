@@ -24,10 +24,14 @@ def state_notes(model: Model, states: Sequence[Array], par: Array) -> tuple[str,
     return (*limits, *deep_contact_notes(model, states, par))
 
 
-def deep_contact_notes(model: Model, states: Sequence[Array], par: Array) -> tuple[str, ...]:
+def deep_contact_notes(model: Model, states: Sequence[Array], par: Array, of: str = "") -> tuple[str, ...]:
     """Note on the ball that was deepest in a surface, if its centre was beyond that (docs/theory/rigid.md, 10.2).
 
-    Arguments as of `state_notes`.
+    Args:
+        model: Model that moved.
+        states: Records as of `state_notes`.
+        par: Run-time parameters (npar).
+        of: What is said before the name of the contact.
     """
     names, (t, q, v, u) = model.record.contact_names, states
     if not names or not len(t) or not model.has("contact_forces"):
@@ -37,6 +41,6 @@ def deep_contact_notes(model: Model, states: Sequence[Array], par: Array) -> tup
         return ()
     i, k = np.unravel_index(np.nanargmax(share), share.shape)
     return (
-        f"contact '{names[k]}' is {share[i, k]:.3g} times its radius deep at t = {t[i]:.6g} s: beyond its centre a"
+        f"contact '{of}{names[k]}' is {share[i, k]:.3g} times its radius deep at t = {t[i]:.6g} s: beyond its centre a"
         " surface may push to the other side, or not at all; a larger stiffness, or a smaller dt",
     )
