@@ -11,6 +11,7 @@ from symofros.base.arrays import Array
 from symofros.base.options import Options
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.examined import Energies, Examined
+from symofros.diagrams.run.examination.postures import posture_notes
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
 from symofros.diagrams.run.python_blocks import Called, CalledBefore
@@ -37,7 +38,8 @@ def notes_on_steps(run: InterpretedRun, blocks: Blocks, course: Course, called: 
     seen = _Revisited(run, blocks, course, called)
     steps = seen.resolution(method)
     notes = [step_size_note(steps.worst, method, course.step)] if steps.worst else []
-    return [*notes, *remarks(seen.examined, steps)]
+    examined = seen.examined
+    return [*posture_notes(examined), *notes, *remarks(examined, steps)]
 
 
 class _Revisited:

@@ -75,15 +75,19 @@ def constraint_notes(examined: ExaminedRun, between: Between | None = None) -> l
     """
     if not examined.model.nc:
         return []
-    ranks = examined.ranks
+    ranks, par = examined.ranks, examined.stepper.par
     if 0 <= ranks.least < ranks.most:
         return [
             f"a singular posture was passed at t = {ranks.when:.6g} s: the constraints' rank fell from"
             f" {ranks.most} to {ranks.least}"
         ]
     motion = between or partial(_short_steps, examined)
-    close = nearest_to_singular(examined.model, examined.states, examined.stepper.par, ranks.most, motion)
-    if not close:
+    return near_singular_notes(nearest_to_singular(examined.model, examined.states, par, ranks.most, motion))
+
+
+def near_singular_notes(close: tuple[float, float] | None) -> list[str]:
+    """Note on what `nearest_to_singular` found, if that is anything."""
+    if close is None:
         return []
     when, share = close
     return [

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from tests.diagrams.parts import moving
-from tests.models import GUESSES, MODELS, compiled
+from tests.models import GUESSES, compiled
 from tests.simulation.mechanisms import slide
 from tests.simulation.oscillator import oscillator_system
 
@@ -119,6 +120,7 @@ EXECUTORS: dict[str, Callable[[Motion], sf.Outcome]] = {
     "compiled": lambda moved: drawn(moved, "run", STEP),
     "compiled, every tenth": lambda moved: drawn(moved, "run", 10 * STEP),
     "interpreted": lambda moved: drawn(moved, "interpret", STEP),
+    "interpreted, every tenth": lambda moved: drawn(moved, "interpret", 10 * STEP),
 }
 
 
