@@ -11,7 +11,7 @@ from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.energy_balance import energy_note
 from symofros.diagrams.run.examination.examined import Examined
 from symofros.diagrams.run.python_blocks import NotKeptError
-from symofros.simulation.results.examination.creep import creep_at
+from symofros.simulation.results.examination.creep import creep_note_at
 from symofros.simulation.results.examination.finer_steps import finer_steps_note
 from symofros.simulation.stepping.resolution import Resolution
 
@@ -62,7 +62,7 @@ def _creeping(run: Examined) -> Iterator[str]:
                 return run.accelerations(np.array([len(run.states[0]) - 1]))[0, at]
             return None
 
-        note = creep_at(model, state, par, acceleration, f"{name}.")
+        note = creep_note_at(model, state, par, acceleration, f"{name}.")
         if note:
             yield note
 

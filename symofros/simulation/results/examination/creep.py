@@ -32,10 +32,10 @@ def creep_note(run: ExaminedRun) -> str:
             found = stepper.accelerations(t, q, v)
         return None if found is None else found[0][0]
 
-    return creep_at(run.model, [x[0] for x in (t, q, v, u)], stepper.par, acceleration) if len(v) else ""
+    return creep_note_at(run.model, [x[0] for x in (t, q, v, u)], stepper.par, acceleration) if len(v) else ""
 
 
-def creep_at(
+def creep_note_at(
     model: Model, state: Sequence[Any], par: Array, acceleration: Callable[[], Array | None], of: str = ""
 ) -> str:
     """The joint that creeps under load at a state, in words; nothing where none does.

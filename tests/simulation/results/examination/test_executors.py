@@ -133,3 +133,11 @@ def test_every_executor_notes_what_a_single_run_notes(name: str, executor: str) 
     assert any(unseen) == (executor in ("events", "together")), notes
     said = [moved.said in note for note, left_out in zip(notes, unseen, strict=True) if not left_out]
     assert all(said) and (any(unseen) or bool(said) == bool(moved.said)), notes
+
+
+@pytest.mark.parametrize("executor", ["single", "last state", "each step", "by hand"])
+def test_ranks_that_were_met_are_said_with_their_numbers(executor: str) -> None:
+    """It begins in the singular posture. A diagram, which closes its start itself, begins another motion there."""
+    start = made("regular")._replace(q=[0.0] * 4, v=[1.0, -1.0, 1.0, 1.0], t_end=0.05)
+    (note,) = EXECUTORS[executor](start).notes
+    assert note == "a singular posture was passed at t = 0 s: the constraints' rank fell from 3 to 2"
