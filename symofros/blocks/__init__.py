@@ -41,6 +41,9 @@ from symofros.blocks.generic.signals import Pick as Pick
 from symofros.blocks.generic.signals import Product as Product
 from symofros.blocks.generic.signals import Reshape as Reshape
 from symofros.blocks.generic.signals import Sum as Sum
+from symofros.blocks.generic.state_machine import MachineState as MachineState
+from symofros.blocks.generic.state_machine import StateMachine as StateMachine
+from symofros.blocks.generic.state_machine import Transition as Transition
 from symofros.blocks.generic.switching import RateLimit as RateLimit
 from symofros.blocks.generic.switching import Relay as Relay
 from symofros.blocks.graphics.live_plot import LivePlot as LivePlot

@@ -57,7 +57,13 @@ def test_every_block_is_documented_with_its_ports(name: str) -> None:
         return
     ports = ports_seen().get(name)
     assert ports, f"docs/blocks.md has no example of '{name}'"
-    if name in ("Formula", "PythonBlock", "Sequence", "ModelFunction"):  # Whose ports users name, or a function.
+    if name in (
+        "Formula",
+        "PythonBlock",
+        "Sequence",
+        "ModelFunction",
+        "StateMachine",
+    ):  # Whose ports users name, or a function.
         return
     missing = {port for port in ports if f"`{port}`" not in section[1].replace("`wrench_FRAME`", "`wrench_tool`")}
     assert not missing, f"{name}: ports not named"

@@ -57,7 +57,22 @@ def plant() -> sf.Diagram:
     return diagram
 
 
-CASES: dict[str, Callable[[], sf.Diagram]] = {"rates": rates, "inside": inside, "plant": plant}
+def machine() -> sf.Diagram:
+    """A state machine, whose conditions are of an input and of the time in a state."""
+    diagram = sf.Diagram("machine")
+    states = {
+        "off": blocks.MachineState(during={"y": "0"}, exit={"count": "count + 1"}),
+        "on": blocks.MachineState(during={"y": "u[0]*elapsed"}, entry={"y": "u[1]"}),
+    }
+    ways = (blocks.Transition("off", "on", "u[0]"), blocks.Transition("on", "off", "elapsed - 0.003"))
+    outputs = {"y": 0.0, "count": 0.0}
+    diagram.add(blocks.StateMachine(name="m", period=1e-3, machine_states=states, transitions=ways, outputs=outputs))
+    diagram.add_inlet("u", "m.u", shape=(2,))
+    diagram.outlets = {"y": "m.y", "count": "m.count", "state": "m.state"}
+    return diagram
+
+
+CASES: dict[str, Callable[[], sf.Diagram]] = {"rates": rates, "inside": inside, "plant": plant, "machine": machine}
 
 
 def given(diagram: sf.Diagram) -> dict[str, np.ndarray]:

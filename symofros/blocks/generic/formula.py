@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -18,7 +18,7 @@ from symofros.diagrams.block import Block, Environment, EvaluationContext, Port,
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
-from symofros.expr import Expression, NoValueError, lower
+from symofros.expr import Edge, Expression, NoValueError, lower
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)
@@ -81,10 +81,7 @@ class Formula(Block):
         }
 
     def _read(self, name: str, text: object) -> Expression:
-        try:
-            return parse(str(text))
-        except ExpressionError as error:
-            raise DescriptionError(error.problem_of(f"block '{self.name}': formula of '{name:.40}'")) from None
+        return read_formula(self.name, name, text)
 
     def _expressions(self) -> list[Expression]:
         return [item for value in self._parsed.values() for item in (value if isinstance(value, list) else [value])]
@@ -92,44 +89,16 @@ class Formula(Block):
     @cached_property
     def _entries(self) -> dict[str, int | None]:
         """Input -> least size of its vector; None: a scalar."""
-        sizes: dict[str, int | None] = {}
-        for symbol in sorted(set().union(*(item.symbols() for item in self._expressions()))):
-            match = _ENTRY.match(symbol)
-            name = match["name"] if match else symbol
-            if name == "t" or name in dict(self.constants or {}):
-                continue
-            size = int(match["index"]) + 1 if match else None
-            if name in sizes and (size is None) != (sizes[name] is None):
-                raise refuse(
-                    self.name,
-                    f"input '{name:.40}' is a scalar and a vector",
-                    symbol,
-                    "an input is one of them",
-                    f"write {name}[0] for its first entry",
-                )
-            sizes[name] = size if size is None else max(size, sizes.get(name) or 0)
-        return sizes
+        return input_sizes(self.name, self._expressions(), {"t", *dict(self.constants or {})})
 
     def ports(self, environment: Environment) -> Ports:
         """An input for each name, an output for each formula."""
         units = dict(self.units or {})
-        inputs = []
-        for name, least in self._entries.items():
-            shape = environment.inputs.get(name) if least is not None else ()
-            if least is not None and shape is not None and (len(shape) != 1 or shape[0] < least):
-                raise refuse(
-                    self.name,
-                    f"input '{name}' has no entry {least - 1}",
-                    shape,
-                    "a vector that has the entries which formulas name",
-                    "correct the formula",
-                )
-            inputs.append(Port(name, shape, units.get(name, "")))
         outputs = (
             Port(name, (len(value),) if isinstance(value, list) else (), units.get(name, ""))
             for name, value in self._parsed.items()
         )
-        return Ports(tuple(inputs), tuple(outputs))
+        return Ports(input_ports(self.name, self._entries, environment, units), tuple(outputs))
 
     def parameters(self) -> dict[str, Array]:
         """The constants."""
@@ -137,12 +106,7 @@ class Formula(Block):
 
     def compute(self, context: EvaluationContext) -> Values:
         """The formulas, lowered into the graph."""
-        bindings = {"t": context.t.flat[0], **{name: value.flat[0] for name, value in context.parameters.items()}}
-        for name, value in context.inputs.items():
-            if value.shape:
-                bindings |= {f"{name}[{i}]": edge for i, edge in enumerate(value.flat)}
-            else:
-                bindings[name] = value.flat[0]
+        bindings = bindings_of(context)
         try:
             symbols = {
                 name: ([lower(item, context.g, bindings) for item in value], (len(value),))
@@ -246,3 +210,90 @@ class _Function(Running):
         """Call the user's `on_end`, if given."""
         if self._block.on_end:
             self._block.on_end()
+
+
+def read_formula(block: str, name: str, text: object) -> Expression:
+    """A formula of a block, read by the parser of model files.
+
+    Args:
+        block: Name of the block.
+        name: What the formula is of.
+        text: The formula.
+
+    Raises:
+        DescriptionError: It is none.
+    """
+    try:
+        return parse(str(text))
+    except ExpressionError as error:
+        raise DescriptionError(error.problem_of(f"block '{block}': formula of '{name:.40}'")) from None
+
+
+def input_sizes(block: str, formulas: Iterable[Expression], known: Set[str]) -> dict[str, int | None]:
+    """Input that formulas name -> least size of its vector; None: a scalar.
+
+    Args:
+        block: Name of the block.
+        formulas: Its formulas.
+        known: Names in them that are no inputs.
+
+    Raises:
+        DescriptionError: An input is a scalar here and a vector there.
+    """
+    sizes: dict[str, int | None] = {}
+    for symbol in sorted(set().union(*(item.symbols() for item in formulas))):
+        match = _ENTRY.match(symbol)
+        name = match["name"] if match else symbol
+        if name in known:
+            continue
+        size = int(match["index"]) + 1 if match else None
+        if name in sizes and (size is None) != (sizes[name] is None):
+            raise refuse(
+                block,
+                f"input '{name:.40}' is a scalar and a vector",
+                symbol,
+                "an input is one of them",
+                f"write {name}[0] for its first entry",
+            )
+        sizes[name] = size if size is None else max(size, sizes.get(name) or 0)
+    return sizes
+
+
+def input_ports(
+    block: str, sizes: Mapping[str, int | None], environment: Environment, units: Mapping[str, str]
+) -> tuple[Port, ...]:
+    """A port for each input that formulas name.
+
+    Args:
+        block: Name of the block.
+        sizes: Input -> least size, of `input_sizes`.
+        environment: Shapes of what is connected.
+        units: Input -> unit.
+
+    Raises:
+        DescriptionError: What is connected has not the entries that formulas name.
+    """
+    inputs = []
+    for name, least in sizes.items():
+        shape = environment.inputs.get(name) if least is not None else ()
+        if least is not None and shape is not None and (len(shape) != 1 or shape[0] < least):
+            raise refuse(
+                block,
+                f"input '{name}' has no entry {least - 1}",
+                shape,
+                "a vector that has the entries which formulas name",
+                "correct the formula",
+            )
+        inputs.append(Port(name, shape, units.get(name, "")))
+    return tuple(inputs)
+
+
+def bindings_of(context: EvaluationContext) -> dict[str, Edge]:
+    """Names in formulas -> their values: the time t, parameters, scalar inputs, entries of vectors."""
+    bindings = {"t": context.t.flat[0], **{name: value.flat[0] for name, value in context.parameters.items()}}
+    for name, value in context.inputs.items():
+        if value.shape:
+            bindings |= {f"{name}[{i}]": edge for i, edge in enumerate(value.flat)}
+        else:
+            bindings[name] = value.flat[0]
+    return bindings

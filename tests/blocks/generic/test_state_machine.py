@@ -1,0 +1,119 @@
+"""The state machine: transitions, time in states, actions; against a machine of dictionaries."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import MachineState, StateMachine, Transition
+from tests.blocks.support import STEP, run
+
+STATES = {
+    "idle": MachineState(during={"y": "0"}, exit={"count": "count + 1", "z": "10*elapsed"}),
+    "push": MachineState(during={"y": "k*u"}, entry={"y": "-1", "count": "count + 0.5"}),
+    "wait": MachineState(during={"z": "elapsed"}),
+}
+WAYS = (
+    Transition("idle", "push", "u - 1"),
+    Transition("push", "wait", "u - 3"),
+    Transition("push", "idle", "0.5 - u"),
+    Transition("wait", "wait", "x[1] - 1"),
+    Transition("wait", "idle", "elapsed - 0.03"),
+)
+
+
+def machine(**changes: Any) -> StateMachine:
+    """The machine of the tests."""
+    stated = {"machine_states": STATES, "transitions": WAYS, "outputs": {"y": 7.0, "z": 8.0, "count": 0.0}}
+    return StateMachine(**{"name": "m", "period": STEP, "constants": {"k": 2.0}, **stated, **changes})
+
+
+def by_hand(u: np.ndarray, x: np.ndarray) -> dict[str, list[float]]:
+    """What the machine does, by rules written once more."""
+    names, state, entered = list(STATES), "", 0
+    values = {"y": 7.0, "z": 8.0, "count": 0.0}
+    found: dict[str, list[float]] = {name: [] for name in ("state", *values)}
+    for k in range(len(u)):
+        known = {"u": u[k], "x": x[k], "k": 2.0, **values}
+
+        def value(formula: str | float, since: int, k: int = k, known: dict[str, Any] = known) -> float:
+            return float(eval(str(formula), {}, {**known, "elapsed": (k - since) * STEP}))  # noqa: S307
+
+        ways = [w for w in WAYS if w.leave == state and value(w.when, entered) >= -1e-9]
+        went = state == "" or bool(ways)
+        if ways:
+            values |= {name: value(formula, entered) for name, formula in STATES[state].exit.items()}
+        if went:
+            state, entered = ways[0].enter if ways else "idle", k
+        values |= {name: value(formula, entered) for name, formula in STATES[state].during.items()}
+        if went:
+            values |= {name: value(formula, entered) for name, formula in STATES[state].entry.items()}
+        for name, item in values.items():
+            found[name].append(item)
+        found["state"].append(names.index(state))
+    return found
+
+
+def test_a_machine_is_that_of_its_rules() -> None:
+    """Random inputs visit all states, by all transitions; the run in C and the interpreted one agree, too."""
+    rng = np.random.default_rng(4)
+    u, x = rng.uniform(-1.0, 4.0, 200), rng.uniform(0.0, 1.2, (200, 2))
+    wanted = by_hand(u, x)
+    assert set(wanted["state"]) == {0, 1, 2}
+    found = run(machine(), {"u": u, "x": x})
+    for name, values in wanted.items():
+        np.testing.assert_allclose(found[name], values, atol=1e-12, err_msg=name)
+
+
+def test_time_in_a_state_is_counted_without_drift() -> None:
+    """19 samples of 0.009 s are 0.171 s, though their product rounds below."""
+    assert 19 * 0.009 < 0.171
+    states = {"a": MachineState(), "b": MachineState()}
+    ways = (Transition("a", "b", "elapsed - 0.171"), Transition("b", "a", "elapsed - 0.171"))
+    block = StateMachine(name="m", period=0.009, machine_states=states, transitions=ways)
+    found = run(block, t_end=0.531, dt=0.009)["state"]
+    assert np.flatnonzero(np.diff(found)).tolist() == [18, 37, 56]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"machine_states": {}}, "1 to 64"),
+        ({"period": None}, "no sample time"),
+        ({"transitions": WAYS[:1]}, "state 'wait' is never entered"),
+        ({"transitions": (*WAYS, Transition("idle", "pushh", "u"))}, "did you mean 'push'"),
+        ({"first": "none"}, "no state 'none'"),
+        ({"outputs": {"y": 0.0, "z": 0.0}}, "no output 'count'"),
+        ({"outputs": {"y": 0.0, "z": 0.0, "count": 0.0, "t": 0.0}}, "name 't' is taken"),
+        ({"outputs": {"y": math.nan, "z": 0.0, "count": 0.0}}, "not finite"),
+        ({"transitions": (*WAYS, Transition("idle", "push", "u -"))}, "formula of 'idle to push'"),
+        ({"units": {"w": "m"}}, "no input or output 'w'"),
+    ],
+)
+def test_bad_machines_are_refused(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=words):
+        machine(**changes)
+
+
+def test_a_condition_on_what_is_not_there_is_refused() -> None:
+    diagram = sf.Diagram("d")
+    diagram.add(machine(transitions=(*WAYS, Transition("idle", "push", "lever"))))
+    with pytest.raises(sf.DescriptionError, match=r"input 'm\.lever' is not connected"):
+        sf.Simulation(diagram)
+
+
+def test_a_machine_in_a_file_is_the_one_in_python(tmp_path: Path) -> None:
+    diagram = sf.Diagram("d")
+    diagram.add(sf.blocks.Sine(name="u", frequency=1.0, amplitude=4.0))
+    diagram.add(sf.blocks.Constant(name="x", value=[0.0, 1.0]))
+    diagram.add(machine(), u="u.y", x="x.y")
+    sf.save_diagram(diagram, tmp_path / "d.yaml")
+    found = sf.load_diagram(tmp_path / "d.yaml")
+    again, first = (sf.Simulation(d).run(1.0, dt=STEP)["m.y"] for d in (found, diagram))
+    assert found.blocks["m"] == diagram.blocks["m"]
+    assert again.tolist() == first.tolist()
