@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros import blocks
 
 _LUGRE = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05, viscous=0.3)
@@ -145,3 +146,48 @@ def test_idle_coordinates_are_not_stated() -> None:
     diagram.models["m"] = replace(diagram.models["m"], start={"x.bristle.integral": 1.0})
     with pytest.raises(sf.DescriptionError, match="no coordinate or speed 'x.bristle.integral'"):
         sf.Simulation(diagram)
+
+
+def test_a_loop_has_them_beside_its_constraints() -> None:
+    """Closed from a start that states a bend: q and v are moved onto the constraints, z is not."""
+    four_bar = MODELS["four_bar"]
+    first, *others = four_bar.bodies
+    assert isinstance(first, sf.RigidBody) and first.joint is not None
+    rubbing = replace(first, joint=replace(first.joint, elements=(_LUGRE,)))
+    system_ = replace(four_bar, bodies=(rubbing, *others))
+    model = sf.compile(system_)
+    state = f"{model.names.v[0]}.bristle"
+    begin = sf.assemble(model, [0.7, 0.1, -0.9], np.full(model.nv, 0.5))
+    stated = dict(zip(model.names.q, map(float, begin.q), strict=True))
+    stated |= {f"d{name}": float(x) for name, x in zip(model.names.v, begin.v, strict=True)}
+    diagram = sf.Diagram("loop")
+    diagram.add_model("m", system_, {**stated, state: 2e-4})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="m"))
+    settings: dict[str, Any] = {"dt": 1e-3, "record": 0.02}
+    run = sf.Simulation(diagram).run(0.2, realtime=False, **settings)
+    plain = sf.simulate(model, begin.q, begin.v, 0.2, z0=[2e-4], **settings)
+    for port, expected in (("q", plain.q), ("v", plain.v), ("z", plain.z)):
+        same(run[f"plant.{port}"][-1], expected[-1])
+    interpreted = sf.Simulation(diagram).interpret(0.02, **settings)
+    same(interpreted["plant.z"][-1], run["plant.z"][1])
+
+
+def test_events_know_them() -> None:
+    """A formula names a state, an action sets one; friction by a factor of a state, which is told, too."""
+    warm = sf.Friction(1.0, viscous=0.1, factor="exp(-T)")
+    rate: Any = "dx*dx - 0.2*T"
+    mechanism = slide(_LUGRE, warm, states=(sf.ForceState("T", rate),))
+    events = {"hot": sf.Event("T - 0.02", "rising", action={"T": -0.01})}
+    diagram = sf.Diagram("warm")
+    diagram.add_model("m", mechanism, {"dx": 1.0, "T": 0.005})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="m", events=events))
+    settings: dict[str, Any] = {"dt": 1e-3, "record": 0.1}
+    run, model = sf.Simulation(diagram).run(0.1, realtime=False, **settings), sf.compile(mechanism)
+    plain = sf.simulate(model, [0.0], [1.0], 0.1, z0={"T": 0.005}, events=events, **settings)
+    assert len(plain.events) == len(run.events["plant"]) > 1
+    for port, expected in (("q", plain.q), ("v", plain.v), ("z", plain.z)):
+        same(run[f"plant.{port}"][-1], expected[-1])
+    v, z = plain.v[-1], plain.z[-1]
+    alone = sf.compile(slide(_LUGRE, states=(sf.ForceState("T", rate),)))
+    drag = model.generalized_force([0.0], v, [0.0], z=z) - alone.generalized_force([0.0], v, [0.0], z=z)
+    assert run["plant.friction"][-1] == pytest.approx(drag, rel=1e-9)
