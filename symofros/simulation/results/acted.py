@@ -43,12 +43,11 @@ def notes_of(run: Stepper, met: Met) -> tuple[str, ...]:
     """Remarks on what an action did: a gap that was closed beyond rounding, a contact that came to rest."""
     if met.done is None or met.done.status <= 0:
         return ()
-    notes = engaging_notes(met.t, met.done.gap)
-    if met.done.rests:
-        event = run.events[met.which]
-        within = f", where strikes would follow within {run.accumulation:.3g} s" if event.restitution else ""
-        notes += (f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}",)
-    return notes
+    event, closed = run.events[met.which], engaging_notes(met.t, met.done.gap)
+    if not met.done.rests:
+        return closed
+    within = f", where strikes would follow within {run.accumulation:.3g} s" if event.restitution else ""
+    return (*closed, f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}")
 
 
 def failure_of(run: BoundRun, met: Met) -> Outcome | None:

@@ -138,6 +138,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a coordinate, a speed or an effort leaves the limits of its joint, which are data and stop nothing",
         "stops as forces, bounded inputs, or another motion",
     ),
+    "contact rests": NoteKind(
+        "event '…': the contact persists from t = … s on…",
+        "a contact that rests has come to rest, after strikes that accumulate or one without rebound",
+        "nothing, or `restitution` and the length of the run, of which the threshold is a share",
+    ),
     "contact too deep": NoteKind(
         "contact '…' is … times its radius deep at t = … s: …",
         "the centre of a ball came to lie within the solid that should push it back",
