@@ -8,6 +8,7 @@ import fmpy
 import pytest
 
 import symofros as sf
+from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.fmi.test_fmu import quickly
 
@@ -24,3 +25,17 @@ def test_a_ball_bounces_in_co_simulation(tmp_path: Path, version: int) -> None:
     run = sf.simulate(sf.compile(BALL), [0.8], t_end=0.9, events=events, dt=1e-3)
     assert len(run.events) >= 3 and done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-9)
     assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-8)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_ball_rests_and_is_lifted_in_co_simulation(tmp_path: Path, version: int) -> None:
+    """As in sf.simulate, which has the same threshold here."""
+    stated = CASES["rest"]
+    with quickly():
+        sf.export(stated.system, f"fmu{version}", tmp_path, events=stated.events, start=stated.start)  # type: ignore[arg-type]
+    unit = str(tmp_path / "resting.fmu")
+    done = fmpy.simulate_fmu(unit, stop_time=1.0, output_interval=0.01, output=["q.z", "v.z"])
+    run = sf.simulate(sf.compile(stated.system), [0.05], t_end=1.0, events=stated.events, dt=1e-3)
+    assert run.events[-1].name == "strike opens" and abs(done["q.z"][50]) < 1e-12
+    assert done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-11)
+    assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-11)
