@@ -104,6 +104,7 @@ def test_what_is_refused() -> None:
         return sf.simulate(ball(), [z], t_end=2.0, events=floor(rests=rests), dt=1e-2, **given).outcome
 
     assert outcome(-1e-3).kind == "input failed" and "penetrated" in outcome(-1e-3).reason
+    assert outcome(-1e-6).kind == "input failed" and outcome(-1e-12).kind == "finished", "rounding is no penetration"
     drawn = outcome(0.0, u={"z": 10.0}, par={"down": 1})
     assert drawn.kind == "input failed" and "force draws" in drawn.reason
     assert "`rests` does not press" in outcome(0.5, "-lam.floor").reason
