@@ -347,6 +347,11 @@ def _of_turns() -> dict[str, Function]:
         "rotation_angle": ("angle of R^T Q (1)", turns.angle),
         "rotation_logarithm": ("rotation vector of R (3)", turns.logarithm),
         "rotation_exponential": ("rows of the rotation by the vector v (9)", turns.exponential),
+        "rotation_exponential_of_turns": ("rows of the rotation by the vector 16 v (9)", turns.exponential_of_turns),
+        "rotation_half_turn": (
+            "rows of the half turn about u = v + (4, -8, 8), once its matrix is a quaternion (9)",
+            turns.half_turn,
+        ),
         "rotation_vector_rates": ("A^-1 at r = tau, in the turned axes (3, 3)", turns.vector_rates),
         "rotation_vector_speeds": ("A at r = tau, in the turned axes (3, 3)", turns.vector_speeds),
         "rotation_vector_rates_fixed": ("A^-1 at r = v, along the axes before (3, 3)", turns.vector_rates_fixed),
@@ -372,6 +377,9 @@ FUNCTIONS["solid_inertia"] = Function(
     "mass, mass centre, moments about it xx, yy, zz, xy, xz, yz of the only link (10)",
     derived.solid_inertia,
     ("solids",),
+)
+FUNCTIONS["solid_mass"] = Function(
+    "mass of the only link (1)", lambda t, s: derived.solid_inertia(t, s)[:1], ("solids",)
 )
 FUNCTIONS["flexible_relation"] = Function(
     "1 + what forces or steps of a flexible body change with the frame it stands in, as part of them (n)",

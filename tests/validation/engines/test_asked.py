@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from validation.engines.interface import Slot, Tree
 from validation.engines.matrix import cells
@@ -100,6 +101,31 @@ def test_a_solid_stands_where_its_joint_puts_it() -> None:
     across = mass * (0.25 / 4.0 + 4.0 / 12.0)
     np.testing.assert_allclose(moments, [mass * 0.125, across, across], rtol=1e-14)
     assert abs(xy) > 0.05
+
+
+def test_turns_beyond_one_and_half_turns_are_of_the_matrix_exponential() -> None:
+    t, s = _truth()
+    with many_digits():
+        v, u = (np.array([float(one) for one in row]) for row in (s.v, s.v + exact([4.0, -8.0, 8.0])))
+        beyond, half = digits(turns.exponential_of_turns(t, s)), digits(turns.half_turn(t, s))
+    for r, found in ((16.0 * v, beyond), (math.pi * u / np.linalg.norm(u), half)):
+        K = np.array([[0.0, -r[2], r[1]], [r[2], 0.0, -r[0]], [-r[1], r[0], 0.0]])
+        np.testing.assert_allclose(found.reshape(3, 3), expm(K), atol=1e-13)
+    assert np.linalg.norm(16.0 * v) > 2.0 * math.pi
+
+
+def test_a_capsule_is_a_solid_of_revolution() -> None:
+    """Discs of the radius that each height has, summed by Gauss's rule on each piece, where they are polynomials."""
+    (body,) = single.trees()["primitive capsule of a density"].links
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    mass = along = across = 0.0
+    for low, high, middle, curved in ((-1.0, 1.0, 0.0, 0.0), (1.0, 2.0, 1.0, 1.0), (-2.0, -1.0, -1.0, 1.0)):
+        z, disc = (high - low) / 2.0 * nodes + (high + low) / 2.0, 2.0 * math.pi * (high - low) / 2.0 * weights
+        r = 1.0 - curved * (z - middle) ** 2
+        mass, along = mass + float(disc @ r), along + float(disc @ r**2) / 2.0
+        across += float(disc @ (r**2 / 4.0 + r * z**2))
+    assert body.mass == pytest.approx(mass, rel=1e-14)
+    np.testing.assert_allclose(np.diag(body.inertia), [across, across, along], rtol=1e-14)
 
 
 def test_a_mesh_has_the_inertia_of_the_box_that_it_is() -> None:

@@ -32,6 +32,16 @@ def _cylinder(name: str, radius: float, length: float, density: float, **joint: 
     return _solid(name, volume, (across, across, radius**2 / 2.0), density, **joint)
 
 
+def _capsule(name: str, radius: float, length: float, density: float, **joint: Any) -> Tree:
+    """A cylinder between two halves of a ball, whose mass centres are 3/8 of the radius from its ends."""
+    cylinder, ball = math.pi * radius**2 * length, 4.0 / 3.0 * math.pi * radius**3
+    volume = cylinder + ball
+    across = cylinder * (radius**2 / 4.0 + length**2 / 12.0)
+    across += ball * (0.4 * radius**2 + length**2 / 4.0 + 0.375 * radius * length)
+    along = cylinder * radius**2 / 2.0 + ball * 0.4 * radius**2
+    return _solid(name, volume, (across / volume, across / volume, along / volume), density, **joint)
+
+
 def _ball(name: str, radius: float, density: float, **joint: Any) -> Tree:
     moment = 0.4 * radius**2
     return _solid(name, 4.0 / 3.0 * math.pi * radius**3, (moment, moment, moment), density, **joint)
@@ -54,5 +64,7 @@ def trees() -> dict[str, Tree]:
         _ball("primitive ball of a density", 0.5, 2.0, p=aside),
         _cylinder("primitive cylinder", 0.5, 2.0, 1.0, R=TURNED, p=aside),
         _cylinder("primitive cylinder of a density", 0.5, 2.0, 2.0, R=TURNED, p=aside),
+        _capsule("primitive capsule", 1.0, 2.0, 1.0, R=TURNED, p=aside),
+        _capsule("primitive capsule of a density", 1.0, 2.0, 2.0, R=TURNED, p=aside),
     )
     return {tree.name: tree for tree in made}

@@ -6,6 +6,7 @@ from ..interface import Convention, Slot, Tree, Unsupported
 from .writing.source import Source, SourcePlugin, Way
 
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"
+_HALF = "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
 WAYS = {
     "rotation_matrix": Way("q2r", "value = sm.q2r(q).ravel()"),
     "rotation_composed": Way("qqmul", "value = sm.q2r(sm.qqmul(q, q2)).ravel()"),
@@ -16,6 +17,8 @@ WAYS = {
     "rotation_exponential:angvec2r": Way(
         "angvec2r", "angle = np.linalg.norm(v)\nvalue = (sm.angvec2r(angle, v) if angle else np.eye(3)).ravel()"
     ),
+    "rotation_exponential_of_turns": Way("trexp", "value = sm.trexp(16 * v).ravel()"),
+    "rotation_half_turn": Way("r2q", f"{_HALF}value = sm.q2r(sm.r2q(H)).ravel()"),
     "rotation_vector_rates_fixed": Way("rotvelxform", "value = sm.rotvelxform(v, inverse=True, representation='exp')"),
     "rotation_vector_rates_fixed:exp2jac": Way("exp2jac", "value = np.linalg.inv(sm.exp2jac(v))"),
     "rotation_vector_rates_rate": Way(

@@ -18,6 +18,7 @@ _SOLIDS = {
     "primitive box by its corners, the other way round": "trimesh.primitives.Box(bounds=[{high}, {low}])",
     "primitive ball": "trimesh.primitives.Sphere(radius={radius}, center={middle})",
     "primitive cylinder": "trimesh.primitives.Cylinder(radius={radius}, height={length}, transform={pose})",
+    "primitive capsule": "trimesh.primitives.Capsule(radius={radius}, height={length}, transform={pose})",
 }
 _OF_A_DENSITY = " of a density"
 _TRIANGLES = (
@@ -37,6 +38,7 @@ WAYS = {
         "I -= m * (c @ c * np.eye(3) - np.outer(c, c))\n"
         "value = [m, *c, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
     ),
+    "solid_mass": Way("volume", "value = [density * solid.volume]"),
     # Of a ball and a cylinder these are formulas; all else is of the triangles that stand for them.
     "solid_inertia:primitive": Way(
         "primitives: volume, moment_inertia",
@@ -56,6 +58,10 @@ def _sizes(name: str, body: Link) -> dict[str, Array]:
     if "ball" in name:
         radius = np.sqrt(2.5 * moments[0])
         return {"radius": radius, "volume": 4.0 / 3.0 * np.pi * radius**3}
+    if "capsule" in name:
+        # Between its ends it is as long as it is wide: of the moment about its axis, 23/50 of the radius squared.
+        radius = np.sqrt(moments[2] / 0.46)
+        return {"radius": radius, "length": 2.0 * radius, "volume": 10.0 / 3.0 * np.pi * radius**3}
     if "cylinder" in name:
         radius = np.sqrt(2.0 * moments[2])
         length = np.sqrt(12.0 * moments[0] - 3.0 * radius**2)
@@ -84,7 +90,9 @@ def write(tree: Tree) -> Source | Unsupported:
         f"density = {round(density, 12)!r}",
         f"solid = {solid}",
     )
-    lacks = ("solid_inertia", "solid_inertia:volume") if is_round else ("solid_inertia:primitive",)
+    lacks: tuple[str, ...] = ("solid_inertia", "solid_inertia:volume") if is_round else ("solid_inertia:primitive",)
+    if "capsule" in name:  # Its moments are those of facets; its volume is a formula.
+        lacks += ("solid_inertia:primitive",)
     return Source((*lines, "solid.density = density"), ((),), 0, 0, lacks=lacks)
 
 

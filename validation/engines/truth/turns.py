@@ -55,6 +55,17 @@ def exponential(t: Truth, s: Point) -> Exact:
     return _exponential(s.v).reshape(9)
 
 
+def exponential_of_turns(t: Truth, s: Point) -> Exact:
+    """Rows of the rotation by 16 v, which mostly is more than a turn (9)."""
+    return _exponential(16 * s.v).reshape(9)
+
+
+def half_turn(t: Truth, s: Point) -> Exact:
+    """Rows of the half turn about u = v + (4, -8, 8): 2 u u^T / u^2 - 1 (9)."""
+    u = s.v + exact([4.0, -8.0, 8.0])
+    return (2 * np.outer(u, u) / (u @ u) - eye(3)).reshape(9)
+
+
 def _exponential(r: Exact) -> Exact:
     length = root(r @ r)
     return rotation(r / length, *cos_sin(length)) if length else eye(3)

@@ -232,6 +232,14 @@ WAYS |= {
         "value = ut.RotationMatrix2RotationVector(ut.EulerParameters2RotationMatrix(q))",
     ),
     "rotation_exponential": Way("RotationVector2RotationMatrix", "value = ut.RotationVector2RotationMatrix(v).ravel()"),
+    "rotation_exponential_of_turns": Way(
+        "RotationVector2RotationMatrix", "value = ut.RotationVector2RotationMatrix(16 * v).ravel()"
+    ),
+    "rotation_half_turn": Way(
+        "RotationMatrix2EulerParameters",
+        "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
+        "value = ut.EulerParameters2RotationMatrix(ut.RotationMatrix2EulerParameters(H)).ravel()",
+    ),
 }
 
 
