@@ -132,12 +132,15 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean final) {
     fmu *f = c;
+    fmi2Status status;
     int found;
     (void)final;
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
     found = fmi_step(f, t, h);
     if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi2Warning, f->message);
-    return outcome(f, found);
+    status = outcome(f, found);
+    f->discarded = status == fmi2Discard;
+    return status;
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
@@ -173,7 +176,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
     fmu *f = c;
     ALLOWED(f->cosim && kind == fmi2Terminated);
     NEEDED(value);
-    *value = fmi2False;
+    *value = f->discarded ? fmi2True : fmi2False; /* the motion ends there, so that no other step helps */
     return fmi2OK;
 }
 

@@ -16,6 +16,7 @@ typedef struct fmu {
     sym_instance *instance;
     fmu_phase phase;
     int cosim, has_stop;
+    int discarded; /* whether the last step was, as the motion ends within it */
     int rates_valid, parameters_valid; /* whether `rates` are of the present state, and `pre` of the present parameters */
     double stop;
     double *rates, *rate_derivatives; /* (nq + nv) */

@@ -10,7 +10,7 @@ typedef struct fmu {
     sym_program_instance *instance; /* at the beginning of its memory */
     size_t size;
     fmu_phase phase;
-    int cosim, has_stop, rates_valid;
+    int cosim, has_stop, discarded, rates_valid; /* discarded: whether the last step was */
     int parameters_valid, outputs_valid; /* whether the program, and its signals, are of what was set last */
     double stop, *rates;
     void *environment, *logger;

@@ -10,6 +10,7 @@ import pytest
 import symofros as sf
 from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
+from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import quickly
 
 
@@ -39,3 +40,17 @@ def test_a_ball_rests_and_is_lifted_in_co_simulation(tmp_path: Path, version: in
     assert run.events[-1].name == "strike opens" and abs(done["q.z"][50]) < 1e-12
     assert done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-11)
     assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-11)
+
+
+def test_importers_are_told_that_a_motion_has_ended(tmp_path: Path) -> None:
+    """Who repeats a step that is discarded asks whether that makes sense: a start below the floor never moves on."""
+    stated = CASES["rest"]
+    with quickly():
+        sf.export(stated.system, "fmu2", tmp_path, events=stated.events, start=stated.start)
+    unit = str(tmp_path / "resting.fmu")
+    with heard() as (logger, log):
+        done = fmpy.simulate_fmu(
+            unit, stop_time=1.0, output_interval=0.01, start_values={"q.z": -0.1}, output=["q.z"], logger=logger
+        )
+    assert done["time"][-1] == 0.0 and len(log) < 20
+    assert "a contact that rests is penetrated" in "".join(log)
