@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from symofros.base.arguments import CheckedCalls
 from symofros.base.arrays import Array
 from symofros.blocks.checks import known_name, numbers, refuse
 from symofros.blocks.generic.formula import bindings_of, input_ports, input_sizes, read_formula
@@ -25,7 +26,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class MachineState:
+class MachineState(metaclass=CheckedCalls):
     """A state of a machine: what outputs are there; those that it does not assign keep their values.
 
     Attributes:
@@ -40,7 +41,7 @@ class MachineState:
 
 
 @dataclass(frozen=True)
-class Transition:
+class Transition(metaclass=CheckedCalls):
     """A way from a state to another, or to itself, which enters it anew.
 
     Attributes:
