@@ -81,10 +81,9 @@ class PostureSolver:
         self.wanted = wanted.reshape(-1, POSE)
         self.native.sym_posture_start(self.posture, self.memory.zeros(self.native.sym_posture_size(self.posture)))
         self.rows, self.wishes = int(self.posture.m), int(self.posture.wishes)
-        self._draws, self._turning = (
-            0,
-            tuple(segment.v + segment.translations for segment in carried.record.segments if segment.kind != "linear"),
-        )
+        self._draws = 0
+        turning = (segment for segment in carried.record.segments if segment.kind != "linear")
+        self._turning = tuple(segment.v + segment.translations for segment in turning)
         self.kept = self.memory.view(self.posture.kept, KEPT * carried.nq).reshape(KEPT, -1)
         self.round = self.memory.view(self.posture.round, ROUND * carried.nq).reshape(ROUND, -1)
         self.round_met = self.memory.view(self.posture.round_met, ROUND)
