@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from symofros.description.beams.sections.section import Material, Section
+from symofros.description.beams.sections.material import Material
+from symofros.description.beams.sections.section import Section
 from symofros.description.beams.sections.shear import (
     ODD_FIFTHS,
     Kind,

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from symofros.description.beams.sections.section import Material, Section, number_of
+from symofros.description.beams.sections.material import Material
+from symofros.description.beams.sections.section import Section, number_of
 from symofros.errors import DescriptionError, Problem
 
 Point = tuple[float, float]

@@ -11,40 +11,24 @@ import numpy.typing as npt
 
 from symofros.description.beams.beam import SECTION
 from symofros.description.beams.elastic import CENTERS, ELASTIC, PRODUCTS, STRAIN_STIFFNESSES, Theory
-from symofros.description.beams.sections.shear import ShearShape, is_inside, unit_stresses
+from symofros.description.beams.sections.matrices import (
+    CHECK,
+    OF_SECTION,
+    difference,
+    matrices_about_x,
+    properties_of_mass,
+    properties_of_stiffness,
+)
+from symofros.description.beams.sections.shear import ShearShape
 from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, as_values, symbols
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import evaluate
 
 # Relative to the section's size, what counts as on the axis: meshes of symmetric outlines are not symmetric, and their
 # shear centres err by some 1e-5; bending twists a beam by as much.
 _ON_AXIS = 1e-4
-# What counts as a matrix of a section's form, relative to its diagonal: programs write six or seven digits.
-_OF_SECTION = 1e-6
-_CHECK = "check the order of the axes (axis='x' or 'z'), and the units"
-
-
-@refuses_unknown_entries
-@dataclass(frozen=True)
-class Material:
-    """An isotropic elastic material.
-
-    Attributes:
-        E: Young's modulus [N/m^2].
-        G: Shear modulus [N/m^2].
-        rho: Density [kg/m^3].
-    """
-
-    E: Value
-    G: Value
-    rho: Value
-
-    def __post_init__(self) -> None:
-        """Convert the numbers."""
-        for item in fields(self):
-            object.__setattr__(self, item.name, as_value(getattr(self, item.name), f"material: {item.name}"))
 
 
 @refuses_unknown_entries
@@ -126,48 +110,14 @@ class Section:
         Raises:
             DescriptionError: A matrix is of another shape, or is none of a section.
         """
-        orders = {"x": [0, 1, 2, 3, 4, 5], "z": [2, 0, 1, 5, 3, 4]}
-        if axis not in orders:
-            rule, remedy = "the axis along the beam is x (VABS) or z (BeamDyn)", did_you_mean(str(axis), orders)
-            raise DescriptionError(Problem("section: no such axis", repr(axis), rule, remedy))
-        order = orders[axis]
-        K, M = (_matrix(stated, label)[np.ix_(order, order)] for stated, label in ((stiffness, "K"), (mass, "M")))
-        if not np.linalg.eigvalsh(K)[0] > 0.0:
-            rule, found = "every strain takes energy", f"its least eigenvalue is {np.linalg.eigvalsh(K)[0]:.3g}"
-            raise DescriptionError(Problem("section: stiffness is not positive definite", found, rule, _CHECK))
-        flexibility = np.linalg.inv(K[:3, :3])
-        to_centers = flexibility @ K[:3, 3:]
-        bending = K[3:, 3:] - K[3:, :3] @ to_centers
-        m = M[0, 0]
-        if not m > 0.0:
-            rule = "a section has mass"
-            raise DescriptionError(Problem("section: M has no mass", f"its first entry is {m:g}", rule, _CHECK))
-        y, z = -M[0, 5] / m, M[0, 4] / m
-        I_y, I_z, I_yz = M[4, 4] - m * z * z, M[5, 5] - m * y * y, -M[4, 5] - m * y * z
-        EA, GA_y, GA_z = (1.0 / np.diag(flexibility)).tolist()
-        GJ, EI_y, EI_z = np.diag(bending).tolist()
-        section = Section(
-            EA=EA,
-            GA_y=GA_y,
-            GA_z=GA_z,
-            GJ=GJ,
-            EI_y=EI_y,
-            EI_z=EI_z,
-            EI_yz=-float(bending[1, 2]),
-            tension_center=(-float(to_centers[0, 2]), float(to_centers[0, 1])),
-            shear_center=(float(to_centers[2, 0]), -float(to_centers[1, 0])),
-            rhoA=float(m),
-            rhoI_y=float(I_y),
-            rhoI_z=float(I_z),
-            rhoI_yz=float(I_yz),
-            mass_center=(float(y), float(z)),
-        )
-        unlike = _difference(M, section.mass_matrix())
-        if not unlike <= _OF_SECTION:
+        K, M = matrices_about_x(stiffness, mass, axis)
+        section = Section(**properties_of_stiffness(K), **properties_of_mass(M))
+        unlike = difference(M, section.mass_matrix())
+        if not unlike <= OF_SECTION:
             rule = "matter in one plane: m, m, m, and moments about x that are the sum of those about y and z"
             found = f"of a section's with the same m, centre and moments it is off by {unlike:.2g}"
-            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, _CHECK))
-        if _difference(K, section.stiffness_matrix()) > _OF_SECTION:
+            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, CHECK))
+        if difference(K, section.stiffness_matrix()) > OF_SECTION:
             section = replace(section, stiffness=tuple(map(tuple, K.tolist())))
         return section
 
@@ -381,30 +331,13 @@ class Section:
                 )
             )
         values = values or {}
-        a, b = (number_of(size, "shape", values) for size in self.shape.sizes)
-        c, s = float(np.cos(self.shape.angle)), float(np.sin(self.shape.angle))
-        R = np.array([[c, -s], [s, c]])  # From the section's axes to those of the shape.
-        stated = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        y, z = R @ (stated - self._point("tension_center", values)).T
-        outside = ~is_inside(self.shape.kind, (a, b), y, z)
-        if outside.any():
-            first = stated[int(np.argmax(outside))]
-            raise DescriptionError(
-                Problem(
-                    "section: shear stress outside of it",
-                    f"the point ({first[0]:g}, {first[1]:g}) m",
-                    f"points lie on the {self.shape.kind} of {a:g} and {b:g} m",
-                    "state points on the section",
-                )
-            )
+        places = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         _, Vy, Vz, T, _, _ = np.moveaxis(np.asarray(forces, dtype=np.float64), -1, 0)
         y_s, z_s = self._point("shear_center", values)
-        along_y, along_z = R @ np.stack([Vy, Vz]).reshape(2, -1)
+        loads = np.stack([Vy, Vz, T - (y_s * Vz - z_s * Vy)], axis=-1)
+        a, b = (number_of(size, "shape", values) for size in self.shape.sizes)
         ratio = number_of(self.shape.ratio, "E/G", values)
-        units = np.stack(unit_stresses(self.shape.kind, (a, b), ratio, y, z))
-        loads = np.stack([along_y, along_z, np.reshape(T - (y_s * Vz - z_s * Vy), -1)])
-        stresses = np.einsum("kl,kip,ij->lpj", loads, units, R)
-        return np.asarray(stresses.reshape(*np.shape(T), len(stated), 2))
+        return self.shape.stresses((a, b), ratio, loads, places, self._point("tension_center", values))
 
     def _normal_stress(
         self, forces: npt.ArrayLike, values: Mapping[str, float]
@@ -431,35 +364,6 @@ class Section:
     def _point(self, label: str, values: Mapping[str, float] | None = None) -> tuple[float, float]:
         y, z = (number_of(value, label, values or {}) for value in getattr(self, label))
         return y, z
-
-
-def _matrix(stated: npt.ArrayLike, label: str) -> npt.NDArray[np.float64]:
-    """A symmetric matrix (6, 6).
-
-    Raises:
-        DescriptionError: It is of another shape, not finite, or not symmetric.
-    """
-    rule = "six rows of six numbers, symmetric"
-    try:
-        matrix = np.asarray(stated).astype(np.float64, casting="same_kind")
-    except (TypeError, ValueError):
-        found = f"{stated!r:.60}"
-        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give numbers")) from None
-    if matrix.shape != (6, 6) or not np.isfinite(matrix).all():
-        found = f"of shape {matrix.shape}" if matrix.shape != (6, 6) else "entries that are not finite"
-        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give all, zeros included"))
-    unlike = _difference(matrix, matrix.T)
-    if not unlike <= _OF_SECTION:
-        found = f"off by {unlike:.2g} of the diagonal"
-        raise DescriptionError(Problem(f"section: matrix {label} is not symmetric", found, rule, _CHECK))
-    return 0.5 * (matrix + matrix.T)
-
-
-def _difference(matrix: npt.NDArray[np.float64], other: npt.NDArray[np.float64]) -> float:
-    """Largest difference of two matrices, over the roots of the diagonal's entries."""
-    size = np.sqrt(np.abs(np.diag(matrix)))
-    scale = np.outer(size, size)
-    return float(np.max(np.abs(matrix - other) / np.where(scale > 0.0, scale, 1.0)))
 
 
 def _is_small(value: Value, size: Value) -> bool:

@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.description.values import Term, Value
+from symofros.errors import DescriptionError, Problem
 from symofros.expr.expression import evaluate
 
 Kind = Literal["rectangle", "ellipse", "tube"]
@@ -38,6 +39,47 @@ class ShearShape:
     sizes: tuple[Value, Value]
     ratio: Value
     angle: float = 0.0
+
+    def stresses(
+        self,
+        sizes: tuple[float, float],
+        ratio: float,
+        loads: Array,
+        points: Array,
+        center: tuple[float, float],
+    ) -> npt.NDArray[np.float64]:
+        """Shear stresses tau_xy, tau_xz (..., points, 2) [N/m^2], along the section's axes.
+
+        Args:
+            sizes: Numbers of the sizes [m].
+            ratio: Number of E/G.
+            loads: Forces along y and z at the shear centre and torque about it (..., 3) [N, N m].
+            points: Points (y, z) of the section (points, 2) [m].
+            center: The shape's centroid (y, z) [m].
+
+        Raises:
+            DescriptionError: A point is not on the section.
+        """
+        a, b = sizes
+        c, s = float(np.cos(self.angle)), float(np.sin(self.angle))
+        R = np.array([[c, -s], [s, c]])  # From the section's axes to those of the shape.
+        y, z = R @ (points - center).T
+        outside = ~is_inside(self.kind, sizes, y, z)
+        if outside.any():
+            first = points[int(np.argmax(outside))]
+            raise DescriptionError(
+                Problem(
+                    "section: shear stress outside of it",
+                    f"the point ({first[0]:g}, {first[1]:g}) m",
+                    f"points lie on the {self.kind} of {a:g} and {b:g} m",
+                    "state points on the section",
+                )
+            )
+        along_y, along_z, torque = loads.reshape(-1, 3).T
+        of_shape = np.stack([*(R @ np.stack([along_y, along_z])), torque])
+        units = np.stack(unit_stresses(self.kind, sizes, ratio, y, z))
+        stresses = np.einsum("kl,kip,ij->lpj", of_shape, units, R)
+        return np.asarray(stresses.reshape(*loads.shape[:-1], len(points), 2))
 
 
 def lateral_ratio(ratio: Term) -> Term:
