@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .closed_loops import baumgarte, long_loops, redundant, singular
+from .contact import bounces, impact, incline
 from .flexible import beams
 from .rigid import energy, euler_angles, light_bodies, mass_ratio, stick_slip
 from .study import ParameterStudy
@@ -18,6 +19,9 @@ STUDIES: dict[str, ParameterStudy] = {
     "massless_cross": light_bodies.CROSS_STUDY,
     "mass_ratio": mass_ratio.STUDY,
     "stick_slip": stick_slip.STUDY,
+    "incline": incline.STUDY,
+    "impact": impact.STUDY,
+    "bounces": bounces.STUDY,
     "energy": energy.STUDY,
     "euler_angles": euler_angles.STUDY,
 }

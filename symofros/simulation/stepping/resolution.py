@@ -23,6 +23,8 @@ _STATES, _SHARE = 4, 0.01
 _EVIDENT = 1e-4
 # Share of a mode that rounding alone excites.
 _ROUNDING = 1e-16
+# Of coordinates: motions below that are rounding's, and rest is not followed worse for them.
+_REST = 1e-13
 # Powers of e by which a mode of the motion grows at the rate of one state; then this has become another.
 _GROWTH = 3.0
 # Of |z|: farther out a state is no motion any more, and powers of z overflow.
@@ -124,6 +126,7 @@ def resolution(
     speeds: Sequence[float],
     metric: Array,
     pull: Pull = Pull(),
+    reach: float = 0.0,
 ) -> Resolution:
     """How well a run resolves the modes about some of its states; one is named where they err beyond TOLERANCE.
 
@@ -136,6 +139,7 @@ def resolution(
         speeds: Largest speed of the motion about each state, in its metric.
         metric: Mass matrix at each state (number of states, nv, nv).
         pull: The way back to the constraints, which no motion on them shows.
+        reach: Largest coordinate of the run, of whose rounding motions may be.
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
         return Resolution()
@@ -157,7 +161,7 @@ def resolution(
         evident = evident and radius <= _resolved_radius(method.name, part, _EVIDENT)
         if radius <= resolved:
             continue
-        modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed, M) if abs(z) > resolved]
+        modes = [(z, share) for z, share in _modes(basis, matrix, motion, h * speed, M, reach) if abs(z) > resolved]
         judged = [_judged(method, z, share, h, part, t) for z, share in modes]
         here = max(judged, key=lambda mode: mode.error, default=None)
         if here is not None:
@@ -212,7 +216,9 @@ def _radius(matrix: Array) -> float:
     return float(scale * np.vdot(power, power) ** 0.03125)
 
 
-def _modes(basis: Array, matrix: Array, motion: Array, travel: float, M: Array) -> list[tuple[complex, float]]:
+def _modes(
+    basis: Array, matrix: Array, motion: Array, travel: float, M: Array, reach: float
+) -> list[tuple[complex, float]]:
     """Modes of the subspace: h times the rate, and the share in the motion's speed.
 
     Args:
@@ -221,6 +227,7 @@ def _modes(basis: Array, matrix: Array, motion: Array, travel: float, M: Array) 
         motion: Components of the motion of one step (m).
         travel: Step times the largest speed of the run, in the metric.
         M: Metric of displacements and speeds (nv, nv).
+        reach: Largest coordinate of the run.
     """
     if not np.all(np.isfinite(matrix)):
         return []
@@ -233,7 +240,8 @@ def _modes(basis: Array, matrix: Array, motion: Array, travel: float, M: Array) 
     squares = np.einsum("im,ij,jm->m", directions.conj(), M, directions).real
     displacements = np.sqrt(np.maximum(squares, 0.0))
     sizes = np.abs(content) * displacements * np.where(rates.imag != 0.0, 2.0, 1.0)
-    shares = sizes / np.maximum(np.maximum(sizes, travel), 1e-300)
+    rounding = _REST * reach * np.sqrt(float(M.diagonal().max())) * np.abs(rates)
+    shares = sizes / np.maximum.reduce([sizes, np.full_like(sizes, travel), rounding, np.full_like(sizes, 1e-300)])
     return [(complex(z), float(share)) for z, share in zip(rates, shares, strict=True) if z.imag >= 0.0]
 
 

@@ -10,6 +10,7 @@ import pytest
 from tests.models import sampled
 from validation.stability.catalogue import STUDIES
 from validation.stability.closed_loops import baumgarte
+from validation.stability.contact import bounces, impact, incline
 from validation.stability.flexible import beams
 from validation.stability.study import Cell, Maps, survey
 
@@ -27,7 +28,7 @@ def maps() -> dict[str, Maps]:
     return CoarseMaps()
 
 
-JUDGED = ("baumgarte", "stiff_beam", "damped_beam", "light_link")
+JUDGED = ("baumgarte", "stiff_beam", "damped_beam", "light_link", "incline", "impact", "bounces")
 
 
 @pytest.mark.parametrize("name", sampled(JUDGED, JUDGED[2:]))
@@ -60,3 +61,23 @@ def test_gains_hold_up_to_the_closed_form(method: str, bound: float) -> None:
     held, lost = (baumgarte.swing(method, h, share * bound / h, 1.0) for share in (0.95, 1.01))
     assert held.outcome.ok and baumgarte.violation(held) < baumgarte.BOUND
     assert lost.outcome.kind == "diverged" and "dt below" in lost.outcome.advice
+
+
+@pytest.mark.parametrize(("k", "h"), [(1e4, 1e-3), (1e6, 3e-4), (1e6, 3e-3)])
+def test_a_penalty_by_semi_implicit_steps_is_mujocos_stiff_contact(k: float, h: float) -> None:
+    ours = impact.off(float(impact.thrown("semi_implicit_euler", k, h).v[-1, 0]))
+    assert ours == pytest.approx(impact.by_mujoco(k, h).value, rel=1e-3, abs=1e-12)
+
+
+def test_smooth_friction_creeps_where_its_polynomial_carries_the_load() -> None:
+    """Up to half of the limit it is all but linear: 15/8 of the load's share, over 15/8 of the speed."""
+    assert incline.creep(0.01) == pytest.approx(0.01 * incline.SLOW, rel=1e-4)
+    assert incline.creep(1 - 1e-9) == pytest.approx(15 / 8 * incline.SLOW, rel=2e-3)
+    assert incline.beyond(1.1, (0.2, 0.3), 0.2 + 3.0 + 50 * 0.1 * 0.5 * 9.81 / math.hypot(1, 0.55)) < 1e-12
+
+
+def test_bounces_are_those_of_a_geometric_series() -> None:
+    fall = math.sqrt(2 / 9.81)
+    assert bounces.instant(1, 0.5) == pytest.approx(fall) and bounces.instant(3, 0.5) == pytest.approx(2.5 * fall)
+    assert bounces.accumulation(0.5) == pytest.approx(bounces.instant(200, 0.5))
+    assert len(bounces.stepped(0.5)) > 5 and bounces.stepped(0.5)[0] == pytest.approx(fall, abs=2e-3)

@@ -93,6 +93,7 @@ class _Revisited:
                 lambda k: self._spectrum(int(rows[k]), h),
                 [float(sizes.max())] * len(rows),
                 metric,
+                reach=float(np.abs(run.q[np.isfinite(run.q).all(axis=1)]).max(initial=0.0)),
             )
 
     def _spectrum(self, i: int, h: float) -> Spectrum | None:

@@ -101,7 +101,8 @@ def examine_steps(run: ExaminedRun) -> Resolution:
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
         pull = _pull(stepper, settings, examined)
-        return resolution(stepper.method, settings.dt, run.steps, times, spectrum, speeds, metric[chosen], pull)
+        reach = float(np.abs(q_all).max(initial=0.0))
+        return resolution(stepper.method, settings.dt, run.steps, times, spectrum, speeds, metric[chosen], pull, reach)
 
 
 def _pull(stepper: Stepper, settings: Settings, examined: Sequence[tuple[float, Array, Array, Array]]) -> Pull:

@@ -1,0 +1,1 @@
+"""Contact: steps in a stiff impact, friction that holds, bounces that accumulate."""
