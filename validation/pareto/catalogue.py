@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .problem import BenchmarkProblem
-from .problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up
+from .problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up, walls
 
 PROBLEMS: dict[str, BenchmarkProblem] = {
     "spin_up": spin_up.PROBLEM,
@@ -13,4 +13,5 @@ PROBLEMS: dict[str, BenchmarkProblem] = {
     "four_bar": four_bar.PROBLEM,
     "andrews": andrews.PROBLEM,
     "pendulum": pendulum.PROBLEM,
+    "walls": walls.PROBLEM,
 }

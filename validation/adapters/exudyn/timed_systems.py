@@ -303,3 +303,33 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
         return container, made, [sensor]
 
     return Timed(build)
+
+
+def between_walls(stiffness: float, gap: float, speed: float) -> Timed:
+    """A mass of 1 kg on one coordinate between springs at a distance on either side, that begins in the middle [SI].
+
+    The springs are one of Exudyn's symbolic functions, evaluated in its C++: its stops change once a step.
+    """
+
+    def build() -> tuple[Any, Any, Sequence[Any]]:
+        container = exudyn.SystemContainer()
+        system = container.AddSystem()
+        ground = system.AddNode(items.NodePointGround())
+        node = system.AddNode(items.Node1D(referenceCoordinates=[0.0], initialVelocities=[speed]))
+        system.AddObject(items.Mass1D(mass=1.0, nodeNumber=node))
+        markers = [
+            system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=number, coordinate=0)) for number in (ground, node)
+        ]
+        larger = _ENGINE.symbolic.max
+
+        def push(mbs: Any, t: Any, item: Any, u: Any, v: Any, k: Any, d: Any, offset: Any) -> Any:
+            return k * (larger(u - gap, 0.0) - larger(-gap - u, 0.0))
+
+        spring = items.CoordinateSpringDamper(markerNumbers=markers, stiffness=stiffness)
+        made = CreateSymbolicUserFunction(system, push, "springForceUserFunction", number := system.AddObject(spring))
+        system.SetObjectParameter(number, "springForceUserFunction", made)
+        sensor = node_sensor(system, node, "Coordinates")
+        system.Assemble()
+        return container, system, [sensor]
+
+    return Timed(build)

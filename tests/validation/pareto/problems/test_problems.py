@@ -16,7 +16,7 @@ from validation.pareto.problems import closed_forms, four_bar, robot, soft_pendu
 from validation.pareto.race import race
 
 
-@pytest.mark.parametrize("name", sampled(("arm", "four_bar", "andrews"), ["four_bar"]))
+@pytest.mark.parametrize("name", sampled(("arm", "four_bar", "andrews", "walls"), ["four_bar"]))
 def test_references_agree_and_sides_move_alike(name: str) -> None:
     problem = PROBLEMS[name]
     found = race(problem, quick=True)
