@@ -20,6 +20,7 @@ from ..problem import BenchmarkProblem, Contestant, Prepared, Target
 
 STIFFNESS, GAP, SPEED, RADIUS = 1e5, 0.1, 1.0, 0.05
 END, OUTPUT = 20.0, 0.1
+IMPACTS = round(END / (2 * GAP / SPEED + math.pi / math.sqrt(STIFFNESS)))
 TIMES = np.arange(round(END / OUTPUT) + 1, dtype=np.float64) * OUTPUT
 LAW = "linear walls"
 # Largest share of the constraint that MuJoCo takes: what is left of 1 softens its walls.
@@ -116,9 +117,9 @@ def _in_parts() -> Array:
 
 PROBLEM = BenchmarkProblem(
     "A ball between two walls",
-    f"A ball of 1 kg flies between two walls, {2 * GAP:g} m apart, at {SPEED:g} m/s, which throw it back by a stiffness "
-    f"of {STIFFNESS:.0e} N/m: impacts of 10 ms, {END / (2 * GAP / SPEED + math.pi / math.sqrt(STIFFNESS)):.0f} of them in "
-    f"{END:g} s. Every side records its place each 0.1 s.",
+    f"A ball of 1 kg flies between two walls, {2 * GAP:g} m apart, at {SPEED:g} m/s, which throw it back by a "
+    f"stiffness of {STIFFNESS:.0e} N/m: {IMPACTS} impacts of 10 ms in {END:g} s. Every side records "
+    "its place each 0.1 s.",
     "place, largest over the run [m]",
     "error of the place  [m]",
     "MuJoCo: planes and a sphere with the same stiffness by `solref`, no damping, `solimp` as hard as it takes; Euler, "
