@@ -200,7 +200,7 @@ def _arrays(values: Mapping[str, object]) -> dict[str, Array]:
 
 
 def _given(g: Graph, wired: Wired, name: str, port: Port) -> Tensor:
-    if (name, port.name) in wired.sources:
+    if (name, port.name) in wired.sources or port.default is None:  # Of a diagram that is not whole, not connected.
         return Tensor.inputs(g, INPUT + port.name, port.shape or ())
     return Tensor.numbers(g, np.broadcast_to(np.asarray(port.default, dtype=np.float64), port.shape or ()))
 

@@ -107,3 +107,11 @@ def test_algebraic_loops_are_marked_while_other_things_are_wrong() -> None:
 @pytest.mark.parametrize("text", ["symofros_diagram: 1\n", "symofros_diagram: 2\nblocks: 3\nmodels: [a]\n"])
 def test_a_diagram_without_anything_to_draw_is_a_diagram(text: str) -> None:
     assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}, "moving": []}
+
+
+def test_an_open_input_that_a_step_is_taken_of_is_told() -> None:
+    """What is not connected is no number, of which a step would have none either."""
+    integrator = "{kind: integrator, period: 0.01, reset: rising, unit_in: m, inputs: {u: a.y}}"
+    text = CHAIN + f"  d: {integrator}\n  e: {{kind: gain, gain: 2, inputs: {{u: d.y}}}}\n"
+    (problem,) = drawn(text).problems
+    assert "'d.reset' is not connected" in problem["object"]
