@@ -10,6 +10,7 @@ from typing import Any
 from symofros.base.arguments import CheckedCalls, checked
 from symofros.description import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup, Port
+from symofros.diagrams.conditional import SIGNAL, Condition, Conditional, on_condition
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -26,11 +27,13 @@ class Part:
         diagram: Included diagram.
         models: Name of a model in the included diagram -> name in the including one.
         inputs: Inlet -> source.
+        condition: When it runs; None: always.
     """
 
     diagram: Diagram
     models: Mapping[str, str]
     inputs: Mapping[str, str]
+    condition: Condition | None = None
 
 
 @dataclass
@@ -43,7 +46,7 @@ class Diagram(metaclass=CheckedCalls):
         blocks: Name -> block, in the order of addition.
         wires: (block, input port) -> source, as "block.port" or "block" where that has one output.
         inlets: Inputs from outside, where the diagram is part of another, is exported or is run with `inputs`: name ->
-            input ports "block.port" that it feeds.
+            input ports "block.port", or inlets "part.inlet" of parts, that it feeds.
         outlets: Outputs to the outside: name -> "block.port" that it is read from.
         inlet_ports: Inlet -> its shape, units and start (`default`), where the inputs that it feeds do not say them.
         simulation: Settings of a run, as its author stated them.
@@ -142,7 +145,7 @@ class Diagram(metaclass=CheckedCalls):
 
         Args:
             name: Name of the signal.
-            targets: Inputs "block.port" that it feeds.
+            targets: Inputs "block.port", or inlets "part.inlet" of parts, that it feeds.
             shape: Its shape, () for one number; None: that of an input that it feeds.
             unit: Its unit; "": that of an input that it feeds.
             start: First values of exports; None: defaults of inputs that it feeds, or zero.
@@ -156,29 +159,47 @@ class Diagram(metaclass=CheckedCalls):
             self.inlet_ports[name] = Port(name, shape, unit, start)
 
     @checked
-    def include(self, name: str, part: Diagram, models: Mapping[str, str] | None = None, **inputs: str) -> None:
+    def include(
+        self,
+        name: str,
+        part: Diagram,
+        models: Mapping[str, str] | None = None,
+        condition: Condition | None = None,
+        **inputs: str,
+    ) -> None:
         """Put a diagram into this one: its blocks become "name/block", its outlets "name.outlet".
 
         Args:
             name: Name of the part.
             part: A diagram with inlets and outlets.
             models: The part's name of a model -> this diagram's; models that are left out come along as "name/model".
+            condition: When its sampled blocks run; None: at all their samples.
             inputs: Inlet -> source.
 
         Raises:
-            DescriptionError: An inlet is unknown, or a name is taken.
+            DescriptionError: An inlet is unknown, a name is taken, or a block can't run on a condition.
         """
         self._refuse_name("part", name, {block.split(INSIDE)[0] for block in self.blocks})
-        self.parts[name] = Part(part, dict(models or {}), dict(inputs))
+        outlets = part._sources_of_outlets()
+        inside = dict(part.blocks)
+        if condition is not None:
+            try:
+                inside = dict(on_condition(inside, condition, outlets))
+            except DescriptionError as error:
+                part_of = f"diagram '{self.name}': part '{name}': "
+                raise DescriptionError([replace(one, what=part_of + one.what) for one in error.problems]) from None
+        self.parts[name] = Part(part, dict(models or {}), dict(inputs), condition)
         known = dict(models or {})
         for inner, setup in part.models.items():
             if inner not in known:
                 known[inner] = f"{name}{INSIDE}{inner}"
                 self.models[known[inner]] = setup
-        for block in part.blocks.values():
+        for block in inside.values():
             self.blocks[f"{name}{INSIDE}{block.name}"] = _renamed(block, name, known)
         for (block_name, port), source in part.wires.items():
-            self.wires[f"{name}{INSIDE}{block_name}", port] = f"{name}{INSIDE}{source}"
+            self.wires[f"{name}{INSIDE}{block_name}", port] = f"{name}{INSIDE}{outlets.get(source, source)}"
+        if condition is not None:
+            self._connect_condition(name, condition, inside)
         for inlet, source in inputs.items():
             if inlet not in part.inlets:
                 raise DescriptionError(
@@ -189,13 +210,43 @@ class Diagram(metaclass=CheckedCalls):
                         did_you_mean(inlet, part.inlets),
                     )
                 )
-            for target in part.inlets[inlet]:
+            for target in part.fed_by(inlet):
                 self.connect(source, f"{name}{INSIDE}{target}")
-        for outlet, source in part.outlets.items():
+        for outlet, source in outlets.items():
             self.outlets[f"{name}.{outlet}"] = f"{name}{INSIDE}{source}"
         for (kind, first, *rest), line in part.origin.items():
-            inside = f"{name}.{first}" if kind == "outlet" else f"{name}{INSIDE}{first}"
-            self.origin[kind, inside, *rest] = line
+            inside_name = f"{name}.{first}" if kind == "outlet" else f"{name}{INSIDE}{first}"
+            self.origin[kind, inside_name, *rest] = line
+
+    def _connect_condition(self, part: str, condition: Condition, blocks: Mapping[str, Block]) -> None:
+        """Feed what tells the signals of a part's condition, and by it the part's blocks."""
+        for signal, by in condition.signals().items():
+            for block in blocks.values():
+                if isinstance(block, Conditional):
+                    self.wires[f"{part}{INSIDE}{block.name}", block.inputs[signal]] = f"{part}{INSIDE}{signal}"
+            if isinstance(by, str):
+                self.connect(by, f"{part}{INSIDE}{signal}.{SIGNAL}")
+
+    def fed_by(self, inlet: str) -> list[str]:
+        """Inputs "block.port" that an inlet feeds, of parts by their inlets and the signals of their conditions."""
+        targets, inputs = self.inlets[inlet], list[str]()
+        for target in [targets] if isinstance(targets, str) else targets:
+            name, _, port = target.rpartition(".")
+            part = self.parts.get(name)
+            if part is not None and port in part.diagram.inlets:
+                inputs += [f"{name}{INSIDE}{one}" for one in part.diagram.fed_by(port)]
+            elif part is not None and part.condition is not None and port in part.condition.signals():
+                inputs.append(f"{name}{INSIDE}{port}.{SIGNAL}")
+            else:
+                inputs.append(target)
+        return inputs
+
+    def _sources_of_outlets(self) -> dict[str, str]:
+        """Outlet -> "block.port" or "block", of those that read outlets of parts, too."""
+        sources: dict[str, str] = {}
+        for name, source in self.outlets.items():
+            sources[name] = sources.get(source, source)
+        return sources
 
     @checked
     def with_model(self, name: str, setup: ModelSetup) -> Diagram:
@@ -231,6 +282,8 @@ class Diagram(metaclass=CheckedCalls):
 
 def _renamed(block: Block, part: str, models: Mapping[str, str]) -> Block:
     changes: dict[str, Any] = {"name": f"{part}{INSIDE}{block.name}"}
+    if isinstance(block, Conditional):
+        changes["block"] = _renamed(block.block, part, models)
     model = getattr(block, "model", None)
     if isinstance(model, str) and model in models:
         changes["model"] = models[model]

@@ -138,10 +138,10 @@ def with_inlets(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Di
     """
     problems = list(_misnamed(diagram, inputs))
     inlets, wires = dict[str, Block](), dict(diagram.wires)
-    for name, targets in diagram.inlets.items():
+    for name in diagram.inlets:
         port = replace(diagram.inlet_ports.get(name, Port(VALUE, None)), name=VALUE)
         inlets[name] = Inlet(name=name, port=port, given=None if inputs is None else inputs.get(name))
-        for target in [targets] if isinstance(targets, str) else targets:
+        for target in diagram.fed_by(name):
             block, _, input_name = target.rpartition(".")
             if (block, input_name) in wires:
                 fed = f"by {wires[block, input_name]} and inlet '{name}'"

@@ -12,6 +12,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from symofros.diagrams.conditional import unconditional
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.registry import kind_of
 from symofros.diagrams.program.compiled import Resolved
@@ -180,7 +181,7 @@ def as_data(resolved: Resolved) -> dict[str, Any]:
     for name, block in wired.blocks.items():
         piece, ports = resolved.pieces[name], wired.ports[name]
         blocks[name] = {
-            "kind": kind_of(type(block)),
+            "kind": kind_of(type(unconditional(block))),
             "period": block.period,
             "offset": block.offset,
             "inputs": {

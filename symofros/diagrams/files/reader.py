@@ -13,6 +13,7 @@ from symofros.base.arguments import checked
 from symofros.description import MODEL_SUFFIXES, System, in_order, read_bytes, resolved
 from symofros.description.yaml import DIAGRAM, Node, YamlFault, compose
 from symofros.diagrams.block import Block, ModelFile
+from symofros.diagrams.conditional import SIGNAL, Condition
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
 from symofros.diagrams.files.fields import CONSENT, Misfit, read, required, runs_native_code, types_of
@@ -33,7 +34,7 @@ MAX_BLOCKS = 10_000
 HEAD = DIAGRAM
 SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
 MODEL = ("file", "functions", *READING, "start", "parameters")
-PART = ("file", "diagram", "models", "inputs")
+PART = ("file", "diagram", "models", "inputs", "condition")
 COMMON = ("kind", "period", "offset", "inputs")
 
 _ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
@@ -349,14 +350,31 @@ class _Reader(Entries):
                 "rename the inlet",
             )
             del inputs[reserved]
+        condition = self.condition(what, entries["condition"]) if "condition" in entries else None
+        if condition is not None:
+            for signal in condition.signals():
+                diagram.origin["input", f"{name}/{signal}", SIGNAL] = self.where(entries["condition"])
         try:
-            diagram.include(name, inner, models, **inputs)
+            diagram.include(name, inner, models, condition, **inputs)
         except DescriptionError as error:
             self.take(node, error.problems)
         for inlet in filter(inner.inlets.__contains__, inputs):
-            for target in inner.inlets[inlet]:
+            for target in inner.fed_by(inlet):
                 block, _, port = f"{name}/{target}".rpartition(".")
                 diagram.origin["input", block, port] = self.where(entries["inputs"].value[inlet])
+
+    def condition(self, what: str, node: Node) -> Condition | None:
+        """When a part runs; None where that could not be read."""
+        try:
+            condition: Condition = read(Condition, node)
+        except Misfit as error:
+            rule, remedy = error.rule, "such as {enabled: logic.on, states: reset}"
+            self.fault(error.node, f"{what}: condition does not fit", error.node.plain(), rule, remedy)
+        except SymofrosError as error:
+            self.take(node, error.problems)
+        else:
+            return condition
+        return None
 
     def from_file(self, node: Node, what: str) -> Diagram | None:
         """A part's file."""

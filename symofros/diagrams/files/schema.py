@@ -13,6 +13,7 @@ from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
 from symofros.diagrams.block import Block
+from symofros.diagrams.conditional import Condition
 from symofros.diagrams.files.fields import MISSING, required, types_of, words_for, write
 from symofros.diagrams.files.inlets import SCHEMA as INLET
 from symofros.diagrams.files.reader import HEAD, VERSION
@@ -79,6 +80,7 @@ def json_schema() -> Plain:
         "outlets": _TEXTS,
     }
     part = {"file": {"type": "string"}, "diagram": _object(sections), "models": _TEXTS, "inputs": _TEXTS}
+    part |= {"condition": of_type(Condition)}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A SYMOFROS diagram",

@@ -15,6 +15,7 @@ from symofros.base.atomic import write_atomically
 from symofros.description import resolved
 from symofros.description.yaml import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup
+from symofros.diagrams.conditional import Condition
 from symofros.diagrams.diagram import INSIDE, Diagram, Part
 from symofros.diagrams.files.fields import CONSENT, MISSING, same, write
 from symofros.diagrams.files.inlets import written_inlets
@@ -144,7 +145,7 @@ class _Writer:
         else:
             inside = self.document(part.diagram)
             entries["diagram"] = {key: value for key, value in inside.items() if key != "simulation"}
-        more = {"models": dict(part.models), "inputs": dict(part.inputs)}
+        more = {"models": dict(part.models), "inputs": dict(part.inputs), "condition": _condition(part.condition)}
         return entries | {key: value for key, value in more.items() if value}
 
 
@@ -156,7 +157,7 @@ def _replayed(diagram: Diagram) -> Diagram:
     """
     replayed = Diagram(diagram.name)
     for name, part in diagram.parts.items():
-        replayed.include(name, part.diagram, part.models, **part.inputs)
+        replayed.include(name, part.diagram, part.models, part.condition, **part.inputs)
         changed = [
             key
             for key, block in replayed.blocks.items()
@@ -174,6 +175,14 @@ def _replayed(diagram: Diagram) -> Diagram:
                 )
             )
     return replayed
+
+
+def _condition(condition: Condition | None) -> Plain:
+    """What a condition states that it would not be without."""
+    if condition is None:
+        return {}
+    stated = {item.name: getattr(condition, item.name) for item in fields(condition)}
+    return {key: write(value) for key, value in stated.items() if value and value != vars(Condition).get(key)}
 
 
 def _unchanged(diagram: Diagram, path: Path) -> bool:
@@ -195,9 +204,10 @@ def _unchanged(diagram: Diagram, path: Path) -> bool:
 
 def _alike(a: Block, b: Block | None) -> bool:
     """Whether two blocks say the same."""
-    return type(a) is type(b) and all(
-        same(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.init and f.name != CONSENT
-    )
+    if type(a) is not type(b):
+        return False
+    pairs = [(getattr(a, f.name), getattr(b, f.name)) for f in fields(a) if f.init and f.name != CONSENT]
+    return all(_alike(*pair) if isinstance(pair[0], Block) else same(*pair) for pair in pairs)
 
 
 def _path(value: Any, folder: Path) -> str:

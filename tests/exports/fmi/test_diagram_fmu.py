@@ -19,7 +19,7 @@ from tests.diagrams.run.test_switching import CASES
 from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import Unit
-from tests.exports.test_controller import inside, machine, rates
+from tests.exports.test_controller import conditional, inside, machine, rates
 
 STEPS = 20
 
@@ -51,7 +51,7 @@ def test_a_unit_shows_inputs_outputs_and_parameters(version: int, tmp_path: Path
     assert said.modelExchange is None and float(said.defaultExperiment.stepSize) == 1e-3
 
 
-@pytest.mark.parametrize("make", [rates, inside, machine])
+@pytest.mark.parametrize("make", [rates, inside, machine, conditional])
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_unit_gives_what_python_gives(version: int, make: Any, tmp_path: Path) -> None:
     """Inputs of the end of a step are read by the samples there; a saved state is gone back to."""
@@ -67,8 +67,9 @@ def test_a_unit_gives_what_python_gives(version: int, make: Any, tmp_path: Path)
         inputs={name: sf.Signal(t, values, "hold") for name, values in rows.items()},
         parameters={"pd.kp": [12.0, 30.0]} if make is rates else {},
     )
-    read = ("y", "count", "state") if make is machine else ("effort[0]", "effort[1]")
-    wanted = np.column_stack([moved[name] for name in read]) if make is machine else moved["effort"]
+    scalars = {machine: ("y", "count", "state"), conditional: ("runs", "edges")}
+    read = scalars.get(make, ("effort[0]", "effort[1]"))
+    wanted = np.column_stack([moved[name] for name in read]) if make in scalars else moved["effort"]
     at = {k: {key: x for name in rows for key, x in entries(name, rows[name][k]).items()} for k in range(STEPS)}
     put(unit, at[0] | ({"pd.kp[0]": 12.0} if make is rates else {}))
     unit.start()

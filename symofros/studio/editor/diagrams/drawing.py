@@ -10,6 +10,7 @@ from symofros.diagrams.diagram import INSIDE, Diagram
 from symofros.diagrams.wiring import Draft, Source
 from symofros.errors import DescriptionError
 from symofros.studio.editor.diagrams.palette import group_of
+from symofros.studio.editor.editing.data_edits import conditions_of
 
 Json = dict[str, Any]
 
@@ -54,6 +55,8 @@ class Drawing:
         for name, entry in self._section("parts").items():
             for inlet, source in _dict(_dict(entry).get("inputs")).items():
                 self._wire(source, f"parts/{name}", inlet, ["parts", name, "inputs", inlet])
+            for signal, source in conditions_of(entry).items():
+                self._wire(source, f"parts/{name}", signal, ["parts", name, "condition", signal])
         for target, source in self._section("wires").items():
             self._wire(source, *self._target(target), ["wires", target])
         for problem in self.problems:
@@ -98,7 +101,7 @@ class Drawing:
         file = entry.get("file")
         node = self._node("parts", name, "part", "part", file if isinstance(file, str) else "inline")
         part = self.read.parts.get(name) if self.read else None
-        inlets = [*(part.diagram.inlets if part else ()), *_dict(entry.get("inputs"))]
+        inlets = [*(part.diagram.inlets if part else ()), *_dict(entry.get("inputs")), *conditions_of(entry)]
         node["inputs"] = [_port(Port(inlet, None, default=0)) for inlet in dict.fromkeys(inlets)]
         node["outputs"] = [_port(Port(outlet, None)) for outlet in (part.diagram.outlets if part else ())]
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from symofros.studio.editor.editing.data_edits import Edit, refusal, section_of
+from symofros.studio.editor.editing.data_edits import Edit, conditions_of, refusal, section_of
 
 Json = dict[str, Any]
 
@@ -71,6 +71,9 @@ class _Group:
             entry.pop("inputs", None)
             if kept:
                 entry["inputs"] = kept
+            for signal, source in conditions_of(entry).items():
+                if self.enters(f"{one}.{signal}", source):
+                    entry["condition"] = {**entry["condition"], signal: True}
         rewired = [*self.rewired()]
         inside: Json = {"symofros_diagram": 1, "name": self.name}
         used = {entry.get("model") for entry in entries.values()}
@@ -107,6 +110,9 @@ class _Group:
                 for port, source in _inputs(entry):
                     if isinstance(source, str) and self.owner(source) in self.inner:
                         yield Edit("set", (section, one, "inputs", port), f"{self.name}.{self.leaves(source)}")
+                for signal, source in conditions_of(entries[one]).items():
+                    if self.owner(source) in self.inner:
+                        yield Edit("set", (section, one, "condition", signal), f"{self.name}.{self.leaves(source)}")
         for outlet, source in section_of(self.data, "outlets").items():
             if isinstance(source, str) and self.owner(source) in self.inner:
                 yield Edit("set", ("outlets", outlet), f"{self.name}.{self.leaves(source)}")

@@ -30,6 +30,8 @@ SECTIONS = (
 )
 # The same of a diagram's file.
 DIAGRAM_SECTIONS = ("symofros_diagram", "name", "models", "simulation", "blocks", "parts", "wires", "inlets", "outlets")
+# Entries of the condition of a part that name signals.
+_SIGNALS = ("enabled", "triggered")
 _ORDER = (*SECTIONS, *DIAGRAM_SECTIONS)
 
 
@@ -66,6 +68,11 @@ def section_of(data: Any, key: str) -> dict[str, Any]:
     """A section of a document's data, or of an entry in it; empty if it is missing or no mapping."""
     section = data.get(key) if isinstance(data, dict) else None
     return section if isinstance(section, dict) else {}
+
+
+def conditions_of(part: Any) -> dict[str, str]:
+    """Signal of the condition that a part of a diagram runs on -> its source, of those that name one."""
+    return {key: by for key, by in section_of(part, "condition").items() if key in _SIGNALS and isinstance(by, str)}
 
 
 def same(a: Any, b: Any) -> bool:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, section_of
+from symofros.studio.editor.editing.data_edits import Edit, Path, conditions_of, edited, fault, section_of
 
 _NAME = re.compile(r"[A-Za-z]\w*\Z", re.ASCII)
 
@@ -62,6 +62,7 @@ def _signals(data: dict[str, Any]) -> Iterator[tuple[Path, str]]:
         for name in section_of(data, section):
             inputs = section_of(section_of(section_of(data, section), name), "inputs")
             yield from _texts(inputs, (section, name, "inputs"))
+            yield from _texts(conditions_of(section_of(data, section)[name]), (section, name, "condition"))
     for section in ("wires", "inlets", "outlets"):
         yield from _texts(section_of(data, section), (section,))
     yield from _texts(section_of(data, "simulation").get("plots"), ("simulation", "plots"))

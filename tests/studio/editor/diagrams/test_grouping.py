@@ -101,3 +101,46 @@ def test_what_cannot_be_grouped_is_refused_in_words(tmp_path: Path, chosen: list
 def test_a_name_that_is_taken_is_refused() -> None:
     with pytest.raises(EditError, match="is taken"):
         grouped({"blocks": {"a": {}, "b": {}}}, "b", "b.yaml", ["blocks/a"])
+
+
+CONDITIONAL = """symofros_diagram: 1
+name: mixed
+blocks:
+  wave: {kind: sine}
+  fast: {kind: sine, frequency: 3}
+  seen: {kind: scope, signals: [a], inputs: {a: part.y}}
+parts:
+  part:
+    diagram:
+      blocks: {sum: {kind: integrator, period: 0.05}}
+      inlets: {u: [sum.u]}
+      outlets: {y: sum.y}
+    inputs: {u: fast.y}
+    condition: {enabled: wave.y, states: reset}
+"""
+
+
+@pytest.mark.parametrize("chosen", [["blocks/wave"], ["parts/part"], ["blocks/wave", "parts/part"]], ids=str)
+def test_conditions_of_parts_keep_their_signals(tmp_path: Path, chosen: list[str]) -> None:
+    """The signal of a condition is drawn, follows a new name, and goes into a subsystem and out of it."""
+    session = session_of(tmp_path, CONDITIONAL)
+    before = sf.Simulation(sf.load_diagram(session.document.file)).interpret(1.0, dt=0.05)
+    drawn = session.document.analysis.diagram
+    assert drawn is not None
+    assert {("blocks/wave", "enabled"), ("blocks/fast", "u")} == {
+        (wire["source"], wire["target_port"]) for wire in drawn["wires"] if wire["target"] == "parts/part"
+    }
+    revision = session.document.revision
+    session.edit(
+        {"revision": revision, "label": "", "edits": [{"op": "rename", "path": ["blocks", "wave"], "to": "w"}]}
+    )
+    assert "enabled: w.y" in session.document.text
+    session.group(
+        {"revision": session.document.revision, "name": "inner", "blocks": [one.replace("wave", "w") for one in chosen]}
+    )
+    assert session.document.analysis.problems == [], session.document.text
+    file = tmp_path / "after.yaml"
+    file.write_text(session.document.text)
+    after = sf.Simulation(sf.load_diagram(file)).interpret(1.0, dt=0.05)
+    place = "inner/part/sum.y" if "parts/part" in chosen else "part/sum.y"
+    assert np.array_equal(after[place], before["part/sum.y"]) and np.ptp(after[place]) > 0.0
