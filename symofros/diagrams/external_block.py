@@ -33,6 +33,23 @@ class Running(ABC):
         """After the run, however it ended."""
 
 
+@dataclass(frozen=True)
+class NativeCode:
+    """A file whose native code a block runs, once there is consent.
+
+    Attributes:
+        file: Path of the file.
+        model: What the file states that it is.
+        author: Who made it, as the file states; "" where it states none.
+        tool: Program that wrote it, as the file states.
+    """
+
+    file: str
+    model: str
+    author: str
+    tool: str
+
+
 @dataclass(frozen=True, kw_only=True)
 class ExternalBlock(Block, ABC):
     """A block that the loop calls at its samples; its formulas are unknown."""
@@ -40,6 +57,10 @@ class ExternalBlock(Block, ABC):
     def feeds_through(self) -> bool:
         """Whether outputs answer to inputs of the same sample; else it is called with those of the one before."""
         return True
+
+    def native_code(self) -> NativeCode | None:
+        """The native code that the block runs; None of a block that runs none."""
+        return None
 
     def memory(self, environment: Environment) -> Mapping[str, Any]:
         """The inputs of the sample before, where outputs do not answer to those of the same one."""

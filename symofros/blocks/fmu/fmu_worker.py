@@ -4,7 +4,7 @@ It imports nothing else of this package. Each line that it reads is a task in JS
 
     {"describe": file}                    what the unit states of itself, without running anything of it
     {"load": file, "folder", "kind", "rtol"}
-                                          unpack it into a folder, instantiate it: "co_simulation", "model_exchange"
+                                          unpack it into a new folder, instantiate it: "co_simulation", "model_exchange"
     {"begin": t, "set": [[name, values]], "inputs": [names], "outputs": [names]}
                                           initialise it at a time, and give its outputs
     {"to": t, "before": values | null, "after": values | null}
@@ -44,7 +44,7 @@ class Fault(Exception):
 
 
 def unpacked(file: str, folder: str) -> None:
-    """Unpack a unit into an empty folder, whose paths and sizes are bounded."""
+    """Unpack a unit into a new folder; its paths and sizes are bounded."""
     with zipfile.ZipFile(file) as archive:
         entries = archive.infolist()
         if len(entries) > MAX_FILES or sum(entry.file_size for entry in entries) > MAX_UNPACKED:
@@ -84,7 +84,14 @@ def described(file: str) -> dict[str, Any]:
         output.dependencies is None or any(one.causality == "input" for one in output.dependencies)
         for output in stated.outputs
     )
-    return {"name": stated.modelName, "kinds": kinds, "variables": variables, "feeds_through": through}
+    return {
+        "name": stated.modelName,
+        "author": stated.author or "",
+        "tool": stated.generationTool or "",
+        "kinds": kinds,
+        "variables": variables,
+        "feeds_through": through,
+    }
 
 
 def shape_of(variable: Any) -> list[int]:
@@ -109,7 +116,7 @@ class Unit:
 
     Args:
         file: The unit.
-        folder: An empty folder, which the unit may use as long as it runs.
+        folder: A new folder, which the unit may use as long as it runs.
         kind: "co_simulation" or "model_exchange".
         rtol: Relative tolerance of the solver of a model exchange, and what a co-simulation is told.
     """

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Literal
 
@@ -16,7 +18,7 @@ from symofros.blocks.fmu.unit_description import UnitDescription, UnitPort, know
 from symofros.blocks.generic.sampling import needs_period
 from symofros.description.workers import Conversation
 from symofros.diagrams.block import Environment, Ports
-from symofros.diagrams.external_block import ExternalBlock, Running
+from symofros.diagrams.external_block import ExternalBlock, NativeCode, Running
 from symofros.errors import Problem, SymofrosError
 
 Kind = Literal["co_simulation", "model_exchange"]
@@ -39,7 +41,8 @@ class FMU(ExternalBlock):
         feedthrough: Whether outputs answer to inputs of the same sample; None: as the unit states it.
         rtol: Relative tolerance.
         timeout: Of one sample [s].
-        allow_native: Consent to run the native code of the file; files of diagrams can't state it.
+        allow_native: Consent to run the native code of the file: of whatever it holds, or, by their SHA-256 digest in
+            hexadecimal, of certain bytes alone. Files of diagrams can't state it.
     """
 
     file: str
@@ -50,7 +53,7 @@ class FMU(ExternalBlock):
     feedthrough: bool | None = None
     rtol: float = 1e-8
     timeout: float = 10.0
-    allow_native: bool = False
+    allow_native: bool | str = False
 
     def __post_init__(self) -> None:
         """Numbers that can be, and a sample time."""
@@ -63,6 +66,11 @@ class FMU(ExternalBlock):
     def feeds_through(self) -> bool:
         """Whether outputs answer to inputs of the same sample."""
         return self._unit().feeds_through if self.feedthrough is None else self.feedthrough
+
+    def native_code(self) -> NativeCode:
+        """The unit's file, and what that states of itself."""
+        unit = self._unit()
+        return NativeCode(self.file, unit.name, unit.author, unit.tool)
 
     def ports(self, environment: Environment) -> Ports:
         """The unit's inputs and outputs, or those that are stated."""
@@ -105,7 +113,8 @@ class FMU(ExternalBlock):
         """Start the unit's process.
 
         Raises:
-            DescriptionError: There is no consent to run native code, or what is stated does not fit the unit.
+            DescriptionError: There is no consent to run native code, or to that of other bytes; or what is stated does
+                not fit the unit.
         """
         unit = self._unit()
         variant, starts = self._variant(unit), self._starts(unit)
@@ -135,8 +144,8 @@ class _RunningUnit(Running):
         self._folder = TemporaryDirectory(prefix="symofros_fmu_")  # Which a unit that crashes can't leave behind.
         self._unit = Conversation(fmu_worker.__file__)
         try:
-            task = {"load": block.file, "folder": self._folder.name, "kind": variant, "rtol": block.rtol}
-            self._ask(task, _LOADING)
+            file, folder = _consented(block, Path(self._folder.name)), f"{self._folder.name}/unpacked"
+            self._ask({"load": file, "folder": folder, "kind": variant, "rtol": block.rtol}, _LOADING)
         except BaseException:
             self.end()
             raise
@@ -180,3 +189,17 @@ class _RunningUnit(Running):
         """End the process."""
         self._unit.close()
         self._folder.cleanup()
+
+
+def _consented(block: FMU, folder: Path) -> str:
+    """The file to load: a copy of the bytes that the consent is to, which nobody can exchange after the check."""
+    if block.allow_native is True:
+        return block.file
+    data = Path(block.file).read_bytes()
+    found = hashlib.sha256(data).hexdigest()
+    if found != block.allow_native:
+        rule, remedy = "consent is to the bytes that were seen", "look at the file again, and consent anew"
+        raise refuse(block.name, f"the unit '{block.file}' has changed since", f"SHA-256 {found}", rule, remedy)
+    copy = folder / "consented.fmu"
+    copy.write_bytes(data)
+    return str(copy)

@@ -60,12 +60,16 @@ class UnitDescription:
 
     Attributes:
         name: Name of its model.
+        author: Who made it, as it states; "" where it states none.
+        tool: Program that wrote it, as it states.
         kinds: "co_simulation" and "model_exchange", as far as it offers them.
         variables: Numeric variables by name.
         feeds_through: Whether an output depends on an input at the same instant.
     """
 
     name: str
+    author: str
+    tool: str
     kinds: tuple[str, ...]
     variables: Mapping[str, Variable]
     feeds_through: bool
@@ -103,6 +107,8 @@ def _read(block: str, file: str, _changed: int, _size: int) -> UnitDescription:
     variables = (_variable(stated) for stated in answer["variables"])
     return UnitDescription(
         str(answer["name"]),
+        str(answer["author"]),
+        str(answer["tool"]),
         tuple(answer["kinds"]),
         {variable.name: variable for variable in variables},
         bool(answer["feeds_through"]),

@@ -72,7 +72,7 @@ def read_diagram(
     *,
     blocks: Iterable[type[Block]] = (),
     network: bool = False,
-    allow_native: bool = False,
+    allow_native: bool | Mapping[str, str] = False,
 ) -> tuple[Diagram | None, list[Problem]]:
     """Read a diagram as far as it can be read, and everything that is wrong with its file.
 
@@ -81,7 +81,7 @@ def read_diagram(
         text: Content of the file, where that is not written yet; then only its name and folder are used.
         blocks: Classes of blocks of the caller's own.
         network: Whether blocks may reach other machines than this one.
-        allow_native: Whether blocks may run the native code of files.
+        allow_native: Whether blocks may run the native code of files; or of which: path -> SHA-256 digest of its bytes.
     """
     file = Path(path)
     shared = _Shared(resolved(file.parent), kinds(blocks), network, allow_native)
@@ -98,12 +98,17 @@ class _Shared:
     folder: Path
     kinds: Mapping[str, type[Block]]
     network: bool
-    allow_native: bool
+    allow_native: bool | Mapping[str, str]
     problems: list[Problem] = field(default_factory=list)
     systems: dict[tuple[Path, str], System | None] = field(default_factory=dict)
     files: int = 0
     bytes_left: int = MAX_BYTES
     unwritten: dict[Path, bytes] = field(default_factory=dict)
+
+    def consent(self, file: str) -> bool | str:
+        """Consent to run the native code of a file, as of FMU."""
+        given = self.allow_native
+        return given if isinstance(given, bool) else given.get(file, False)
 
     def file(self, path: Path, shown: str, including: tuple[Path, ...]) -> Diagram | None:
         """A file's diagram, as far as it can be read."""
@@ -284,7 +289,7 @@ class _Reader(Entries):
         if len(self.problems) > before:
             return None
         if runs_native_code(owner):
-            values[CONSENT] = self.shared.allow_native
+            values[CONSENT] = self.shared.consent(values["file"])
         try:
             return owner(name=name, **values)
         except DescriptionError as error:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import zipfile
+import hashlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,41 +13,16 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
-from symofros.exports.fmi.fmu import fmi_headers
+from symofros.diagrams.files.reader import read_diagram
+from tests.blocks.fmu.wilful import changed, wilful_unit
 
 PERIOD = 0.001
-WILFUL = """<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName="wilful" guid="wilful">
-  <CoSimulation modelIdentifier="wilful" canHandleVariableCommunicationStepSize="true"/>
-  <ModelVariables>
-    <ScalarVariable name="pump.u" valueReference="0" causality="input" variability="continuous">
-      <Real start="0" unit="N.m"/>
-    </ScalarVariable>
-    <ScalarVariable name="pump.y" valueReference="1" causality="output" variability="continuous">
-      <Real unit="furlong"/>
-    </ScalarVariable>
-    <ScalarVariable name="fixed" valueReference="2" causality="parameter" variability="fixed" initial="exact">
-      <Real start="0.5"/>
-    </ScalarVariable>
-  </ModelVariables>
-  <ModelStructure><Outputs><Unknown index="2"/></Outputs></ModelStructure>
-</fmiModelDescription>
-"""
 
 
 @pytest.fixture(scope="module")
 def wilful(tmp_path_factory: pytest.TempPathFactory) -> str:
     """A unit that passes its input on, crashes, hangs, fails, prints or ends, as its input says."""
-    folder = tmp_path_factory.mktemp("wilful")
-    source, library, unit = Path(__file__).with_name("wilful.c"), folder / "wilful.so", folder / "wilful.fmu"
-    subprocess.run(
-        ["cc", "-shared", "-fPIC", "-I", str(fmi_headers()), "-o", str(library), str(source)],
-        check=True,
-    )
-    with zipfile.ZipFile(unit, "w") as archive:
-        archive.writestr("modelDescription.xml", WILFUL)
-        archive.write(library, "binaries/linux64/wilful.so")
-    return str(unit)
+    return str(wilful_unit(tmp_path_factory.mktemp("wilful")))
 
 
 def fed(unit: str, *values: float, **fields: Any) -> sf.Diagram:
@@ -170,6 +144,27 @@ def test_no_native_code_runs_without_consent(wilful: str, tmp_path: Path) -> Non
     path.write_text(path.read_text().replace("period:", "allow_native: true\n    period:"))
     with pytest.raises(sf.DescriptionError, match="allow_native"):
         sf.load_diagram(path)
+
+
+def test_consent_to_certain_bytes_is_to_no_others(wilful: str, tmp_path: Path) -> None:
+    """By a block, and by a reader for those files of a diagram that it names."""
+    unit, other, path = tmp_path / "wilful.fmu", tmp_path / "other.fmu", tmp_path / "fed.yaml"
+    for file in (unit, other):
+        file.write_bytes(Path(wilful).read_bytes())
+    digest = hashlib.sha256(unit.read_bytes()).hexdigest()
+    sf.save_diagram(fed(str(unit), 0.0, 0.25), path)
+
+    def run(consent: dict[str, str]) -> sf.DiagramRun:
+        diagram, _ = read_diagram(path, allow_native=consent)
+        assert diagram is not None
+        return sf.Simulation(diagram).run(0.1, record=0.1)
+
+    assert run({str(unit): digest})["unit.pump_y"].tolist() == [0.0, 0.25]
+    with pytest.raises(sf.DescriptionError, match="your consent alone"):
+        run({str(other): digest})
+    changed(unit)
+    with pytest.raises(sf.DescriptionError, match="has changed since"):
+        run({str(unit): digest})
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,7 @@ from symofros.diagrams.wiring import Draft, Wired, draft, whole
 from symofros.errors import DescriptionError, Problem
 from symofros.studio.editor.diagrams.drawing import Drawing
 from symofros.studio.editor.diagrams.faults import placed
+from symofros.studio.editor.diagrams.native_code import native_code
 from symofros.studio.editor.document.element_lines import element_lines
 from symofros.studio.editor.document.meaning import Analysis, as_json
 from symofros.studio.editor.editing.yaml_spans import YamlText
@@ -53,11 +54,14 @@ def analyse_diagram(file: Path, source: YamlText) -> Analysis:
         problems += [*more, *(error.problem for error in loops)]
     shown = [placed(problem, source, str(file), plain) for problem in in_order(problems)]
     data = as_json(plain)
-    mechanisms = {} if problems or read is None or drafted is None else _mechanisms(whole(read, drafted))
+    wired = None if problems or read is None or drafted is None else whole(read, drafted)
+    mechanisms, native = ({}, {}) if wired is None else (_mechanisms(wired), native_code(wired))
     drawing = Drawing(data, read, drafted, [error.path for error in loops], shown)
     shown_diagram = {**drawing.as_json(), "moving": list(mechanisms)}
     lines = element_lines(source, [*shown_diagram["nodes"], *shown_diagram["wires"]])
-    return Analysis(True, data, problems=shown, diagram=shown_diagram, mechanisms=mechanisms, lines=lines)
+    return Analysis(
+        True, data, problems=shown, diagram=shown_diagram, mechanisms=mechanisms, native=native, lines=lines
+    )
 
 
 def _mechanisms(wired: Wired) -> dict[str, System]:

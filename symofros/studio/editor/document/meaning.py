@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 
 from symofros.description import System
+from symofros.diagrams.external_block import NativeCode
 
 Json = dict[str, Any]
 
@@ -25,6 +26,7 @@ class Analysis:
         system: System that was read; None where nothing could be.
         diagram: Blocks and signals of a diagram; None of a mechanism.
         mechanisms: Name of a block -> system that it moves, of a diagram without problems.
+        native: Block -> native code that it runs, of a diagram without problems.
         lines: Name of an element -> its first and last line in the text; empty of a text that is not readable.
     """
 
@@ -37,6 +39,7 @@ class Analysis:
     system: System | None = None
     diagram: Json | None = None
     mechanisms: dict[str, System] = field(default_factory=dict)
+    native: dict[str, NativeCode] = field(default_factory=dict)
     lines: dict[str, tuple[int, int]] = field(default_factory=dict)
 
 

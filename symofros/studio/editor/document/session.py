@@ -9,6 +9,7 @@ from typing import Any
 
 from symofros.description import MODEL_SUFFIXES, System
 from symofros.studio.editor.diagrams.grouping import grouped
+from symofros.studio.editor.diagrams.native_code import Consents
 from symofros.studio.editor.document.document import EditedDocument, StaleError, refuse_text
 from symofros.studio.editor.document.examples import take_example
 from symofros.studio.editor.document.expressions import check_field
@@ -42,6 +43,7 @@ class Session:
         """Open a file, or begin an empty document."""
         self.workspace = workspace
         self.library = Library(workspace)
+        self._consents = Consents()
         self.storage = Storage(workspace, file)
         self._outer: list[Storage] = []  # What was open when somebody went into a model or part of it.
 
@@ -256,10 +258,19 @@ class Session:
         parameters = self.document.analysis.parameters
         return {item["name"]: item["number"] for item in parameters if item["number"] is not None}
 
+    def consent(self, body: Json) -> None:
+        """Take the user's consent to run native code of files as they are now.
+
+        Raises:
+            EditError: It is to another file, or to other bytes.
+        """
+        self._consents.give(self.document.analysis.native, body.get("files"))
+
     def job_request(self, body: Json) -> tuple[str, Json]:
         """The kind of a job and the request for its worker.
 
         Raises:
+            ConsentError: A run would need the user's consent to native code.
             EditError: An unknown kind, or options that are no mapping.
             FileError: An export to outside of the workspace.
         """
@@ -275,6 +286,8 @@ class Session:
                 "choose one of them",
             )
         request: Json = {"file": str(document.file), "text": document.text, "options": options}
+        if kind == "run":
+            request["native"] = self._consents.of(document.analysis.native)
         if kind == "export":
             folder = self.workspace.inside(text_of(options, "folder"), ())
             request |= {"folder": str(folder), "root": str(self.workspace.root), "is_diagram": is_diagram}

@@ -69,12 +69,12 @@ def number_of(given: Any, what: str, from_zero: bool = False) -> float:
 
 
 def diagram_of(request: Json) -> Diagram:
-    """The diagram of a request's text.
+    """The diagram of a request's text; its blocks run the native code of files that the request has consent to.
 
     Raises:
         DescriptionError: It can't be read.
     """
-    diagram, problems = read_diagram(Path(request["file"]), request["text"])
+    diagram, problems = read_diagram(Path(request["file"]), request["text"], allow_native=request.get("native", {}))
     if problems or diagram is None:
         raise DescriptionError(problems)
     return diagram

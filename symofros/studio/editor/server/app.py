@@ -23,6 +23,7 @@ from starlette.types import ASGIApp
 
 from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
+from symofros.studio.editor.diagrams.native_code import ConsentError
 from symofros.studio.editor.document.document import StaleError
 from symofros.studio.editor.document.examples import listed
 from symofros.studio.editor.document.figures.shape_curves import curves
@@ -92,6 +93,7 @@ class Editor:
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
             Route("/api/import", self.import_text, methods=["POST"]),
+            Route("/api/consent", self.consent, methods=["POST"]),
             Route("/api/jobs", self.start_job, methods=["POST"]),
             Route("/api/jobs/{key}", self.job),
             Route("/api/jobs/{key}/table.{suffix}", self.table),
@@ -198,6 +200,11 @@ class Editor:
         document = await self.exclusively(partial(self._changed, adopt, body))
         self.publish_document_change(request)
         return JSONResponse({**document, "notes": job.result["notes"]})
+
+    async def consent(self, request: Request) -> Response:
+        """Take the user's consent to run native code."""
+        await self.exclusively(partial(self.session.consent, await body_of(request)))
+        return JSONResponse({})
 
     async def start_job(self, request: Request) -> Response:
         """Start work on the document as it is now."""
@@ -320,6 +327,10 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
         assert isinstance(error, (EditError, FileError, YamlFault))
         return JSONResponse(error_body(error.problem), 422)
 
+    async def unasked(_: Request, error: Exception) -> Response:
+        assert isinstance(error, ConsentError)
+        return JSONResponse({**error_body(error.problem), "native": error.files}, 428)
+
     async def stale(_: Request, error: Exception) -> Response:
         problem = Problem(
             "the document has changed meanwhile",
@@ -351,6 +362,7 @@ def application(session: Session, token: str, port: int) -> ASGIApp:
     handlers: dict[Any, Any] = {
         HTTPException: not_found,
         Exception: unforeseen,
+        ConsentError: unasked,
         EditError: refused,
         FileError: refused,
         YamlFault: refused,

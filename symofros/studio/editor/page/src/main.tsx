@@ -6,6 +6,7 @@ import "./style/diagram.css";
 import "./style/runs.css";
 import "./style/tree.css";
 import "./style/windows.css";
+import "./style/consent.css";
 import "./style/guide.css";
 import "./style/panels.css";
 import "./style/narrow.css";

@@ -1,6 +1,6 @@
 /** Requests to the server, each with the token, each refusal as an exception. */
 
-import type { Document, Fault } from "./types";
+import type { Document, Fault, NativeFile } from "./types";
 
 const STORED = "symofros-token";
 
@@ -29,6 +29,8 @@ export interface Refusal {
   /** Of a save onto a changed file: its text, and what names that state. */
   disk?: string;
   over?: string;
+  /** Of a run that needs consent: the files whose native code would run. */
+  native?: NativeFile[];
 }
 
 /** The server answered, and said no. */

@@ -111,6 +111,21 @@ export interface Diagram {
   moving: string[];
 }
 
+/** A file whose native code a diagram would run. */
+export interface NativeFile {
+  path: string;
+  blocks: string[];
+  bytes: number;
+  /** SHA-256 of its bytes, in hexadecimal. */
+  digest: string;
+  /** The account that owns it. */
+  owner: string;
+  /** What it states of itself; "" where it states nothing. */
+  model: string;
+  author: string;
+  tool: string;
+}
+
 export interface Parameter {
   name: string;
   value: Json;

@@ -1,11 +1,12 @@
 /** Long work of the server: start, follow, cancel. */
 
-import { get, post, remove } from "../api/client";
+import { get, post, type Refused, remove } from "../api/client";
 import type { Job, JobKind, Samples } from "../api/jobs";
+import type { NativeFile } from "../api/types";
 import { withRun } from "../model/runs";
 import { setTime } from "./playing";
 import { explain, ordered } from "./requests";
-import { now, update } from "./store";
+import { now, show, update } from "./store";
 import { settle } from "./unsent";
 
 const PERIOD = 1000;
@@ -69,8 +70,15 @@ async function follow(kind: JobKind, id: string): Promise<void> {
 export async function run(kind: JobKind, options: object = {}): Promise<void> {
   const path = now().document?.path;
   await settle();
-  const started = await ordered(async () =>
-    now().document?.path === path ? post<{ id: string }>("api/jobs", { kind, options }) : undefined,
+  const asked = async (refused: Refused): Promise<undefined> => {
+    const { native } = refused.body;
+    if (native === undefined) explain(refused);
+    else show({ kind: "consent", files: native, fault: refused.fault, proceed: () => void run(kind, options) });
+    return undefined;
+  };
+  const started = await ordered(
+    async () => (now().document?.path === path ? post<{ id: string }>("api/jobs", { kind, options }) : undefined),
+    asked,
   );
   if (started === undefined || now().document?.path !== path) return;
   take({
@@ -84,6 +92,12 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
   });
   update(({ live }) => ({ bottom: kind, live: live?.id === started.id ? live : null }));
   await follow(kind, started.id);
+}
+
+/** Consents to the native code of files, as they were shown; whether the server took it. */
+export async function consent(files: readonly NativeFile[]): Promise<boolean> {
+  const given = files.map(({ path, digest }) => ({ path, digest }));
+  return (await ordered(() => post("api/consent", { files: given }))) !== undefined;
 }
 
 export async function cancel(kind: JobKind): Promise<void> {

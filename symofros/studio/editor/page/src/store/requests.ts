@@ -33,6 +33,7 @@ const OF_DOCUMENT: readonly Dialog["kind"][] = [
   "simulate",
   "analyse",
   "run",
+  "consent",
   "export",
   "save part",
   "link",

@@ -11,6 +11,7 @@ import type {
   FileEntry,
   Json,
   LibraryPart,
+  NativeFile,
   Path,
   Point,
   View,
@@ -39,6 +40,7 @@ export type Dialog =
   | { kind: "simulate" }
   | { kind: "analyse" }
   | { kind: "run" }
+  | { kind: "consent"; files: NativeFile[]; fault: Fault; proceed: () => void }
   | { kind: "export" }
   | { kind: "save part"; bodies: string[] }
   | { kind: "link"; first: Anchor; second: Anchor }

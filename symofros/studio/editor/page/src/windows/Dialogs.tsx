@@ -1,5 +1,6 @@
 import { useStore } from "../store/store";
 import { AnalyseForm } from "./AnalyseForm";
+import { ConsentForm } from "./ConsentForm";
 import { Examples } from "./Examples";
 import { ExportForm } from "./ExportForm";
 import { ChangedOnDisk, Discard, NewFile, OpenFile, SaveAs } from "./files";
@@ -33,6 +34,8 @@ export function Dialogs() {
       return <AnalyseForm />;
     case "run":
       return <RunForm />;
+    case "consent":
+      return <ConsentForm files={dialog.files} fault={dialog.fault} proceed={dialog.proceed} />;
     case "export":
       return <ExportForm />;
     case "save part":
