@@ -95,5 +95,5 @@ def test_a_diagram_becomes_a_program_that_steps_as_its_file_says(client: TestCli
     assert "program/main.c" in job["result"]["files"]
     plant = (folder / "program" / "two_part0_plant.c").read_text()
     assert re.search(r'"euler", .*\n.*, 0\.002, ', plant)
-    refused = finished(client, "export", target="fmu2", folder="other")
+    refused = finished(client, "export", target="wasm", folder="other")
     assert refused["state"] == "failed" and "use target 'c'" in refused["error"]["remedy"]
