@@ -191,7 +191,8 @@ def measure(
     """Hold engines against thirty digits of truth: every kind of joint, every function that they offer.
 
     A run may be made in parts: --engine for some engines, into a folder of their own; then once more with --part for
-    each folder's engines.json, which measures the engines that no part has, and writes one report of all.
+    each folder's engines.json, which measures the engines that no part has, and writes one report of all. Files are
+    written for all questions to all engines, or into a folder that is named.
     """
     at = releases.newest() if newest else at or []
     if bisect:
@@ -208,8 +209,10 @@ def measure(
     chosen = _chosen(engines, present, parts.engines_of(stored))
     every = questions()
     wanted = known(models, every, "--kinds", "kind")
-    # A part of the questions, or other engines than those of this environment, leave the whole report as it is.
-    run.writes = run.asked or not (at or smoke)
+    # A part of the questions or of the engines, or other releases than those of this environment, leave the whole
+    # report as it is.
+    asks_all = set(chosen) | parts.engines_of(stored) >= set(present) and set(wanted) == set(every)
+    run.writes = run.asked or (asks_all and not (at or smoke))
     with releases.in_reach(chosen, pairs, environments) as reach:
         for why in reach.failures.values():
             run.say(why, bad=True)

@@ -1,14 +1,19 @@
-"""The whole matrix: half of the questions in a second process, with the cells of one."""
+"""The whole matrix: half of the questions in a second process, with the cells of one; what leaves its report alone."""
 
 from __future__ import annotations
 
+import json
 import os
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from typer.testing import CliRunner
 
 from tests.late import require
-from validation.engines import study
+from validation.__main__ import app
+from validation.engines import parts, study
+from validation.engines.interface import Registry
 from validation.engines.plugins import OWN
 from validation.engines.releases import Opened
 from validation.engines.workers import Worker
@@ -29,3 +34,39 @@ def test_two_processes_give_the_cells_of_one(engine: str, monkeypatch: pytest.Mo
             found.append([one.cell for one in study._all(run, reach, every, NAMES)])  # type: ignore[arg-type]
     assert found[0] == found[1] and {cell.model for cell in found[0]} == set(NAMES)
     assert sorted(told) == sorted(2 * NAMES)
+
+
+@pytest.mark.parametrize(
+    ("options", "writes"),
+    [
+        ("", True),
+        ("--engine mujoco --engine exudyn", True),
+        ("--engine exudyn", False),
+        ("--engine exudyn --report apart", True),
+        ("--engine exudyn --part stored.json", True),
+        ("--kinds ball", False),
+        ("--kinds ball --report apart", True),
+        ("--smoke", False),
+    ],
+)
+def test_what_asks_a_part_leaves_the_whole_report(
+    options: str, writes: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    require("exudyn", "validation")
+    require("mujoco", "validation")
+    names = tuple(NAMES)
+    known = Registry({name: OWN[name] for name in ("mujoco", "exudyn")})
+    monkeypatch.setattr(study, "questions", lambda: dict.fromkeys(names))
+    monkeypatch.setattr(study, "registry", lambda: known)
+    for asking in ("_all", "_within_a_minute"):
+        monkeypatch.setattr(study, asking, lambda *_: [])
+    empty = dict.fromkeys(("cells", "corrected", "identities", "functions", "absent"), {})
+    part = {"question": parts.question(), "engines": [{"name": "mujoco"}], "models": names, "proofs": (), **empty}
+    part["engines"][0] |= {"version": "", "conventions": [], "functions": {}}
+    (tmp_path / "stored.json").write_text(json.dumps(part | {"revision": "", "date": ""}), encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    result = CliRunner().invoke(app, ["engines", *options.split()])
+    assert result.exit_code in (0, 1), result.output
+    written = tmp_path / ("apart" if "apart" in options else "reports") / "engines.json"
+    assert written.exists() is writes
+    assert ("Report: " in result.output) is writes
