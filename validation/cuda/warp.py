@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
@@ -64,7 +65,8 @@ class _Side:
 
     def __init__(self, engine: Any, subject: Subject) -> None:
         self._warp, self._peer, mujoco = map(import_module, ("warp", "mujoco_warp", "mujoco"))
-        self._warp.config.quiet = True  # Else it prints what it compiles among the results.
+        # Else it prints what it compiles among the results; newer releases go by the level, older ones by `quiet`.
+        self._warp.config.quiet, self._warp.config.log_level = True, logging.WARNING
         self._subject, self._chart, self._described = subject, engine.chart, engine.model
         self._described.opt.timestep = STEP
         self._described.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER

@@ -7,11 +7,12 @@ from dataclasses import replace
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
 from . import mujoco
 from .loops.mujoco_forces import COPY, EXPLICIT
+from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
 # Trees without constraints need no room for their rows; Warp then compiles no kernels of the solver.
-_SETUP = """import warp as wp
-wp.config.quiet = True
+_SETUP = f"""import warp as wp
+{QUIET}
 import mujoco_warp as mjw
 def put(data, **fields):
     for name, value in fields.items():

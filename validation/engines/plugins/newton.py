@@ -10,8 +10,10 @@ from ..interface import SINGLE, STEP, Array, Convention, Joint, Link, Slot, Stat
 from .writing.source import Source, SourcePlugin, Way, numbered, series
 from .writing.urdf import has_bare_shape
 
-# Newton's import starts Warp, which then has to be quiet already. `b` is the builder, `m` the model.
-_IMPORTS = ("import numpy as np, warp as wp", "wp.config.quiet = True", "import newton")
+# Warp prints what it compiles unless it is set so before it starts; older releases go by `quiet`, newer ones by `log_level`.
+QUIET = "wp.config.quiet, wp.config.log_level = True, 30"
+# Newton's import starts Warp. `b` is the builder, `m` the model.
+_IMPORTS = ("import numpy as np, warp as wp", QUIET, "import newton")
 _AXIS = "axis = newton.ModelBuilder.JointDofConfig"
 _ROTATION = (
     "def rotation(x, y, z, w):",
