@@ -255,7 +255,7 @@ def _fault(plugin: EnginePlugin, name: str, functions: Collection[str]) -> str:
             return "conventions are pairs of what and convention, gravity is three numbers or none"
         dict(plugin.kinds), dict(plugin.slacks), plugin.version()
         unknown = [one for one in plugin.functions if functions and one.partition(":")[0] not in functions]
-        return f"no functions {', '.join(unknown)}: those that can be offered are in functions.py" if unknown else ""
+        return f"no functions {', '.join(unknown)}: those that can be offered are in functions" if unknown else ""
 
     said = attempted(stated)
     return said.words if isinstance(said, Raised) else said

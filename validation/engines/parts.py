@@ -22,7 +22,7 @@ IDENTITIES = ("engine", "identity", "model"), ("error", "ok")
 # Whoever measured says when, of which source, and by which versions.
 ORIGIN = ("revision", "date", "versions", "digest")
 # What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
-_ASKED = tuple("functions.py identities.py matrix.py scales.py states.py verdicts.py models/*.py truth/*.py".split())
+_ASKED = tuple("functions/*.py identities.py matrix.py scales.py states.py verdicts.py models/*.py truth/*.py".split())
 
 
 class PartsDisagree(ValueError):

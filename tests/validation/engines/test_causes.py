@@ -66,6 +66,8 @@ def test_what_no_stated_cause_explains_and_what_explains_nothing_are_said(data: 
         assert "Cause not yet found:" in text and "no balls (manual, p. 3)." in text
         assert "toy refuses 9 of 9 cells" in text
     frax = [cause for cause in stated() if cause.engine == "frax"]
+    mended = [cause for cause in stated() if cause.last]
+    assert mended and not set(mended) & set(stale([], [cause.engine for cause in mended]))
     assert frax and stale([], ["frax"]) == frax and not stale([], ["toy"])
 
 

@@ -60,9 +60,9 @@ def test_what_asks_a_part_leaves_the_whole_report(
     monkeypatch.setattr(study, "registry", lambda: known)
     for asking in ("_all", "_within_a_minute"):
         monkeypatch.setattr(study, asking, lambda *_: [])
-    empty = dict.fromkeys(("cells", "corrected", "identities", "functions", "absent"), {})
-    part = {"question": parts.question(), "engines": [{"name": "mujoco"}], "models": names, "proofs": (), **empty}
-    part["engines"][0] |= {"version": "", "conventions": [], "functions": {}}
+    engine = {"name": "mujoco", "version": "", "conventions": [], "functions": {}}
+    part: dict[str, object] = dict.fromkeys(("cells", "corrected", "identities", "functions", "absent"), {})
+    part |= {"question": parts.question(), "engines": [engine], "models": names, "proofs": ()}
     (tmp_path / "stored.json").write_text(json.dumps(part | {"revision": "", "date": ""}), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(app, ["engines", *options.split()])

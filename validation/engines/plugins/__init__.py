@@ -1,4 +1,4 @@
-"""One file an engine, each with its PLUGIN; none imports its engine before a model is built."""
+"""One module or folder an engine, each with its PLUGIN; none imports its engine before a model is built."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
 
 _SEQUENCES = "121 123 131 132 212 213 231 232 312 313 321 323".split()
 # Sets of attitude parameters -> how their functions are called: to and from quaternions, to matrices.
@@ -30,6 +30,7 @@ def _ways_of(own: str, of: str) -> dict[str, Way]:
 WAYS = {
     "rotation_matrix": Way("EP2C", "value = rbk.EP2C(q).T.ravel()"),
     "rotation_matrix:C2EP": Way("C2EP", "value = rbk.EP2C(rbk.C2EP(rbk.EP2C(q))).T.ravel()"),
+    "rotation_half_turns": Way("C2EP", f"{HALF_TURNS}value = [rbk.EP2C(rbk.C2EP(H)).T.ravel() for H in half_turns]"),
     "rotation_composed": Way("addEP", "value = rbk.EP2C(rbk.addEP(q, q2)).T.ravel()"),
     "rotation_angle": Way("subEP", "value = [np.linalg.norm(rbk.C2PRV(rbk.EP2C(rbk.subEP(q2, q))))]"),
     "rotation_logarithm": Way("C2PRV", "value = rbk.C2PRV(rbk.EP2C(q))"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
 from . import mujoco
-from .loops.mujoco_forces import COPY, EXPLICIT
+from .mujoco.forces import COPY, EXPLICIT
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 

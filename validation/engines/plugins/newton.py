@@ -10,7 +10,7 @@ from ..interface import SINGLE, STEP, Array, Convention, Joint, Link, Slot, Stat
 from .writing.source import Source, SourcePlugin, Way, numbered, series
 from .writing.urdf import has_bare_shape
 
-# Warp prints what it compiles unless it is set so before it starts; older releases go by `quiet`, newer ones by `log_level`.
+# Warp prints what it compiles unless this is set before it starts: `quiet` of older releases, the level of newer ones.
 QUIET = "wp.config.quiet, wp.config.log_level = True, 30"
 # Newton's import starts Warp. `b` is the builder, `m` the model.
 _IMPORTS = ("import numpy as np, warp as wp", QUIET, "import newton")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
 
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"
 _HALF = "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
@@ -19,6 +19,7 @@ WAYS = {
     ),
     "rotation_exponential_of_turns": Way("trexp", "value = sm.trexp(16 * v).ravel()"),
     "rotation_half_turn": Way("r2q", f"{_HALF}value = sm.q2r(sm.r2q(H)).ravel()"),
+    "rotation_half_turns": Way("r2q", f"{HALF_TURNS}value = [sm.q2r(sm.r2q(H)).ravel() for H in half_turns]"),
     "rotation_vector_rates_fixed": Way("rotvelxform", "value = sm.rotvelxform(v, inverse=True, representation='exp')"),
     "rotation_vector_rates_fixed:exp2jac": Way("exp2jac", "value = np.linalg.inv(sm.exp2jac(v))"),
     "rotation_vector_rates_rate": Way(

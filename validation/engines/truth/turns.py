@@ -9,6 +9,8 @@ and along the axes before, w = A^T r'. The angles roll, pitch, yaw make R = Rz R
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 
 from .arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve
@@ -64,6 +66,16 @@ def half_turn(t: Truth, s: Point) -> Exact:
     """Rows of the half turn about u = v + (4, -8, 8): 2 u u^T / u^2 - 1 (9)."""
     u = s.v + exact([4.0, -8.0, 8.0])
     return (2 * np.outer(u, u) / (u @ u) - eye(3)).reshape(9)
+
+
+# Axes of half turns: among them those along, between and near the coordinates' axes.
+AXES = tuple(axis for axis in product(range(-2, 3), repeat=3) if axis > (0, 0, 0))
+
+
+def half_turns(t: Truth, s: Point) -> Exact:
+    """Rows of the half turns about AXES (n, 9)."""
+    axes = (exact(np.array(axis, dtype=float)) for axis in AXES)
+    return np.array([(2 * np.outer(u, u) / (u @ u) - eye(3)).reshape(9) for u in axes])
 
 
 def _exponential(r: Exact) -> Exact:

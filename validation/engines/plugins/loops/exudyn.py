@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...interface import Array, Constraint, Convention, Joint, Slot, Tree, Unsupported
-from ..writing.source import Source, SourcePlugin, Way, series
+from ..writing.source import HALF_TURNS, Source, SourcePlugin, Way, series
 from . import exudyn_systems
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -239,6 +239,11 @@ WAYS |= {
         "RotationMatrix2EulerParameters",
         "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
         "value = ut.EulerParameters2RotationMatrix(ut.RotationMatrix2EulerParameters(H)).ravel()",
+    ),
+    "rotation_half_turns": Way(
+        "RotationMatrix2EulerParameters",
+        f"{HALF_TURNS}parameters = map(ut.RotationMatrix2EulerParameters, half_turns)\n"
+        "value = [ut.EulerParameters2RotationMatrix(p).ravel() for p in parameters]",
     ),
 }
 

@@ -27,6 +27,11 @@ OPTIONAL = {
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
+# Statements that make the matrices of `truth.turns.AXES`' half turns.
+HALF_TURNS = """from itertools import product
+turned_about = [np.array(u, float) for u in product(range(-2, 3), repeat=3) if u > (0, 0, 0)]
+half_turns = [2 * np.outer(u, u) / (u @ u) - np.eye(3) for u in turned_about]
+"""
 
 
 class Way(NamedTuple):

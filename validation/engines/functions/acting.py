@@ -1,0 +1,90 @@
+"""What acts on trees by their own statement, what sensors read of them, what files state of joints."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..truth import derived
+from ..truth.arithmetic import Exact
+from .function import Function
+
+
+def _acting() -> dict[str, Function]:
+    """What a tree's own forces show in."""
+    passive = ("dampers", "springs", "compensation", "tendons")
+    tendons, actuators = ("tendons",), ("actuators",)
+    return {
+        "passive_forces": Function(
+            "forces of springs, dampers, compensated weights (nv)", lambda t, s: t.own.passive(s.q, s.v), passive
+        ),
+        "tendon_lengths": Function("lengths of tendons (n)", lambda t, s: _column(t.own.lines(s.q), 0), tendons),
+        "tendon_arms": Function("their derivatives (n, nv)", lambda t, s: _column(t.own.lines(s.q), 1), tendons),
+        "actuator_lengths": Function(
+            "lengths that actuators act on, times gear (nu)",
+            lambda t, s: _column(t.own.transmissions(s.q), 0),
+            actuators,
+        ),
+        "actuator_arms": Function(
+            "their derivatives (nu, nv)", lambda t, s: _column(t.own.transmissions(s.q), 1), actuators
+        ),
+        "actuator_forces": Function("forces of actuators (nu)", lambda t, s: t.own.efforts(s.q, s.v), actuators),
+        "actuated_forces": Function(
+            "what they do along the speeds (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
+        ),
+    }
+
+
+def _column(rows: list[tuple[Exact, Exact]], place: int) -> Exact:
+    return np.array([row[place] for row in rows])
+
+
+ACTING = _acting()
+
+
+def _measured() -> dict[str, Function]:
+    """What sensors read at q, v, a, at their frames and along their axes unless said otherwise."""
+    rows = {
+        "accelerometers": ("acceleration less that of gravity (n, 3)", derived.accelerometers),
+        "gyroscopes": ("angular velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, 3:]),
+        "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
+        "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
+        "frame_poses": ("positions and rows of R (n, 12)", derived.frame_poses),
+        "frame_jacobians": ("Jacobians of the frames along the world's axes (n, 6, nv)", derived.frame_jacobians),
+        "accelerometers_driven": (
+            "accelerometers at the accelerations that tau makes (n, 3)",
+            derived.driven(derived.accelerometers),
+        ),
+        "angular_accelerations_driven": (
+            "angular_accelerations at the accelerations that tau makes (n, 3)",
+            derived.driven(derived.angular_accelerations),
+        ),
+        "wrench_sensors_driven": (
+            "wrench_sensors at the accelerations that tau makes (n, 6)",
+            derived.driven(derived.wrench_sensors),
+        ),
+        "applied_wrenches": (
+            "forces (nv) that do what the wrench (1, -2, 3; 0.5, -0.25, 0.75) does at each frame, along its axes",
+            derived.applied_wrenches,
+        ),
+        "wrench_sensors": (
+            "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
+            derived.wrench_sensors,
+        ),
+    }
+    return {name: Function(text, truth, ("sensors",)) for name, (text, truth) in rows.items()}
+
+
+MEASURED = _measured()
+
+
+def _stated_in_files() -> dict[str, Function]:
+    """What readers make of losses of joints: no function of q and v need depend on them."""
+    rows = {
+        "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
+        "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
+        "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
+    }
+    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+
+
+STATED = _stated_in_files()

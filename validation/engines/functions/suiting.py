@@ -1,0 +1,32 @@
+"""All functions by name, and which of them a tree is for."""
+
+from __future__ import annotations
+
+from ..tree import Tree
+from .acting import ACTING, MEASURED, STATED
+from .beside import LONE, TURNS
+from .constrained import CONSTRAINED
+from .function import Function
+from .integrators import STEPS
+from .trees import TREES
+
+FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS
+_ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
+_SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
+# What is asked of a tree with constraints besides, for identities.
+_BESIDES = ("mass_matrix", "bias")
+
+
+def suits(way: str, tree: Tree) -> bool:
+    """Whether a way to a function is for a tree: of constraints and of forces only where it has some."""
+    name = way.partition(":")[0]
+    needs = FUNCTIONS[name].needs
+    if tree.asked:
+        return tree.asked in needs
+    if tree.constraints:
+        return name in CONSTRAINED or way in _BESIDES
+    if needs:
+        return bool(tree.demands & set(needs))
+    if tree.sensors:
+        return name in _SENSED
+    return name in STEPS or name in _ACTED_ON if tree.forces else name not in CONSTRAINED

@@ -1,0 +1,181 @@
+"""MuJoCo: models by its XML."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ...interface import Convention, Statement, Tree, Unsupported
+from ..writing.source import Source, SourcePlugin, attached, numbered
+from ..writing.urdf import UNIT_AXIS, has_bare_shape
+from . import elements as beside
+from . import flex, forces, functions
+from .document import CHARTS, document
+
+# Fields of MuJoCo's model that state what is changed.
+_CHANGED = {
+    "mass": ("body_mass",),
+    "inertia": ("body_inertia", "body_ipos", "body_iquat"),
+    "frame": ("body_pos", "body_quat"),
+    "gravity": ("opt.gravity",),
+}
+
+
+def _changing(tree: Tree, xml: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Statements that build the changed model beside the first, and those that turn this into it for each call."""
+    lines = ("from copy import copy", "first = copy(m)", f"last = mj.MjModel.from_xml_string('''{xml}''')")
+    closing = []
+    for source in ("first", "last"):
+        closing += [f"m.{name}[:] = {source}.{name}" for name in _CHANGED[tree.changed]]
+        closing += ["mj.mj_setConst(m, d)", *(["mj.mj_forward(m, d)"] if source == "first" else [])]
+    return lines, tuple(closing)
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """Text that builds a tree."""
+    if tree.asked == "flexible bodies":
+        return flex.write(tree)
+    if tree.changed:
+        first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
+        if isinstance(first, Unsupported) or isinstance(last, Unsupported):
+            return first if isinstance(first, Unsupported) else Unsupported("", offered=False)
+        both, closing = _changing(tree, last[0])
+        return replace(first, lines=(*first.lines, *both), closing=closing)
+    made = document(tree, principal=True)
+    if isinstance(made, Unsupported):
+        return made
+    xml, slots, nq, nv = made
+    if tree.fused:
+        xml = xml.replace("<compiler ", '<compiler fusestatic="true" ')
+    lines = ["import numpy as np", "import mujoco as mj", *_compiled(tree, xml), "d = mj.MjData(m)"]
+    lines += beside.controls(tree)
+    # A model that is attached takes a prefix to its names; links that are fused are there no more.
+    own = attached(tree)
+    names = [("own_" if k in own else "") + link.name for k, link in enumerate(tree.links)]
+    if tree.fused:
+        return Source(tuple(lines), slots, nq, nv)
+    optional = {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)} | beside.optional(tree)
+    if tree.sensors:
+        optional["sensed"] = (
+            f"sensed = range({len(tree.sensors)})",
+            "def data(kind, k): return d.sensor(f'{kind}{k}').data",
+        )
+    spelling = beside.spelling(tree) if tree.constraints else {}
+    return Source(tuple(lines), slots, nq, nv, optional, spelling=spelling)
+
+
+def _compiled(tree: Tree, xml: str) -> list[str]:
+    """Statements that make the model `m`, of one document or of two, one attached to the other."""
+    own = attached(tree)
+    if not own:
+        return [f"m = mj.MjModel.from_xml_string('''{xml}''')"]
+    first = min(own)
+    kept = {k: place for place, k in enumerate(k for k in range(len(tree.links)) if k not in own)}
+    places = {k: place for place, k in enumerate(sorted(own))}
+    rest = tuple(replace(tree.links[k], parent=kept.get(tree.links[k].parent, -1)) for k in kept)
+    branch = tuple(replace(tree.links[k], parent=places.get(tree.links[k].parent, -1)) for k in sorted(own))
+    texts = []
+    for links in (rest, branch):
+        part = document(replace(tree, links=links, attached=""), principal=True)
+        assert not isinstance(part, Unsupported)  # The whole is none, either.
+        texts.append(part[0])
+    holder = tree.links[tree.links[first].parent].name
+    return [
+        f"s = mj.MjSpec.from_string('''{texts[0]}''')",
+        f"own = mj.MjSpec.from_string('''{texts[1]}''')",
+        f"s.body({holder!r}).add_frame().attach_body(own.body({tree.attached!r}), 'own_', '')",
+        "m = s.compile()",
+    ]
+
+
+_READERS = {
+    "urdf": "mj.MjModel.from_xml_string({text})",
+    "mjcf": "mj.MjModel.from_xml_string({text})",
+    "mjcf written": "mj.MjModel.from_xml_string(mj.MjSpec.from_string({text}).to_xml())",
+}
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has MuJoCo read a file."""
+    if any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("a joint that mimics stays one, with an equality constraint", offered=False)
+    # MuJoCo's hinges know no cosine and sine: a joint of URDF without limits is one without limits.
+    charts = {(kind, shape): chart for kind, (chart, _, _) in CHARTS.items() for shape in ("", "unbounded")}
+    made = numbered(tree, charts)
+    if isinstance(made, Unsupported):
+        return made
+    slots, nq, nv = made
+    names = [link.name for link in tree.links]
+    lines = (
+        "import numpy as np",
+        "import mujoco as mj",
+        f"m = {_READERS[form].format(text=repr(text))}",
+        "d = mj.MjData(m)",
+        *beside.controls(tree),
+    )
+    # Links that don't move are fused into what they are fixed to (`fusestatic`): none of them is there to be asked.
+    fused = form == "urdf" and not all(slots)
+    optional = {} if fused else {"bs": (f"bs = [m.body(name).id for name in {names!r}]",)}
+    if tree.sensors:
+        optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
+    return Source(lines, slots, nq, nv, optional)
+
+
+PLUGIN = SourcePlugin(
+    name="mujoco",
+    package="mujoco",
+    extra="mujoco",
+    conventions=(
+        Convention("quaternion", "w, x, y, z"),
+        Convention("free joint", "linear velocity in world axes, angular velocity in the axes of the body"),
+        Convention(
+            "constraints", "soft: a row's acceleration is aref - R f; R is least, not zero, at the impedance 0.9999"
+        ),
+        Convention("force, torque", "what holds the sensor's body, as cfrc_int: at rest the force is upwards"),
+        Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
+    ),
+    kinds={},
+    ways=functions.WAYS | beside.WAYS | forces.WAYS,
+    write=write,
+    constraints=beside.KINDS,
+    demands={
+        "attached": "MjSpec, attach_body",
+        "fused": "fusestatic",
+        **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in _CHANGED.items()},
+        "dampers": "damping",
+        "springs": "stiffness, springref",
+        "compensation": "gravcomp",
+        "sensors": "sensor",
+        "tendons": "tendon/fixed, tendon/spatial",
+        "wrapped tendons": "tendon/spatial/geom",
+        "heavy tendons": "tendon armature",
+        "flexible bodies": "flexcomp",
+        "scaled welds": "equality/weld torquescale",
+        "a lone body": "efc_diagApprox",
+        "actuators": "general, motor, position, velocity",
+    },
+    formats=tuple(_READERS),
+    write_reading=write_reading,
+    statements=(
+        Statement(
+            "precondition",
+            "where <inertial> is missing, mass and moments are inferred from geoms",
+            "https://mujoco.readthedocs.io/en/stable/XMLreference.html#compiler-inertiafromgeom: auto",
+            holds=has_bare_shape,
+        ),
+        Statement(
+            "precondition",
+            "mj_rne leaves armature out: mj_inverse adds armature*qacc, later M*qacc, to what it gives",
+            "mujoco, src/engine/engine_inverse.c: mj_inverseSkip",
+            "inverse_dynamics:mj_rne",
+            lambda tree, text: any(any(joint.armature) for link in tree.links for joint in link.joints),
+        ),
+        Statement(
+            "precondition",
+            "a row's reference acceleration is -b v - k r: what the rate of a tendon's Jacobian adds, J'v, is left out",
+            "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
+            "constraint_velocity_products|constrained_acceleration|constraint_forces",
+            lambda tree, text: any(one.kind == "path" for one in tree.constraints),
+        ),
+        UNIT_AXIS,
+    ),
+)
