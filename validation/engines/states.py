@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .interface import Array, HasLayout, State, Tree
+from .interface import HasLayout, State, Tree
 from .truth.constraints import closed
-from .truth.dynamics import random_state
+from .truth.dynamics import neutral, random_state
 
 # How much faster the fast state is than the first.
 FAST = 100.0
@@ -24,22 +24,6 @@ class Visit(NamedTuple):
 
     name: str
     state: State
-
-
-def neutral(layout: HasLayout) -> Array:
-    """Coordinates (nq) that move nothing: zeros, but for the real parts of quaternions and the cosines."""
-    q = np.zeros(layout.nq)
-    for slot in (slot for link in layout.slots for slot in link):
-        places, chart = list(slot.q), slot.chart
-        if "cos sin" in chart:
-            q[places[-2]] = 1.0
-        elif "xyzw" in chart:
-            q[places[-1]] = 1.0
-        elif "wxyz" in chart:
-            q[places[-4]] = 1.0
-        elif "quaternion first" in chart:
-            q[places[0]] = 1.0
-    return q
 
 
 def visits(tree: Tree, layout: HasLayout, first: State, seed: int, many: int) -> Iterator[Visit]:

@@ -277,6 +277,8 @@ class Tree:
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
         away: Added to the positions that random states have of free joints [m].
+        near: Random states are near to where nothing has moved: coordinates' distances from there, speeds and forces
+            are 2^-near of what they would be; rates of speeds are not.
         asked: What else an engine must know by name to be asked about it, such as "turns" or "flexible bodies"; only
             functions that need it are asked of such a tree.
     """
@@ -292,6 +294,7 @@ class Tree:
     actuators: tuple[Actuator, ...] = ()
     sensors: tuple[End, ...] = ()
     away: Vector = ORIGIN
+    near: int = 0
     asked: str = ""
 
     @property

@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 
 from validation.engines.interface import Slot, Tree
-from validation.engines.matrix import cells
+from validation.engines.matrix import SEED, cells
 from validation.engines.models import flexible, mjcf_geoms, single
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
@@ -17,6 +17,8 @@ from validation.engines.truth import derived, turns
 from validation.engines.truth.arithmetic import Exact, arc, cos_sin, exact, many_digits
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.engines.truth.kinematics import around
+from validation.engines.verdicts import expected, judge
+from validation.engines.workers import Job, answered
 
 TURNS = single.trees()["rotations"]
 
@@ -154,6 +156,23 @@ def test_a_line_that_passes_a_surface_or_begins_in_it_is_straight() -> None:
 
 def _verdicts(engine: str, tree: Tree) -> dict[str, str]:
     return {cell.function: cell.verdict for cell in cells(OWN[engine], tree)}
+
+
+def test_a_series_that_ends_early_and_a_half_turn_of_another_sign_are_red_cells() -> None:
+    """The first is right where its angle is large enough for another formula, and so is the second for most axes."""
+    tree = single.trees()["rotations, 2^-8 from none"]
+    (answer,) = answered(Job("pinocchio", tree, ("rotation_exponential",), SEED))
+    assert answer.layout is not None and answer.state is not None
+    x, y, z = answer.state.v
+    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    want = expected("rotation_exponential", tree, answer.layout, answer.state)
+    given = (np.eye(3) + S + S @ S / 2.0).ravel()
+    assert judge("planted", tree, "rotation_exponential", np.asarray(answer.value), want).verdict == "right"
+    assert judge("planted", tree, "rotation_exponential", given, want).verdict == "imprecise"
+    half = expected("rotation_half_turns", tree, answer.layout, answer.state)
+    flipped = half.value.copy()
+    flipped[turns.AXES.index((1, 0, 2)), [2, 6]] *= -1.0
+    assert judge("planted", tree, "rotation_half_turns", flipped, half).verdict == "wrong"
 
 
 @pytest.mark.parametrize("engine", ["pinocchio"])

@@ -16,7 +16,7 @@ from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin, Way
 from validation.engines.proving import scripts
 from validation.engines.scales import size_of
-from validation.engines.states import neutral
+from validation.engines.truth.dynamics import neutral
 from validation.engines.verdicts import expected, judge, refusals
 from validation.engines.workers import Job
 

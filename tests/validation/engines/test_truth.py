@@ -18,8 +18,8 @@ from validation.engines.proving.pieces import Layout
 from validation.engines.proving.shrink import Case, size, smallest
 from validation.engines.truth import derived
 from validation.engines.truth.arithmetic import cos_sin, exact, many_digits, rate, solve
-from validation.engines.truth.charts import CHARTS
-from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.charts import CHARTS, GEOMETRIES
+from validation.engines.truth.dynamics import Point, Truth, digits, neutral, random_state
 from validation.oracle import kane
 from validation.truth_data.descriptions import system
 
@@ -175,3 +175,24 @@ def test_the_truth_and_sympys_derivations_agree_to_thirty_digits() -> None:
         for mine, other in zip(ours, theirs, strict=True):
             apart = [abs(mpmath.mpf(str(a)) - b) for a, b in zip(np.ravel(mine), other, strict=True)]
             assert max(apart) < mpmath.mpf(10) ** -30
+
+
+@pytest.mark.parametrize("chart", CHARTS)
+def test_states_near_zero_are_near_where_nothing_has_moved(chart: str) -> None:
+    kind = next((kind for kind, own in GEOMETRIES.items() if own == chart), "free" if "free" in chart else "ball")
+    kind = "revolute" if chart == "cos sin" else "planar" if "planar" in chart else kind
+    joint = Joint(kind, radii=(0.5, 0.25, 1.0), sequence="XYZ", pitch=0.5)
+    tree = Tree("near", (Link("a", -1, (joint,)),), near=20)
+    layout = Layout(
+        CHARTS[chart].nq,
+        CHARTS[chart].nv,
+        ((Slot(chart, tuple(range(CHARTS[chart].nq)), (*range(CHARTS[chart].nv),)),),),
+    )
+    state = random_state(tree, layout, 3)
+    truth = Truth(tree, layout)
+    with many_digits():
+        near, still = (digits(truth.kinematics.flat_poses(exact(q)))[0] for q in (state.q, neutral(layout)))
+    assert 0.0 < np.abs(near - still).max() < 6 * 2.0**-20
+    R = near[3:].reshape(3, 3)
+    np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-15)
+    assert max(np.abs(part).max() for part in (state.v, state.tau, state.v2)) <= 2.0**-20 < np.abs(state.a).max()

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, Vector, rows, vector
-from .kinds import OBLIQUE, link, placed, shifted
+from .kinds import OBLIQUE, link, placed, shifted, tree_of
 
 _NOTHING: Rows = (ORIGIN, ORIGIN, ORIGIN)
 
@@ -118,6 +118,17 @@ def _far(name: str, p: Vector) -> Tree:
     return Tree(name, (replace(first, joints=(joint,)), *rest))
 
 
+# Joints whose turns engines expand in series near zero, and how near: beside the series' usual bounds of 1e-3 and 1e-4,
+# and where the cosine is 1 in doubles.
+_TURNING, _NEAR = ("ball", "free", "planar", "free between links", "ellipsoid", "helical"), (12, 27)
+
+
+def _small_turns() -> list[Tree]:
+    return [
+        replace(tree_of(kind), name=f"{kind}, 2^-{near} from zero", near=near) for kind in _TURNING for near in _NEAR
+    ]
+
+
 def trees() -> dict[str, Tree]:
     """The hostile set, by name."""
     draw = np.random.default_rng(7)
@@ -145,5 +156,6 @@ def trees() -> dict[str, Tree]:
         _far("base 10 km away", (6400.0, -4800.0, 6000.0)),
         replace(_free_with_branches(), name="free base 10 km away", away=(6400.0, -4800.0, 6000.0)),
         Tree("six oblique hinges", _chain("six", 6)),
+        *_small_turns(),
     )
     return {tree.name: tree for tree in made}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -50,8 +51,10 @@ def _ball(name: str, radius: float, density: float, **joint: Any) -> Tree:
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     low, high, aside = (0.5, -0.25, 1.0), (1.5, 0.75, 3.0), (1.0, -0.5, 2.0)
+    turns = Tree("rotations", (Link("a", -1, (Joint("ball"),)),), asked="turns")
     made = (
-        Tree("rotations", (Link("a", -1, (Joint("ball"),)),), asked="turns"),
+        turns,
+        *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),
         _box("box by its corners", low, high, 0.5),
         _box("box by its corners, the other way round", low, high, 0.5),

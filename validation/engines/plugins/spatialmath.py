@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..interface import Convention, Slot, Tree, Unsupported
+from ..interface import Convention, Slot, Statement, Tree, Unsupported
 from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
 
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"
@@ -55,4 +55,13 @@ PLUGIN = SourcePlugin(
     ways=WAYS,
     write=write,
     demands={"turns": "rotations as quaternions and matrices"},
+    statements=(
+        Statement(
+            "precondition",
+            "a matrix whose trace is 3 but for 20 roundings turns by nothing, that is by less than some 1e-7",
+            'spatialmath 1.1.18, trlog: "tol: Tolerance in units of eps for zero-rotation case, defaults to 20"',
+            "rotation_logarithm.*",
+            lambda tree, text: tree.near > 20,
+        ),
+    ),
 )

@@ -6,12 +6,13 @@ no engine and no recursion has a part in it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import Array, HasLayout, State, Tree
+from ..interface import Array, HasLayout, Slot, State, Tree
 from .arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
 from .charts import CHARTS, Pose
 from .forces import Forces
@@ -178,8 +179,37 @@ class Truth:
         return stack([rate(function, v, unit[k]) for k in range(self.nv)])
 
 
+def neutral(layout: HasLayout) -> Array:
+    """Coordinates (nq) that move nothing: zeros, but for the real parts of quaternions and the cosines."""
+    q = np.zeros(layout.nq)
+    for slot in (slot for link in layout.slots for slot in link):
+        unit = _unit_places(slot)
+        if unit:
+            q[unit[-1] if "xyzw" in slot.chart else unit[0]] = 1.0
+    return q
+
+
+def _unit_places(slot: Slot) -> tuple[int, ...]:
+    """Places of the coordinates of a joint that make a unit vector: a quaternion, or cosine and sine."""
+    if "cos sin" in slot.chart:
+        return slot.q[-2:]
+    if "quaternion first" in slot.chart:
+        return slot.q[:4]
+    return slot.q[-4:] if "xyzw" in slot.chart or "wxyz" in slot.chart else ()
+
+
+def _nearer(layout: HasLayout, q: Array, part: float) -> Array:
+    """Coordinates (nq) a part of the way from where nothing has moved to q."""
+    start = neutral(layout)
+    near = start + part * (q - start)
+    for slot in (slot for link in layout.slots for slot in link):
+        if unit := list(_unit_places(slot)):
+            near[unit] /= math.hypot(*near[unit])
+    return near
+
+
 def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
-    """A random state on the manifold of an engine's coordinates, of sizes about one."""
+    """A random state on the manifold of an engine's coordinates, of sizes about one, or near zero (`Tree.near`)."""
     draw = np.random.default_rng(seed)
     kinematics = Kinematics(tree, model)
     q, q2 = np.zeros(model.nq), np.zeros(model.nq)
@@ -191,6 +221,10 @@ def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
                     coordinates[list(slot.q)] = chart.sample(joint, draw)
                     coordinates[[slot.q[k] for k in chart.position]] += tree.away[: len(chart.position)]
     v, a, tau, v2 = (draw.uniform(-1.0, 1.0, model.nv) for _ in range(4))
+    if tree.near:
+        part = 2.0**-tree.near
+        q, q2 = (_nearer(model, one, part) for one in (q, q2))
+        v, tau, v2 = (part * one for one in (v, tau, v2))
     return State(q, v, a, tau, v2, q2)
 
 
