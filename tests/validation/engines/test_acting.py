@@ -54,8 +54,9 @@ def test_engines_are_right_about_trees_that_forces_act_on(engine: str, name: str
 @pytest.mark.parametrize("engine", ["mujoco", "pinocchio"])
 @pytest.mark.parametrize("name", SENSED)
 def test_sensors_read_what_they_document(engine: str, name: str) -> None:
-    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], SENSED[name])}
-    assert "accelerometers" in verdicts and "gyroscopes" in verdicts
+    tree = SENSED[name]
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN[engine], tree)}
+    assert not asked(OWN[engine], tree) or {"accelerometers", "gyroscopes"} <= set(verdicts)
     assert set(verdicts.values()) <= {"right", "not offered"}
 
 
@@ -70,6 +71,21 @@ def test_a_sensor_that_forgets_where_it_stands_is_a_red_cell() -> None:
         assert expected is not None
         verdicts.append(judge("planted", tree, name, np.asarray(given[name].answer.value), expected).verdict)
     assert verdicts == ["wrong", "wrong", "wrong", "right"]
+
+
+@pytest.mark.parametrize("name", ["sensors on damped hinges", "sensors on driven joints"])
+def test_a_wrench_without_the_share_of_the_joint_is_a_red_cell(name: str) -> None:
+    """What a damper or a motor does is part of what holds a link; along a free hinge there would be nothing."""
+    tree = SENSED[name]
+    bare = replace(
+        tree,
+        actuators=(),
+        links=tuple(replace(one, joints=(replace(one.joints[0], damping=0.0),)) for one in tree.links),
+    )
+    (wanted,), (given,) = (_judged("mujoco", one, "wrench_sensors_driven").values() for one in (tree, bare))
+    assert wanted.want is not None and wanted.cell.verdict == given.cell.verdict == "right"
+    answer = np.asarray(given.answer.value)
+    assert judge("planted", tree, "wrench_sensors_driven", answer, wanted.want).verdict == "wrong"
 
 
 @pytest.mark.parametrize("reading", ["accelerometers", "angular_accelerations", "wrench_sensors"])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..interface import End, Joint, Link, Tree
+from ..interface import Actuator, End, Joint, Link, Tree
 from .kinds import OBLIQUE, link, placed, shifted, turned
 
 _HINGE = Joint("revolute", axis=OBLIQUE)
@@ -21,9 +23,32 @@ def _sensed(name: str, *joints: Joint, base: bool = False, sideways: bool = Fals
     return Tree(name, tuple(links), shifted(draw, 20.0) if "aside" in name else (0.0, 0.0, -9.81), sensors=sensors)
 
 
+def _of_forces() -> list[Tree]:
+    """Joints that act on both of their links, which no sensor tells from what holds the link: losses, springs, motors.
+
+    What armature adds to the mass matrix is in no link: sensors read what the links' own masses take.
+    """
+    damped, geared = replace(_HINGE, damping=0.75), replace(_HINGE, armature=(0.75,))
+    sprung = replace(_HINGE, damping=0.5, stiffness=3.0, rest=0.25)
+    slide = Joint("prismatic", axis=OBLIQUE, damping=1.5, stiffness=8.0, rest=0.125)
+    driven = _sensed("sensors on driven joints", _HINGE, Joint("prismatic", axis=OBLIQUE), _HINGE)
+    motors = (
+        Actuator("a", gear=3.0, control=0.75),
+        Actuator("b", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5),
+    )
+    return [
+        _sensed("sensors on damped hinges", damped, damped, damped),
+        _sensed("sensors on springs and dampers", sprung, slide, sprung),
+        _sensed("sensors beyond a damped ball", _HINGE, Joint("ball", damping=0.5), damped),
+        _sensed("sensors on hinges with armature", geared, geared, geared),
+        replace(driven, actuators=motors),
+    ]
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     made = (
+        *_of_forces(),
         _sensed("sensors on hinges", _HINGE, _HINGE, _HINGE),
         _sensed("sensors on branches, gravity aside", _HINGE, _HINGE, _HINGE, sideways=True),
         _sensed("sensors on a slide and hinges", Joint("prismatic", axis=OBLIQUE), _HINGE, _HINGE),

@@ -15,6 +15,7 @@ _MEASURED = f"{QVA}mj.mj_rnePostConstraint(m, d)\nmj.mj_sensorVel(m, d); mj.mj_s
 _DRIVEN = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
 # On data that are new: what was computed before hides what isn't computed again.
 _DRIVEN_AGAIN = """e = mj.MjData(m)
+e.ctrl[:] = d.ctrl
 e.qpos[:], e.qvel[:], e.qfrc_applied[:] = q, v, a
 mj.mj_step1(m, e); mj.mj_step2(m, e)
 e.qpos[:], e.qvel[:] = q, v
