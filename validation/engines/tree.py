@@ -59,6 +59,8 @@ class Joint:
         friction: Greatest force of dry friction against each of its speeds; files state it, no function has its force.
         force_limits: Least and greatest force that actuators make together along a joint of one coordinate; () for
             none.
+        limits: Least and greatest coordinate of a joint of one coordinate, that files state and no function has; () for
+            none.
     """
 
     kind: str
@@ -80,6 +82,7 @@ class Joint:
     rest: float = 0.0
     friction: float = 0.0
     force_limits: tuple[float, ...] = ()
+    limits: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,16 @@ def _verdicts(plugin: EnginePlugin, reading: Reading) -> set[str]:
     return {one.cell.verdict for one in judged(plugin, job, Truths())}
 
 
+def test_a_range_in_the_unit_of_angles_and_ranges_of_joints_in_another_order_are_red_cells() -> None:
+    reading = _FILES["mjcf: ranges of two joints, angle left out"]
+    job = Job("mujoco", reading.tree, ("joint_limits",), SEED, form=reading.form, text=reading.text)
+    (one,) = judged(OWN["mujoco"], job, Truths())
+    assert one.want is not None and one.cell.verdict == "right"
+    answer = np.asarray(one.answer.value)
+    for planted in (np.vstack([answer[:2], np.radians(answer[2:])]), answer[[0, 2, 1]]):
+        assert judge("planted", reading.tree, "joint_limits", planted, one.want).verdict == "wrong"
+
+
 def test_digits_that_are_lost_about_a_far_origin_are_seen() -> None:
     verdicts = {
         engine: next(cells(OWN[engine], trees()["base 10 km away"], ("mass_matrix_inverse",))).verdict

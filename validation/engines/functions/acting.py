@@ -82,6 +82,7 @@ def _stated_in_files() -> dict[str, Function]:
     rows = {
         "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
         "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
+        "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
         "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
     }
     return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}

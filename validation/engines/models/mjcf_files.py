@@ -15,7 +15,6 @@ from .readers import (
     BODY,
     DRIVEN,
     IDENTITY,
-    LOSSES,
     NEXT,
     OBLONG,
     PASSIVE,
@@ -32,9 +31,9 @@ from .readers import (
 )
 
 RADIAN = '<compiler angle="radian"/>'
-_MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'
-_MB = '<inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/>'
-_JOINT_A, JOINT_B = '<joint axis="0 0 1"/>', '<joint axis="0 1 0"/>'
+MA = '<inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/>'
+MB = '<inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/>'
+JOINT_A, JOINT_B = '<joint axis="0 0 1"/>', '<joint axis="0 1 0"/>'
 _AT_A, _AT_B = 'pos="0.1 0.2 0.3"', 'pos="0 0 0.5"'
 # The first body is not turned.
 FIRST = hung(BODY, R=IDENTITY)
@@ -44,7 +43,7 @@ _WATER = 1000.0
 _of = partial(readers.reading, "mjcf")
 
 
-def file(a: str = _JOINT_A + _MA, b: str = JOINT_B + _MB, head: str = RADIAN, at: tuple[str, str] = ("", "")) -> str:
+def file(a: str = JOINT_A + MA, b: str = JOINT_B + MB, head: str = RADIAN, at: tuple[str, str] = ("", "")) -> str:
     """Two bodies: what each states inside, what goes before them, and further attributes of each."""
     inner = f'<body name="b" {_AT_B} {at[1]}>{b}</body>'
     return f'<mujoco model="m">{head}<worldbody><body name="a" {_AT_A} {at[0]}>{a}{inner}</body></worldbody></mujoco>'
@@ -97,7 +96,7 @@ def _joints() -> Iterator[tuple[str, Reading]]:
 
     def second(name: str, text: str, *joints: Joint, head: str = RADIAN) -> tuple[str, Reading]:
         place = Joint("fixed", p=(0.0, 0.0, 0.5))
-        return _of(name, file(b=text + _MB, head=head), FIRST, replace(NEXT, joints=(place, *joints)))
+        return _of(name, file(b=text + MB, head=head), FIRST, replace(NEXT, joints=(place, *joints)))
 
     y, x = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
     hinge, slide = Joint("revolute", axis=y), Joint("prismatic", axis=x)
@@ -127,8 +126,8 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     heavy = replace(slide, armature=(0.5,))
     yield second("armature of a slide", '<joint type="slide" axis="1 0 0" armature="0.5"/>', heavy)
     losses = '<joint axis="0 1 0" range="-1 1" damping="3" stiffness="7" springref="0.4" frictionloss="0.3"/>'
-    yield _of("limits, springs and dampers", file(b=losses + _MB), FIRST, NEXT, asked=PASSIVE)
-    loose = file().replace(_AT_A, "").replace(_JOINT_A, "<freejoint/>")
+    yield _of("limits, springs and dampers", file(b=losses + MB), FIRST, NEXT, asked=PASSIVE)
+    loose = file().replace(_AT_A, "").replace(JOINT_A, "<freejoint/>")
     free = replace(FIRST, joints=(Joint("free"),))
     yield _of("free joint", loose, free, NEXT)
     yield _of("joint of type free", loose.replace("<freejoint/>", '<joint type="free"/>'), free, NEXT)
@@ -138,34 +137,34 @@ def _inertias() -> Iterator[tuple[str, Reading]]:
     """What bodies state of inertia, and what geoms beside it count for."""
 
     def first(name: str, inertial: str, head: str = RADIAN, **changes: object) -> tuple[str, Reading]:
-        return _of(name, file(_JOINT_A + inertial, head=head), replace(FIRST, **changes), NEXT)  # type: ignore[arg-type]
+        return _of(name, file(JOINT_A + inertial, head=head), replace(FIRST, **changes), NEXT)  # type: ignore[arg-type]
 
-    full = _MA.replace('diaginertia="0.2 0.3 0.4"', f'fullinertia="{" ".join(map(str, PRODUCTS))}"')
+    full = MA.replace('diaginertia="0.2 0.3 0.4"', f'fullinertia="{" ".join(map(str, PRODUCTS))}"')
     yield first("inertia in full", full, inertia=OBLONG)
     R = about((2.0, -2.0, 4.0), 2.0 * math.acos(0.2))
-    quat = _MA.replace("/>", ' quat="0.2 0.4 -0.4 0.8"/>')
+    quat = MA.replace("/>", ' quat="0.2 0.4 -0.4 0.8"/>')
     yield first("inertial frame turned", quat, inertia=along(R, PRINCIPAL))
-    euler = _MA.replace("/>", ' euler="0.5 0.6 0.7"/>')
+    euler = MA.replace("/>", ' euler="0.5 0.6 0.7"/>')
     by_angles = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
     yield first("inertial frame turned by angles", euler, inertia=along(by_angles, PRINCIPAL))
     equal = quat.replace("0.2 0.3 0.4", "0.3 0.3 0.3")
     yield first("equal moments, frame turned", equal, inertia=diagonal(0.3, 0.3, 0.3))
     # Mass centres have no default; without a position the frame stands at the body's.
     shapes = '<geom type="box" size="0.1 0.2 0.3" mass="9"/><geom size="0.2" pos="1 2 3"/>'
-    yield first("geoms beside inertia", _MA + shapes)
+    yield first("geoms beside inertia", MA + shapes)
     never = '<compiler angle="radian" inertiafromgeom="false"/>'
-    yield first("geoms beside inertia, inertiafromgeom false", _MA + shapes, never)
+    yield first("geoms beside inertia, inertiafromgeom false", MA + shapes, never)
     box = '<geom type="box" size="0.1 0.2 0.3" pos="0.1 -0.2 0.3" mass="3"/>'
     boxed = {"mass": 3.0, "inertia": diagonal(0.13, 0.1, 0.05)}
     always = '<compiler angle="radian" inertiafromgeom="true"/>'
-    text = file(_JOINT_A + _MA + box, JOINT_B + box, always)
+    text = file(JOINT_A + MA + box, JOINT_B + box, always)
     second = replace(NEXT, com=BODY.com, **boxed)  # type: ignore[arg-type]
     yield _of("geoms beside inertia, inertiafromgeom true", text, replace(FIRST, **boxed), second)  # type: ignore[arg-type]
     total = '<compiler angle="radian" settotalmass="6"/>'
     double = [replace(one, mass=2.0 * one.mass, inertia=diagonal(0.4, 0.6, 0.8)) for one in (FIRST, NEXT)]
     yield _of("total mass set", file(head=total), *double)
     decoration = '<site name="s" size="0.3" type="box" pos="1 2 3"/><camera pos="1 1 1"/><light pos="1 1 1"/>'
-    yield first("sites, cameras and lights", _MA + decoration)
+    yield first("sites, cameras and lights", MA + decoration)
 
 
 def solid_of(kind: str, x: float, y: float, z: float) -> tuple[float, Vector]:
@@ -211,7 +210,7 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
     bare, named, main = "<joint/>", '<joint class="k"/>', '<joint class="main"/>'
 
     def bodies(a: str, b: str, *at: str) -> str:
-        return file(a + _MA, b + _MB, at=(at[0], at[1]) if at else ("", ""))
+        return file(a + MA, b + MB, at=(at[0], at[1]) if at else ("", ""))
 
     yield stated("axis by default", outer, turning(FIRST, *x), turning(NEXT, *x), bodies(bare, bare))
     yield stated("class of a joint", classes, turning(FIRST, *x), turning(NEXT, *y), bodies(bare, named))
@@ -225,7 +224,7 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
     yield stated("attribute before class", classes, turning(FIRST, *y), turning(NEXT, 0.0, 0.0, 1.0), own)
     nested = '<default class="k"><joint type="slide"/><default class="l"><joint axis="1 0 0"/></default></default>'
     slide = Joint("prismatic", p=(0.0, 0.0, 0.5), axis=x)
-    deep = file(b='<joint class="l"/>' + _MB)
+    deep = file(b='<joint class="l"/>' + MB)
     yield stated("class within a class", nested, FIRST, replace(NEXT, joints=(slide,)), deep)
     solid = '<geom type="box" size="0.1 0.2 0.3" density="500"/>'
     shaped = file(b=JOINT_B + "<geom/>")
@@ -238,23 +237,6 @@ def _defaults() -> Iterator[tuple[str, Reading]]:
     yield stated("geom of a class", massive, FIRST, heavy, file(b=JOINT_B + '<geom class="k"/>'))
 
 
-def _losses() -> Iterator[tuple[str, Reading]]:
-    """Dampers, springs and dry friction of joints, in units that no angle's unit changes."""
-    stated = {"damping": 3.0, "stiffness": 7.0, "friction": 0.3}
-    text = 'damping="3" stiffness="7" frictionloss="0.3"'
-    lost = hung(NEXT, **stated)
-    slide = Joint("prismatic", p=(0.0, 0.0, 0.5), axis=(1.0, 0.0, 0.0), **stated)  # type: ignore[arg-type]
-
-    def second(name: str, joint: str, link: Link, head: str = RADIAN) -> tuple[str, Reading]:
-        return _of(name, file(b=joint + _MB, head=head), FIRST, link, asked=LOSSES)
-
-    yield second("losses of a hinge", f'<joint axis="0 1 0" {text}/>', lost)
-    yield second("losses of a hinge, angle left out", f'<joint axis="0 1 0" {text}/>', lost, "")
-    yield second("losses of a slide", f'<joint type="slide" axis="1 0 0" {text}/>', replace(NEXT, joints=(slide,)), "")
-    classes = f'<default><default class="k"><joint {text}/></default></default>'
-    yield second("losses of a class", '<joint class="k" axis="0 1 0"/>', lost, RADIAN + classes)
-
-
 def _sites() -> Iterator[tuple[str, Reading]]:
     """Where sites stand: on moving bodies, fixed ones, the world, stated in every way."""
     R = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
@@ -265,13 +247,11 @@ def _sites() -> Iterator[tuple[str, Reading]]:
         return title, Reading("mjcf", text, Tree(title, (FIRST, NEXT), sensors=ends), asked=PLACED)
 
     def on_b(name: str, site: str, end: End, head: str = RADIAN) -> tuple[str, Reading]:
-        return of(name, file(b=JOINT_B + _MB + site, head=head), end)
+        return of(name, file(b=JOINT_B + MB + site, head=head), end)
 
     yield on_b("site", '<site name="o0" pos="0.1 -0.2 0.3"/>', End("b", p=p))
     yield on_b("site turned", '<site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>', End("b", R, p))
-    both = file(
-        _JOINT_A + _MA + '<site name="o0" pos="0 0.5 0"/>', JOINT_B + _MB + '<site name="o1" pos="0.1 -0.2 0.3"/>'
-    )
+    both = file(JOINT_A + MA + '<site name="o0" pos="0 0.5 0"/>', JOINT_B + MB + '<site name="o1" pos="0.1 -0.2 0.3"/>')
     yield of("sites of two bodies", both, End("a", p=(0.0, 0.5, 0.0)), End("b", p=p))
     # From (0, 0, 0) to (0.2, 0.4, -0.4): z along the way from the end to the beginning, at the middle.
     along_it = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
@@ -289,7 +269,7 @@ def _sites() -> Iterator[tuple[str, Reading]]:
 def _driven() -> Iterator[tuple[str, Reading]]:
     """Actuators that state their numbers, or take them from classes."""
     links = (FIRST, NEXT)
-    text = file('<joint name="a" axis="0 0 1"/>' + _MA, '<joint name="b" axis="0 1 0"/>' + _MB)
+    text = file('<joint name="a" axis="0 0 1"/>' + MA, '<joint name="b" axis="0 1 0"/>' + MB)
     kinds = {
         "motor": ('gear="2"', Actuator("b", gear=2.0, control=0.5)),
         "position": ('kp="3"', Actuator("b", gain=3.0, bias=(0.0, -3.0, 0.0), control=0.5)),
@@ -318,8 +298,8 @@ def _driven() -> Iterator[tuple[str, Reading]]:
 def _trees() -> Iterator[tuple[str, Reading]]:
     """Bodies that don't move, frames, copies, gravity."""
     still = hung(FIRST, kind="fixed")
-    yield _of("fixed body with mass first", file(a=_MA), still, NEXT)
-    yield _of("fixed body with mass", file(b=_MB), FIRST, hung(NEXT, kind="fixed"))
+    yield _of("fixed body with mass first", file(a=MA), still, NEXT)
+    yield _of("fixed body with mass", file(b=MB), FIRST, hung(NEXT, kind="fixed"))
     nothing = replace(still, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
     yield _of("fixed body without inertia first", file(a=""), nothing, NEXT)
     frame = '<frame pos="0.2 -0.1 0.4" euler="0.3 -0.4 0.5">'
@@ -335,22 +315,22 @@ def _trees() -> Iterator[tuple[str, Reading]]:
     shaped = file(b=f'{JOINT_B}{frame}<geom type="box" size="0.1 0.2 0.3"/></frame>')
     yield _of("frame around a geom", shaped, FIRST, box)
     ball, moved = '<geom size="0.1" mass="5"/>', 'pos="0.2 0 0"'
-    after = f'<frame pos="0 0.4 0"><body name="c">{_JOINT_A}{_MB}</body></frame><frame {moved}>{ball}</frame>'
+    after = f'<frame pos="0 0.4 0"><body name="c">{JOINT_A}{MB}</body></frame><frame {moved}>{ball}</frame>'
     solid = replace(NEXT, mass=5.0, com=(0.2, 0.0, 0.0), inertia=diagonal(0.02, 0.02, 0.02))
     hanging = Link("c", 1, (Joint("revolute", p=(0.0, 0.4, 0.0), axis=(0.0, 0.0, 1.0)),), 1.0, NEXT.com, NEXT.inertia)
     yield _of("frame of a geom after the frame of a body", file(b=JOINT_B + after), FIRST, solid, hanging)
-    before = f'<frame {moved}>{ball}</frame><frame pos="0 0.4 0"><body name="c">{_JOINT_A}{_MB}</body></frame>'
+    before = f'<frame {moved}>{ball}</frame><frame pos="0 0.4 0"><body name="c">{JOINT_A}{MB}</body></frame>'
     yield _of("frame of a geom before the frame of a body", file(b=JOINT_B + before), FIRST, solid, hanging)
     classes = f'{RADIAN}<default><default class="k"><joint axis="1 0 0"/></default></default>'
-    classed = file("<joint/>" + _MA, "<joint/>" + _MB, classes).replace(
+    classed = file("<joint/>" + MA, "<joint/>" + MB, classes).replace(
         "<worldbody>", '<worldbody><frame childclass="k">'
     )
     classed = classed.replace("</worldbody>", "</frame></worldbody>")
     along_x = [hung(one, axis=(1.0, 0.0, 0.0)) for one in (FIRST, NEXT)]
     yield _of("childclass of a frame", classed, *along_x)
-    copied = f'<body name="b" {_AT_B}>{JOINT_B}{_MB}</body>'
+    copied = f'<body name="b" {_AT_B}>{JOINT_B}{MB}</body>'
     copies = f'<replicate count="2" offset="0 0.3 0" sep="">{copied}</replicate>'
-    alone = f'<worldbody><body name="a" {_AT_A}>{_JOINT_A}{_MA}{copies}</body></worldbody>'
+    alone = f'<worldbody><body name="a" {_AT_A}>{JOINT_A}{MA}{copies}</body></worldbody>'
     only = f'<mujoco model="m">{RADIAN}{alone}</mujoco>'
     second = replace(hung(NEXT, p=(0.0, 0.3, 0.5)), name="b1")
     yield _of("replicate", only, FIRST, replace(NEXT, name="b0"), second)
@@ -367,7 +347,6 @@ def files() -> dict[str, Reading]:
             *_turns(),
             *_inertias(),
             *_defaults(),
-            *_losses(),
             *_sites(),
             *_driven(),
             *_trees(),

@@ -15,6 +15,7 @@ from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
 READ = ("sizes", "mass_matrix", "bias", "link_poses")
 # What joints state beside their motion, sites, actuators.
 LOSSES = ("joint_dampings", "joint_frictions", "joint_stiffnesses")
+LIMITED = ("joint_limits",)
 PLACED = ("frame_poses",)
 DRIVEN = ("actuator_forces", "actuated_forces")
 PASSIVE = ("sizes", "mass_matrix", "gravity", "link_poses")
@@ -38,7 +39,7 @@ class Reading:
 
     def functions(self, offered: Collection[str]) -> tuple[str, ...]:
         """Those that are asked of an engine; in place of the bias that it does not offer, gravity's part of it."""
-        asked = self.asked if "bias" in offered else (*self.asked, "gravity")
+        asked = (*self.asked, "gravity") if "bias" in self.asked and "bias" not in offered else self.asked
         return tuple(name for name in offered if name in asked)
 
 

@@ -14,6 +14,7 @@ from . import readers
 from .readers import (
     ASKEW,
     BODY,
+    LIMITED,
     NEXT,
     OBLONG,
     PASSIVE,
@@ -142,6 +143,11 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     yield first("continuous", _joint("a", "world", _AXIS_A, "continuous"), version="1.7")
     losses = f"<dynamics><damping>3</damping><friction>0.2</friction></dynamics>{_AXIS_A}"
     yield _of("damping and friction", _model(_A, _joint("a", "world", losses)), BODY, asked=PASSIVE)
+    for kind in ("revolute", "prismatic"):
+        bounds = _LIMIT.replace("-9", "-0.5").replace(">9</upper", ">1.25</upper")
+        limited = hung(BODY, kind=kind, limits=(-0.5, 1.25))
+        axis = f"<axis>{_AXIS_A}{bounds}</axis>"
+        yield _of(f"limits of {kind}", _model(_A, _joint("a", "world", axis, kind)), limited, asked=LIMITED)
     still, rest = hung(BODY, kind="fixed"), hung(NEXT, kind="fixed")
     fixed_a, fixed_b = _joint("a", "world", "", "fixed"), _joint("b", "a", "", "fixed")
     yield _of("fixed link with mass first", _model(_A, _B, fixed_a, _JB), still, NEXT)

@@ -13,6 +13,7 @@ from .readers import (
     ASKEW,
     BODY,
     IDENTITY,
+    LIMITED,
     LOSSES,
     NEXT,
     OBLONG,
@@ -140,6 +141,16 @@ def _kinds() -> Iterator[tuple[str, Reading]]:
     along_x = _SECOND.replace("revolute", "prismatic").replace('<axis xyz="0 1 0"/>', "")
     yield second("prismatic, axis left out", along_x, kind="prismatic", axis=(1.0, 0.0, 0.0))
     ratio = '<mimic joint="joint_a" multiplier="2" offset="0.5"/>'
+    sliding = _SECOND.replace("revolute", "prismatic") + '<mimic joint="joint_a" multiplier="-0.25" offset="0.125"/>'
+    yield second("mimic of a slide", sliding, kind="prismatic", mimics="a", ratio=-0.25, offset=0.125)
+    turning = _SECOND.replace('<axis xyz="0 1 0"/>', _OBLIQUE) + '<mimic joint="joint_a" multiplier="-1.5"/>'
+    yield second("mimic, oblique, offset left out", turning, axis=(0.6, 0.0, 0.8), mimics="a", ratio=-1.5)
+    shifted = f'{_SECOND}<mimic joint="joint_a" offset="-0.75"/>'
+    yield second("mimic, multiplier left out", shifted, mimics="a", offset=-0.75)
+    last = replace(_C_LINK, joints=(replace(NEXT.joints[0], mimics="a", ratio=2.0, offset=0.5),))
+    yield _of("mimic beyond a joint", _chain(_FIRST, _SECOND, _SECOND + ratio), BODY, NEXT, last)
+    reversed_text = _SECOND.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>') + ratio
+    yield second("mimic against an axis", reversed_text, axis=(0.0, -1.0, 0.0), mimics="a", ratio=2.0, offset=0.5)
     yield second("mimic", f"{_SECOND}{ratio}", mimics="a", ratio=2.0, offset=0.5)
     yield second("mimic with its defaults", f'{_SECOND}<mimic joint="joint_a"/>', mimics="a")
     yield second("limits that leave out zero", _SECOND.replace('lower="-9"', 'lower="0.5"').replace('"9"', '"1"', 1))
@@ -164,6 +175,25 @@ def _losses() -> Iterator[tuple[str, Reading]]:
     yield second("losses of a slide", _SECOND.replace("revolute", "prismatic") + text, kind="prismatic", **lost)
     yield second("friction alone", _SECOND + '<dynamics friction="0.3"/>', friction=0.3)
     yield second("damping alone", _SECOND + '<dynamics damping="0.7"/>', damping=0.7)
+
+
+def _limits() -> Iterator[tuple[str, Reading]]:
+    """Limits of joints; a bound that is left out is 0."""
+    first = hung(BODY, limits=(-9.0, 9.0))
+
+    def second(name: str, bounds: str, *limits: float, kind: str = "revolute") -> tuple[str, Reading]:
+        text = _SECOND.replace(_LIMIT, f'<limit {bounds} effort="7" velocity="3"/>').replace("revolute", kind)
+        return _of(name, _chain(_FIRST, text), first, hung(NEXT, kind=kind, limits=limits), asked=LIMITED)
+
+    yield second("limits of a hinge", 'lower="-0.5" upper="1.25"', -0.5, 1.25)
+    yield second("limits of a slide", 'lower="-0.25" upper="2"', -0.25, 2.0, kind="prismatic")
+    yield second("limits above zero", 'lower="0.5" upper="1.25"', 0.5, 1.25)
+    yield second("limits beyond a turn", 'lower="-7.5" upper="10"', -7.5, 10.0)
+    yield second("lower limit left out", 'upper="1.25"', 0.0, 1.25)
+    yield second("upper limit left out", 'lower="-0.5"', -0.5, 0.0)
+    guard = '<safety_controller k_velocity="3" soft_lower_limit="-0.25" soft_upper_limit="0.5"/>'
+    text = _SECOND.replace(_LIMIT, f'<limit lower="-0.5" upper="1.25" effort="7" velocity="3"/>{guard}')
+    yield _of("limits beside soft ones", _chain(_FIRST, text), first, hung(NEXT, limits=(-0.5, 1.25)), asked=LIMITED)
 
 
 def _trees() -> Iterator[tuple[str, Reading]]:
@@ -215,4 +245,4 @@ def _from_shapes() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_inertias(), *_placements(), *_kinds(), *_losses(), *_trees(), *_from_shapes()])
+    return dict([*_inertias(), *_placements(), *_kinds(), *_losses(), *_limits(), *_trees(), *_from_shapes()])

@@ -59,6 +59,10 @@ WAYS = {
     "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
     "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+    "joint_limits": Way(
+        "getPositionLowerLimits, getPositionUpperLimits",
+        "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",
+    ),
     "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
     "forward_dynamics": Way(
         "computeForwardDynamics",

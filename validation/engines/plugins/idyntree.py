@@ -47,6 +47,11 @@ M = iDynTree.MatrixDynSize()
 assert robot.getFreeFloatingMassMatrix(M)
 value = M.toNumPy()[cut:, cut:]""",
     ),
+    "joint_limits": Way(
+        "getMinPosLimit, getMaxPosLimit",
+        "own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]\n"
+        "value = [[one.getMinPosLimit(0), one.getMaxPosLimit(0)] for one in own if one.getNrOfDOFs()]",
+    ),
     "coriolis_forces": Way(
         "getCoriolisAndMassMatrices",
         """state(q, v)

@@ -83,6 +83,10 @@ for k in sensed:
         "joint_damping, mujoco.dof_passive_damping",
         "value = m.joint_damping.numpy() if hasattr(m, 'joint_damping') else m.mujoco.dof_passive_damping.numpy()",
     ),
+    "joint_limits": Way(
+        "joint_limit_lower, joint_limit_upper",
+        "value = np.c_[m.joint_limit_lower.numpy(), m.joint_limit_upper.numpy()]",
+    ),
     "joint_frictions": Way("joint_friction", "value = m.joint_friction.numpy()"),
     "joint_stiffnesses": Way("mujoco.dof_passive_stiffness", "value = m.mujoco.dof_passive_stiffness.numpy()"),
 }

@@ -46,6 +46,7 @@ WAYS = {
         "calculateInverseDynamics",
         "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)",
     ),
+    "joint_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[8:10] for k in moving]"),
     "link_poses": Way(
         "getLinkState",
         f"{_STATES.format(v='0 * q')}value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]",

@@ -27,6 +27,7 @@ WAYS = {
     "inverse_dynamics": Way("rne", "value = robot.rne(q, v, a)"),
     "bias": Way("rne", "value = robot.rne(q, v, np.zeros(len(v)))"),
     "forward_dynamics": Way("accel", "value = robot.accel(q, v, tau)"),
+    "joint_limits": Way("qlim", "value = np.transpose(robot.qlim)"),
     "link_poses": Way(
         "fkine",
         """T = [robot.fkine(q, end=name).A for name in links]

@@ -71,6 +71,7 @@ for link in links:
     "step_semi_implicit": Way("Scene.step", _STEP),
     # Friction as an argument of the joint, 0 unless stated.
     "step_semi_implicit:set_joint_properties": Way("set_joint_properties, Scene.step", _STEP, built=_AS_MADE),
+    "joint_limits": Way("limits", "value = parts([joint.limits[0] for joint in robot.active_joints])"),
     "joint_dampings": Way("damping", "value = parts([joint.damping for joint in robot.active_joints])"),
     "mass_matrix": Way(
         "PinocchioModel.compute_generalized_mass_matrix",

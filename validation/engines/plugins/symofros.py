@@ -46,6 +46,11 @@ WAYS = {
     "inverse_dynamics_dv": Way("inverse_dynamics_derivatives", f"value = {_RATES}[1]"),
     "forward_dynamics_dq": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[0]"),
     "forward_dynamics_dv": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[1]"),
+    "joint_limits": Way(
+        "Joint.limits",
+        "bounds = [b.joint.limits for b in system.bodies if b.joint and b.joint.limits]\n"
+        "value = [[one.lower, one.upper] for one in bounds]",
+    ),
     "integrate": Way("integrate", "value = m.integrate(q, v2)"),
     "difference": Way("difference", "value = m.difference(q, m.integrate(q, v2))"),
 }

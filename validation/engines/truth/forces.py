@@ -31,6 +31,7 @@ class Forces:
     def __init__(self, tree: Tree, kinematics: Kinematics) -> None:
         self.tree, self._kinematics, self._nv = tree, kinematics, kinematics.nv
         self.damping, self.stiffness, self.friction = zeros(self._nv), zeros(self._nv), zeros(self._nv)
+        self.ranges = zeros(self._nv, 2)
         self._limits: dict[int, Exact] = {}
         self._springs: list[tuple[int, int, Exact]] = []
         for k in range(len(tree.links)):
@@ -39,6 +40,8 @@ class Forces:
                     continue
                 if joint.force_limits:
                     self._limits[slot.v[0]] = exact(joint.force_limits)
+                if joint.limits:
+                    self.ranges[slot.v[0]] = exact(joint.limits)
                 self.friction[list(slot.v)] = exact(joint.friction)[()]
                 self.damping[list(slot.v)] = exact(joint.damping)[()]
                 if joint.stiffness:

@@ -81,6 +81,10 @@ def _sensors(kind: str, *names: str, more: str = "") -> Way:
 
 
 WAYS |= {
+    "joint_limits": Way(
+        "GetPositionLowerLimits, GetPositionUpperLimits",
+        "value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()]",
+    ),
     "joint_wrenches": Way(
         "reaction_forces",
         f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []

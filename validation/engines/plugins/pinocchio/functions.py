@@ -59,6 +59,9 @@ for f in sensed:
 value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))""",
     ),
     "joint_dampings": Way("damping", "value = m.damping"),
+    "joint_limits": Way(
+        "lowerPositionLimit, upperPositionLimit", "value = np.c_[m.lowerPositionLimit, m.upperPositionLimit]"
+    ),
     "joint_frictions": Way(
         "friction, upperDryFrictionLimit", "value = m.friction if hasattr(m, 'friction') else m.upperDryFrictionLimit"
     ),
