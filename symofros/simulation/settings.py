@@ -305,8 +305,10 @@ def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Arra
         if not count < MAX_RECORDS:
             rule, remedy = f"a run records at most {MAX_RECORDS} states", "a longer interval, or a shorter run"
             raise _wrong("too many states to record", f"{count:.3g} of them", rule, remedy)
-        count = math.floor(count)
-        return np.asarray(t0 + interval * np.arange(count + 1), dtype=np.float64)
+        found = t0 + interval * np.arange(math.floor(count) + 1)
+        if abs(found[-1] - t_end) <= 1e-9 * interval:  # Rounding may put it behind the end, where no step comes.
+            found[-1] = t_end
+        return np.asarray(found, dtype=np.float64)
     if times.ndim != 1 or times.size == 0 or not (np.all(np.diff(times) > 0) and t0 <= times[0] <= times[-1] <= t_end):
         raise ShapeError(
             Problem(

@@ -37,6 +37,18 @@ def test_option_names_of_other_tools_are_answered_with_ours(top: sf.Model, writt
             simulate(top, **{written: 1.0})
 
 
+@pytest.mark.parametrize(("t0", "t_end", "parts"), [(0.0, 0.35, 350), (0.0, 0.7, 7), (0.1, 1.0, 9), (-0.3, 0.6, 3)])
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("step", [1e-2, 1e-5])
+def test_an_interval_that_divides_the_run_records_its_end(
+    top: sf.Model, t0: float, t_end: float, parts: int, method: str, step: float
+) -> None:
+    """However short steps are: rounding may put the last of the times behind the end."""
+    run = sf.simulate(top, t0=t0, t_end=t_end, output=(t_end - t0) / parts, method=method, dt=step, max_step=step)
+    assert len(run.t) == parts + 1 and run.t[-1] == t_end
+    assert np.allclose(np.diff(run.t), (t_end - t0) / parts, rtol=1e-9)
+
+
 @pytest.mark.parametrize("output", [[0.2, 0.1], [0.2, 0.2], [-0.1, 0.2], [0.5, 1.5], [[0.1]], [], [np.nan]])
 def test_output_times_are_within_the_run_and_increase(top: sf.Model, output: list[float]) -> None:
     with pytest.raises(sf.ShapeError, match="output times do not fit"):
