@@ -31,19 +31,23 @@ KINDS = (
 # Engine, by its name on PyPI -> the packages by which its scripts may import it.
 PACKAGES = {
     "adam-robotics": {"adam"},
+    "bsk": {"Basilisk"},
     "dartpy": {"dartpy"},
     "drake": {"pydrake"},
     "exudyn": {"exudyn"},
     "idyntree": {"idyntree"},
+    "mink": {"mink", "mujoco"},
     "mujoco": {"mujoco"},
     "mujoco-mjx": {"jax", "mujoco"},
-    "newton": {"newton"},
+    "mujoco-warp": {"mujoco", "mujoco_warp"},
+    "newton": {"newton", "pxr", "warp"},
     "pin": {"pinocchio"},
     "pybullet": {"pybullet"},
-    "roboticstoolbox-python": {"roboticstoolbox"},
+    "roboticstoolbox-python": {"roboticstoolbox", "spatialmath"},
     "spatialmath-python": {"spatialmath"},
     "sympy": {"sympy"},
     "trimesh": {"trimesh"},
+    "yourdfpy": {"yourdfpy"},
 }
 Side = Literal["wrong", "right"]
 
