@@ -311,10 +311,14 @@ def run_interpreted(
                 within = watch.judge(blocks.q, float(blocks.t[0]))
             if failed or not within:
                 break
-        if goes_on and not failed and apart is None and (not rows or rows[-1][0] < float(blocks.t[0])):
-            blocks.t[0] = t_end if within else blocks.t[0]
-            blocks.signals()
-            record()
+        if goes_on and not failed and apart is None:
+            end = t_end if within else float(blocks.t[0])
+            if rows and rows[-1][0] >= end - 1e-9 * dt:
+                rows[-1] = (end, *rows[-1][1:])
+            else:
+                blocks.t[0] = end
+                blocks.signals()
+                record()
     feed.send(float(blocks.t[0]), is_over=True)
     t_last, fault = float(blocks.t[0]), first_fault(blocks) if failed else ""
     watch.amplify(blocks, rows, kept)

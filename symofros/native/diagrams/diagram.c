@@ -290,10 +290,8 @@ SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
             if (due < d->t_end - slack) continue;
         }
         d->finished = 1;
-        if (d->n_records == 0 || d->record_t[d->n_records - 1] < d->t_end) {
-            sym_gather_states(d, d->t_end);
-            sym_diagram_record(d);
-        }
+        if (d->n_records > 0 && d->record_t[d->n_records - 1] >= d->t_end - slack) d->record_t[d->n_records - 1] = d->t_end;
+        else sym_gather_states(d, d->t_end), sym_diagram_record(d);
     }
     return d->finished ? SYM_FINISHED : SYM_RUNNING;
 }

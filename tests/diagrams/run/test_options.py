@@ -30,6 +30,18 @@ def test_start_and_record_interval_follow_the_options() -> None:
     np.testing.assert_allclose(np.diff(run.t[np.searchsorted(run.t, [1.1, 1.2])]), 0.1)
 
 
+@pytest.mark.parametrize("how", ["run", "interpret"])
+def test_the_end_is_recorded_once_wherever_rounding_puts_it(how: str) -> None:
+    """The last interval may end an ulp before or behind t_end: 38 times 0.05 is 1.9, 0.05 times 38 is not."""
+    diagram = sf.Diagram("still")
+    diagram.add_model("plant", oscillator_system(k=1.0), start={"x": 1.0})
+    diagram.add(ForwardDynamics(name="plant", model="plant"))
+    simulation = sf.Simulation(diagram)
+    for t_end, interval in ((1.9000000000000001, 0.05), (2.4000000000000004, 0.1), (0.35, 0.001), (0.7, 0.1)):
+        run = getattr(simulation, how)(t_end, dt=0.05, record=interval)
+        assert len(run.t) == round(t_end / interval) + 1 and run.t[-1] == t_end
+
+
 def test_options_of_single_models_are_refused() -> None:
     for option in ({"every": 2}, {"max_steps": 10}, {"output": [0.1, 0.2]}):
         with pytest.raises(sf.SymofrosError, match="diagram: "):
