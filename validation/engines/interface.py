@@ -20,6 +20,7 @@ from ..contract.interface import Unsupported as Unsupported
 from ..contract.raised import Raised, attempted
 from .tree import IDENTITY as IDENTITY
 from .tree import ORIGIN as ORIGIN
+from .tree import Activation as Activation
 from .tree import Actuator as Actuator
 from .tree import Array as Array
 from .tree import Constraint as Constraint

@@ -201,6 +201,26 @@ class Muscle(NamedTuple):
     lengthening: float = 1.2
 
 
+class Activation(NamedTuple):
+    """A state w of an actuator that its control u changes, and that stands in the control's place in its force.
+
+    Attributes:
+        kind: "integrator", w' = u; "filter", w' = (u - w) / T, stepped as w + h w'; "exact filter", the same, stepped
+            as w + (u - w) (1 - exp(-h / T)); "muscle", a filter whose time is T0 (1/2 + 3/2 w) as w grows and
+            T1 / (1/2 + 3/2 w) as it falls, with u within 0 and 1.
+        state: w.
+        times: Time constants [s]: none, T, or T0 and T1.
+        limits: Least and greatest w after a step; () for none.
+        is_early: Whether the force has w as it is after the step.
+    """
+
+    kind: str
+    state: float
+    times: tuple[float, ...] = ()
+    limits: tuple[float, ...] = ()
+    is_early: bool = False
+
+
 @dataclass(frozen=True)
 class Tendon:
     """A length, and the spring and the damper that act along it.
@@ -246,6 +266,7 @@ class Actuator:
         crank: Length of the rod of a slider and crank [m]: its length is the slider's coordinate. 0 for none.
         muscle: Gain and bias of a muscle, in place of the stated ones; None for none.
         is_disabled: Whether it makes no force.
+        activation: Its state; None for none.
     """
 
     link: str = ""
@@ -261,6 +282,7 @@ class Actuator:
     crank: float = 0.0
     muscle: Muscle | None = None
     is_disabled: bool = False
+    activation: Activation | None = None
 
 
 @dataclass(frozen=True)
@@ -302,7 +324,7 @@ class Tree:
 
     @property
     def forces(self) -> frozenset[str]:
-        """What acts on it by its own statement: "dampers", "springs", "compensation", "actuators", kinds of tendons."""
+        """What acts on it by its own statement: "dampers", "springs", "compensation", "actuators" and the like."""
         joints = [joint for link in self.links for joint in link.joints]
         stated = {
             "dampers": any(joint.damping for joint in joints),
@@ -312,6 +334,7 @@ class Tree:
             "wrapped tendons": any(tendon.wraps for tendon in self.tendons),
             "heavy tendons": any(tendon.armature for tendon in self.tendons),
             "actuators": bool(self.actuators),
+            "activations": any(actuator.activation for actuator in self.actuators),
         }
         return frozenset(name for name, there in stated.items() if there)
 

@@ -133,7 +133,36 @@ def test_methods_of_order_four_agree_to_that_order_in_coordinates_and_on_their_m
     assert 0.0 < np.max(np.abs(digits(one - other))) < 10 * STEP**5
 
 
+@pytest.mark.parametrize(
+    ("name", "other", "function"),
+    [
+        ("actuators with filters", "actuators of all kinds", "actuated_forces"),
+        ("actuators with filters taken early", "actuators with filters", "actuated_forces"),
+        ("actuators with exact filters faster than a step", "actuators with filters", "activations_after_step"),
+        ("actuators with exact filters", "actuators with filters", "activations_after_step"),
+        ("actuators with filters at their limits", "actuators with filters", "activations_after_step"),
+        ("actuators with filters", "actuators with integrators", "activation_rates"),
+    ],
+)
+def test_a_state_of_actuators_of_another_rule_is_a_red_cell(name: str, other: str, function: str) -> None:
+    right = _judged("mujoco", TREES[name], function)[function]
+    assert right.want is not None and right.cell.verdict == "right"
+    given = np.asarray(_judged("mujoco", TREES[other], function)[function].answer.value)
+    assert judge("planted", TREES[name], function, given, right.want).verdict == "wrong"
+
+
+def test_activations_of_muscles_rise_and_fall_at_their_own_rates() -> None:
+    """T0 (1/2 + 3/2 w) as they rise, T1 / (1/2 + 3/2 w) as they fall; controls beyond 1 count as 1."""
+    tree = TREES["muscles with activations"]
+    (one,) = _judged("mujoco", tree, "activation_rates").values()
+    slower = 0.5 + 1.5 * 0.375
+    rates = [0.375 / (0.0625 * slower), -0.25 / (0.25 / slower), 0.625 / (0.0625 * slower)]
+    assert one.want is not None
+    np.testing.assert_allclose(one.want.value, rates, rtol=1e-14)
+
+
 def test_an_engine_is_asked_for_no_forces_that_it_does_not_know() -> None:
+    assert not {"step_rk4_manifold", "forward_dynamics_dq"} & set(asked(OWN["mujoco"], TREES["actuators with filters"]))
     assert asked(OWN["pinocchio"], TREES["motors"]) == ()
     assert "tendon_arms" not in asked(OWN["mujoco"], TREES["motors"])
     assert not {"passive_forces", "actuator_forces"} & set(asked(OWN["mujoco"], tree_of("ball")))

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from ..truth import derived
+from ..interface import Activation, Actuator
+from ..truth import activations, derived
 from ..truth.arithmetic import Exact
+from ..truth.derived import TruthOf
+from ..truth.dynamics import Point, Truth
 from .function import Function
 
 
 def _acting() -> dict[str, Function]:
     """What a tree's own forces show in."""
     passive = ("dampers", "springs", "compensation", "tendons")
-    tendons, actuators = ("tendons",), ("actuators",)
+    tendons, actuators, states = ("tendons",), ("actuators",), ("activations",)
     return {
         "passive_forces": Function(
             "forces of springs, dampers, compensated weights (nv)", lambda t, s: t.own.passive(s.q, s.v), passive
@@ -28,10 +33,23 @@ def _acting() -> dict[str, Function]:
             "their derivatives (nu, nv)", lambda t, s: _column(t.own.transmissions(s.q), 1), actuators
         ),
         "actuator_forces": Function("forces of actuators (nu)", lambda t, s: t.own.efforts(s.q, s.v), actuators),
+        "activation_rates": Function("rates of actuators' states (na)", _of_states(activations.rate), states),
+        "activations_after_step": Function(
+            "actuators' states after a step (na)", _of_states(activations.after_step), states
+        ),
         "actuated_forces": Function(
             "what they do along the speeds (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
         ),
     }
+
+
+def _of_states(of: Callable[[Actuator, Activation], Exact]) -> TruthOf:
+    """A function of each actuator that has a state (na)."""
+
+    def function(t: Truth, s: Point) -> Exact:
+        return np.array([of(one, one.activation) for one in t.tree.actuators if one.activation], dtype=object)
+
+    return function
 
 
 def _column(rows: list[tuple[Exact, Exact]], place: int) -> Exact:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from ..tree import Tree
 from .acting import ACTING, MEASURED, STATED
 from .beside import LONE, TURNS
@@ -13,6 +15,8 @@ from .trees import TREES
 FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
+# Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.
+_STATELESS = re.compile("step_(midpoint|rk.*|trapezoidal)|.*_(dq|dv|derivative)")
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")
 
@@ -25,6 +29,8 @@ def suits(way: str, tree: Tree) -> bool:
         return tree.asked in needs
     if tree.constraints:
         return name in CONSTRAINED or way in _BESIDES
+    if "activations" in tree.forces and _STATELESS.fullmatch(name):
+        return False
     if needs:
         return bool(tree.demands & set(needs))
     if tree.sensors:

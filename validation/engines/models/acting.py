@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
+from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
 from .kinds import OBLIQUE, link, placed, shifted, turned
 from .readers import about
 
@@ -198,6 +198,49 @@ def _muscles() -> list[Tree]:
     ]
 
 
+def _states() -> list[Tree]:
+    """Actuators with states: integrators and filters, at the states' limits, taken early, of servos and of muscles."""
+    links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
+    servo = Actuator("b", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5)
+    general = Actuator("c", gear=-1.5, gain=0.5, bias=(0.25, -1.0, -0.75), control=2.0, control_limits=(-1.0, 1.0))
+    motor = Actuator("a", gear=3.0, control=0.75)
+    integrator, filtered, exact = (
+        Activation(kind, 0.375, times)
+        for kind, times in (("integrator", ()), ("filter", (0.125,)), ("exact filter", (0.125,)))
+    )
+    kinds = {
+        "integrators": integrator,
+        "integrators taken early": integrator._replace(is_early=True),
+        "integrators at their limits": integrator._replace(limits=(-0.25, 0.3751)),
+        "filters": filtered,
+        "filters taken early": filtered._replace(is_early=True),
+        "filters at their limits": filtered._replace(limits=(-0.25, 0.3751)),
+        "exact filters": exact,
+        "exact filters taken early": exact._replace(is_early=True),
+        "exact filters faster than a step": exact._replace(times=(0.0078125,)),
+    }
+    pulled = Muscle(0.625, (-1.0, 1.0), (0.75, 1.05), peak=10.0)
+    grown = Activation("muscle", 0.375, (0.0625, 0.25))
+    muscles = tuple(
+        Actuator(name, gear=gear, muscle=pulled, control=control, activation=grown)
+        for name, gear, control in (("a", 1.0, 0.75), ("b", -0.5, 0.125), ("c", 2.0, 1.5))
+    )
+    made = [
+        Tree(
+            f"actuators with {name}",
+            links,
+            actuators=tuple(replace(x, activation=one) for x in (motor, servo, general)),
+        )
+        for name, one in kinds.items()
+    ]
+    mixed = (motor, replace(servo, activation=filtered), replace(general, activation=integrator))
+    return [
+        *made,
+        Tree("actuators with states and without", links, actuators=mixed),
+        Tree("muscles with activations", links, actuators=muscles),
+    ]
+
+
 def _remote() -> list[Tree]:
     """Actuators at a frame, between frames, and on the slider of a crank."""
     links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
@@ -227,6 +270,17 @@ def trees() -> dict[str, Tree]:
     """All of them, by name."""
     return {
         tree.name: tree
-        for family in (_passive, _tendons, _wrapped, _sided, _heavy, _actuators, _plain_actuators, _muscles, _remote)
+        for family in (
+            _passive,
+            _tendons,
+            _wrapped,
+            _sided,
+            _heavy,
+            _actuators,
+            _plain_actuators,
+            _muscles,
+            _states,
+            _remote,
+        )
         for tree in family()
     }

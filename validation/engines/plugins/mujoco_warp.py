@@ -21,6 +21,7 @@ def got(data, name): return getattr(data, name).numpy()[0]
 def made(model, **room):
     data = mjw.make_data(model, **room)
     if model.nu: put(data, ctrl=d.ctrl)
+    if model.na: put(data, act=states)
     return mjw.put_model(model), data
 wp.set_device('cpu')
 mw, dw = made(m, njmax=0, nconmax=0)"""
@@ -144,6 +145,12 @@ for b in bs:
         "    row[columns[first:first + n]] = arms[first:first + n]",
     ),
     "actuator_forces": _reading("actuator_force", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+    "activation_rates": _reading("act_dot", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+    "activations_after_step": Way(
+        "step",
+        f"{COPY}n.opt.timestep = {STEP}\nnw, dn = made(n)\nput(dn, qpos=q, qvel=v)\nmjw.step(nw, dn)\n"
+        "value = got(dn, 'act')",
+    ),
     "actuated_forces": _reading("qfrc_actuator", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
 }
 

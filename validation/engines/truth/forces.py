@@ -1,9 +1,10 @@
 """Forces that a tree states of itself, in many digits: dampers, springs, compensated weights, tendons, actuators.
 
-With l(q) the length of a tendon and J its derivative along the speeds, e the force of an actuator at the control u,
+With l(q) the length of a tendon and J its derivative along the speeds, e the force of an actuator at the control u or,
+where it has one, the state w,
 
     Q = -d v - k (q - rest) + J_c^T (-gamma m g) + sum J^T (-k (l - rest) - d J v) + sum gear J^T e
-    e = clip(gain clip(u) + b0 + b1 gear l + b2 gear J v)
+    e = clip(gain (clip(u) or w) + b0 + b1 gear l + b2 gear J v)
 
 where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed.
 What actuators make together along a joint stays within the joint's limits.
@@ -11,11 +12,10 @@ What actuators make together along a joint stays within the joint's limits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 
 from ..interface import Actuator, End, Muscle, Tendon, Tree
+from .activations import clipped, driving
 from .arithmetic import Exact, exact, rate, root, zeros
 from .kinematics import Kinematics
 
@@ -32,14 +32,14 @@ class Forces:
         self.tree, self._kinematics, self._nv = tree, kinematics, kinematics.nv
         self.damping, self.stiffness, self.friction = zeros(self._nv), zeros(self._nv), zeros(self._nv)
         self.ranges = zeros(self._nv, 2)
-        self._limits: dict[int, Exact] = {}
+        self._limits: dict[int, tuple[float, ...]] = {}
         self._springs: list[tuple[int, int, Exact]] = []
         for k in range(len(tree.links)):
             for joint, slot in kinematics.joints(k):
                 if slot is None:
                     continue
                 if joint.force_limits:
-                    self._limits[slot.v[0]] = exact(joint.force_limits)
+                    self._limits[slot.v[0]] = joint.force_limits
                 if joint.limits:
                     self.ranges[slot.v[0]] = exact(joint.limits)
                 self.friction[list(slot.v)] = exact(joint.friction)[()]
@@ -121,7 +121,7 @@ class Forces:
         """What the actuators do (nv)."""
         total = self._together(q, v)
         for place, limits in self._limits.items():
-            total[place] = _clipped(total[place], limits)
+            total[place] = clipped(total[place], limits)
         return total
 
     def _together(self, q: Exact, v: Exact) -> Exact:
@@ -151,7 +151,8 @@ class Forces:
                 b1, b2 = self._slopes(actuator, q, v, number)
                 made.append((b1 * np.outer(J, J), b2 * np.outer(J, J)))
         total = self._together(q, v)
-        bound = [place for place, (low, high) in self._limits.items() if not low < total[place] < high]
+        sides = {place: exact(limits) for place, limits in self._limits.items()}
+        bound = [place for place, (low, high) in sides.items() if not low < total[place] < high]
         for by_length, by_speed in made:
             by_length[bound], by_speed[bound] = zeros(self._nv), zeros(self._nv)
             D, K = D - by_speed, K - by_length
@@ -176,14 +177,14 @@ def _effort(actuator: Actuator, length: Exact, speed: Exact) -> Exact:
     if actuator.is_disabled:
         return exact(0.0)[()]
     b0, b1, b2 = exact(actuator.bias)
-    control = _clipped(exact(actuator.control)[()], exact(actuator.control_limits))
-    effort = exact(actuator.gain)[()] * control + b0 + b1 * length + b2 * speed
+    effort = exact(actuator.gain)[()] * driving(actuator) + b0 + b1 * length + b2 * speed
     if actuator.muscle is not None:
-        effort = _pull(actuator.muscle, length, speed)
-    return _clipped(effort, exact(actuator.force_limits))
+        driven = driving(actuator) if actuator.activation else exact(actuator.muscle.activation)[()]
+        effort = _pull(actuator.muscle, driven, length, speed)
+    return clipped(effort, actuator.force_limits)
 
 
-def _pull(muscle: Muscle, length: Exact, speed: Exact) -> Exact:
+def _pull(muscle: Muscle, driven: Exact, length: Exact, speed: Exact) -> Exact:
     """The force of a muscle: polynomials of degree two, piece by piece."""
     one, half = exact(1.0)[()], exact(0.5)[()]
     low, high = exact(muscle.operating)
@@ -216,10 +217,4 @@ def _pull(muscle: Muscle, length: Exact, speed: Exact) -> Exact:
     if L > one:
         x = (L - one) / (b - one)
         passive = exact(muscle.passive)[()] * (half * x * x if L <= b else x - half)
-    return -exact(muscle.peak)[()] * (exact(muscle.activation)[()] * active * faster + passive)
-
-
-def _clipped(value: Exact, limits: Iterable[Exact]) -> Exact:
-    """A number within limits; without any, as it is."""
-    low, high = tuple(limits) or (value, value)
-    return min(max(value, low), high)
+    return -exact(muscle.peak)[()] * (driven * active * faster + passive)

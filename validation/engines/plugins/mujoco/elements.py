@@ -124,15 +124,32 @@ def _actuator(number: int, one: Actuator) -> str:
             element = f'velocity kv="{one.gain!r}"'
         case _:
             element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
+    if one.activation and one.muscle is None:
+        element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
     limits = f' ctrllimited="true" ctrlrange="{_text(one.control_limits)}"' if one.control_limits else ""
     limits += f' forcelimited="true" forcerange="{_text(one.force_limits)}"' if one.force_limits else ""
     group = ' group="1"' if one.is_disabled else ""
-    return f"<{element} {_driven(number, one)}{limits}{group}/>"
+    return f"<{element} {_driven(number, one)}{limits}{group}{_activation(one)}/>"
+
+
+_DYNAMICS = {"exact filter": "filterexact"}
+
+
+def _activation(one: Actuator) -> str:
+    """Attributes of an actuator's state."""
+    state = one.activation
+    if state is None:
+        return ""
+    made = f' dyntype="{_DYNAMICS.get(state.kind, state.kind)}"'
+    made += f' dynprm="{_text(state.times)}"' if state.times else ""
+    made += f' actlimited="true" actrange="{_text(state.limits)}"' if state.limits else ""
+    return made + (' actearly="true"' if state.is_early else "")
 
 
 def options(tree: Tree) -> str:
     """Attributes of options that a tree needs."""
-    return ' actuatorgroupdisable="1"' if any(one.is_disabled for one in tree.actuators) else ""
+    made = f' timestep="{STEP}"' if "activations" in tree.forces else ""
+    return made + (' actuatorgroupdisable="1"' if any(one.is_disabled for one in tree.actuators) else "")
 
 
 def forces(joint: Joint) -> str:
@@ -144,9 +161,11 @@ def forces(joint: Joint) -> str:
 
 
 def controls(tree: Tree) -> list[str]:
-    """Statements that set the actuators' controls; a muscle's is its activation."""
-    controls = [one.muscle.activation if one.muscle else one.control for one in tree.actuators]
-    return [f"d.ctrl[:] = {controls}"] if tree.actuators else []
+    """Statements that set actuators' controls and states; the control of a muscle without a state is its activation."""
+    states = [one.activation.state for one in tree.actuators if one.activation]
+    controls = [one.muscle.activation if one.muscle and not one.activation else one.control for one in tree.actuators]
+    made = [f"d.ctrl[:] = {controls}"] if tree.actuators else []
+    return [*made, f"states = {states}", "d.act[:] = states"] if states else made
 
 
 def _equality(number: int, one: Constraint) -> str:

@@ -34,16 +34,23 @@ EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
 def transition(step: float, settings: str = "") -> str:
     """Derivatives of Euler's step, with options of a model of its own."""
     return (
-        f"{COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros((2 * m.nv, 2 * m.nv))\n"
-        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\n"
+        f"{COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros([2 * m.nv + m.na] * 2)\n"
+        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\nA = A[:2 * m.nv, :2 * m.nv]\n"
     )
+
+
+# A step moves the actuators' states, too, which other calls are to find as they were.
+_AS_BEFORE = "\nif m.na: d.act[:] = states"
 
 
 def _step(integrator: str, settings: str = "") -> Way:
     """A step of mj_step, with options of a model of its own."""
     code = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
     state = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau"
-    return Way(f"mj_step, {integrator}", f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]")
+    return Way(
+        f"mj_step, {integrator}",
+        f"{code}\n{settings}{state}\nmj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]{_AS_BEFORE}",
+    )
 
 
 WAYS = {
@@ -132,5 +139,11 @@ for k in sensed:
         "    mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
     ),
     "actuator_forces": Way("actuator_force", f"{QV}value = d.actuator_force"),
+    "activation_rates": Way("act_dot", f"{QV}value = d.act_dot"),
+    "activations_after_step": Way(
+        "mj_step",
+        f"{COPY}n.opt.timestep = {STEP}\nd.qpos[:], d.qvel[:] = q, v\nmj.mj_step(n, d)\n"
+        "value = np.array(d.act)\nd.act[:] = states",
+    ),
     "actuated_forces": Way("qfrc_actuator", f"{QV}value = d.qfrc_actuator"),
 }

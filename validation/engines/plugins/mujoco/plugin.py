@@ -152,6 +152,7 @@ PLUGIN = SourcePlugin(
         "scaled welds": "equality/weld torquescale",
         "a lone body": "efc_diagApprox",
         "actuators": "general, motor, position, velocity",
+        "activations": "dyntype, dynprm, actearly, actrange",
     },
     formats=tuple(_READERS),
     write_reading=write_reading,
