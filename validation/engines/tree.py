@@ -140,13 +140,14 @@ class Constraint:
     """An equation between positions of links.
 
     "point": the origins of two frames coincide. "weld": two frames coincide. "coupling": a sum of coordinates, each
-    times its coefficient, is constant; each is that of the only joint of a link. "path": the sum of the distances from
+    times its coefficient, is constant; each is that of the only joint of a link. "polynomial": the first coordinate is
+    the polynomial of the second, whose coefficients begin with the constant. "path": the sum of the distances from
     point to point is what it is with all coordinates zero.
 
     Attributes:
         kind: One of these.
         ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
-        coefficients: Of a "coupling", for each end.
+        coefficients: Of a "coupling", for each end; of a "polynomial", for each power.
         torque_scale: Of a "weld", factor of its rows of rotation.
     """
 

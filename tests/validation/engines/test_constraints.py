@@ -15,6 +15,7 @@ from validation.engines.plugins import OWN
 from validation.engines.truth import constraints, derived
 from validation.engines.truth.arithmetic import Exact, exact
 from validation.engines.truth.dynamics import Point, Truth, digits
+from validation.engines.verdicts import judge
 from validation.engines.workers import Job, answered
 
 TREES = trees()
@@ -127,3 +128,29 @@ def test_functions_of_constraints_are_asked_of_trees_with_constraints_only() -> 
 def test_mujoco_couples_coordinates_and_measures_cables(name: str) -> None:
     verdicts = {one.cell.verdict for one in _judged("mujoco", name, "constraint_jacobian", "delassus").values()}
     assert verdicts == {"right"}
+
+
+@pytest.mark.parametrize("name", [name for name in TREES if name.startswith("polynomial")])
+def test_a_polynomial_is_bound_by_its_derivative(name: str) -> None:
+    truth, s = _closed(name)
+    (one,) = TREES[name].constraints
+
+    def excess(t: Truth, s: Point) -> Exact:
+        slope = t.kinematics.tangent(lambda q: np.array([t.kinematics.line(q, one)[0]]), s.q)
+        return slope - constraints.jacobian(t, s.q)
+
+    assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
+    x, y = float(s.q[1]), float(s.q[2])
+    assert y == pytest.approx(np.polyval(one.coefficients[::-1], x), abs=1e-12)
+
+
+def test_a_polynomial_that_is_a_line_is_a_red_cell() -> None:
+    tree = TREES["polynomial of a hinge, of degree two"]
+    (stated,) = tree.constraints
+    line = replace(tree, constraints=(replace(stated, coefficients=stated.coefficients[:2]),))
+    names = ("constraint_jacobian", "constraint_residuals")
+    want = _judged("mujoco", tree.name, *names)
+    for answer in answered(Job("mujoco", line, names, SEED)):
+        expected = want[answer.function].want
+        assert expected is not None and want[answer.function].cell.verdict == "right"
+        assert judge("planted", tree, answer.function, np.asarray(answer.value), expected).verdict == "wrong"

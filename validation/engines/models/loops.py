@@ -97,6 +97,14 @@ def _coupled(name: str, count: int, *coefficients: float) -> Tree:
     return Tree(name, links, constraints=(Constraint("coupling", ends, coefficients),))
 
 
+def _polynomial(name: str, driver: Joint, *coefficients: float) -> Tree:
+    """A hinge whose angle is a polynomial of the coordinate of the joint before it."""
+    draw = np.random.default_rng([ord(letter) for letter in name])
+    links = list(_branches(draw, 0, -1, 3))
+    links[1] = link(draw, "a1", 0, placed(draw, driver))
+    return Tree(name, tuple(links), constraints=(Constraint("polynomial", (End("a2"), End("a1")), coefficients),))
+
+
 def _cable(name: str, *via: str) -> Tree:
     draw = np.random.default_rng([ord(letter) for letter in name])
     links = _branches(draw, 0, -1, 3, 2)
@@ -127,6 +135,11 @@ def trees() -> dict[str, Tree]:
         _of_joint("point beyond a universal joint", Joint("universal", axis=(1.0, 0.0, 0.0), second=_Y)),
         _coupled("coupling of two hinges", 3, 1.0, -0.5),
         _coupled("coupling of four hinges", 4, 1.0, -0.5, 0.25, 2.0),
+        _polynomial("polynomial of a hinge, of degree two", Joint("revolute", axis=OBLIQUE), 0.125, -0.5, 0.25),
+        _polynomial(
+            "polynomial of a hinge, of degree four", Joint("revolute", axis=OBLIQUE), -0.25, 0.5, 0.125, -0.25, 0.0625
+        ),
+        _polynomial("polynomial of a slide", Joint("prismatic", axis=OBLIQUE), 0.25, 0.0, -1.5, 0.5),
         _cable("cable of two points", "a2", "b1"),
         _cable("cable over four points", "a2", "a0", "", "b1"),
     )

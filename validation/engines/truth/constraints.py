@@ -39,7 +39,7 @@ class Rows(NamedTuple):
 
 
 def _rows(kinematics: Kinematics, q: Exact, constraint: Constraint) -> Rows:
-    if constraint.kind in ("coupling", "path"):
+    if constraint.kind not in ("point", "weld"):
         length, derivative = kinematics.line(q, constraint)
         return Rows(np.array([length], dtype=object), None, derivative[np.newaxis])
     first, second = (kinematics.held(q, end) for end in constraint.ends)

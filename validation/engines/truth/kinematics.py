@@ -109,8 +109,16 @@ class Kinematics:
         return Held(R @ orthonormal(end.R), p + offset, np.concatenate([J[:3] - skew(offset) @ J[3:], J[3:]]))
 
     def line(self, q: Exact, line: Tendon | Constraint) -> tuple[Exact, Exact]:
-        """Length of a "coupling" or a "path", and its derivative (nv) along the speeds."""
+        """Length of a "coupling", a "polynomial" or a "path", and its derivative (nv) along the speeds."""
         length, J = Decimal(0), zeros(self.nv)
+        if line.kind == "polynomial":
+            (driven,), (driver,) = (self.slots[self._places[end.link]] for end in line.ends)
+            x, coefficients = q[driver.q[0]], exact(line.coefficients)
+            length, J[driven.v[0]] = q[driven.q[0]], Decimal(1)
+            for power, coefficient in enumerate(coefficients):
+                length = length - coefficient * x**power
+                J[driver.v[0]] -= power * coefficient * x ** (power - 1) if power else 0
+            return length, J
         if line.kind == "coupling":
             for end, coefficient in zip(line.ends, exact(line.coefficients), strict=True):
                 (slot,) = self.slots[self._places[end.link]]

@@ -65,7 +65,7 @@ class _Bodies:
         self.slots: dict[int, tuple[Slot, ...]] = {}
         self.nq = self.nv = 0
         lines: tuple[Constraint | Tendon, ...] = (*tree.constraints, *tree.tendons)
-        self.coupled = {end.link for one in lines if one.kind == "coupling" for end in one.ends}
+        self.coupled = {end.link for one in lines if one.kind in ("coupling", "polynomial") for end in one.ends}
         self.coupled |= {one.link for one in tree.actuators}
 
     def element(self, k: int) -> str | Unsupported:

@@ -14,6 +14,7 @@ KINDS = {
     "point": "equality/connect",
     "weld": "equality/weld",
     "coupling": "equality/joint; equality/tendon of a fixed tendon",
+    "polynomial": "equality/joint, polycoef",
     "path": "equality/tendon of a spatial tendon",
 }
 # As hard as MuJoCo lets a constraint be: it bounds impedances by mjMAXIMP, 0.9999.
@@ -55,7 +56,7 @@ def sites(tree: Tree, link: str) -> str:
     return sensors + "".join(
         _site(f"{name}_{place}", end)
         for name, one in lines
-        if one.kind != "coupling"
+        if one.kind not in ("coupling", "polynomial")
         for place, end in enumerate(one.ends)
         if end.link == link
     )
@@ -181,6 +182,10 @@ def _equality(number: int, one: Constraint) -> str:
     if one.kind in ("point", "weld"):
         name = {"point": "connect", "weld": "weld"}[one.kind]
         return f'<{name} site1="s{number}_0" site2="s{number}_1" {_HARD}/>'
+    if one.kind == "polynomial":
+        driven, driver = (end.link for end in one.ends)
+        coefficients = _text((*one.coefficients, *[0.0] * 5)[:5])
+        return f'<joint joint1="{driven}" joint2="{driver}" polycoef="{coefficients}" {_HARD}/>'
     if _is_joint(one):
         ratio = -one.coefficients[1] / one.coefficients[0]
         driven, driver = (end.link for end in one.ends)
@@ -201,7 +206,9 @@ def _is_joint(one: Constraint) -> bool:
 
 
 def _tendon(number: int, one: Constraint) -> str:
-    return "" if one.kind in ("point", "weld") or _is_joint(one) else _line(f"t{number}", f"s{number}", one)
+    return (
+        "" if one.kind in ("point", "weld", "polynomial") or _is_joint(one) else _line(f"t{number}", f"s{number}", one)
+    )
 
 
 def _line(name: str, sites: str, one: Constraint | Tendon, more: str = "") -> str:
@@ -239,7 +246,7 @@ def optional(tree: Tree) -> dict[str, tuple[str, ...]]:
         return {}
     blocks, turns = [], []
     for number, one in enumerate(tree.constraints):
-        turns += [f"{1 if one.kind in ('coupling', 'path') else 3} * [1]"]
+        turns += [f"{3 if one.kind in ('point', 'weld') else 1} * [1]"]
         way = f"sign('s{number}_0', 's{number}_1')"
         if one.kind == "weld" and one.ends[1] == End(
             one.ends[1].link
