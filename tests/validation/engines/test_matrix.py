@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.late import require
 from validation.engines.identities import held
-from validation.engines.interface import Array, EnginePlugin, Unsupported
+from validation.engines.interface import Array, EnginePlugin, Slot, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
 from validation.engines.models.formats import formats
 from validation.engines.models.hostile import trees
@@ -17,8 +18,10 @@ from validation.engines.models.kinds import KINDS, tree_of
 from validation.engines.models.readers import Reading
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
+from validation.engines.proving.pieces import Layout
 from validation.engines.study import fault_groups
-from validation.engines.verdicts import judge
+from validation.engines.truth.dynamics import random_state
+from validation.engines.verdicts import expected, judge
 from validation.engines.workers import Crashed, Job, Worker, answered
 
 SIMPLE = ("mass_matrix", "bias", "link_jacobians", "kinetic_energy")
@@ -67,6 +70,32 @@ def test_our_reader_and_the_best_of_a_format_read_what_its_files_state(name: str
         if reading.form in plugin.formats:
             refused = {"refuses"} if name == "sdf: placement frame" and plugin.name == "symofros" else set()
             assert _verdicts(plugin, reading) <= {"right", "not offered"} | refused, plugin.name
+
+
+_STAGES = {name: one for name, one in formats().items() if one.form == "usd"}
+
+
+@pytest.mark.parametrize("name", _STAGES)
+def test_our_reader_reads_what_stages_state(name: str) -> None:
+    require("pxr", "usd")
+    assert _verdicts(OWN["symofros"], _STAGES[name]) == {"right"}
+
+
+@pytest.mark.parametrize(
+    ("name", "other"),
+    [
+        ("up along Y, gravity left out", "gravity left out"),
+        ("cube of its own density", "cube by default"),
+        ("cube of its own mass", "cube of its own density"),
+    ],
+)
+def test_axes_and_densities_of_stages_that_are_forgotten_are_red_cells(name: str, other: str) -> None:
+    layout = Layout(1, 1, ((Slot("angle", (0,), (0,)),),))
+    one, given = (_STAGES[f"usd: {which}"].tree for which in (name, other))
+    state = random_state(one, layout, SEED)
+    want, forgotten = (expected("bias", tree, layout, state) for tree in (one, given))
+    assert judge("planted", one, "bias", want.value, want).verdict == "right"
+    assert judge("planted", one, "bias", forgotten.value, want).verdict == "wrong"
 
 
 def _verdicts(plugin: EnginePlugin, reading: Reading) -> set[str]:

@@ -2,40 +2,58 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
+from ..interface import Tree
 from . import readers
-from .readers import NEXT, Reading, about, along, hung
+from .readers import LIMITED, NEXT, Reading, about, along, hung
 
 _of = partial(readers.reading, "usd")
 _UNTURNED = "(1, 0, 0, 0)"
 
 
-def _file(axis: str = 'uniform token physics:axis = "Y"', axes: str = _UNTURNED, at: str = "(0, 0, 0.5)") -> str:
-    """A body on a joint in the world: the joint's axis, the principal axes, where the joint stands."""
+_HEAD = 'metersPerUnit = 1\n    kilogramsPerUnit = 1\n    upAxis = "Z"'
+_DOWN = "vector3f physics:gravityDirection = (0, 0, -1)\n    float physics:gravityMagnitude = 9.81"
+_TURNS_ABOUT_Y = 'uniform token physics:axis = "Y"'
+_MASS, _COM, _MOMENTS = "float physics:mass = 1", "(0, 0.125, 0.25)", "(0.25, 0.375, 0.5)"
+# Density of colliders that state none [kg/m^3].
+_WATER = 1000.0
+
+
+def _inertial(com: str = _COM, moments: str = _MOMENTS, axes: str = _UNTURNED, mass: str = _MASS) -> str:
+    return f"""{mass}
+        point3f physics:centerOfMass = {com}
+        float3 physics:diagonalInertia = {moments}
+        quatf physics:principalAxes = {axes}"""
+
+
+def _file(
+    axis: str = _TURNS_ABOUT_Y,
+    inertial: str = _inertial(),
+    at: str = "(0, 0, 0.5)",
+    head: str = _HEAD,
+    scene: str = _DOWN,
+    joint: str = "Revolute",
+) -> str:
+    """A body on a joint in the world: the joint's axis and limits, the body's mass or shapes, where it stands."""
     return f"""#usda 1.0
 (
     defaultPrim = "m"
-    metersPerUnit = 1
-    kilogramsPerUnit = 1
-    upAxis = "Z"
+    {head}
 )
 def PhysicsScene "scene" {{
-    vector3f physics:gravityDirection = (0, 0, -1)
-    float physics:gravityMagnitude = 9.81
+    {scene}
 }}
 def Xform "m" (prepend apiSchemas = ["PhysicsArticulationRootAPI"]) {{
     def Xform "b" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]) {{
         double3 xformOp:translate = {at}
         uniform token[] xformOpOrder = ["xformOp:translate"]
-        float physics:mass = 1
-        point3f physics:centerOfMass = (0, 0.125, 0.25)
-        float3 physics:diagonalInertia = (0.25, 0.375, 0.5)
-        quatf physics:principalAxes = {axes}
+        {inertial}
     }}
-    def PhysicsRevoluteJoint "joint" {{
+    def Physics{joint}Joint "joint" {{
         rel physics:body1 = </m/b>
         point3f physics:localPos0 = {at}
         {axis}
@@ -44,16 +62,87 @@ def Xform "m" (prepend apiSchemas = ["PhysicsArticulationRootAPI"]) {{
 """
 
 
+def _shape(kind: str, sizes: str, more: str = "", api: str = "") -> str:
+    """A collider at (0, 0.125, 0.25) of the body."""
+    return f"""def {kind} "s" (prepend apiSchemas = ["PhysicsCollisionAPI"{api}]) {{
+            {sizes}
+            double3 xformOp:translate = {_COM}
+            uniform token[] xformOpOrder = ["xformOp:translate"]
+            {more}
+        }}"""
+
+
+def _stage() -> Iterator[tuple[str, Reading]]:
+    """Units and axes of the stage, gravity by default."""
+    inertia = readers.diagonal(0.25, 0.375, 0.5)
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
+    in_centimetres = _inertial("(0, 12.5, 25)", "(2500, 3750, 5000)")
+    scene = "vector3f physics:gravityDirection = (0, 0, -1)\n    float physics:gravityMagnitude = 981"
+    centimetres = _file(inertial=in_centimetres, at="(0, 0, 50)", head=_HEAD.replace("= 1", "= 0.01", 1), scene=scene)
+    yield _of("centimetres", centimetres, body)
+    by_default = 'kilogramsPerUnit = 1\n    upAxis = "Z"'
+    yield _of("metres left out", _file(inertial=in_centimetres, at="(0, 0, 50)", head=by_default, scene=scene), body)
+    yield _of("kilograms left out", _file(head='metersPerUnit = 1\n    upAxis = "Z"'), body)
+    in_grams = _inertial(moments="(250, 375, 500)", mass="float physics:mass = 1000")
+    yield _of(
+        "grams", _file(inertial=in_grams, head=_HEAD.replace("PerUnit = 1\n    up", "PerUnit = 0.001\n    up")), body
+    )
+    yield _of("gravity left out", _file(scene=""), body)
+    aside = "vector3f physics:gravityDirection = (0.6, 0, -0.8)\n    float physics:gravityMagnitude = 2.5"
+    for name, scene, head, gravity in (
+        ("gravity aside", aside, _HEAD, (1.5, 0.0, -2.0)),
+        ("up along Y, gravity left out", "", _HEAD.replace('"Z"', '"Y"'), (0.0, -9.81, 0.0)),
+        ("up axis and gravity left out", "", _HEAD.replace('\n    upAxis = "Z"', ""), (0.0, -9.81, 0.0)),
+        ("up along Y, gravity along Z", _DOWN, _HEAD.replace('"Z"', '"Y"'), (0.0, 0.0, -9.81)),
+    ):
+        title = f"usd: {name}"
+        yield title, Reading("usd", _file(scene=scene, head=head), Tree(title, (body,), gravity=gravity))
+
+
+def _masses() -> Iterator[tuple[str, Reading]]:
+    """Mass and moments that follow from colliders, their densities and sizes."""
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25))
+    cube, ball = _shape("Cube", "double size = 0.5"), _shape("Sphere", "double radius = 0.25")
+    side, sphere = 0.5**3, 4.0 / 3.0 * math.pi * 0.25**3
+
+    def of(name: str, inertial: str, mass: float, moment: float) -> tuple[str, Reading]:
+        solid = replace(body, mass=mass, inertia=readers.diagonal(*[moment] * 3))
+        return _of(name, _file(inertial=inertial), solid)
+
+    yield of("cube by default", cube, _WATER * side, _WATER * side * 0.5**2 / 6.0)
+    yield of("ball by default", ball, _WATER * sphere, _WATER * sphere * 0.4 * 0.25**2)
+    dense = "float physics:density = 500\n        "
+    yield of("cube of the body's density", dense + cube, 500.0 * side, 500.0 * side * 0.5**2 / 6.0)
+    own = _shape("Cube", "double size = 0.5", "float physics:density = 250", ', "PhysicsMassAPI"')
+    yield of("cube of its own density", own, 250.0 * side, 250.0 * side * 0.5**2 / 6.0)
+    yield of("cube's density before the body's", dense + own, 250.0 * side, 250.0 * side * 0.5**2 / 6.0)
+    yield of("cube of the body's mass", f"float physics:mass = 3\n        {cube}", 3.0, 3.0 * 0.5**2 / 6.0)
+    heavy = _shape("Cube", "double size = 0.5", "float physics:mass = 3", ', "PhysicsMassAPI"')
+    yield of("cube of its own mass", heavy, 3.0, 3.0 * 0.5**2 / 6.0)
+
+
+def _joints() -> Iterator[tuple[str, Reading]]:
+    """Limits, in degrees and in units of length."""
+    inertia = readers.diagonal(0.25, 0.375, 0.5)
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
+    bounds = f"{_TURNS_ABOUT_Y}\n        float physics:lowerLimit = -30\n        float physics:upperLimit = 75"
+    turned = hung(body, limits=tuple(map(math.radians, (-30.0, 75.0))))
+    yield _of("limits of a hinge", _file(axis=bounds), turned, asked=LIMITED)
+    sliding = bounds.replace("-30", "-0.25").replace("75", "2")
+    slid = hung(body, kind="prismatic", limits=(-0.25, 2.0))
+    yield _of("limits of a slide", _file(axis=sliding, joint="Prismatic"), slid, asked=LIMITED)
+    yield _of("slide", _file(joint="Prismatic"), hung(body, kind="prismatic"))
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name; numbers that floats state exactly."""
     inertia = readers.diagonal(0.25, 0.375, 0.5)
     body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
-
-    def stated() -> Iterator[tuple[str, Reading]]:
-        yield _of("plain", _file(), body)
-        yield _of("axis left out", _file(axis=""), hung(body, axis=(1.0, 0.0, 0.0)))
-        half = about((1.0, 0.0, 0.0), 1.5707963267948966)
-        turned = replace(body, inertia=along(half, inertia))
-        yield _of("principal axes turned", _file(axes="(0.70710678, 0.70710678, 0, 0)"), turned)
-
-    return dict(stated())
+    half = about((1.0, 0.0, 0.0), 1.5707963267948966)
+    turned = replace(body, inertia=along(half, inertia))
+    stated = (
+        _of("plain", _file(), body),
+        _of("axis left out", _file(axis=""), hung(body, axis=(1.0, 0.0, 0.0))),
+        _of("principal axes turned", _file(inertial=_inertial(axes="(0.70710678, 0.70710678, 0, 0)")), turned),
+    )
+    return dict([*stated, *_stage(), *_masses(), *_joints()])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -222,6 +223,10 @@ def write(tree: Tree) -> Source | Unsupported:
 _READERS = {
     "urdf": "b.add_urdf(TEXT)",
     "mjcf": "b.add_mjcf(TEXT)",
+    "usd": "from pxr import Usd\nstage = Usd.Stage.CreateInMemory()\nstage.GetRootLayer().ImportFromString(TEXT)\n"
+    # A body on a joint in the world is none of its articulations, of which functions are asked.
+    "b.add_usd(stage, apply_up_axis_from_stage=True)\n"
+    "b.articulation_count or b.add_articulation(list(range(b.joint_count)))",
 }
 _CHARTS = {
     ("revolute", ""): "angle",
@@ -235,6 +240,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has Newton read a file."""
     if any(joint.mimics for link in tree.links for joint in link.joints):
         return Unsupported("what mimics is a constraint of its solvers", offered=False)
+    if form == "usd" and find_spec("pxr") is None:
+        return Unsupported("OpenUSD is not installed: pip install usd-core", offered=False)
     made = numbered(tree, _CHARTS)
     if isinstance(made, Unsupported):
         return made
@@ -295,6 +302,13 @@ PLUGIN = SourcePlugin(
     formats=tuple(_READERS),
     write_reading=write_reading,
     statements=(
+        Statement(
+            "precondition",
+            "stages in other units than metres and kilograms are not supported, with a warning",
+            "https://github.com/newton-physics/newton/pull/3219",
+            holds=lambda tree, text: text.startswith("#usda"),
+            warned="(metersPerUnit|kilogramsPerUnit)",
+        ),
         Statement(
             "precondition",
             "coordinates of joints are counted from ref",
