@@ -243,6 +243,10 @@ class Block(metaclass=CheckedCalls):
         """Stored quantity -> its initial value."""
         return {}
 
+    def memory_at_start(self, context: EvaluationContext) -> Values:
+        """Memory that begins by what signals are -> its value at the start, after the first samples."""
+        return {}
+
     def samples(self) -> Mapping[str, Signal]:
         """Outputs that are given by samples over time, one signal (n) or (n, size) each."""
         return {}

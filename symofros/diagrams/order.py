@@ -94,7 +94,7 @@ def groups_in_motion(wired: Wired, pieces: Mapping[str, Piece]) -> list[list[str
     groups: dict[str, list[str]] = {}
     for name in moving:
         groups.setdefault(root(name), []).append(name)
-    return list(groups.values())
+    return list(groups.values()) or [[] for _ in watched[:1]]  # Where nothing moves, crossings are looked for still.
 
 
 def reached(wired: Wired, pieces: Mapping[str, Piece], name: str, inputs: frozenset[str]) -> set[str]:

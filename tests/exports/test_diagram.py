@@ -114,6 +114,33 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
         assert told[-1, 2] == moved["ball.bounces"][-1] == 2
 
 
+def test_programs_switch_where_python_does(tmp_path: Path) -> None:
+    """A machine and relays, located in time; nothing moves, what begins on is on, one switches what another reads."""
+    diagram = sf.Diagram("switching")
+    diagram.add(blocks.Sine(name="u", frequency=1.0, phase=2.0))
+    diagram.add(blocks.Relay(name="relay", lower=-0.5, upper=0.5), u="u.y")
+    states = {
+        "low": blocks.MachineState(during={"y": "0-u"}, entry={"n": "n + 1"}),
+        "high": blocks.MachineState(exit={"y": "elapsed"}),
+    }
+    ways = (blocks.Transition("low", "high", "on-0.5"), blocks.Transition("high", "low", "0.5-on"))
+    outputs = {"y": 0.0, "n": 0.0}
+    diagram.add(
+        blocks.StateMachine(name="m", machine_states=states, transitions=ways, outputs=outputs), u="u.y", on="relay.y"
+    )
+    outputs_told = ["relay.y", "m.state", "m.y", "m.n"]
+    program = build(sf.export(diagram, "c", tmp_path / "c", outputs=outputs_told).folder, "program")
+    assert subprocess.run([program, "--check"], capture_output=True).returncode == 0
+    done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)
+    told = np.array([[float(x) for x in row.split(",")] for row in done.stdout.splitlines()[1:]])
+    run = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
+    last = [np.flatnonzero(np.abs(run.t - t) < 1e-12)[-1] for t in told[:, 0]]  # Crossings are recorded, too.
+    last[0] = 0  # What is met at the start is so in the first step.
+    want = np.column_stack([run[name][last] for name in outputs_told])
+    assert len({tuple(row) for row in want[:, [0, 1, 3]]}) == 4
+    np.testing.assert_allclose(told[:, 1:], want, atol=1e-9)
+
+
 @pytest.mark.parametrize(("shape", "method"), [*((shape, "dopri5") for shape in SHAPES), ("tent", "rk4")])
 def test_programs_resolve_pulses_of_model_formulas(shape: str, method: str, tmp_path: Path) -> None:
     """However its run is cut: a part whose steps end at no instants stays at rest."""

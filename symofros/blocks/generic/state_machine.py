@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,8 +13,7 @@ from symofros.base.arguments import CheckedCalls
 from symofros.base.arrays import Array
 from symofros.blocks.checks import known_name, numbers, refuse
 from symofros.blocks.generic.formula import bindings_of, input_ports, input_sizes, read_formula
-from symofros.blocks.generic.sampling import needs_period
-from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.expr import Expression, NoValueError, lower
 
@@ -30,9 +29,10 @@ class MachineState(metaclass=CheckedCalls):
     """A state of a machine: what outputs are there; those that it does not assign keep their values.
 
     Attributes:
-        during: Output -> formula, at each sample in the state.
-        entry: Output -> formula, at the sample that enters the state, in place of `during`.
-        exit: Output -> formula, at the sample that leaves it; what the next state assigns goes before it.
+        during: Output -> formula, at each sample in the state; of a continuous machine at all times in it.
+        entry: Output -> formula, at the sample that enters the state, in place of `during`; of a continuous machine
+            what the output keeps from there on, where `during` does not assign it.
+        exit: Output -> formula, where it is left; what the next state assigns goes before it.
     """
 
     during: Mapping[str, str | float] = field(default_factory=dict)
@@ -47,7 +47,8 @@ class Transition(metaclass=CheckedCalls):
     Attributes:
         leave: State that it leaves.
         enter: State that it enters.
-        when: Formula; the transition is taken at a sample where it is zero or more.
+        when: Formula; the transition is taken at a sample where it is zero or more, by a continuous machine where it
+            becomes so.
     """
 
     leave: str
@@ -57,12 +58,14 @@ class Transition(metaclass=CheckedCalls):
 
 @dataclass(frozen=True, kw_only=True)
 class StateMachine(Block):
-    """One of several states at a time, changed at samples where a condition holds.
+    """One of several states at a time, changed where a condition holds.
 
-    A sample takes one transition at most: of those that leave the active state, the first stated whose `when` is zero
-    or more. The first sample enters the first state. Names in formulas are inputs (scalars, or entries such as u[0]),
-    constants, outputs (their values at the sample before), the time t, and `elapsed`, the time since the state was
-    entered [s]. All formulas are evaluated at every sample and must be finite.
+    Sampled, a sample takes one transition at most: of those that leave the active state, the first stated whose `when`
+    is zero or more. The first sample enters the first state. Continuous, a transition is taken where its `when`
+    becomes zero or more, located in time, or at once where it is so as its state is entered. Names in formulas are
+    inputs (scalars, or entries such as u[0]), constants, outputs (their values at the sample before; continuous, those
+    with which the state was entered, and at entry and exit those at that instant), the time t, and `elapsed`, the time
+    since the state was entered [s]. All formulas are evaluated at all times and must be finite.
 
     Attributes:
         machine_states: State -> what it assigns, in order; output `state` is the number of the active one, from 0.
@@ -81,8 +84,7 @@ class StateMachine(Block):
     units: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """States that are reached, formulas that can be read, names that are there, a sample time."""
-        needs_period(self)
+        """States that are reached, formulas that can be read, names that are there."""
         if not 0 < len(self.machine_states) <= MAX_STATES:
             raise refuse(self.name, "states", f"{len(self.machine_states)} of them", f"1 to {MAX_STATES}", "state some")
         for name, value in (*self.constants.items(), *self.outputs.items()):
@@ -151,19 +153,88 @@ class StateMachine(Block):
         return {name: np.asarray(value, dtype=np.float64) for name, value in self.constants.items()}
 
     def memory(self, environment: Environment) -> dict[str, Any]:
-        """Which state is active (n), samples since it was entered, the outputs, whether there was a sample."""
+        """Which state is active (n), the outputs, whether it began; samples since the state was entered, or when."""
         active = [float(name == self._first) for name in self.machine_states]
-        return {"active": active, "samples": 0.0, "began": 0.0, **{_kept(k): v for k, v in self.outputs.items()}}
+        since = {"samples" if self.period is not None else "entered": 0.0}
+        return {"active": active, **since, "began": 0.0, **{_kept(k): v for k, v in self.outputs.items()}}
 
     def compute(self, context: EvaluationContext) -> Values:
         """The outputs, and the number of the state."""
-        after = self._next(context)
+        after = self._next(context) if self.period is not None else self._present(context)
         number = (after["active"] * [float(i) for i in range(len(self.machine_states))]).sum()
         return {_STATE: number, **{name: after[_kept(name)] for name in self.outputs}}
 
     def update(self, context: EvaluationContext) -> Values:
-        """What is kept after a sample."""
-        return self._next(context)
+        """Sampled: what is kept after a sample."""
+        return self._next(context) if self.period is not None else {}
+
+    def memory_at_start(self, context: EvaluationContext) -> Values:
+        """Continuous: the first state is entered."""
+        return {} if self.period is not None else self._entered(context, "", self._first)
+
+    def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
+        """Continuous: conditions of transitions that leave the active state; -1 in other states."""
+        if self.period is not None:
+            return {}
+        bindings, memory = self._bindings(context, self._elapsed(context)), context.memory
+        found = {}
+        for name, way, condition in zip(self._ways, self.transitions, self._conditions, strict=True):
+            leaves = memory["began"] * memory["active"][list(self.machine_states).index(way.leave)]
+            value = leaves * self._value(context, condition, bindings) - (1.0 - leaves)
+            found[name] = Crossing(value, "rising")
+        return found
+
+    def crossed(self, context: EvaluationContext, which: str) -> Values:
+        """What is kept after a transition, if its state is still active: an earlier one may have left it."""
+        way = self._ways[which]
+        leaves = context.memory["active"][list(self.machine_states).index(way.leave)]
+        after = self._entered(context, way.leave, way.enter)
+        return {key: leaves * value + (1.0 - leaves) * context.memory[key] for key, value in after.items()}
+
+    @cached_property
+    def _ways(self) -> dict[str, Transition]:
+        """Name of a crossing -> transition."""
+        ways: dict[str, Transition] = {}
+        for way in self.transitions:
+            name = f"{way.leave}_to_{way.enter}"
+            same = sum(one.leave == way.leave and one.enter == way.enter for one in ways.values())
+            ways[f"{name}_{same + 1}" if same else name] = way
+        return ways
+
+    def _elapsed(self, context: EvaluationContext) -> Tensor:
+        """Continuous: time since the state was entered."""
+        return context.t - context.memory["entered"]
+
+    def _present(self, context: EvaluationContext) -> dict[str, Tensor]:
+        """Continuous: the active state, and the outputs."""
+        memory, now = context.memory, {"active": context.memory["active"]}
+        bindings = self._bindings(context, self._elapsed(context))
+        for output in self.outputs:
+            value = memory[_kept(output)]
+            for i, name in enumerate(self.machine_states):
+                if (name, "during", output) in self._actions:
+                    assigned = self._value(context, self._actions[name, "during", output], bindings)
+                    value = memory["active"][i] * assigned + (1.0 - memory["active"][i]) * value
+            now[_kept(output)] = value
+        return now
+
+    def _entered(self, context: EvaluationContext, leave: str, enter: str) -> dict[str, Tensor]:
+        """Continuous: what is kept after a state is left, if one was, and another one entered."""
+        active = [float(name == enter) for name in self.machine_states]
+        after = {"active": context.numbers(active), "entered": context.t, "began": context.numbers(1.0)}
+        present = self._present(context) if leave else context.memory
+        there = replace(context, memory={**context.memory, **present})
+        bindings = {
+            "exit": self._bindings(there, self._elapsed(context)),
+            "entry": self._bindings(there, context.numbers(0.0)),
+        }
+        for output in self.outputs:
+            value = present[_kept(output)]
+            for name, when in ((leave, "exit"), (enter, "entry")):
+                if (name, when, output) in self._actions:
+                    value = self._value(context, self._actions[name, when, output], bindings[when])
+            after[_kept(output)] = value
+        return after
 
     def _next(self, context: EvaluationContext) -> dict[str, Tensor]:
         """What is kept after a sample."""

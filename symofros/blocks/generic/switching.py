@@ -60,6 +60,10 @@ class Relay(Block):
         comes_on, stays = (u - par["upper"]).apply("step"), 1.0 - (par["lower"] - u).apply("step")
         return comes_on.apply("max", stays * context.memory["is_on"])
 
+    def memory_at_start(self, context: EvaluationContext) -> Values:
+        """Continuous: on or off where the input is beyond a threshold from the start."""
+        return {} if self.period is not None else {"is_on": self._next(context)}
+
     def compute(self, context: EvaluationContext) -> Values:
         """One of two values."""
         is_on = context.memory["is_on"] if self.period is None else self._next(context)

@@ -238,13 +238,15 @@ class Fuser:
         return [name for name in (names | rest) if self._pieces[name].is_external]
 
     def samples(self, sets: Sequence[frozenset[str]], listened: Sequence[Source] = ()) -> Program:
-        """Program of the functions at instants: "due_i" for each set and "crossed_i" for each crossing.
+        """Functions at instants: "due_i" for each set, "crossed_i" for each crossing, "begun" at the start.
 
         "inputs_i_j" gives what the j-th block of set i is called with: its inputs, one after the other.
         """
         g = Graph()
         functions = [self._due(g, f"due_{i}", due) for i, due in enumerate(sets)]
         functions += [self._crossed(g, f"crossed_{i}", *which) for i, which in enumerate(watched(self._pieces))]
+        if any(piece.begins for piece in self._pieces.values()):
+            functions.append(self._begun(g))
         for i, due in enumerate(sets):
             functions += [
                 self._gathered_inputs(g, f"inputs_{i}_{j}", name, due) for j, name in enumerate(self.external(due))
@@ -264,6 +266,14 @@ class Fuser:
             for key, value in piece.updates.items():
                 u[self._layout.memory[block, key].slice] = at.write(piece, value).flat
         return Function(name, "", AFTER, (_vector("u_next", u),))
+
+    def _begun(self, g: Graph) -> Function:
+        at = self._at(g, after=True)
+        u = [g.input("u", i) for i in range(len(self._layout.u0))]
+        for block, piece in self._pieces.items():
+            for key, value in piece.begins.items():
+                u[self._layout.memory[block, key].slice] = at.write(piece, value).flat
+        return Function("begun", "", AFTER, (_vector("u_next", u),))
 
     def _crossed(self, g: Graph, name: str, block: str, which: str) -> Function:
         at, layout, piece = self._at(g, after=True), self._layout, self._pieces[block]

@@ -39,6 +39,7 @@ class Piece:
         q: First configuration of its mechanism.
         v: First speeds.
         switching: Events of its mechanism; None where there are none.
+        begins: Memory -> its value at the start, where signals say it.
         needs: Output port -> inputs that it depends on at once.
     """
 
@@ -56,6 +57,7 @@ class Piece:
     q: Array
     v: Array
     switching: Switching | None = None
+    begins: dict[str, Tensor] = field(default_factory=dict)
     needs: dict[str, frozenset[str]] = field(default_factory=dict)
 
     @property
@@ -132,6 +134,7 @@ def piece_of(wired: Wired, name: str) -> Piece:
         q0,
         v0,
         switching_of(wired.models, block, at),
+        dict(block.memory_at_start(at)),
     )
     _fit(wired, piece)
     if isinstance(block, ExternalBlock):
@@ -214,6 +217,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
     _same(name, "rates", piece.rates, {key: value.shape for key, value in piece.states.items()})
     kept = {key: value.shape for key, value in piece.memory.items()}
     _same(name, "memory", piece.updates, {key: kept.get(key, "not stated") for key in piece.updates})
+    _same(name, "memory", piece.begins, {key: kept.get(key, "not stated") for key in piece.begins})
     places = {"q": piece.q.shape, "v": piece.v.shape} if block.mechanism() else {}
     changed = kept | {key: value.shape for key, value in piece.states.items()} | places
     for which, jump in piece.jumps.items():
@@ -228,7 +232,7 @@ def _fit(wired: Wired, piece: Piece) -> None:
                 "leave the period out",
             )
         )
-    watched = {key for jump in piece.jumps.values() for key in jump}
+    watched = {*piece.begins, *(key for jump in piece.jumps.values() for key in jump)}
     if not piece.is_discrete and piece.memory.keys() - watched:
         raise DescriptionError(
             Problem(

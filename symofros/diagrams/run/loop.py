@@ -49,6 +49,7 @@ class Loop:
         schedule: Schedule of the instants; RECORD is among the members of its sets.
         tasks: Tasks of each set of the schedule.
         crossings: Task of each crossing.
+        begin: Task at the start, if there is one.
         par: Run-time parameters (npar).
         u0: Initial inputs, with all that is held between samples (nu).
         external: Calls of the external blocks.
@@ -68,6 +69,7 @@ class Loop:
         schedule: Schedule,
         tasks: Sequence[Sequence[Task]],
         crossings: Sequence[Task],
+        begin: Sequence[Task],
         par: Array,
         u0: Array,
         external: ExternalCalls,
@@ -85,6 +87,8 @@ class Loop:
         self._fill_parts(layout)
         self._fill_schedule(schedule, tasks)
         self.diagram.n_crossings, self.diagram.crossing_tasks = len(crossings), self._tasks(crossings)
+        if begin:
+            self.diagram.begin_task = self._tasks(begin)
         self._fill_records()
         self.diagram.callback = self._memory.callback(_BLOCK_CALLBACK, self._call_block)
 
@@ -179,6 +183,7 @@ class Loop:
             self.native.sym_diagram_start_threads(d, min(threads, d.n_parts))
         self.native.sym_diagram_start(d)
         if after is not None:
+            d.begun = 1
             ticks = [int(d.instant_tick[i]) for i in range(d.n_instants)]
             d.cycle, rest = divmod(round((after - t0) * float(d.base_denominator / d.base_numerator)), d.cycle_ticks)
             d.next_instant, d.t[0] = bisect_right(ticks, rest), after

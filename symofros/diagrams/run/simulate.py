@@ -272,6 +272,7 @@ def placed_loop(task: PlannedRun, begin: Start, called: Called) -> tuple[Loop, l
         task.plan,
         _tasks(compiled, task.plan, external),
         [Task(_kernel(compiled, f"crossed_{i}")) for i in range(len(watched(resolved.pieces)))],
+        [Task(_kernel(compiled, "begun"))] if ("begun", "") in compiled.instants.kernels else [],
         task.par,
         begin.u,
         external,

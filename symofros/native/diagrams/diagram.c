@@ -122,6 +122,38 @@ static int32_t sym_project_parts(sym_diagram *d, double t) {
     return 0;
 }
 
+/* Evaluate what is located anew. A crossing whose value tasks have carried through zero is met where the next step begins,
+ * but not one whose own task was executed. Returns 0 or a status. */
+static int32_t sym_look_anew(const sym_diagram *d, sym_run *r) {
+    double *before = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    int32_t i, status;
+    int64_t row;
+    if (r->system->n_events == 0) return 0;
+    memcpy(before, r->event_values, (size_t)d->n_crossings * sizeof *before);
+    for (row = r->first_met; row < r->met_end; ++row)
+        if (r->event_t[row] == r->t && r->event_index[row] < d->n_crossings) before[r->event_index[row]] = 0.0;
+    status = sym_restart_events(r);
+    if (status != 0) return status;
+    for (i = 0; i < d->n_crossings; ++i)
+        if (sym_arrives_at_zero(r->system->event_direction[i], before[i], r->event_values[i])) r->event_values[i] = before[i];
+    return 0;
+}
+
+/* Memory that begins by what signals are <- that. Returns 0 or a status. */
+static int32_t sym_begin_memory(sym_diagram *d) {
+    int32_t i, status = 0;
+    d->begun = 1;
+    if (d->begin_task == NULL) return 0;
+    sym_gather_states(d, *d->t);
+    if (d->reads_accelerations) status = sym_evaluate_parts(d);
+    if (status == 0) status = sym_execute_tasks(d, d->begin_task, 1);
+    for (i = 0; i < d->n_parts && status == 0; ++i) {
+        d->parts[i]->slope_valid = 0;
+        status = sym_look_anew(d, d->parts[i]);
+    }
+    return status;
+}
+
 /* Execute the next instant, at time t. Returns 0 or a status. */
 static int32_t sym_execute_instant(sym_diagram *d, double t) {
     const sym_task_set *now = &d->task_sets[d->instant_set[d->next_instant]];
@@ -135,6 +167,7 @@ static int32_t sym_execute_instant(sym_diagram *d, double t) {
         if (status != 0) return status;
         for (i = 0; i < d->n_parts; ++i) d->parts[i]->slope_valid = 0;
     }
+    if (!d->begun && (status = sym_begin_memory(d)) != 0) return status;
     if (now->records) sym_diagram_record(d);
     if (++d->next_instant == d->n_instants) d->next_instant = 0, ++d->cycle;
     return 0;
@@ -210,7 +243,7 @@ static int32_t sym_execute_crossings(sym_diagram *d, sym_run *stopped) {
             d->failed_part = i;
             return status;
         }
-        if ((status = sym_restart_events(r)) != 0) return status;
+        if ((status = sym_look_anew(d, r)) != 0) return status;
     }
     return 0;
 }
@@ -240,6 +273,9 @@ static int32_t sym_handle_events(sym_diagram *d, int32_t part) {
     return ends ? SYM_TERMINAL_EVENT : 0;
 }
 
+/* Stops at one instant after which crossings are said to bring each other about without end. */
+enum { SYM_STOPS_AT_ONCE = 100 };
+
 /* Integrate all parts to time t, handling crossings on the way. Returns SYM_FINISHED or another status. */
 static int32_t sym_advance_parts(sym_diagram *d, double t) {
     int32_t i, status = SYM_FINISHED;
@@ -251,7 +287,9 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
             status = sym_advance_part(r, t);
             sym_add_counters(d, r);
             if (status == SYM_TERMINAL_EVENT) {
-                const int32_t fault = sym_handle_events(d, i);
+                const int32_t at_once = r->t == *d->t, fault = sym_handle_events(d, i);
+                d->stops = at_once ? d->stops + 1 : 0;
+                if (d->stops > SYM_STOPS_AT_ONCE) return SYM_ACTS_WITHOUT_END;
                 if (fault != 0) return fault;
             }
         } while (status == SYM_TERMINAL_EVENT);
@@ -263,7 +301,7 @@ static int32_t sym_advance_parts(sym_diagram *d, double t) {
 
 SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
     d->cycle = d->next_instant = 0;
-    d->finished = d->failed_part = 0;
+    d->finished = d->failed_part = d->begun = d->stops = 0;
     d->engaged = -1, d->engaged_gap = d->engaged_t = 0.0;
     d->steps = d->rejected = d->evaluations = 0;
     d->n_records = d->n_lateness = 0;
@@ -282,6 +320,7 @@ SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
         int32_t status;
         if (d->finished) return SYM_FINISHED;
         if (d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;
+        if (!d->begun && due > d->t0 + slack && (status = sym_begin_memory(d)) != 0) return status;
         status = sym_advance_parts(d, last || due > d->t_end ? d->t_end : due);
         if (status != SYM_FINISHED) return status;
         if (!last) {

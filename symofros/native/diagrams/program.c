@@ -30,6 +30,8 @@ static void sym_program_bind_tasks(sym_program_instance *instance, sym_arena *ar
         snprintf(name, sizeof name, "crossed_%d", (int)i);
         sym_program_bind_task(instance, arena, instance->crossing_tasks + i, name);
     }
+    sym_program_bind_task(instance, arena, &instance->begin_task, "begun");
+    if (instance->begin_task.call.function != NULL) instance->diagram.begin_task = &instance->begin_task;
 }
 
 /* One part: its instance, which reads the diagram's inputs. Its events are handled by the diagram. */

@@ -45,12 +45,14 @@ typedef struct sym_diagram {
     const sym_task_set *task_sets;
     const sym_task *crossing_tasks; /* (n_crossings) executed where an event of that index ends a part's motion; those
                                      * after them are events of mechanisms */
+    const sym_task *begin_task; /* executed once, after the first instant if that is at t0; NULL: none */
     /* A block of the caller's at an instant: reads its inputs, writes its outputs into u; not 0 stops the run. */
     int32_t (*callback)(void *data, int32_t block, double t, const double *inputs, double *u);
     void *data;
     /* Progress: cycles done, and the index of the next instant in the cycle. */
     int64_t cycle, next_instant;
-    int32_t finished;
+    int32_t finished, begun;
+    int32_t stops; /* at the present instant */
     int32_t failed_part; /* whose integration ended the run */
     int64_t steps, rejected, evaluations;
     /* Records, row after row. Events are recorded by their parts. */

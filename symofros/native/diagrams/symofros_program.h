@@ -50,7 +50,7 @@ typedef struct sym_program_instance {
     double *par;        /* (npar) */
     double *pre, *work; /* of the instants' model: what depends on parameters alone, and scratch */
     double *signals;    /* (n_outputs) at the present time */
-    sym_task *tasks, *crossing_tasks;
+    sym_task *tasks, *crossing_tasks, begin_task;
     sym_task_set *task_sets;
     sym_call outputs;
     double *inputs;     /* (n_inputs) what enters; set them before sym_program_advance, which holds them */

@@ -84,7 +84,6 @@ def test_time_in_a_state_is_counted_without_drift() -> None:
     ("changes", "words"),
     [
         ({"machine_states": {}}, "1 to 64"),
-        ({"period": None}, "no sample time"),
         ({"transitions": WAYS[:1]}, "state 'wait' is never entered"),
         ({"transitions": (*WAYS, Transition("idle", "pushh", "u"))}, "did you mean 'push'"),
         ({"first": "none"}, "no state 'none'"),
@@ -117,3 +116,84 @@ def test_a_machine_in_a_file_is_the_one_in_python(tmp_path: Path) -> None:
     again, first = (sf.Simulation(d).run(1.0, dt=STEP)["m.y"] for d in (found, diagram))
     assert found.blocks["m"] == diagram.blocks["m"]
     assert again.tolist() == first.tolist()
+
+
+def continuous(*ways: Transition, states: Any = None, **changes: Any) -> sf.DiagramRun:
+    """A run of a continuous machine that a sine of one hertz feeds."""
+    diagram = sf.Diagram("continuous")
+    diagram.add(sf.blocks.Sine(name="u", frequency=1.0))
+    diagram.add(sf.blocks.Relay(name="relay", lower=-0.5, upper=0.5), u="u.y")
+    stated = states or {name: MachineState() for name in ("a", "b", "c")}
+    diagram.add(
+        StateMachine(name="m", machine_states=stated, transitions=ways, **changes),
+        **({"u": "u.y"} if any("u" in way.when.split("-") for way in ways) else {}),
+        **({"on": "relay.y"} if any("on" in way.when for way in ways) else {}),
+    )
+    options: Any = {"method": "dopri5"} if changes.get("constants") else {"dt": 0.02}
+    return sf.Simulation(diagram).run(2.0, record=0.125, **options)
+
+
+@pytest.mark.parametrize("constants", [{}, {"unused": 1.0}], ids=["rk4", "dopri5"])
+def test_a_continuous_machine_changes_where_its_conditions_become_true(constants: dict[str, float]) -> None:
+    """Instants and outputs are those of closed form; `elapsed` counts from the instant itself."""
+    states = {
+        "low": MachineState(
+            during={"y": "0-u"}, entry={"k": "k + 10*elapsed + 10"}, exit={"n": "n + 1", "z": "elapsed"}
+        ),
+        "high": MachineState(during={"y": "2*u"}),
+        "wait": MachineState(entry={"k": "k + y"}),
+    }
+    ways = (
+        Transition("low", "high", "u-0.5"),
+        Transition("high", "wait", "elapsed - 0.05"),
+        Transition("wait", "low", "0-u"),
+    )
+    outputs = {"y": 0.0, "n": 0.0, "z": -1.0, "k": 5.0}
+    run = continuous(*ways, states=states, outputs=outputs, constants=constants)
+    up, names = np.arcsin(0.5) / (2 * np.pi), ("low_to_high", "high_to_wait", "wait_to_low")
+    wanted = [(name, t + k) for k in (0, 1) for name, t in zip(names, (up, up + 0.05, 0.5), strict=True)]
+    found = [(met.crossing, met.t) for met in run.crossings if met.block == "m"]
+    assert [name for name, _ in found] == [name for name, _ in wanted]
+    np.testing.assert_allclose([t for _, t in found], [t for _, t in wanted], atol=1e-12)
+    left = 2.0 * np.sin(2 * np.pi * (up + 0.05))  # What `y` was as it was left, which `wait` keeps.
+    at = {t: i for i, t in enumerate(run.t)}
+    for t, state, y, n, z, k in (
+        (0.0, 0, 0.0, 0, -1.0, 15.0),
+        (0.125, 1, 2.0 * np.sin(np.pi / 4), 1, up, 15.0),
+        (0.25, 2, left, 1, up, 15.0 + left),
+        (0.75, 0, 1.0, 1, up, 25.0 + left),
+        (1.25, 2, left, 2, 0.5 + up, 25.0 + 2 * left),
+        (2.0, 0, 0.0, 2, 0.5 + up, 35.0 + 2 * left),
+    ):
+        row = [float(run[f"m.{name}"][at[t]]) for name in ("state", "y", "n", "z", "k")]
+        np.testing.assert_allclose(row, [state, y, n, z, k], atol=1e-10, err_msg=f"t = {t}")
+
+
+def test_conditions_that_hold_as_a_state_is_entered_are_met_there() -> None:
+    """At the start, after a transition, and where another block switches at that instant."""
+    run = continuous(Transition("a", "b", "t + 1"), Transition("b", "c", "on - 0.5"), Transition("c", "a", "2 - on"))
+    up = np.arcsin(0.5) / (2 * np.pi)
+    found = [(met.crossing, met.t) for met in run.crossings if met.block == "m"]
+    assert run.outcome.kind == "interrupted"
+    assert all(name in run.outcome.reason for name in ("m.a_to_b", "m.b_to_c", "m.c_to_a"))
+    assert found[0] == ("a_to_b", 0.0)
+    np.testing.assert_allclose([t for _, t in found[1:]], up, atol=1e-12)
+    run = continuous(Transition("a", "b", "t + 1"), Transition("b", "c", "on - 0.5"))
+    assert run.outcome.ok and [met.crossing for met in run.crossings if met.block == "m"] == ["a_to_b", "b_to_c"]
+
+
+def test_of_conditions_that_become_true_together_the_first_stated_counts() -> None:
+    ways = [Transition("a", "c", "u-0.5"), Transition("a", "b", "u-0.5"), Transition("c", "b", "t - 1")]
+    for first, second in ((0, 1), (1, 0)):
+        run = continuous(ways[first], ways[second], ways[2])
+        assert [met.crossing for met in run.crossings if met.block == "m"][0] == ("a_to_c", "a_to_b")[first]
+        assert run["m.state"][-1] == 1.0 and run["m.state"].max() == (2.0, 1.0)[first]
+
+
+def test_a_state_entered_anew_counts_its_time_anew() -> None:
+    run = continuous(
+        Transition("a", "a", "elapsed - 0.375"), Transition("a", "b", "t - 1"), Transition("b", "c", "t - 9")
+    )
+    found = [(met.crossing, met.t) for met in run.crossings if met.block == "m"]
+    assert [name for name, _ in found] == ["a_to_a", "a_to_a", "a_to_b"]
+    np.testing.assert_allclose([t for _, t in found], [0.375, 0.75, 1.0], atol=1e-12)

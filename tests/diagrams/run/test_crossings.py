@@ -24,3 +24,46 @@ def test_events_beyond_the_capacity_of_one_call_are_kept(monkeypatch: pytest.Mon
     assert [len(run.crossings) for run in runs] == [6 * 20, 6 * 20]
     assert runs[0].crossings == runs[1].crossings
     assert np.array_equal(runs[0].t, runs[1].t) and np.array_equal(runs[0]["x.y"], runs[1]["x.y"])
+
+
+def relays(**fed: str) -> sf.Diagram:
+    """Relays with levels at a quarter and three quarters, and what may feed them; nothing moves."""
+    diagram = sf.Diagram("relays")
+    diagram.add(blocks.Sine(name="wave", frequency=1.0))
+    diagram.add(blocks.Constant(name="one", value=1.0))
+    diagram.add(blocks.Hold(name="held", period=0.5), u="half.y")
+    diagram.add(blocks.Constant(name="half", value=0.5))
+    for name, source in fed.items():
+        on = name == "kept"
+        diagram.add(blocks.Relay(name=name, lower=0.25, upper=0.75, starts_on=on), u=source)
+    return diagram
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_relays_switch_where_nothing_moves(method: str) -> None:
+    """The instants of a sine are those of its formula; a relay that the first one feeds switches with it."""
+    run = sf.Simulation(relays(first="wave.y", second="first.y")).run(2.0, method=method, record=0.125)
+    up, down = (np.arcsin(0.75) / (2 * np.pi), 0.5 - np.arcsin(0.25) / (2 * np.pi))
+    wanted = [
+        (name, which, t + k) for k in (0, 1) for which, t in (("on", up), ("off", down)) for name in ("first", "second")
+    ]
+    assert [(met.block, met.crossing) for met in run.crossings] == [row[:2] for row in wanted]
+    np.testing.assert_allclose([met.t for met in run.crossings], [row[2] for row in wanted], atol=1e-12)
+    between = run.t * 8.0 % 1.0 == 0.0  # Both sides of each crossing are recorded, too.
+    assert between.sum() == 17 and np.array_equal(run["first.y"][between], run["second.y"][between])
+
+
+def test_relays_begin_as_their_inputs_are() -> None:
+    """Beyond a level they have switched before the start, without a crossing; between levels they stay."""
+    run = sf.Simulation(relays(on="one.y", kept="held.y", off="half.y")).run(1.0, dt=0.1, record=0.1)
+    assert run.crossings == ()
+    assert [run[f"{name}.y"].tolist() for name in ("on", "kept", "off")] == [[x] * 11 for x in (1.0, 1.0, 0.0)]
+
+
+def test_crossings_without_end_are_told() -> None:
+    """A ring of two relays, one of which turns the other round."""
+    diagram = relays(a="turned.y", b="a.y")
+    diagram.add(blocks.Formula(name="turned", formulas={"y": "1 - b"}), b="b.y")
+    run = sf.Simulation(diagram).run(1.0)
+    assert run.outcome.kind == "interrupted" and run.outcome.t == 0.0
+    assert all(name in run.outcome.reason for name in ("without end", "a.on", "a.off", "b.on", "b.off"))

@@ -84,6 +84,15 @@ class Ended:
         return tuple(bendings)
 
 
+def _without_end(ended: Ended, notes: tuple[str, ...]) -> Outcome:
+    """The outcome of a run in which crossings bring each other about at one instant."""
+    crossings, last = ended.resolved.crossings, [met for met in ended.recorded.events if met.t == ended.t][-8:]
+    names = ", ".join(dict.fromkeys(crossings[met.which].name for met in last if met.which < len(crossings)))
+    reason = f"crossings bring each other about at the same instant without end: {names or 'events'}"
+    advice = "part the levels at which they switch, or sample one of these blocks, so that time passes between"
+    return Outcome("interrupted", ended.t, reason, advice, notes)
+
+
 def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tuple[Outcome, Resolution]:
     """How a run ended, and how well its fixed steps resolve the modes of its parts.
 
@@ -105,6 +114,8 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tup
     failure = next((found for part, met in failed_at if (found := failure_of(part, met)) is not None), None)
     if status < 0 and failure is not None:
         return replace(failure, notes=(*failure.notes, *notes)), Resolution()
+    if status == Status.ACTS_WITHOUT_END:
+        return _without_end(ended, notes), Resolution()
     if status == Status.ENGAGED_APART:
         names, which = ended.layout.lock_names, int(loop.diagram.engaged)
         name = names[which] if which >= 0 else ", ".join(names)
