@@ -12,6 +12,8 @@ from symofros.blocks.controllers.observer import MomentumObserver as MomentumObs
 from symofros.blocks.dynamics import ForwardDynamics as ForwardDynamics
 from symofros.blocks.dynamics import InverseDynamics as InverseDynamics
 from symofros.blocks.fmu.functional_mockup_unit import FMU as FMU
+from symofros.blocks.generic.buses import BusCreator as BusCreator
+from symofros.blocks.generic.buses import BusSelector as BusSelector
 from symofros.blocks.generic.calculus import Derivative as Derivative
 from symofros.blocks.generic.calculus import Integrator as Integrator
 from symofros.blocks.generic.formula import Formula as Formula

@@ -65,9 +65,10 @@ def passed_units(environment: Environment, stated: str, names: Sequence[str]) ->
 
 
 def passing(environment: Environment, shape: Shape | None, stated: str) -> Ports:
-    """An input u and an output y of one shape and one unit: the stated unit, or that of the connected signal."""
-    units = passed_units(environment, stated, ("u",))
-    return Ports((with_units(Port("u", shape), units),), (with_units(Port("y", shape), units),))
+    """An input u and an output y of one shape and one unit: the stated unit, or that of the connected signal or bus."""
+    units, signals = passed_units(environment, stated, ("u",)), environment.buses.get("u", ())
+    u, y = (replace(with_units(Port(name, shape), units), signals=signals) for name in ("u", "y"))
+    return Ports((u,), (y,))
 
 
 def common_shape(environment: Environment, names: Sequence[str]) -> Shape | None:

@@ -37,6 +37,7 @@ class Port(metaclass=CheckedCalls):
         unit: Such as "rad/s"; "" where any will do.
         default: Value of an input where nothing is connected, a number for all entries; None: it must be connected.
         units: Units along the last axis of a signal whose entries have not all the same one, in place of `unit`.
+        signals: Of a bus: the signals that lie in it, one after the other.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Port(metaclass=CheckedCalls):
     unit: str = ""
     default: Any = None
     units: tuple[str, ...] = ()
+    signals: tuple[Port, ...] = ()
 
     @property
     def entry_units(self) -> tuple[str, ...]:
@@ -70,6 +72,11 @@ class Environment(Protocol):
     @property
     def units(self) -> Mapping[str, tuple[str, ...]]:
         """Units of the signals at its inputs, as far as they are known: `entry_units` of the sources."""
+        ...
+
+    @property
+    def buses(self) -> Mapping[str, tuple[Port, ...]]:
+        """Signals of the buses at its inputs, as far as they are known: `signals` of the sources."""
         ...
 
     def model(self, name: str) -> ModelRecord:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from symofros.base.arrays import Array
 from symofros.description import System
-from symofros.diagrams.block import Shape
+from symofros.diagrams.block import Port, Shape
 from symofros.diagrams.program.model_environment import Models
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.state_space import StateSpace
@@ -15,8 +15,14 @@ from symofros.simulation.analysis.state_space import StateSpace
 class Surroundings:
     """Surroundings of a block while its ports are determined."""
 
-    def __init__(self, models: Models, inputs: Mapping[str, Shape], units: Mapping[str, tuple[str, ...]]) -> None:
-        self._models, self._inputs, self._units = models, inputs, units
+    def __init__(
+        self,
+        models: Models,
+        inputs: Mapping[str, Shape],
+        units: Mapping[str, tuple[str, ...]],
+        buses: Mapping[str, tuple[Port, ...]],
+    ) -> None:
+        self._models, self._inputs, self._units, self._buses = models, inputs, units, buses
 
     @property
     def inputs(self) -> Mapping[str, Shape]:
@@ -27,6 +33,11 @@ class Surroundings:
     def units(self) -> Mapping[str, tuple[str, ...]]:
         """Units of these signals, as far as they are known."""
         return self._units
+
+    @property
+    def buses(self) -> Mapping[str, tuple[Port, ...]]:
+        """Signals of the buses at its inputs, as far as they are known."""
+        return self._buses
 
     def model(self, name: str) -> ModelRecord:
         """Sizes and names of a model."""

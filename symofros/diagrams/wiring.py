@@ -89,7 +89,8 @@ def surroundings(wired: Wired, block: str) -> Surroundings:
     """Environment of a block in a wired diagram: models, shapes and units of its inputs."""
     shapes = {port.name: port.shape or () for port in wired.ports[block].inputs}
     units = {port.name: port.entry_units for port in wired.ports[block].inputs}
-    return Surroundings(wired.models, shapes, units)
+    buses = {port.name: port.signals for port in wired.ports[block].inputs if port.signals}
+    return Surroundings(wired.models, shapes, units, buses)
 
 
 @dataclass(frozen=True)
@@ -225,7 +226,7 @@ def _first_ports(diagram: Diagram, models: Models, problems: list[Problem]) -> d
     ports = {}
     for name, block in diagram.blocks.items():
         try:
-            ports[name] = block.ports(Surroundings(models, {}, {}))
+            ports[name] = block.ports(Surroundings(models, {}, {}, {}))
         except DescriptionError as error:
             problems += located(error.problems, diagram.where(name))
     return ports
@@ -347,7 +348,7 @@ def _settle(
         outputs = {(block, item.name): item for block, known in ports.items() for item in known.outputs}
         now = {}
         for name, stated in ports.items():
-            inputs, units = {}, {}
+            inputs, units, buses = {}, {}, {}
             for item in stated.inputs:
                 source = sources.get((name, item.name))
                 given = outputs.get(source) if source else None
@@ -356,12 +357,14 @@ def _settle(
                     inputs[item.name] = shape
                 if given is not None and any(given.entry_units):
                     units[item.name] = given.entry_units
+                if given is not None and given.signals:
+                    buses[item.name] = given.signals
             block = diagram.blocks[name]
             try:
                 if isinstance(block, Inlet):
                     stated_ports = fed_ports(block, sources, ports, last)
                 else:
-                    stated_ports = block.ports(Surroundings(models, inputs, units))
+                    stated_ports = block.ports(Surroundings(models, inputs, units, buses))
             except DescriptionError as error:
                 problems += located(error.problems, diagram.where(name))
                 return ports

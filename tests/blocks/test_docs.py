@@ -63,6 +63,8 @@ def test_every_block_is_documented_with_its_ports(name: str) -> None:
         "Sequence",
         "ModelFunction",
         "StateMachine",
+        "BusCreator",
+        "BusSelector",
     ):  # Whose ports users name, or a function.
         return
     missing = {port for port in ports if f"`{port}`" not in section[1].replace("`wrench_FRAME`", "`wrench_tool`")}
