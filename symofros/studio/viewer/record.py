@@ -8,7 +8,7 @@ from __future__ import annotations
 import io
 import secrets
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,10 @@ from symofros.base.atomic import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.simulation.results.trajectory import Trajectory
+from symofros.studio.viewer.drawing.arrows import ARROWS, Arrows
 from symofros.studio.viewer.drawing.drawing import Drawing
-from symofros.studio.viewer.drawing.layers import initial_layers
+from symofros.studio.viewer.drawing.layers import check_layer, initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.replay import replay_page
@@ -30,6 +32,7 @@ from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, sto
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
+from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
@@ -43,7 +46,14 @@ class _Recording:
     """A motion at the times of its pictures."""
 
     def __init__(
-        self, mechanism: Mechanism, motion: PlayedMotion, period: float, speed: float, exaggeration: float
+        self,
+        mechanism: Mechanism,
+        motion: PlayedMotion,
+        period: float,
+        speed: float,
+        exaggeration: float,
+        show: frozenset[str] = frozenset(),
+        run: Trajectory | None = None,
     ) -> None:
         self.period = period
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
@@ -65,26 +75,35 @@ class _Recording:
         self.camera = Camera.of(max(self._drawings.values(), key=lambda drawing: drawing.size))
         self.q = q
         self.postures = mechanism.posture(q, u, par if len(first) > 1 else par[0], exaggeration)
-        self.layers = initial_layers(self.drawing)
+        self.layers = initial_layers(self.drawing) | show
+        acting = run is not None and not self.layers.isdisjoint(ARROWS)
+        self._forces = RunForces(run, mechanism.tree, self.drawing) if run is not None and acting else None
         self.count, self.exaggeration, self.speed = count, exaggeration, speed
 
-    def __iter__(self) -> Iterator[tuple[Drawing, Posture]]:
+    def __iter__(self) -> Iterator[tuple[Drawing, Posture, Arrows]]:
         drawing = self.drawing
         for i in range(self.count):
             drawing = self._drawings.get(i, drawing)
-            yield drawing, self.postures[i]
+            posture, forces = self.postures[i], self._forces
+            arrows = {} if forces is None else forces.arrows(float(self.t[i]), posture, self.layers)
+            yield drawing, posture, arrows
 
     def pictures(self, size: tuple[int, int]) -> Iterator[Image]:
-        return (picture(drawing, posture, self.layers, self.camera, *size) for drawing, posture in self)
+        return (picture(drawing, posture, self.layers, self.camera, *size, arrows) for drawing, posture, arrows in self)
 
     def captions(self) -> Iterator[str]:
         """Time of each picture, and how much larger deformations are drawn than they are."""
-        return (f"t = {t:.3f} s{self.factor}" for t in self.t)
+        return ("\n".join([*self.legend, f"t = {t:.3f} s{self.factor}"]) for t in self.t)
 
     @property
     def factor(self) -> str:
         """Exaggeration of deformations, in words after the time; "" where there is none."""
         return "" if self.exaggeration == 1.0 else f", deformation × {self.exaggeration:g}"
+
+    @property
+    def legend(self) -> list[str]:
+        """Scales of the arrows, in words."""
+        return [] if self._forces is None else self._forces.legend(self.layers)
 
 
 @checked
@@ -100,6 +119,7 @@ def record(
     rate: float = 30.0,
     size: tuple[int, int] = (960, 720),
     caption: bool = False,
+    show: Collection[str] = (),
     simulate: bool | Mapping[str, Any] = False,
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
@@ -118,6 +138,8 @@ def record(
         rate: Pictures a second; those of a GIF last whole hundredths of a second.
         size: Width and height of films and pictures, even numbers.
         caption: Whether time, exaggeration and a scale bar are on films and pictures (Pillow, of the extra `view`).
+        show: Layers that are shown beside those that a `Viewer` begins with (`Viewer.set_layer`): "forces", "moments",
+            "frames" (in pages), "inertias" and others.
         simulate: Whether the page simulates, too, on from any instant of the replay, with states, inputs and parameters
             that its reader may change (needs a trajectory, and the extra `zig`); or how: `method`, `dt`, `rtol`,
             `atol`, `beam_limit` as of `sf.export`. By default the method of the run and steps of a millisecond; inputs
@@ -131,7 +153,7 @@ def record(
             a motion that can't be simulated on.
         CompileError: `simulate` without the package ziglang.
         ShapeError: The motion does not fit the system, or a path can't be drawn.
-        UnknownNameError: The diagram's run has no such mechanism, or several.
+        UnknownNameError: The diagram's run has no such mechanism, or several; or there is no such layer.
     """
     system, run, file = _asked(system, run, path, block)
     check_suffix(file)
@@ -153,7 +175,8 @@ def record(
     if file.suffix == ".png":
         motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par[-1:])
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
-    frames = _Recording(mechanism, motion, period, speed, exaggeration)
+    whole = run if isinstance(run, Trajectory) else None
+    frames = _Recording(mechanism, motion, period, speed, exaggeration, _layers(show, whole), whole)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
         ".html": lambda: _page(frames, mechanism, _onward(system, run, frames, simulate) if asked else None),
@@ -163,6 +186,16 @@ def record(
     }
     write_atomically(file, write[file.suffix]())
     return file
+
+
+def _layers(show: Collection[str], run: Trajectory | None) -> frozenset[str]:
+    """The layers that are asked for."""
+    for layer in show:
+        check_layer("record", layer)
+        if layer in ARROWS and run is None:
+            rule = "forces are those of a trajectory, with its speeds and inputs"
+            raise SymofrosError(Problem(f"record: no {layer}", "coordinates over time", rule, "give the trajectory"))
+    return frozenset(show)
 
 
 def check_suffix(file: Path) -> None:
@@ -213,11 +246,10 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
     try:
         scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
         serializer = server.get_scene_serializer()
-        for drawing, posture in frames:
-            if drawing is scene.drawing:
-                scene.move(posture)
-            else:
+        for drawing, posture, arrows in frames:
+            if drawing is not scene.drawing:
                 scene = ViserScene(server, drawing, posture, frames.layers)
+            scene.move(posture, arrows)
             serializer.insert_sleep(frames.period)
         return replay_page(
             serializer.as_html(),
@@ -225,7 +257,7 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
             frames.camera,
             frames.t,
             frames.period,
-            frames.factor + pace,
+            "; ".join([frames.factor + pace, *frames.legend]),
             frames.q,
             model.names.q,
             [units.get(name, "") for name in model.names.q],
@@ -245,7 +277,8 @@ def _captioned(frames: _Recording, size: tuple[int, int]) -> Iterator[Image]:
     for image, text in zip(frames.pictures(size), frames.captions(), strict=True):
         drawn = images.fromarray(image)
         pen = pencil.Draw(drawn)
-        pen.text((height, size[1] - 2 * height), text, fill=_INK, font_size=height)
+        lines = text.count("\n") + 1
+        pen.text((height, size[1] - height - 1.3 * lines * height), text, fill=_INK, font_size=height)
         right, foot = size[0] - height, size[1] - height
         left = right - round(bar.share * size[1])
         pen.line([(left, foot - height // 3), (left, foot), (right, foot), (right, foot - height // 3)], fill=_INK)

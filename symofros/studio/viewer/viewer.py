@@ -142,7 +142,7 @@ class Viewer(ViewerPage):
         mechanism = Mechanism(system, self.mechanism.tracks)
         with self._painting:
             self._discard()
-            self._player = None
+            self._player = self._forces = None
             self._scene_state.change(mechanism)
             self._keep_handle()
             self._panel = self._new_panel()
@@ -202,10 +202,11 @@ class Viewer(ViewerPage):
         player.start()
         with self._painting:
             self._discard()
-            self._player = player
+            self._player, self._forces = player, None
             self._panel = self._new_panel()
             self._judge_bending()
             self._paint_motion()
+            self._show_legend()
         self._call_worker()
 
     def toggle(self) -> None:

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
 from symofros.studio.viewer.page.force_plot import ForcePlot
@@ -94,6 +95,7 @@ class Panel:
         self._play: Any = None
         self._time: Any = None
         self._exaggeration: Any = None
+        self._legend: Any = None
         self.force_plot: ForcePlot | None = None
         self._boxes: dict[str, Any] = {}
         self._sliders: list[Any] = []
@@ -109,12 +111,13 @@ class Panel:
         gui.main_panel.dock_right()  # Beside the picture, not over it.
         if player is not None:
             self._add_player(player)
-        self._add_layers(layers, exaggeration)
+        self._add_layers(layers, exaggeration, player is not None and player.run is not None)
         self._boxes[_DARK] = gui.add_checkbox(_DARK, dark)
         self._on(self._boxes[_DARK], controls.set_dark)
         self._add_sliders(sliders)
 
-    def _add_layers(self, layers: frozenset[str], exaggeration: float | None) -> None:
+    def _add_layers(self, layers: frozenset[str], exaggeration: float | None, acting: bool) -> None:
+        """Boxes of the layers; those of forces where a run plays that tells of them."""
         gui, controls = self._gui, self._controls
         with gui.add_folder("Show"):
             if exaggeration is not None:
@@ -124,8 +127,10 @@ class Panel:
                 )
                 self._on(self._exaggeration, controls.set_exaggeration)
             for layer in LAYERS:
-                self._boxes[layer] = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
-                self._on(self._boxes[layer], partial(controls.set_layer, layer))
+                if layer not in ARROWS or acting:
+                    self._boxes[layer] = gui.add_checkbox(_LAYER_NAMES.get(layer, layer), layer in layers)
+                    self._on(self._boxes[layer], partial(controls.set_layer, layer))
+            self._legend = gui.add_markdown("")
 
     def _on(self, handle: Any, act: Callable[[Any], None]) -> Any:
         """Call a function when a user changes a control; changes by this program have no client and are ignored."""
@@ -178,6 +183,11 @@ class Panel:
         text = "\n\n".join(f"**Large bending:** {note}" for note in notes)
         if self._warning.content != text:
             self._warning.content = text
+
+    def legend(self, texts: Sequence[str]) -> None:
+        """Show the scales of the arrows."""
+        if self._legend is not None:
+            self._legend.content = "\n\n".join(texts)
 
     def scale(self, height: float | None) -> None:
         """Show a bar of a round length as the picture shows it, which is as high as the window.

@@ -14,7 +14,11 @@ from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
+from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.playing.sliders import Slider, coordinates_of, sliders_of, values_of
+
+Acting = tuple[RunForces, float]
+"""Forces of a run, and the time that is shown [s]."""
 
 
 class SceneState:
@@ -33,6 +37,7 @@ class SceneState:
         self.server, self.mechanism, self.exaggeration = server, mechanism, exaggeration
         self._on_pick = on_pick
         self.first = self.state = mechanism.closed(mechanism.state())[0]
+        self._acting: Acting | None = None
         drawing = mechanism.drawing(self.state.par)
         self._drawn_par = self.state.par
         self.scene = ViserScene(server, drawing, self._posture(), initial_layers(drawing), on_pick=on_pick)
@@ -42,25 +47,42 @@ class SceneState:
         kept = self.state.q if mechanism.model.names.q == self.mechanism.model.names.q else None
         self.mechanism = mechanism
         self.first = mechanism.closed(mechanism.state())[0]
+        self._acting = None
         self.state = self.first if kept is None else mechanism.closed(self.first._replace(q=kept))[0]
         self._draw(mechanism.drawing(self.state.par))
 
-    def paint(self, state: State) -> bool:
+    def paint(self, state: State, acting: Acting | None = None) -> bool:
         """Show a state; False where it is not finite, and the picture stays.
 
         The mechanism is drawn anew where parameters have changed how it looks.
+
+        Args:
+            state: The state.
+            acting: Forces of the run that it is of, and its time; None of a state of no run.
         """
         if not all(np.all(np.isfinite(array)) for array in state):
             return False
-        self.state = state
+        self.state, self._acting = state, acting
         if not np.array_equal(state.par, self._drawn_par):
             drawing = self.mechanism.drawing(state.par)
             if not same_geometry(drawing, self.scene.drawing):
                 self._draw(drawing)
                 return True
             self._drawn_par = state.par
-        self.scene.move(self._posture())
+        self._move()
         return True
+
+    def repaint(self, acting: Acting | None = None) -> None:
+        """Show the same state anew, with other forces where they are given."""
+        self._acting = acting or self._acting
+        self._move()
+
+    def _move(self) -> None:
+        posture, arrows = self._posture(), None
+        if self._acting is not None:
+            forces, t = self._acting
+            arrows = forces.arrows(t, posture, self.scene.layers)
+        self.scene.move(posture, arrows)
 
     @property
     def sliders(self) -> tuple[Slider, ...]:
@@ -108,6 +130,7 @@ class SceneState:
         self._drawn_par = self.state.par
         marked = self.scene.marked
         self.scene = ViserScene(self.server, drawing, self._posture(), self.scene.layers, marked, self._on_pick)
+        self._move()
 
 
 def _index(what: str, names: Sequence[str], name: str) -> int:

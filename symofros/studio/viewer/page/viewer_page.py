@@ -8,13 +8,16 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from symofros.base.arrays import Array
+from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes
+from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.frame_handle import FrameHandle
 from symofros.studio.viewer.page.panel import Panel
-from symofros.studio.viewer.page.scene_state import SceneState
+from symofros.studio.viewer.page.scene_state import Acting, SceneState
 from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.playing.sliders import Slider
 
 _DARK_LIGHT = 5.0  # Before a dark ground viser's own light is too weak for the bodies' colours.
@@ -53,6 +56,7 @@ class ViewerPage:
         self.painted = 0
         self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
         self._height: float | None = None
+        self._forces: RunForces | None = None  # Of the run that plays, once they are shown.
         self._handle: FrameHandle | None = None
         self._on_drag: Callable[[], None] | None = None
         self.bendings: tuple[BeamBending, ...] = ()
@@ -112,7 +116,8 @@ class ViewerPage:
         """Show or hide a layer.
 
         Args:
-            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels" or "ground".
+            layer: "bodies", "inertias", "joints", "constraints", "paths", "visuals", "frames", "labels", "ground"; and
+                "forces" or "moments", arrows at joints, constraints and contacts of a trajectory that plays.
             visible: Whether it is to be seen.
 
         Raises:
@@ -120,6 +125,9 @@ class ViewerPage:
         """
         with self._painting:
             self._scene_state.scene.show(layer, visible)
+            if layer in ARROWS:
+                self._scene_state.repaint(self._acting())
+                self._show_legend()
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def mark(self, elements: Collection[str]) -> None:
@@ -248,7 +256,7 @@ class ViewerPage:
     def _paint_motion(self) -> None:
         if self._player is not None:
             motion = self._player.motion
-            self._paint(State(*motion.at(self._player.time)))
+            self._paint(State(*motion.at(self._player.time)), self._acting())
             if time.monotonic() - self._followed > _FOLLOWED or not self._player.playing:
                 self._follow()
 
@@ -261,10 +269,30 @@ class ViewerPage:
         if self._player is not None:
             self._player.playing = False
 
-    def _paint(self, state: State) -> None:
-        self.painted += self._scene_state.paint(state)
+    def _paint(self, state: State, acting: Acting | None = None) -> None:
+        self.painted += self._scene_state.paint(state, acting)
         if self._handle is not None:
             self._handle.follow(self._scene_state.state)
+
+    def _acting(self) -> Acting | None:
+        """Forces of the run that plays and its time, where they are shown; formed when they are first asked for."""
+        player, scene_state = self._player, self._scene_state
+        if player is None or player.run is None or scene_state.scene.layers.isdisjoint(ARROWS):
+            return None
+        if self._forces is None:
+            try:
+                self._forces = RunForces(player.run, self.mechanism.tree, scene_state.scene.drawing)
+            except SymofrosError as error:
+                self._panel.say(f"No forces: {error.problem.what}")
+                return None
+        return self._forces, player.time
+
+    def _show_legend(self) -> None:
+        layers = self._scene_state.scene.layers
+        if self._forces is not None:
+            self._panel.legend(self._forces.legend(layers))
+        else:
+            self._panel.legend([] if layers.isdisjoint(ARROWS) else ["Forces are those of a trajectory that plays."])
 
     def _follow(self) -> None:
         self._panel.follow(self._scene_state.values, self._player)
@@ -296,5 +324,6 @@ class ViewerPage:
             self._dark,
         )
         panel.follow(scene_state.values, self._player)
+        panel.legend([] if self._forces is None else self._forces.legend(scene_state.scene.layers))
         panel.scale(self._height)
         return panel

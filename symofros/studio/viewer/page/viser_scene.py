@@ -9,11 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.base.arrays import Array
 from symofros.mechanics.topology import BASE
+from symofros.studio.viewer.drawing.arrows import ARROWS, HEAD, HEAD_RADIUS, SHAFT_RADIUS, Arrows
 from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnConnector, DrawnPart
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
-from symofros.studio.viewer.drawing.layers import LAYERS
+from symofros.studio.viewer.drawing.layers import LAYERS, check_layer
 from symofros.studio.viewer.drawing.meshes import on_grid, tube, tube_stations
 from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, connector_sweep
 from symofros.studio.viewer.render.camera import Camera
@@ -61,6 +62,7 @@ class ViserScene:
         self._shown = layers
         self._tubes = 0
         self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
+        self._arrows: dict[str, Any] = {}
         with server.atomic():
             if server.scene.get_handle_by_name(_ROOT) is not None:
                 server.scene.remove_by_name(_ROOT)
@@ -84,8 +86,8 @@ class ViserScene:
             self.mark(marked)
             self.move(posture)
 
-    def move(self, posture: Posture) -> None:
-        """Put everything where a posture has it; browsers show all of it at once."""
+    def move(self, posture: Posture, arrows: Arrows | None = None) -> None:
+        """Put everything where a posture has it, with arrows of forces; browsers show all of it at once."""
         turns = self._rotation.from_matrix(posture.R).wxyz
         with self.server.atomic():
             for i, node in self._links.items():
@@ -95,6 +97,27 @@ class ViserScene:
                     self._pose(node, beam_sweep(beam, posture))
             for connector, node in zip(self.drawing.connectors, self._connectors, strict=True):
                 self._pose(node, connector_sweep(connector, posture))
+            for layer in ARROWS:
+                self._point(layer, (arrows or {}).get(layer, np.zeros((0, 2, 3))))
+
+    def _point(self, layer: str, ends: Array) -> None:
+        """Show the arrows of a layer (K, 2, 3); viser has no node without any."""
+        node = self._arrows.get(layer)
+        if not len(ends):
+            if node is not None:
+                node.visible = False
+            return
+        if node is None:
+            size = self.drawing.size
+            node = self._arrows[layer] = self.server.scene.add_arrows(
+                f"{_ROOT}/{layer}",
+                ends,
+                np.array(ARROWS[layer][0]),
+                shaft_radius=SHAFT_RADIUS * size,
+                head_radius=HEAD_RADIUS * size,
+                head_length=HEAD * size,
+            )
+        node.points, node.visible = ends, True
 
     def _pose(self, node: Any, sweep: Sweep) -> None:
         turns = self._rotation.from_matrix(sweep.axes).wxyz
@@ -112,15 +135,7 @@ class ViserScene:
         Raises:
             UnknownNameError: It is none of LAYERS.
         """
-        if layer not in LAYERS:
-            raise UnknownNameError(
-                Problem(
-                    f"view: no layer '{layer}'",
-                    f"'{layer}'",
-                    f"one of {', '.join(LAYERS)}",
-                    did_you_mean(layer, LAYERS),
-                )
-            )
+        check_layer("view", layer)
         self._shown = self._shown | {layer} if visible else self._shown - {layer}
         for node in self._nodes[layer]:
             node.visible = visible

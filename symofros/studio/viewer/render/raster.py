@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.studio.viewer.drawing.drawing import Drawing
+from symofros.studio.viewer.drawing.arrows import ARROWS, HEAD, HEAD_RADIUS, SHAFT_RADIUS, Arrows
+from symofros.studio.viewer.drawing.drawing import Color, Drawing
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, gravity_arrow, ground_lines
 from symofros.studio.viewer.drawing.meshes import Mesh, cone, cylinder, tube
 from symofros.studio.viewer.drawing.poses import Posture, beam_sweep, connector_sweep
@@ -36,7 +37,13 @@ class _Fragments(NamedTuple):
 
 
 def picture(
-    drawing: Drawing, posture: Posture, layers: frozenset[str], camera: Camera, width: int = 960, height: int = 720
+    drawing: Drawing,
+    posture: Posture,
+    layers: frozenset[str],
+    camera: Camera,
+    width: int = 960,
+    height: int = 720,
+    arrows: Arrows | None = None,
 ) -> Image:
     """A picture (height, width, 3) of a mechanism; labels and frames are not in it.
 
@@ -47,8 +54,9 @@ def picture(
         camera: Camera.
         width: Width [pixels].
         height: Height [pixels].
+        arrows: Arrows of forces and moments.
     """
-    return _Canvas(camera, width, height).painted(drawing, posture, layers)
+    return _Canvas(camera, width, height).painted(drawing, posture, layers, arrows or {})
 
 
 class _Canvas:
@@ -58,10 +66,11 @@ class _Canvas:
         light = _LIGHT / np.linalg.norm(_LIGHT)
         self.light = light
 
-    def painted(self, drawing: Drawing, posture: Posture, layers: frozenset[str]) -> Image:
+    def painted(self, drawing: Drawing, posture: Posture, layers: frozenset[str], arrows: Arrows) -> Image:
         colors = np.full((self.shape[0] * self.shape[1], 3), _BACKGROUND)
         nearness = np.zeros(len(colors))
         opaque, clear = self._surfaces(drawing, posture, layers)
+        opaque += _arrows(drawing, arrows, layers)
         fragments = [self._filled(mesh, color) for mesh, color in opaque]
         if "ground" in layers:
             fragments += [self._line(line) for line in ground_lines(drawing)]
@@ -101,11 +110,6 @@ class _Canvas:
                         np.array(connector.color, dtype=float),
                     )
                 )
-        arrow = gravity_arrow(drawing) if "ground" in layers else None
-        if arrow is not None:
-            middle, length = 0.75 * arrow[1] + 0.25 * arrow[0], float(np.linalg.norm(arrow[1] - arrow[0]))
-            for mesh in (cylinder(arrow[0], middle, length / 25), cone(middle, arrow[1], length / 10)):
-                opaque.append((mesh, np.array(GRAVITY_COLOR, dtype=float)))
         return opaque, clear
 
     def _seen(self, points: Array) -> Array:
@@ -138,6 +142,27 @@ class _Canvas:
         kept = (at >= 0).all(axis=1) & (at[:, 0] < self.shape[1]) & (at[:, 1] < self.shape[0])
         at, seen = at[kept], seen[kept]
         return _Fragments(at[:, 1] * self.shape[1] + at[:, 0], 1.0 / seen[:, 2], np.full((len(at), 3), _LINE))
+
+
+def _arrows(drawing: Drawing, arrows: Arrows, layers: frozenset[str]) -> list[tuple[Mesh, Array]]:
+    """Arrows of gravity, forces and moments as meshes with their colours."""
+    gravity, found = gravity_arrow(drawing) if "ground" in layers else None, []
+    if gravity is not None:
+        length = float(np.linalg.norm(gravity[1] - gravity[0]))
+        found += _arrow(gravity, length / 4, length / 25, length / 10, GRAVITY_COLOR)
+    size = drawing.size
+    for layer, ends in arrows.items():
+        for end in ends:
+            found += _arrow(end, HEAD * size, SHAFT_RADIUS * size, HEAD_RADIUS * size, ARROWS[layer][0])
+    return found
+
+
+def _arrow(ends: Array, head: float, shaft_radius: float, head_radius: float, color: Color) -> list[tuple[Mesh, Array]]:
+    """Shaft and head of an arrow from its tail to its tip (2, 3)."""
+    tail, tip = ends
+    middle = tip - head * (tip - tail) / np.linalg.norm(tip - tail)
+    meshes = [cylinder(tail, middle, shaft_radius), cone(middle, tip, head_radius)]
+    return [(mesh, np.array(color, dtype=float)) for mesh in meshes]
 
 
 def _inverse_depth(seen: Array, which: Indices, row: Indices, column: Indices) -> Array:

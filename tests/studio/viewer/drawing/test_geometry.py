@@ -58,7 +58,8 @@ def test_every_reference_model_is_drawn(name: str) -> None:
     entries |= {f"connections/{item.name}" for item in system.connections}
     pieces = (*found.parts, *found.beams, *found.connectors, *found.triads)
     assert {piece.name: piece.element for piece in pieces if piece.element not in entries} == {}
-    assert {f"bodies/{body}" for body in bodies} - {piece.element for piece in pieces} <= {"bodies/world"}
+    ground = {f"bodies/{mechanism(name).tree.frames[0].qualified}"}
+    assert {f"bodies/{body}" for body in bodies} - {piece.element for piece in pieces} <= ground
 
 
 def test_bodies_have_boxes_and_links_from_joint_to_joint_and_joints_their_signs() -> None:
