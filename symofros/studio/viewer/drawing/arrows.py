@@ -12,14 +12,14 @@ from symofros.studio.viewer.drawing.drawing import Color
 
 # Layer -> its colour in pictures and its name in words, and the unit of what the arrows are.
 ARROWS: dict[str, tuple[Color, str, str]] = {
-    "forces": ((214, 60, 30), "red", "N"),
-    "moments": ((40, 90, 220), "blue", "N m"),
+    "forces": ((190, 0, 0), "red", "N"),
+    "moments": ((0, 30, 220), "blue", "N m"),
 }
 # Of the mechanism's size: the longest arrow that a legend states, and the head, which an arrow is at least as long as.
 _STATED, HEAD = 0.15, 1.0 / 40.0
 SHAFT_RADIUS, HEAD_RADIUS = HEAD / 5.0, HEAD / 2.0  # Of the mechanism's size.
 Arrows = Mapping[str, Array]
-"""Layer -> tails and heads of its arrows in the world (K, 2, 3) [m]."""
+"""Layer -> tails and heads of its arrows in the world (K, 2, 3) [m], NaN of those that don't show."""
 
 
 @dataclass(frozen=True)
@@ -51,18 +51,17 @@ class ArrowScale:
         return HEAD * self.size * self.value / self.length
 
     def arrows(self, points: Array, vectors: Array) -> Array:
-        """Tails and heads (K, 2, 3) [m] of arrows from points (n, 3) [m], for those of the vectors (n, 3) that show."""
+        """Tails and heads (K, 2, 3) [m] of arrows from points (K, 3) [m] along vectors (K, 3); NaN where too short."""
         shown = np.linalg.norm(vectors, axis=-1) >= self.smallest  # False of what is not finite, too.
-        tails = points[shown]
-        return np.stack([tails, tails + vectors[shown] * (self.length / self.value)], axis=1)
+        ends = np.stack([points, points + vectors * (self.length / self.value)], axis=1)
+        return np.where(shown[:, None, None], ends, np.nan)
 
     @property
     def legend(self) -> str:
         """The scale in words."""
         _, color, unit = ARROWS[self.layer]
-        return (
-            f"{self.layer} ({color}): {self.length:g} m is {self.value:g} {unit}, none below {self.smallest:.2g} {unit}"
-        )
+        scale = f"{self.length:g} m is {self.value:g} {unit}"
+        return f"{self.layer} ({color}): {scale}, none below {self.smallest:.2g} {unit}"
 
 
 def _round_below(x: float) -> float:

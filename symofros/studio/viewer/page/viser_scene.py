@@ -23,6 +23,8 @@ _ROOT, _TUBES = "/mechanism", "/tubes"
 MARKED: Color = (255, 0, 150)  # Unlike every colour that bodies have.
 SEE_THROUGH = 0.3  # Opacity of boxes of inertia, and of what frames are shown in.
 _OPAQUE = ("bodies", "joints", "visuals")
+_SEEN = 1e3  # How far the camera sees, of the mechanism's size.
+_AWAY = np.array([[0.0, 0.0, -1e5], [0.0, 0.0, -1.1e5]])  # Ends of an arrow out of its sight; of no length, it stays.
 _TRIAD = 0.05  # Length of a frame's axes, of the mechanism's size.
 
 
@@ -101,12 +103,17 @@ class ViserScene:
                 self._point(layer, (arrows or {}).get(layer, np.zeros((0, 2, 3))))
 
     def _point(self, layer: str, ends: Array) -> None:
-        """Show the arrows of a layer (K, 2, 3); viser has no node without any."""
+        """Show the arrows of a layer (K, 2, 3).
+
+        Viser's page goes on drawing arrows by which a node gets fewer: those that don't show are put out of sight.
+        """
         node = self._arrows.get(layer)
-        if not len(ends):
+        hidden = np.isnan(ends).any(axis=(1, 2))
+        if hidden.all():
             if node is not None:
                 node.visible = False
             return
+        ends = np.where(hidden[:, None, None], _AWAY * self.drawing.size, ends)
         if node is None:
             size = self.drawing.size
             node = self._arrows[layer] = self.server.scene.add_arrows(
@@ -117,7 +124,9 @@ class ViserScene:
                 head_radius=HEAD_RADIUS * size,
                 head_length=HEAD * size,
             )
-        node.points, node.visible = ends, True
+        else:
+            node.points = ends
+        node.visible = True
 
     def _pose(self, node: Any, sweep: Sweep) -> None:
         turns = self._rotation.from_matrix(sweep.axes).wxyz
@@ -282,7 +291,7 @@ class ViserScene:
     def _aim(self) -> None:
         camera, initial = Camera.of(self.drawing), self.server.initial_camera
         initial.position, initial.look_at, initial.up = camera.position, camera.target, camera.up
-        initial.fov, initial.near, initial.far = camera.fov, 1e-3 * self.drawing.size, 1e3 * self.drawing.size
+        initial.fov, initial.near, initial.far = camera.fov, 1e-3 * self.drawing.size, _SEEN * self.drawing.size
 
 
 def _picking(on_pick: Callable[[str], None], element: str) -> Callable[[Any], None]:

@@ -152,7 +152,7 @@ def _arrows(drawing: Drawing, arrows: Arrows, layers: frozenset[str]) -> list[tu
         found += _arrow(gravity, length / 4, length / 25, length / 10, GRAVITY_COLOR)
     size = drawing.size
     for layer, ends in arrows.items():
-        for end in ends:
+        for end in ends[~np.isnan(ends).any(axis=(1, 2))]:
             found += _arrow(end, HEAD * size, SHAFT_RADIUS * size, HEAD_RADIUS * size, ARROWS[layer][0])
     return found
 
