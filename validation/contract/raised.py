@@ -33,8 +33,8 @@ _MISFITS = (TypeError, AttributeError, NameError, ImportError, SyntaxError, Asse
 _INTERNAL = (SystemError, MemoryError, IndexError, ArithmeticError, UnicodeError)
 # Most letters of an exception's words.
 _LONG = 300
-# Words about shapes of arrays say nothing of a tree, which has none.
-_SHAPES = re.compile(r"\bshapes?\b|dimension|mismatch|broadcast|\bndim\b|size[12]\(\)")
+# Words about shapes of arrays say nothing of a tree, whose shapes are those of its bodies.
+_SHAPES = re.compile(r"(?<!collision )(?<!visual )\bshapes?\b|dimension|mismatch|broadcast|\bndim\b|size[12]\(\)")
 
 
 @dataclass(frozen=True)

@@ -61,6 +61,7 @@ def asked(plugin: SourcePlugin, monkeypatch: pytest.MonkeyPatch, tree: Tree = TR
         ("breaks", "raises", "IndexError: list index out of range (toys.py:"),
         ("internal", "raises", "ValueError: shapes (6, 1) and (12, 1) don't match (toys.py:"),
         ("refuses", "refuses", "ValueError: hinges with a mass are not supported"),
+        ("refuses shapes", "refuses", "ValueError: a link with collision shapes is not supported"),
     ],
 )
 def test_a_planted_fault_of_a_state_is_seen_and_its_state_is_named(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 Array = np.ndarray[Any, Any]
-FAULTS = ("", "stale", "at zero", "fast", "now and then", "forgets", "breaks", "internal", "refuses")
+FAULTS = ("", "stale", "at zero", "fast", "now and then", "forgets", "breaks", "internal", "refuses", "refuses shapes")
 
 
 def turn(axis: Array, angle: float) -> Array:
@@ -43,6 +43,8 @@ class Engine:
             raise ValueError("shapes (6, 1) and (12, 1) don't match")
         if self.fault == "refuses":
             raise ValueError("hinges with a mass are not supported")
+        if self.fault == "refuses shapes":
+            raise ValueError("a link with collision shapes is not supported")
         return force
 
     def _place(self) -> int:

@@ -30,6 +30,15 @@ def _losses() -> Iterator[tuple[str, Reading]]:
     yield second("losses of a hinge", f'<joint axis="0 1 0" {text}/>', lost)
     yield second("losses of a hinge, angle left out", f'<joint axis="0 1 0" {text}/>', lost, "")
     yield second("losses of a slide", f'<joint type="slide" axis="1 0 0" {text}/>', replace(NEXT, joints=(slide,)), "")
+    placed, borne = Joint("fixed", p=(0.0, 0.0, 0.5)), {"damping": 3.0, "friction": 0.3}
+    ball = replace(NEXT, joints=(placed, Joint("ball", **borne)))  # type: ignore[arg-type]
+    yield second("losses of a ball", '<joint type="ball" damping="3" frictionloss="0.3"/>', ball)
+    heavy = replace(NEXT, joints=(placed, Joint("ball", armature=(0.5,) * 3)))
+    yield _of("armature of a ball", file(b='<joint type="ball" armature="0.5"/>' + MB), FIRST, heavy)
+    pair = '<joint axis="0 1 0" damping="3"/><joint axis="1 0 0" damping="0.5" frictionloss="0.25"/>'
+    y, x = (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
+    both = Joint("revolute", axis=y, damping=3.0), Joint("revolute", axis=x, damping=0.5, friction=0.25)
+    yield second("losses of two joints of a body", pair, replace(NEXT, joints=(placed, *both)))
     classes = f'<default><default class="k"><joint {text}/></default></default>'
     yield second("losses of a class", '<joint class="k" axis="0 1 0"/>', lost, RADIAN + classes)
 

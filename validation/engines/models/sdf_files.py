@@ -113,6 +113,34 @@ def _links() -> Iterator[tuple[str, Reading]]:
     yield _of("pose left out", _model(_link("a", "<!-- -->", _IA), _JA), hung(BODY, R=IDENTITY, p=ORIGIN))
 
 
+def _computed() -> Iterator[tuple[str, Reading]]:
+    """Inertia that is to be computed of collisions, of their densities or the link's (of SDFormat 1.11 and later)."""
+    box, pose = "<box><size>0.2 0.4 0.6</size></box>", "<pose>0.1 -0.2 0.3 0.5 0.6 0.7</pose>"
+    ball = "<sphere><radius>0.2</radius></sphere>"
+    cylinder = "<cylinder><radius>0.1</radius><length>0.6</length></cylinder>"
+
+    def collision(name: str, shape: str, more: str = "") -> str:
+        return f'<collision name="{name}">{pose}{more}<geometry>{shape}</geometry></collision>'
+
+    def of(name: str, shapes: str, mass: float, moments: Vector, more: str = "") -> tuple[str, Reading]:
+        """Moments are those of a kilogram."""
+        text = f'<inertial auto="true">{more}</inertial>{shapes}'
+        inertia = along(ASKEW, diagonal(*(mass * one for one in moments)))
+        body = replace(BODY, mass=mass, inertia=inertia)
+        return _of(f"inertia computed of {name}", _model(_link("a", _AT_A, text), _JA, version="1.11"), body)
+
+    of_box = (0.52 / 12.0, 0.40 / 12.0, 0.20 / 12.0)
+    own, whole = "<density>250</density>", "<density>500</density>"
+    yield of("a box", collision("c", box), 48.0, of_box)
+    yield of("a box of its own density", collision("c", box, own), 12.0, of_box)
+    yield of("a box of the link's density", collision("c", box), 24.0, of_box, whole)
+    yield of("a box of its own density before the link's", collision("c", box, own), 12.0, of_box, whole)
+    yield of("a ball", collision("c", ball), 4000.0 / 3.0 * np.pi * 0.008, (0.016, 0.016, 0.016))
+    across = 0.01 / 4.0 + 0.36 / 12.0
+    yield of("a cylinder", collision("c", cylinder), 6.0 * np.pi, (across, across, 0.005))
+    yield of("two boxes", collision("c", box) + collision("d", box, own), 60.0, of_box)
+
+
 def _joints() -> Iterator[tuple[str, Reading]]:
     """What joints state."""
 
@@ -191,4 +219,4 @@ def _frames() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_links(), *_joints(), *_frames()])
+    return dict([*_links(), *_computed(), *_joints(), *_frames()])
