@@ -127,6 +127,21 @@ def test_moment_arms_are_the_derivatives_of_lengths(name: str) -> None:
     assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
 
 
+@pytest.mark.parametrize("name", ["springs and dampers on hinges and a slide", "tendon over points", "tendon of a sum"])
+def test_what_springs_store_is_what_their_forces_take(name: str) -> None:
+    truth, s = _truth(TREES[name])
+
+    def excess(t: Truth, s: Point) -> Exact:
+        slope = t.kinematics.tangent(lambda q: np.array([t.V(q)], dtype=object), s.q)[0]
+        return slope - (t.g(s.q) - t.own.passive(s.q, 0 * s.v))
+
+    assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
+    one = _judged("mujoco", TREES[name], "potential_energy")["potential_energy"]
+    bare = float(digits(truth.value(lambda t, s: np.array([t.V(s.q) - t.own.stored(s.q)], dtype=object), s))[0])
+    assert one.want is not None and one.cell.verdict == "right"
+    assert judge("planted", TREES[name], "potential_energy", np.array(bare), one.want).verdict == "wrong"
+
+
 def test_methods_of_order_four_agree_to_that_order_in_coordinates_and_on_their_manifold() -> None:
     truth, s = _truth(tree_of("ball"))
     one, other = (truth.value(STEPS[name].truth, s) for name in ("step_rk4", "step_rk4_manifold"))

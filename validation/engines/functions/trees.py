@@ -34,7 +34,7 @@ TREES: dict[str, Function] = {
     ),
     "forward_dynamics": Function("M^-1 (tau - h) (nv)", lambda t, s: t.FD(s.q, s.v, s.tau)),
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
-    "potential_energy": Function("V = -sum m g^T p", lambda t, s: t.V(s.q)),
+    "potential_energy": Function("V = -sum m g^T p, and what springs store", lambda t, s: t.V(s.q)),
     "link_poses": Function("positions and rows of R (L, 12)", lambda t, s: t.kinematics.flat_poses(s.q)),
     "mass_centre": Function("mass centre (3)", lambda t, s: derived.com(t, s.q)),
     "mass_centre_jacobian": Function("its Jacobian (3, nv)", lambda t, s: derived.com_jacobian(t, s.q)),

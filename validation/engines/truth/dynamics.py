@@ -162,11 +162,12 @@ class Truth:
         return v @ self.M(q) @ v / 2
 
     def V(self, q: Exact) -> Exact:
-        """Potential energy, zero with all mass centres at the world's origin."""
-        return -sum(
+        """Potential energy, zero with all mass centres at the world's origin and all springs without force."""
+        weights = (
             self.gravity_vector @ (inertia.mass * p + R @ inertia.first)
             for inertia, (R, p) in zip(self.inertias, self.kinematics.poses(q), strict=True)
         )
+        return self.own.stored(q) - sum(weights)
 
     def value(self, function: Callable[[Truth, Point], Exact], point: Point) -> Exact:
         """A function of the tree, in many digits."""

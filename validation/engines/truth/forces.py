@@ -110,6 +110,15 @@ class Forces:
                 Q = Q - exact(link.compensation)[()] * (J[:3].T @ weight)
         return Q
 
+    def stored(self, q: Exact) -> Exact:
+        """Energy of springs along coordinates and tendons, zero where they have no force."""
+        offsets = self.offsets(q)
+        energy = self.stiffness @ (offsets * offsets) / 2
+        for tendon, (length, _) in zip(self.tree.tendons, self.lines(q), strict=True):
+            stiffness, rest = exact((tendon.stiffness, tendon.rest))
+            energy = energy + stiffness * (length - rest) ** 2 / 2
+        return energy
+
     def efforts(self, q: Exact, v: Exact) -> Exact:
         """The actuators' forces (nu)."""
         made = []
