@@ -61,6 +61,7 @@ class Joint:
             none.
         limits: Least and greatest coordinate of a joint of one coordinate, that files state and no function has; () for
             none.
+        bounds: Greatest speed and greatest force of such a joint, by files; () for none.
     """
 
     kind: str
@@ -83,6 +84,7 @@ class Joint:
     friction: float = 0.0
     force_limits: tuple[float, ...] = ()
     limits: tuple[float, ...] = ()
+    bounds: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -101,6 +101,8 @@ def _stated_in_files() -> dict[str, Function]:
         "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
         "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
         "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
+        "joint_speed_limits": ("greatest speeds (nv)", lambda t, s: t.own.bounds[:, 0]),
+        "joint_force_limits": ("greatest forces (nv)", lambda t, s: t.own.bounds[:, 1]),
         "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
     }
     return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}

@@ -16,6 +16,7 @@ READ = ("sizes", "mass_matrix", "bias", "link_poses")
 # What joints state beside their motion, sites, actuators.
 LOSSES = ("joint_dampings", "joint_frictions", "joint_stiffnesses")
 LIMITED = ("joint_limits",)
+BOUNDED = (*LIMITED, "joint_speed_limits", "joint_force_limits")
 PLACED = ("frame_poses",)
 DRIVEN = ("actuator_forces", "actuated_forces")
 PASSIVE = ("sizes", "mass_matrix", "gravity", "link_poses")

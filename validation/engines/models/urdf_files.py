@@ -12,8 +12,8 @@ from . import readers
 from .readers import (
     ASKEW,
     BODY,
+    BOUNDED,
     IDENTITY,
-    LIMITED,
     LOSSES,
     NEXT,
     OBLONG,
@@ -179,11 +179,13 @@ def _losses() -> Iterator[tuple[str, Reading]]:
 
 def _limits() -> Iterator[tuple[str, Reading]]:
     """Limits of joints; a bound that is left out is 0."""
-    first = hung(BODY, limits=(-9.0, 9.0))
+    first = hung(BODY, limits=(-9.0, 9.0), bounds=(9.0, 9.0))
 
     def second(name: str, bounds: str, *limits: float, kind: str = "revolute") -> tuple[str, Reading]:
         text = _SECOND.replace(_LIMIT, f'<limit {bounds} effort="7" velocity="3"/>').replace("revolute", kind)
-        return _of(name, _chain(_FIRST, text), first, hung(NEXT, kind=kind, limits=limits), asked=LIMITED)
+        return _of(
+            name, _chain(_FIRST, text), first, hung(NEXT, kind=kind, limits=limits, bounds=(3.0, 7.0)), asked=BOUNDED
+        )
 
     yield second("limits of a hinge", 'lower="-0.5" upper="1.25"', -0.5, 1.25)
     yield second("limits of a slide", 'lower="-0.25" upper="2"', -0.25, 2.0, kind="prismatic")
@@ -193,7 +195,13 @@ def _limits() -> Iterator[tuple[str, Reading]]:
     yield second("upper limit left out", 'lower="-0.5"', -0.5, 0.0)
     guard = '<safety_controller k_velocity="3" soft_lower_limit="-0.25" soft_upper_limit="0.5"/>'
     text = _SECOND.replace(_LIMIT, f'<limit lower="-0.5" upper="1.25" effort="7" velocity="3"/>{guard}')
-    yield _of("limits beside soft ones", _chain(_FIRST, text), first, hung(NEXT, limits=(-0.5, 1.25)), asked=LIMITED)
+    yield _of(
+        "limits beside soft ones",
+        _chain(_FIRST, text),
+        first,
+        hung(NEXT, limits=(-0.5, 1.25), bounds=(3.0, 7.0)),
+        asked=BOUNDED,
+    )
 
 
 def _trees() -> Iterator[tuple[str, Reading]]:

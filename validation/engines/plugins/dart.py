@@ -59,6 +59,8 @@ WAYS = {
     "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
     "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+    "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
+    "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
     "joint_limits": Way(
         "getPositionLowerLimits, getPositionUpperLimits",
         "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",

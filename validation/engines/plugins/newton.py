@@ -84,6 +84,8 @@ for k in sensed:
         "joint_damping, mujoco.dof_passive_damping",
         "value = m.joint_damping.numpy() if hasattr(m, 'joint_damping') else m.mujoco.dof_passive_damping.numpy()",
     ),
+    "joint_speed_limits": Way("joint_velocity_limit", "value = m.joint_velocity_limit.numpy()"),
+    "joint_force_limits": Way("joint_effort_limit", "value = m.joint_effort_limit.numpy()"),
     "joint_limits": Way(
         "joint_limit_lower, joint_limit_upper",
         "value = np.c_[m.joint_limit_lower.numpy(), m.joint_limit_upper.numpy()]",

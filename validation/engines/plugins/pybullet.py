@@ -46,6 +46,8 @@ WAYS = {
         "calculateInverseDynamics",
         "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)",
     ),
+    "joint_speed_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[11] for k in moving]"),
+    "joint_force_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[10] for k in moving]"),
     "joint_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[8:10] for k in moving]"),
     "link_poses": Way(
         "getLinkState",

@@ -21,6 +21,7 @@ def body(name, parent, kind, R, p, more, mass, com, moments):
 _EACH = "value = np.array([{} for name in links])"
 _RATES = "m.inverse_dynamics_derivatives(q, v, a)"
 _TORQUES = "m.forward_dynamics_derivatives(q, v, tau)"
+_BOUNDS = "bounds = [b.joint.limits for b in system.bodies if b.joint and b.joint.limits]\n"
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
     "mass_matrix": Way("mass_matrix", "value = m.mass_matrix(q)"),
@@ -46,10 +47,11 @@ WAYS = {
     "inverse_dynamics_dv": Way("inverse_dynamics_derivatives", f"value = {_RATES}[1]"),
     "forward_dynamics_dq": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[0]"),
     "forward_dynamics_dv": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[1]"),
+    "joint_speed_limits": Way("Joint.limits", f"{_BOUNDS}value = [one.velocity for one in bounds]"),
+    "joint_force_limits": Way("Joint.limits", f"{_BOUNDS}value = [one.effort for one in bounds]"),
     "joint_limits": Way(
         "Joint.limits",
-        "bounds = [b.joint.limits for b in system.bodies if b.joint and b.joint.limits]\n"
-        "value = [[one.lower, one.upper] for one in bounds]",
+        f"{_BOUNDS}value = [[one.lower, one.upper] for one in bounds]",
     ),
     "integrate": Way("integrate", "value = m.integrate(q, v2)"),
     "difference": Way("difference", "value = m.difference(q, m.integrate(q, v2))"),

@@ -31,7 +31,7 @@ class Forces:
     def __init__(self, tree: Tree, kinematics: Kinematics) -> None:
         self.tree, self._kinematics, self._nv = tree, kinematics, kinematics.nv
         self.damping, self.stiffness, self.friction = zeros(self._nv), zeros(self._nv), zeros(self._nv)
-        self.ranges = zeros(self._nv, 2)
+        self.ranges, self.bounds = zeros(self._nv, 2), zeros(self._nv, 2)
         self._limits: dict[int, tuple[float, ...]] = {}
         self._springs: list[tuple[int, int, Exact]] = []
         for k in range(len(tree.links)):
@@ -42,6 +42,8 @@ class Forces:
                     self._limits[slot.v[0]] = joint.force_limits
                 if joint.limits:
                     self.ranges[slot.v[0]] = exact(joint.limits)
+                if joint.bounds:
+                    self.bounds[slot.v[0]] = exact(joint.bounds)
                 self.friction[list(slot.v)] = exact(joint.friction)[()]
                 self.damping[list(slot.v)] = exact(joint.damping)[()]
                 if joint.stiffness:

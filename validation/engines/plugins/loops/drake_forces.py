@@ -81,6 +81,7 @@ def _sensors(kind: str, *names: str, more: str = "") -> Way:
 
 
 WAYS |= {
+    "joint_speed_limits": Way("GetVelocityUpperLimits", "value = p.GetVelocityUpperLimits()"),
     "joint_limits": Way(
         "GetPositionLowerLimits, GetPositionUpperLimits",
         "value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()]",

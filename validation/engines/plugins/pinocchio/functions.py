@@ -59,6 +59,14 @@ for f in sensed:
 value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))""",
     ),
     "joint_dampings": Way("damping", "value = m.damping"),
+    "joint_speed_limits": Way(
+        "velocityLimit, upperVelocityLimit",
+        "value = m.upperVelocityLimit if hasattr(m, 'upperVelocityLimit') else m.velocityLimit",
+    ),
+    "joint_force_limits": Way(
+        "effortLimit, upperEffortLimit",
+        "value = m.upperEffortLimit if hasattr(m, 'upperEffortLimit') else m.effortLimit",
+    ),
     "joint_limits": Way(
         "lowerPositionLimit, upperPositionLimit", "value = np.c_[m.lowerPositionLimit, m.upperPositionLimit]"
     ),
