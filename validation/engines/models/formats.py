@@ -18,8 +18,8 @@ from .readers import Reading
 _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 
 
-# MuJoCo writes six digits: files of MJCF whose numbers take more, once they are worked out, are not asked of writers. Of
-# mimic joints two are: who fails there ends a process for each function.
+# MuJoCo writes six digits: files of MJCF whose numbers take more, once they are worked out, are not asked of writers.
+# Of mimic joints two are: who fails there ends a process for each function.
 _LONG = re.compile(
     "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|geom (box|ell|cyl|cap)|"
     "frame (around|within)|site (turned|from|by|of)|range.*(left out|degrees))|urdf: mimic( |,)(?!with).*"
