@@ -114,8 +114,8 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
         assert told[-1, 2] == moved["ball.bounces"][-1] == 2
 
 
-def test_programs_switch_where_python_does(tmp_path: Path) -> None:
-    """A machine and relays, located in time; nothing moves, what begins on is on, one switches what another reads."""
+def switching() -> tuple[sf.Diagram, list[str]]:
+    """A relay that begins on, and a machine that reads it; nothing moves. And outputs that tell what they do."""
     diagram = sf.Diagram("switching")
     diagram.add(blocks.Sine(name="u", frequency=1.0, phase=2.0))
     diagram.add(blocks.Relay(name="relay", lower=-0.5, upper=0.5), u="u.y")
@@ -128,7 +128,12 @@ def test_programs_switch_where_python_does(tmp_path: Path) -> None:
     diagram.add(
         blocks.StateMachine(name="m", machine_states=states, transitions=ways, outputs=outputs), u="u.y", on="relay.y"
     )
-    outputs_told = ["relay.y", "m.state", "m.y", "m.n"]
+    return diagram, ["relay.y", "m.state", "m.y", "m.n"]
+
+
+def test_programs_switch_where_python_does(tmp_path: Path) -> None:
+    """Located in time; what begins on is on, and one switches what another reads."""
+    diagram, outputs_told = switching()
     program = build(sf.export(diagram, "c", tmp_path / "c", outputs=outputs_told).folder, "program")
     assert subprocess.run([program, "--check"], capture_output=True).returncode == 0
     done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros import blocks
 from symofros.diagrams.run import loop
+
+MODELS = Path(__file__).parents[3] / "reference_models"
 
 
 def test_events_beyond_the_capacity_of_one_call_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -67,3 +71,39 @@ def test_crossings_without_end_are_told() -> None:
     run = sf.Simulation(diagram).run(1.0)
     assert run.outcome.kind == "interrupted" and run.outcome.t == 0.0
     assert all(name in run.outcome.reason for name in ("without end", "a.on", "a.off", "b.on", "b.off"))
+
+
+def test_a_crossing_is_not_met_by_its_own_change() -> None:
+    """The reset takes the signal, which rounding leaves above zero, back through it; either direction counts."""
+    diagram = sf.Diagram("saw")
+    diagram.add(blocks.Constant(name="one", value=1.0))
+    diagram.add(blocks.Integrator(name="x", reset="both"), u="one", reset="left.y")
+    diagram.add(blocks.Formula(name="left", formulas={"y": "(x + 1000)^2 - 1000500"}), x="x.y")
+    run = sf.Simulation(diagram).run(1.1, dt=0.01, record=0.1)
+    assert run.outcome.ok
+    np.testing.assert_allclose(
+        [met.t for met in run.crossings], (np.sqrt(1000500.0) - 1000.0) * np.arange(1, 5), atol=1e-11
+    )
+
+
+def test_memory_of_the_start_is_not_begun_anew_where_a_part_of_a_run_is_made_once_more() -> None:
+    """A machine that has changed its state drives a pendulum, whose steps are examined in windows later on."""
+    diagram = sf.Diagram("driven")
+    diagram.add_model("arm", sf.load(MODELS / "rigid" / "double_pendulum.yaml"))
+    diagram.add(blocks.ForwardDynamics(name="arm", model="arm"), u="efforts.y")
+    states = {
+        "rest": blocks.MachineState(during={"u": "0-20"}),
+        "push": blocks.MachineState(during={"u": "0.1 - v[0]"}),
+    }
+    diagram.add(
+        blocks.StateMachine(
+            name="m",
+            machine_states=states,
+            transitions=(blocks.Transition("rest", "push", "0.0005 - abs(t - 0.001)"),),
+            outputs={"u": 0.0},
+        ),
+        v="arm.v",
+    )
+    diagram.add(blocks.Join(name="efforts"), u1="m.u", u2="m.u")
+    run = sf.Simulation(diagram).run(2.0, dt=1e-3, record=0.02)
+    assert run.outcome.ok and run.outcome.notes == (), run.outcome

@@ -20,6 +20,7 @@ from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import Unit
 from tests.exports.test_controller import conditional, inside, machine, rates
+from tests.exports.test_diagram import switching
 
 STEPS = 20
 
@@ -84,6 +85,29 @@ def test_a_unit_gives_what_python_gives(version: int, make: Any, tmp_path: Path)
         if attempt == 0:
             (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
             found = found[:1]
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_unit_switches_where_python_does(version: int, tmp_path: Path) -> None:
+    """Within steps, too; what is gone back to has its memory and does not begin anew."""
+    diagram, outputs = switching()
+    path = sf.export(diagram, f"fmu{version}", tmp_path / "fmu", outputs=outputs).files[0]  # type: ignore[arg-type]
+    unit = Unit(path, version, True, tmp_path / "unit")
+    unit.start()
+    run, t = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05), 0.05 * np.arange(1, 23)
+    last = [np.flatnonzero(np.abs(run.t - x) < 1e-12)[-1] for x in t]
+    wanted = np.column_stack([run[name][last] for name in outputs])
+    saved, found = None, []
+    for k in (*range(12), *range(6, 22)):
+        if k == 6 and saved is None:
+            saved = unit.fmu.getFMUState() if version == 3 else unit.fmu.getFMUstate()
+        elif k == 6:
+            (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
+        unit.fmu.doStep(t[k] - 0.05, 0.05)
+        found.append((k, unit.get(*outputs)))
+    assert len(set(wanted[:, 3])) == 2
+    for k, values in found:
+        np.testing.assert_allclose(values, wanted[k], atol=1e-9, err_msg=f"t = {t[k]}")
 
 
 @pytest.mark.parametrize("version", [2, 3])
