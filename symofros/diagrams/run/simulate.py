@@ -212,13 +212,17 @@ def _resumed(task: PlannedRun, states: Sequence[Array], given: Given, i: int) ->
 def _continued_run(
     task: PlannedRun, states: Sequence[Array], given: Given, i: int
 ) -> tuple[Ended, Sequence[Array]] | None:
-    """A run continued from record i, and its states from there on; None if it fails."""
-    begin = Start(float(states[0][i]), *(array[i].copy() for array in states[1:]))
+    """A run continued from record i, and its states from there on; None if it fails.
+
+    Of the records of a crossing, at one time, the last has what the crossing changed: from that the run goes on.
+    """
+    last = int(np.searchsorted(states[0], states[0][i], "right")) - 1
+    begin = Start(float(states[0][last]), *(array[last].copy() for array in states[1:]))
     try:
         ended = run_from(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
     except SymofrosError:
         return None
-    return ended, [np.concatenate([x[i : i + 1], y]) for x, y in zip(states, ended.states, strict=True)]
+    return ended, [np.concatenate([x[i : last + 1], y]) for x, y in zip(states, ended.states, strict=True)]
 
 
 def _tell(observer: Observer, compiled: CompiledDiagram, loop: Loop, states: list[Array], par: Array) -> None:

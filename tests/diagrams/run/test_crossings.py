@@ -107,3 +107,21 @@ def test_memory_of_the_start_is_not_begun_anew_where_a_part_of_a_run_is_made_onc
     diagram.add(blocks.Join(name="efforts"), u1="m.u", u2="m.u")
     run = sf.Simulation(diagram).run(2.0, dt=1e-3, record=0.02)
     assert run.outcome.ok and run.outcome.notes == (), run.outcome
+
+
+def test_parts_of_a_run_go_on_from_what_a_crossing_changed() -> None:
+    """Both sides of a crossing are recorded; from the first one the force of the machine would stay what it was."""
+    diagram = sf.Diagram("modes")
+    diagram.add_model("arm", sf.load(MODELS / "rigid" / "double_pendulum.yaml"))
+    diagram.add(blocks.ForwardDynamics(name="arm", model="arm"), u="efforts.y")
+    states = {
+        "push": blocks.MachineState(during={"tau": "20"}),
+        "brake": blocks.MachineState(during={"tau": "0 - 8*v[0]"}),
+    }
+    ways = (blocks.Transition("push", "brake", "q[0] - 0.5"), blocks.Transition("brake", "push", "elapsed - 0.2"))
+    machine = blocks.StateMachine(name="m", machine_states=states, transitions=ways, outputs={"tau": 0.0})
+    diagram.add(machine, q="arm.q", v="arm.v")
+    diagram.add(blocks.Constant(name="none", value=0.0))
+    diagram.add(blocks.Join(name="efforts", unit="N m"), u1="m.tau", u2="none.y")
+    run = sf.Simulation(diagram).run(1.0, method="dopri5", record=0.01)
+    assert run.outcome.ok and len(run.crossings) == 9 and run.outcome.notes == (), run.outcome
