@@ -29,6 +29,11 @@ def floor(e: float = E, **changes: Any) -> dict[str, sf.Event]:
     return {"strike": sf.Event(**stated | {"restitution": e, "rests": "lam.floor"} | changes)}
 
 
+def ceiling() -> dict[str, sf.Event]:
+    """The contact of ball and ceiling."""
+    return {"knock": sf.Event("z - 1", "rising", action={"up": 1}, restitution=E, rests="-lam.ceiling")}
+
+
 def instants(h: float, n: int) -> Any:
     """Instants of the first n strikes from rest at a height, and the one at which they accumulate."""
     first = np.sqrt(2 * h / G)
@@ -72,14 +77,70 @@ def test_a_plastic_strike_rests_at_once_and_residuals_of_complementarity_are_rou
 
 def test_a_ball_between_two_planes() -> None:
     """It strikes both in turn, comes to rest below, is drawn up and rests above."""
-    ceiling = sf.Event("z - 1", "rising", action={"up": 1}, restitution=E, rests="-lam.ceiling")
-    events = floor() | {"knock": ceiling}
+    events = floor() | ceiling()
     run = sf.simulate(ball(), [0.5], [7.0], 6.0, u={"z": "8*(t - 2)"}, events=events, method="dopri5", rtol=1e-10)
     rested = [note for note in run.outcome.notes if "persists" in note]
     assert run.events[0].name == "knock" and run.events[1].name == "strike" and rested
     assert [found.name for found in run.events if "opens" in found.name] == ["strike opens"]
     assert run.q[-1] == pytest.approx([1.0], abs=1e-12) and run.par_over_time[-1] == pytest.approx([0, 1])
     assert run.q.min() > -1e-12 and run.q.max() < 1 + 1e-12
+
+
+def test_a_ball_that_begins_at_the_ceiling_drops_when_the_pull_is_less_than_its_weight() -> None:
+    """A contact from below is held away from its strike, too, (32b)."""
+    pull = sf.Signal([0.0, 0.5], [20.0, 0.0], "hold")
+    run = sf.simulate(ball(), [1.0], t_end=0.8, par={"up": 1}, u={"z": pull}, events=ceiling(), dt=1e-2)
+    assert run.outcome.kind == "finished" and not run.outcome.notes
+    assert [(found.name, found.t) for found in run.events] == [("knock opens", 0.5)]
+    assert run.q[-1, 0] == pytest.approx(1.0 - 0.5 * G * 0.3**2, abs=1e-12) and not run.par_over_time[-1].any()
+
+
+def test_a_contact_may_open_before_its_force_falls_to_zero() -> None:
+    """The force of a contact that is open says nothing of it, (32b): here it is below zero."""
+    pull = sf.Signal([0.0, 1.5], [0.0, 20.0], "hold")
+    run = sf.simulate(ball(), [0.3], t_end=2.0, u={"z": pull}, events=floor(rests="lam.floor - 0.5"), dt=1e-2)
+    assert run.outcome.kind == "finished" and {found.name for found in run.events[:-1]} == {"strike"}
+    assert (run.events[-1].name, run.events[-1].t) == ("strike opens", 1.5)
+    assert run.q[-1, 0] == pytest.approx(0.5 * (20 - G) * 0.5**2, abs=1e-12)
+
+
+def test_a_plastic_strike_that_forces_part_at_once_is_no_rest() -> None:
+    """A pull above the weight lifts a ball that it has let strike, (32a), whatever force would open the contact."""
+    run = sf.simulate(ball(), [0.3], [-5.0], 1.0, u={"z": 20.0}, events=floor(0.0), dt=1e-2)
+    struck = (5 - np.sqrt(25 - 4 * (20 - G) * 0.15)) / (20 - G)
+    assert run.outcome.kind == "finished" and not run.outcome.notes and not run.par_over_time.any()
+    assert [found.t for found in run.events] == pytest.approx([struck], abs=1e-12)
+    assert run.q[-1, 0] == pytest.approx(0.5 * (20 - G) * (1 - struck) ** 2, abs=1e-12)
+
+
+def test_a_ball_that_slides_down_a_hill_does_not_strike_it() -> None:
+    """While a contact holds its gap is zero but for drift, which crosses zero either way and is no strike, (32b)."""
+    slide = sf.RigidBody("slide", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
+    body = sf.RigidBody("ball", sf.Joint("z", "prismatic", "slide", axis=(0, 0, 1)), sf.Inertia(1.0))
+    hill, switch = sf.Coupling("floor", "z - cos(x)"), sf.Switch("floor", "down")
+    parameters = (sf.Parameter("down", 0),)
+    model = sf.compile(sf.System("hill", (slide, body), parameters, constraints=(hill,), switches=(switch,)))
+    options: dict[str, Any] = {"t_end": 1.5, "par": {"down": 1}, "dt": 0.05}
+    for rate in (2.0, 0.5, -2.5):
+        start = ([-1.0, np.cos(1.0)], [rate, rate * np.sin(1.0)])
+        run = sf.simulate(model, *start, events=floor(formula="z - cos(x)"), **options)
+        known = sf.simulate(model, *start, **options)
+        gap = run.q[:, 1] - np.cos(run.q[:, 0])
+        assert gap.min() < 0.0 < gap.max(), "it drifts to both sides"
+        assert run.outcome.kind == "finished" and not run.events
+        assert run.q[-1] == pytest.approx(known.q[-1], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("method", "pull", "met"),
+    [("rk4", "9.81*sin(1.2*t)*1.00001", 14), ("dopri5", "9.81 + 0.01*(t - 1.2) - 1e3*max(t - 1.2, 0)^2", 4)],
+)
+def test_a_contact_that_barely_opens_and_shuts_again_is_followed(method: str, pull: str, met: int) -> None:
+    """It turns near to the floor behind the opening and each strike, where the run has just left it: no doubt."""
+    run = sf.simulate(ball(), t_end=2.0, par={"down": 1}, u={"z": pull}, events=floor(), method=method, dt=1e-2)
+    assert len(run.events) == met and run.events[0].name == "strike opens"
+    (note,) = run.outcome.notes
+    assert "persists" in note
 
 
 def test_what_is_refused() -> None:
