@@ -118,7 +118,7 @@ def test_the_page_shows_and_hides_the_forces_of_the_run_that_plays() -> None:
         first = np.array(node().points)  # type: ignore[attr-defined]
         viewer.seek(0.1)
         assert node().visible and np.abs(node().points - first).max() > 1e-3  # type: ignore[attr-defined]
-        # As many arrows throughout, those that don't show out of sight but of some length: pages keep others as they were.
+        # As many arrows throughout; those that do not show are out of sight, but of some length: pages keep others.
         assert len(node().points) == len(first) == 4  # type: ignore[attr-defined]
         assert (np.linalg.norm(np.diff(node().points, axis=1), axis=-1) > 1e-3).all()  # type: ignore[attr-defined]
         viewer.slide(0, 0.3)  # Of no run.
