@@ -108,7 +108,7 @@ class ViserScene:
         Viser's page goes on drawing arrows by which a node gets fewer: those that don't show are put out of sight.
         """
         node = self._arrows.get(layer)
-        hidden = np.isnan(ends).any(axis=(1, 2))
+        hidden = np.asarray(np.isnan(ends).any(axis=(1, 2)))
         if hidden.all():
             if node is not None:
                 node.visible = False
