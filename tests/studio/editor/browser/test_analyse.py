@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
+import numpy as np
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Faults, Picture, Server
+from tests.studio.editor.browser.conftest import Faults, Picture, Serve, Server
+from tests.studio.pictures import shot
+from tests.studio.waiting import lies_within, until
 
 pytestmark = pytest.mark.browser
 
@@ -19,13 +24,19 @@ def analysed(page: Page, what: str, says: str) -> None:
     expect(steps.results(page)).to_contain_text(says, timeout=steps.JOB)
 
 
-def test_a_model_is_analysed_and_its_modes_play(arm: Server, page: Page, faults: Faults, picture: Picture) -> None:
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_a_model_is_analysed_and_its_modes_play(
+    opened: Serve, page: Page, faults: Faults, picture: Picture, theme: Literal["light", "dark"]
+) -> None:
     """The double pendulum hangs down, swings in two modes and is simulated from there."""
+    page.emulate_media(color_scheme=theme)
+    opened("arm.yaml", source=steps.PENDULUM)
+    name = "" if theme == "light" else "-dark"
     steps.job(page, "Simulate", Speed_of_q1="3", Duration="0.1")  # Speeds of a run are not those of a rest.
     analysed(page, "Equilibrium", "Equilibrium after")
     expect(steps.results(page).get_by_role("row", name="q1 [rad]")).to_contain_text("1.571")
     steps.run(page, "Analyse…")
-    picture("analyse")
+    picture(f"analyse{name}")
     assert not faults()
     page.keyboard.press("Escape")
     analysed(page, "Vibration modes", "2 modes about the equilibrium")
@@ -34,10 +45,12 @@ def test_a_model_is_analysed_and_its_modes_play(arm: Server, page: Page, faults:
     steps.results(page).get_by_role("button", name="Play").click()
     expect(page.frame_locator("iframe.view").locator("canvas").first).to_be_visible(timeout=steps.JOB)
     expect(steps.results(page).get_by_role("button", name="Play")).to_be_visible(timeout=steps.JOB)
+    # The pane that a play opens has the colours of the page.
+    until(page, lambda: (np.median(shot(page)) < 128) == (theme == "dark"), "the picture is of the other colour")
     assert not faults()
     steps.results(page).get_by_role("slider", name="Time [s]").fill("0.1")
     steps.settled(page)
-    picture("modes")
+    picture(f"modes{name}")
     with page.expect_download() as saved:
         steps.results(page).get_by_role("button", name="Modes as CSV").click()
     assert saved.value.suggested_filename == "Modes.csv"
@@ -50,6 +63,11 @@ def test_a_model_is_analysed_and_its_modes_play(arm: Server, page: Page, faults:
     analysed(page, "Linear model", "4 states, 2 inputs")
     expect(steps.results(page).get_by_role("region", name="B", exact=True)).to_be_visible()
     page.set_viewport_size({"width": 400, "height": 760})
+    assert not faults()
+    picture(f"linear-narrow{name}")
+    steps.run(page, "Analyse…")
+    lies_within(steps.window(page), 400, 760)
+    picture(f"analyse-narrow{name}")
     assert not faults()
 
 

@@ -3,6 +3,7 @@
 import { get, post, Refused } from "../api/client";
 import type { Pose, Posed, View } from "../api/types";
 import { elementIds } from "../model/elements";
+import { merged, requestsOf } from "../model/pose";
 import { reveal } from "./folding";
 import { explain } from "./requests";
 import { now, update } from "./store";
@@ -67,16 +68,13 @@ let moving = false;
 
 /** Shows a run's state at a time. */
 export function seek(run: string, t: number, block: string): void {
-  // What waits to be moved is of another state.
-  next = null;
   void move({ run, t, block });
 }
 
 /** Moves the view; while one request is on its way, the newest of each value waits. */
 export async function move(pose: Pose): Promise<void> {
   if (of !== now().document?.path) next = null;
-  const waiting = next?.run === undefined || pose.run !== undefined ? next : null;
-  next = { ...waiting, ...pose, q: { ...waiting?.q, ...pose.q }, par: { ...waiting?.par, ...pose.par } };
+  next = merged(next, pose);
   of = now().document?.path;
   if (moving) return;
   moving = true;
@@ -86,9 +84,11 @@ export async function move(pose: Pose): Promise<void> {
       next = null;
       const path = now().document?.path;
       if (of !== path) break; // A pose of a document that was left since.
-      const { why, ...stand } = await post<Posed>("api/pose", sent);
-      const view = shownView();
-      if (view !== null && now().document?.path === path) update({ view: { ...view, ...stand }, stuck: why });
+      for (const request of requestsOf(sent)) {
+        const { why, ...stand } = await post<Posed>("api/pose", request);
+        const view = shownView();
+        if (view !== null && now().document?.path === path) update({ view: { ...view, ...stand }, stuck: why });
+      }
     }
   } catch (reason) {
     next = null;
