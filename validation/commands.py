@@ -80,6 +80,10 @@ COMMANDS = {
         "pareto.report",
         "Compare speed at equal accuracy: our models and methods, and engines with their own integrators.",
     ),
+    "studio": Command(
+        "studies.reports.studio",
+        "Measure the studio in a browser: times to the first picture and of edits, frames, sizes, clicks of sessions.",
+    ),
     "dashboard": Command("dashboard.command", "Gather the reports on one page."),
     "all": Command("dashboard.command", "Make every report that this machine can make of the code as it is: hours."),
     "render": Command(

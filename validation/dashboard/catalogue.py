@@ -15,10 +15,10 @@ from ..pareto import report as pareto
 from ..recall import report as recall
 from ..reporting.record import Topic
 from ..stability import report as stability
-from ..studies.reports import exports, fuzz, mutation, oracle, rollouts
+from ..studies.reports import exports, fuzz, mutation, oracle, rollouts, studio
 from ..timing import report as timing
 
 _TRUTH = (check, oracle, mutation, mutants, fuzz, adversary, engines, recall, campaign)
 _CORRECTNESS = (*_TRUTH, accuracy, diagrams, stability)
 _SPEED = (timing, rollouts, exports, environments, cuda, pareto)
-TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED)}
+TOPICS: dict[str, Topic] = {module.TOPIC.name: module.TOPIC for module in (*_CORRECTNESS, *_SPEED, studio)}

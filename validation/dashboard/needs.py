@@ -12,6 +12,7 @@ from symofros.tools import present as graphics_processor
 from ..cuda import warp
 from ..engines.plugins import OWN
 from ..faults.environment import default_folder
+from ..studies import studio
 
 
 @dataclass(frozen=True)
@@ -74,4 +75,5 @@ NEEDS: dict[str, Needs] = {
     "environments": Needs(("jax", "torch", "casadi"), ("node", "clang")),
     "cuda": Needs(besides=_processor),
     "pareto": Needs(("mujoco", "exudyn")),
+    "studio": Needs(("playwright", "pytest"), ("npm",), besides=studio.missing),
 }

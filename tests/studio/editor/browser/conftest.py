@@ -18,6 +18,7 @@ from playwright.sync_api import Browser, Page
 
 import symofros.studio.editor
 from tests.studio.editor.browser import steps
+from tests.studio.editor.browser.measures import noted
 
 TOKEN = "token-of-the-tests"
 # The oldest that builds the page.
@@ -165,9 +166,12 @@ def faults(page: Page, node_modules: Path) -> Faults:
     def look() -> list[str]:
         for _ in range(LOOKS - 1):
             if not found():
+                noted("axe", findings=[])
                 return []
             page.wait_for_timeout(1000)
-        return found()
+        faults = found()
+        noted("axe", findings=faults)
+        return faults
 
     def found() -> list[str]:
         page.evaluate(source)

@@ -12,6 +12,7 @@ import symofros as sf
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Faults, Picture, Serve
 from tests.studio.editor.browser.hand import Hand
+from tests.studio.editor.browser.measures import noted
 
 pytestmark = pytest.mark.browser
 
@@ -33,7 +34,7 @@ def hand(page: Page) -> Hand:
 def within(hand: Hand, session: str) -> None:
     """Hold a session to its bar; `-s` prints what it took."""
     cost, most = hand.cost(), BARS[session]
-    print(f"{session}: {cost[0]} clicks, {cost[1]} keys")
+    noted("session", name=session, clicks=cost[0], keys=cost[1], most_clicks=most[0], most_keys=most[1])
     assert cost[0] <= most[0] and cost[1] <= most[1], (session, cost)
     assert cost[0] > 3, "nothing was counted"
 
