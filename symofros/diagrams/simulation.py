@@ -176,7 +176,7 @@ class Simulation:
             run = run_interpreted(blocks, called, course, watch, show, observer)
         run = replace(run, outcome=judge_prescribed(run.outcome, resolved, run.t, run.values.__getitem__))
         notes = joint_limit_notes(resolved, run.t, run.q, run.v)
-        notes += contact_notes(resolved, par, run.t, run.q, run.v)
+        notes += contact_notes(resolved, par, (run.t, run.q, run.v), run.values.__getitem__)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
         return replace(run, outcome=replace(run.outcome, notes=(*closing, *run.outcome.notes, *notes)))

@@ -20,6 +20,7 @@ from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan, blamed
+from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
@@ -31,6 +32,7 @@ from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCa
 from symofros.diagrams.run.recording import Cost, Records
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, parameter_values, part_settings, record_interval
+from symofros.diagrams.wiring import Source
 from symofros.errors import DescriptionError, SymofrosError
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import CompiledKernel
@@ -102,19 +104,24 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
         kept: What blocks stored.
     """
     resolved, options, par = task.compiled.resolved, task.options, task.par
-    bendings = ended.bendings
+    bendings, (t, q, v, u) = ended.bendings, ended.states
+    records = Records(task.compiled, t, q, v, u, par)
+
+    def signal(source: Source) -> Array:
+        return records[".".join(source)]
+
     again = _rerun(task, ended.states, given, acts=acted(ended.recorded.events))
     outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
     if acted(ended.recorded.events):
         outcome = replace(outcome, notes=(*outcome.notes, NOT_EXAMINED))
     elif outcome.kind == "finished" and not options.realtime:
-        notes = remarks(_examined(task, ended, given), modes)
+        notes = remarks(_examined(task, ended, given), modes, signal)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
     outcome = blamed(outcome, resolved, again)
-    t, q, v, u = ended.states
-    records = Records(task.compiled, t, q, v, u, par)
-    outcome = judge_prescribed(outcome, resolved, records.t, lambda source: records[".".join(source)])
+    outcome = judge_prescribed(outcome, resolved, records.t, signal)
+    deep = contact_notes(resolved, resolved.layout.present(par, u), (t, q, v), signal)
+    outcome = replace(outcome, notes=(*outcome.notes, *deep))
     return _recorded(task, ended, outcome, bendings, kept)
 
 

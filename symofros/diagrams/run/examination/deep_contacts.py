@@ -6,28 +6,29 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
+from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
+from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.state_notes import deep_contact_notes
 
 
-def contact_notes(resolved: Resolved, par: Array, t: Array, q: Array, v: Array) -> list[str]:
-    """At most one note a mechanism; those with prescribed motions, which are signals here, are not looked at.
+def contact_notes(resolved: Resolved, par: Array, states: States, signal: Signals) -> tuple[str, ...]:
+    """At most one note a mechanism.
 
     Args:
         resolved: Diagram that ran.
-        par: Its run-time parameters (npar); contacts of which events change parameters are not looked at.
-        t: Recorded times (n).
-        q: States (n, nq).
-        v: Speeds (n, nv).
+        par: Its run-time parameters at the records (n, npar), or of all (npar).
+        states: Records: t (n), q (n, nq), v (n, nv).
+        signal: Signal at the records (n, *shape) of an output: where motions are prescribed, bodies are there.
     """
-    layout, models = resolved.layout, resolved.wired.models
+    layout, models, (t, q, v) = resolved.layout, resolved.wired.models, states[:3]
     notes: list[str] = []
     for name, place in layout.q.items():
         mechanism = resolved.pieces[name].block.mechanism()
-        record = models.record(mechanism)
-        if not record.contact_names or record.driven or name in layout.kept:
+        if not models.record(mechanism).contact_names:
             continue
         model = models.contacts(mechanism)
         moved = (np.ascontiguousarray(x[:, at.slice]) for x, at in ((q, place), (v, layout.v[name])))
-        states = (t, *moved, np.zeros((len(t), model.nu)))
-        notes += deep_contact_notes(model, states, layout.parameters_of(name, mechanism, par), f"{name}.")
-    return notes
+        u = prescribed_inputs(resolved, name, len(t), signal)
+        own = layout.parameters_of(name, mechanism, par)
+        notes += deep_contact_notes(model, (t, *moved, u), own, f"{name}.")
+    return tuple(notes)

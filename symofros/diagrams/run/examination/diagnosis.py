@@ -12,7 +12,6 @@ from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan
-from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
@@ -103,7 +102,6 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tup
     """
     loop, status, t = ended.loop, ended.recorded.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
-    left += contact_notes(ended.resolved, ended.par, *ended.states[:3])
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))
     closed = float(loop.diagram.engaged_t), float(loop.diagram.engaged_gap)
     postures = _posture_notes(ended, again)

@@ -39,7 +39,8 @@ def notes_on_steps(run: InterpretedRun, blocks: Blocks, course: Course, called: 
     steps = seen.resolution(method)
     notes = [step_size_note(steps.worst, method, course.step)] if steps.worst else []
     examined = seen.examined
-    return [*posture_notes(examined), *notes, *remarks(examined, steps)]
+    signal = run.values.__getitem__
+    return [*posture_notes(examined, signal), *notes, *remarks(examined, steps, signal)]
 
 
 class _Revisited:

@@ -6,6 +6,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.examined import Examined
+from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
 from symofros.simulation.analysis.kinematics.postures import nearest_to_singular
 from symofros.simulation.results.examination.constraint_faults import near_singular_notes
 from symofros.simulation.results.examination.finer_steps import States
@@ -16,11 +17,15 @@ _RANK = 1e-9
 _SOME = 16
 
 
-def posture_notes(run: Examined) -> list[str]:
+def posture_notes(run: Examined, signal: Signals) -> list[str]:
     """At most one note a mechanism.
 
-    Where constraints engage or release, their rank changes at any posture: such diagrams are not looked at, nor are
-    mechanisms with prescribed motions, which are signals here.
+    Where constraints engage or release, their rank changes at any posture: such diagrams are not looked at. Of
+    mechanisms with prescribed motions, which are signals here, the records alone are.
+
+    Args:
+        run: Run.
+        signal: Signals at its records.
     """
     layout, (t, q, v) = run.layout, run.states[:3]
     models, pieces = run.energies.resolved.wired.models, run.energies.resolved.pieces
@@ -28,16 +33,16 @@ def posture_notes(run: Examined) -> list[str]:
     for name, place in layout.q.items() if not layout.lock_inputs else ():
         mechanism, at = pieces[name].block.mechanism(), layout.v[name].slice
         record = models.record(mechanism)
-        if not record.nc or record.driven or name in layout.kept:
+        if not record.nc or name in layout.kept:
             continue
         model, par = models.constraints(mechanism), layout.parameters_of(name, mechanism, run.energies.par)
-        u = np.zeros(model.nu)
+        u = prescribed_inputs(run.energies.resolved, name, len(t), signal)
 
         def states(of: States, place: slice = place.slice, at: slice = at, u: Array = u) -> States:
-            return [of[0], of[1][:, place], of[2][:, at], np.broadcast_to(u, (len(of[0]), len(u)))]
+            return [of[0], of[1][:, place], of[2][:, at], u if of[0] is t else np.zeros((len(of[0]), u.shape[1]))]
 
-        def between(first: int, last: int) -> States | None:
-            along = run.repeat(first, float(t[last]), 0)
+        def between(first: int, last: int, driven: bool = record.driven) -> States | None:
+            along = None if driven else run.repeat(first, float(t[last]), 0)
             return None if along is None else states(along)
 
         moved = states((t, q, v))

@@ -14,8 +14,23 @@ from symofros.simulation.prescribed_motions import recorded_notes
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import UNIT_TOLERANCE
 
+# Signal at the records (n, *shape) of an output.
+Signals = Callable[[Source], Array]
 
-def judge_prescribed(outcome: Outcome, resolved: Resolved, t: Array, signal: Callable[[Source], Array]) -> Outcome:
+
+def prescribed_inputs(resolved: Resolved, block: str, n: int, signal: Signals) -> Array:
+    """Inputs (n, nu) of a block's mechanism at n records: what wires prescribe; without such motions zeros.
+
+    Efforts, which are no inputs of a mechanism's constraints and contacts, are not asked for.
+    """
+    wired = resolved.wired
+    record, source = wired.models.record(resolved.pieces[block].block.mechanism()), wired.sources.get((block, "u"))
+    if record.driven and source is not None:
+        return np.ascontiguousarray(signal(source))
+    return np.zeros((n, len(record.vectors["u"])))
+
+
+def judge_prescribed(outcome: Outcome, resolved: Resolved, t: Array, signal: Signals) -> Outcome:
     """The outcome of a run, "input failed" where a wire prescribes a quaternion that is no rotation.
 
     Positions and speeds that are no one motion are noted (docs/theory/simulation.md, (3e)).

@@ -10,6 +10,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.energy_balance import energy_note
 from symofros.diagrams.run.examination.examined import Examined
+from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.simulation.results.examination.creep import creep_note_at
 from symofros.simulation.results.examination.finer_steps import finer_steps_note
@@ -20,16 +21,17 @@ from symofros.simulation.stepping.resolution import Resolution
 _ALLOWED, _MOTION = 0.1, 100.0
 
 
-def remarks(run: Examined, modes: Resolution) -> tuple[str, ...]:
+def remarks(run: Examined, modes: Resolution, signal: Signals) -> tuple[str, ...]:
     """Notes on the steps of a run, on finer ones or on energy; and on joints that creep at its end.
 
     Args:
         run: Run.
         modes: How well its steps resolve the modes at some states.
+        signal: Signals at its records.
     """
     if not run.layout.v or run.steps < 1 or len(run.states[0]) < 2:
         return ()
-    return (*_on_steps(run, modes), *_creeping(run))
+    return (*_on_steps(run, modes), *_creeping(run, signal))
 
 
 def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:
@@ -46,16 +48,15 @@ def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:
         return ()
 
 
-def _creeping(run: Examined) -> Iterator[str]:
-    """At most one note a mechanism; those with prescribed motions, which are signals here, are not looked at."""
+def _creeping(run: Examined, signal: Signals) -> Iterator[str]:
+    """At most one note a mechanism."""
     resolved, layout, (t, q, v) = run.energies.resolved, run.layout, (x[-1] for x in run.states[:3])
     for name, place in layout.q.items():
         mechanism, at = resolved.pieces[name].block.mechanism(), layout.v[name].slice
-        record = resolved.wired.models.record(mechanism)
-        if record.driven or not record.friction_speeds:
+        if not resolved.wired.models.record(mechanism).friction_speeds:
             continue
         model, par = resolved.wired.models.dynamics(mechanism), layout.parameters_of(name, mechanism, run.energies.par)
-        state = (t, q[place.slice], v[at], np.zeros(model.nu))
+        state = (t, q[place.slice], v[at], prescribed_inputs(resolved, name, len(run.states[0]), signal)[-1])
 
         def acceleration(at: slice = at) -> Array | None:
             with suppress(NotKeptError):
