@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 
 from symofros.base.arrays import Array
 from symofros.interop.coordinates import Coordinates, Operations
@@ -33,6 +33,8 @@ def stretched(q: Array, rng: np.random.Generator) -> Array:
     return q
 
 
+@example(0, 0.0999, 0.0999)  # Series, at the end of their reach.
+@example(0, 0.1001, 0.1001)
 @given(SEEDS, ANGLES, ANGLES)
 @settings(max_examples=60)
 def test_steps_and_differences_are_those_of_the_manifold(seed: int, first: float, second: float) -> None:

@@ -143,6 +143,19 @@ def test_a_contact_that_barely_opens_and_shuts_again_is_followed(method: str, pu
     assert "persists" in note
 
 
+def test_times_that_are_asked_for_are_recorded_across_strikes() -> None:
+    """Whatever strikes and rests cut a run, as early as they may: once each, at the height that the closed form has."""
+    for times in (0.05 * np.arange(21), np.array([0.0, 0.3, 0.31, 1.0])):
+        run = sf.simulate(ball(), [0.1], t_end=1.0, events=floor(), dt=1e-2, output=times)
+        assert len(run.events) > 10 and run.t == pytest.approx(times, abs=1e-12)
+        met, end = instants(0.1, 30)
+        at = np.array([np.searchsorted(met, t) for t in times])
+        speeds = np.where(at > 0, np.sqrt(2 * G * 0.1) * E**at, 0.0)
+        since = times - np.where(at > 0, met[at - 1], 0.0)
+        height = np.where(at > 0, speeds * since, 0.1) - 0.5 * G * since**2
+        assert run.q[:, 0] == pytest.approx(np.where(times < end, height, 0.0), abs=1e-10)
+
+
 def test_what_is_refused() -> None:
     """What is no contact as it is stated; starts that penetrate or draw, and forces of the wrong sign, as outcomes."""
     wrong: tuple[dict[str, Any], ...] = (

@@ -87,6 +87,24 @@ def test_a_chain_of_massless_carriers_becomes_one_body(tmp_path: Path) -> None:
     np.testing.assert_allclose(engine.joint("roll").pos, [-0.1, -0.2, 0.0], atol=1e-15)
 
 
+@pytest.mark.parametrize(("carriers", "kind"), [(3, "universal"), (6, "revolute"), (2, "universal"), (5, "revolute")])
+def test_no_body_takes_over_more_joints_than_mujoco_lets_it_have(carriers: int, kind: str, tmp_path: Path) -> None:
+    """Six: a body with them all loads; what more of them there are is left, with the note that MuJoCo refuses it."""
+    bodies, parent = [], "world"
+    for i in range(carriers + 1):
+        joint = sf.Joint(f"q{i}", kind, parent, position=(0, 0, 0.1), axis=(i % 2, 1 - i % 2, 0), axis2=(0, 0, 1))  # type: ignore[arg-type]
+        parent = f"b{i}"
+        bodies.append(sf.RigidBody(parent, joint, SOLID if i == carriers else None))
+    done = sf.export(sf.System("chain", bodies), "mjcf", tmp_path)
+    gathered = (carriers + 1) * (2 if kind == "universal" else 1)
+    if gathered <= 6:
+        assert mujoco.MjModel.from_xml_path(str(done.files[0])).njnt == gathered and not done.notes
+    else:
+        assert any("MuJoCo refuses" in note for note in done.notes)
+        with pytest.raises(ValueError, match="mass and inertia of moving bodies"):
+            mujoco.MjModel.from_xml_path(str(done.files[0]))
+
+
 def test_notes_name_frames_of_carriers_and_refused_items(tmp_path: Path) -> None:
     """A carrier of two bodies can't be gathered; a frame of one has no place in the body that takes it over."""
     ring = sf.RigidBody("ring", sf.Joint("a", "revolute"), None, [sf.Frame("mark", (1, 0, 0))])

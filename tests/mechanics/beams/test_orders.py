@@ -141,3 +141,24 @@ def test_zeroth_order_keeps_coriolis_forces_of_tip_bodies(loaded: bool) -> None:
     x, y = c + [L, 0.0]
     expected = m * np.array([x * coriolis[1] - y * coriolis[0], velocity @ coriolis])
     np.testing.assert_allclose((h[1.0] - h[-1.0]) / 2.0, expected if loaded else 0.0, atol=1e-13)
+
+
+def test_energies_of_beams_that_do_not_move_each_other_add_up() -> None:
+    """In the order of the bodies: of one, of the other, and of both."""
+    beams = [
+        sf.Beam(
+            name,
+            sf.Joint(f"hinge_{name}", "revolute", axis=(0, 0, 1)),
+            L,
+            **SECTION | {"EI_z": stiffness, "rhoI_z": 0.0},
+            bend_y=1,
+        )
+        for name, stiffness in (("soft", 2.0), ("stiff", 7.0))
+    ]
+    q, v = [0.3, 0.02, -0.4, 0.05], [0.1, 0.2, -0.3, 0.4]
+    chosen = sf.Options(("kinetic_energy", "potential_energy"), backend="interpreter")
+    both, *single = (sf.compile(sf.System("s", part), chosen) for part in (beams, beams[:1], beams[1:]))
+    halves = [(m, q[2 * i : 2 * i + 2], v[2 * i : 2 * i + 2]) for i, m in enumerate(single)]
+    stored = sum(float(m.potential_energy(x)) for m, x, _ in halves)
+    assert float(both.potential_energy(q)) == pytest.approx(stored, rel=1e-13)
+    assert float(both.kinetic_energy(q, v)) == pytest.approx(sum(float(m.kinetic_energy(x, y)) for m, x, y in halves))

@@ -130,6 +130,16 @@ def test_energies_and_momenta_do_not_know_states_but_what_they_store() -> None:
     assert (p == model.centroidal_momentum(q, v)).all()
 
 
+def test_the_gradient_of_the_energy_knows_what_states_store() -> None:
+    """By each coordinate beside stated states, by central differences: `vjp` of the carried model."""
+    model = sf.compile(arm(), sf.Options(backend="interpreter"))
+    q, v, z, _ = drawn(model, 4)
+    at = {"q": np.concatenate([q, np.zeros(model.nz)]), "v": np.concatenate([v, z])}
+    gradient, h = model.carried.vjp("potential_energy", V_bar=1.0, **at)["q"], 1e-6
+    ends = [[model.potential_energy(model.integrate(q, dq), z=z) for dq in h * np.eye(model.nv) * x] for x in (1, -1)]
+    assert gradient[: model.nv] == pytest.approx(np.subtract(*ends) / (2 * h), abs=1e-7)
+
+
 def test_states_have_unit_inertia_and_move_nothing() -> None:
     """M* = diag(M, 1), h* = (h, 0) of (2), formed as numbers."""
     equations = Equations(build_tree(arm()))

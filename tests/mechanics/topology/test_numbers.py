@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
+from scipy.spatial import transform
 
 import symofros as sf
 from symofros.description.values import Rotation
@@ -32,3 +33,18 @@ def test_rotations_of_invalid_numbers_are_nan() -> None:
     for stated in (Rotation("rpy", ("1/(a - a)", 0.0, 0.0)), Rotation("quaternion", (0.0, 0.0, 0.0, 0.0))):
         R = numbers.rotation(stated)
         assert R.shape == (3, 3) and np.isnan(R).all()
+
+
+@given(st.tuples(*[st.floats(-3.0, 3.0)] * 3), st.floats(-7.0, 7.0))
+def test_stated_rotations_are_those_of_another_library(x: tuple[float, float, float], angle: float) -> None:
+    """Axes and quaternions of any length, angles of either sign: by SciPy."""
+    numbers = Numbers(sf.System("s", [sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0))]))
+    axis = np.array(x) + (0.0, 0.0, 4.0)
+    known = {
+        "rpy": (x, transform.Rotation.from_euler("xyz", x)),
+        "quaternion": ((*x, 4.0), transform.Rotation.from_quat((*x, 4.0))),
+        "axis_angle": ((*axis, angle), transform.Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))),
+    }
+    for kind, (stated, by_scipy) in known.items():
+        R = numbers.rotation(Rotation(kind, tuple(map(float, stated))))  # type: ignore[arg-type]
+        np.testing.assert_allclose(R, by_scipy.as_matrix(), rtol=0, atol=4e-15)

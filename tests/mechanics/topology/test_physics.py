@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 import symofros as sf
+from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.run_time import RunTimeCheck
 
 NAMES = ("x", "y", "z")
@@ -23,3 +26,15 @@ def test_a_point_mass_turns_about_axes_that_miss_it_only(axis: Triple, center: T
     system = sf.System("s", (body,), parameters=[sf.Parameter(name, 0.1 + i) for i, name in enumerate(NAMES)])
     problems = RunTimeCheck(system, NAMES).problems(values[None])
     assert any("moves no mass" in problem.what for problem in problems) != bool(np.cross(axis, values).any())
+
+
+@settings(max_examples=60)
+@given(st.integers(0, 10**6), st.sampled_from([(0.0, 1.0, 1.0), (0.3, 0.7, 1.0), (1.0, 1.0, 2.0)]), st.floats(-6, 6))
+def test_rods_and_plates_in_any_place_are_physical(seed: int, moments: tuple[float, ...], size: float) -> None:
+    """The largest moment is the sum of the others, to rounding; beyond a share of 1e-5 it is not that of a body."""
+    turn = Rotation.random(random_state=seed).as_matrix()
+    for excess in (0.0, 1e-5):
+        J = 10.0**size * turn @ np.diag([*moments[:2], moments[2] + excess]) @ turn.T
+        inertia = sf.Inertia(1.0, (0, 0, 0), (J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2]))
+        body = sf.RigidBody("plate", sf.Joint("q", "revolute"), inertia)
+        assert has_physical_inertia(body, Numbers(sf.System("s", [body]))) == (excess == 0.0)

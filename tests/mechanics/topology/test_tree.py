@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import pytest
+
 import symofros as sf
 from symofros.mechanics.topology.tree import build_tree, coupled_speeds
 
@@ -30,3 +32,10 @@ def test_deep_chains_do_not_exhaust_the_stack() -> None:
 def test_speeds_of_one_joint_are_coupled_with_each_other_and_those_of_branches_are_not() -> None:
     legs = [body(f"leg{k}", "base") for k in range(4)]
     assert coupled_speeds(build_tree(sf.System("s", [body("base", "world", "free"), *legs]))) == (15 + 4 * 6) / 10
+
+
+def test_coordinates_of_a_general_joint_have_different_names() -> None:
+    for names in (("a", "a"), ("a", "b", "a")):
+        joint = sf.Joint("g", "general", coordinates=names, moving_position=("a", 0, 0))
+        with pytest.raises(sf.DescriptionError, match="joint 'g': coordinates of the same name"):
+            build_tree(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(1.0))]))

@@ -34,6 +34,16 @@ def test_errors_follow_the_tolerance(name: str, method: str) -> None:
         assert np.abs(model.difference(exact.q[-1], run.q[-1])).max() < 3e3 * tolerance
 
 
+@pytest.mark.parametrize("method", ["cvode", "ida"])
+def test_every_step_of_sundials_is_recorded_once(method: str) -> None:
+    """At its end, where its state is: times increase, and there is one more of them than steps."""
+    model, q, v = moving("double_pendulum")
+    run = sf.simulate(model, q, v, 0.5, method=method, rtol=1e-9, atol=1e-9)
+    exact = sf.simulate(model, q, v, 0.5, method="dop853", rtol=1e-12, atol=1e-13, output=run.t)
+    assert (np.diff(run.t) > 0.0).all() and len(run) == run.statistics.steps + 1
+    assert np.abs(run.q - exact.q).max() < 1e-5
+
+
 def test_output_events_and_laws_work_with_sundials() -> None:
     model, law = compiled("pendulum"), {"q": "0.1*sin(t)"}
     events = {"down": sf.Event("q", "falling"), "up": sf.Event("q", "rising", terminal=True)}
