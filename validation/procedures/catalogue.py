@@ -103,6 +103,7 @@ _OF_THEIR_OWN: tuple[Procedure, ...] = (
     switching.grasped,
     switching.struck,
     switching.stuck,
+    runs.turned,
     zeros.of_time,
     zeros.of_motions,
     notes.on_steps,

@@ -7,7 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from scipy.linalg import expm
 from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 import symofros as sf
 from symofros.tools import METHODS
@@ -201,6 +203,34 @@ def small_turns(scene: Scene) -> Iterator[Cell]:
         adaptive = False if METHODS[name].adaptive else None
         run = sf.simulate(scene.model, lying, at_rest.v, 3e-3, method=name, dt=3e-3, adaptive=adaptive)
         yield Cell(f"small turns by {name}", _off(at_rest, run, repeated_run(at_rest, name, 0.0, 3e-3, 3e-3)), 2e-14)
+
+
+def turned(_scene: Scene) -> Iterator[Cell]:
+    """A free body moved by constant twists, by the exponential of screws: where series hold, and beyond."""
+    body = sf.RigidBody("body", sf.Joint("root", "free"), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    model = sf.compile(sf.System("turned", (body,), gravity=(0, 0, 0)))
+    rng, errors = np.random.default_rng(7), np.zeros(3)
+    for angle in (1e-4, 0.02, 0.099, 0.101, 0.5, 2.5):
+        q, v = model.random_state(rng)
+        v[3:] *= angle / np.linalg.norm(v[3:])
+        moved = _place(q) @ expm(np.block([[_cross_matrix(v[3:]), v[:3, None]], [np.zeros((1, 4))]]))
+        step = sf.simulate(model, q, v, 1.0, method="euler", dt=1.0).q[-1]
+        whole, beside = model.integrate(q, v), moved.copy()
+        beside[:3, 3] = q[:3] + _place(q)[:3, :3] @ v[:3]  # The chart of steps moves places along straight lines.
+        found = (off(_place(whole), moved), off(_place(step), beside), off(model.difference(q, whole), v))
+        errors = np.maximum(errors, found)
+    names = ("places moved by twists", "one step of a free body", "twists between places")
+    for name, error in zip(names, errors, strict=True):
+        yield Cell(name, float(error), 1e-12)
+
+
+def _cross_matrix(w: Array) -> Array:
+    return np.cross(np.eye(3), w)
+
+
+def _place(q: Array) -> Array:
+    """The homogeneous matrix (4, 4) of a free body."""
+    return np.block([[Rotation.from_quat(q[3:]).as_matrix(), q[:3, None]], [np.eye(4)[3:]]])
 
 
 def mirrored(scene: Scene) -> Iterator[Cell]:
