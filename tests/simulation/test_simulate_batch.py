@@ -213,3 +213,15 @@ def test_notes_of_a_batch_that_records_only_its_end_match_a_single_run(method: s
     many = sf.simulate_batch(model, np.zeros((2, 1)), np.ones((2, 1)), 10.0, method=method, **options)
     assert many.q.shape == (2, 1, 1) and many.outcome(0).notes == single.outcome.notes
     assert bool(single.outcome.notes) == (abs(float(single.v[-1, 0]) + 1.0) > 0.1)
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853"])
+@pytest.mark.parametrize("when", [0.35, 1.0])
+def test_what_acts_at_the_very_end_is_in_the_last_state(method: str, when: float) -> None:
+    """As of a single run, which records its steps."""
+    model, events = sf.compile(slide()), {"kick": sf.Event(f"t - {when}", "rising", action={"dx": "2*dx"})}
+    runs = sf.simulate_batch(model, [0.0], [[1.0], [3.0]], when, events=events, method=method)
+    alone = sf.simulate(model, [0.0], [1.0], when, events=events, method=method)
+    assert runs.v[:, -1, 0] == pytest.approx([2.0, 6.0], abs=1e-12)
+    assert alone.v[-1, 0] == pytest.approx(2.0, abs=1e-12)
+    assert runs.q[0, -1] == pytest.approx(alone.q[-1], abs=1e-12)

@@ -41,7 +41,7 @@ def posture_notes(run: Examined, signal: Signals) -> list[str]:
         def states(of: States, place: slice = place.slice, at: slice = at, u: Array = u) -> States:
             return [of[0], of[1][:, place], of[2][:, at], u if of[0] is t else np.zeros((len(of[0]), u.shape[1]))]
 
-        def between(first: int, last: int, driven: bool = record.driven) -> States | None:
+        def between(first: int, last: int, driven: bool = record.driven > 0) -> States | None:
             along = None if driven else run.repeat(first, float(t[last]), 0)
             return None if along is None else states(along)
 
