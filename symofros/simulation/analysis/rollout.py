@@ -15,6 +15,8 @@ from symofros.runtime import manifold
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.chart_derivatives import ChartSlopes, chart_slopes
+from symofros.simulation.results.examination.creep import creep_note_at
+from symofros.simulation.results.examination.state_notes import state_notes
 from symofros.simulation.settings import first_configuration, vector
 from symofros.simulation.stepping.methods import METHODS, method_meant
 from symofros.simulation.stepping.tableaus import Tableau
@@ -86,6 +88,18 @@ class Rollout:
         """Model, method and sizes; the numbers are in the attributes."""
         steps = f"{len(self.u)} steps of {self.dt:.6g} s"
         return f"<Rollout of '{self._model.record.name}' by {self._method}: {steps}>"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What its states show: limits left, contacts too deep, joints that creep at its end. Steps are not judged."""
+        m, par, last = self._model, self._par, (self.t[-1], self.q[-1], self.v[-1], self.u[-1])
+
+        def acceleration() -> Array:
+            return np.asarray(m.forward_dynamics(*last[1:], par=par, t=last[0]))
+
+        creeping = creep_note_at(m, last, par, acceleration)
+        u = np.concatenate([self.u, self.u[-1:]])
+        return (*state_notes(m, (self.t, self.q, self.v, u), par), *([creeping] if creeping else []))
 
     def gradient(self, q_bar: Numbers | None = None, v_bar: Numbers | None = None) -> MotionGradient:
         """The derivatives of a sum of weighted states by first state, inputs and parameters, by the discrete adjoint.
@@ -224,7 +238,8 @@ def rollout(
     The steps are those of `simulate` with a `Signal(t, u, "hold")` to rounding: the inputs of a step hold for all its
     stages. Steps are not judged here: the derivatives are those of the steps that were made, however long, and of the
     beams' theory, however far they bend; `simulate` says whether steps of that length resolve the motion, and what the
-    theory misses. Not for constraints, whose drift `simulate` projects away, for events, for methods that choose their
+    theory misses; `Rollout.notes` has what states show. Not for
+    constraints, whose drift `simulate` projects away, for events, for methods that choose their
     steps. Balls and free joints move on their manifold, and derivatives by q are along it (`Model.integrate`).
 
     Args:

@@ -141,3 +141,11 @@ def test_ranks_that_were_met_are_said_with_their_numbers(executor: str) -> None:
     start = made("regular")._replace(q=[0.0] * 4, v=[1.0, -1.0, 1.0, 1.0], t_end=0.05)
     (note,) = EXECUTORS[executor](start).notes
     assert note == "a singular posture was passed at t = 0 s: the constraints' rank fell from 3 to 2"
+
+
+@pytest.mark.parametrize("name", ["limits left", "limits kept", "deep", "shallow", "creeping", "sliding"])
+def test_a_rollout_notes_what_its_states_show(name: str) -> None:
+    moved = made(name)
+    steps = round(moved.t_end / STEP)
+    notes = sf.rollout(moved.model, moved.q, moved.v, np.zeros((steps, moved.model.nu)), STEP).notes
+    assert [moved.said in note for note in notes] == [True] * bool(moved.said), notes
