@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from scipy.spatial import transform
 
 import symofros as sf
 from symofros.description.values import Rotation
@@ -38,6 +38,7 @@ def test_rotations_of_invalid_numbers_are_nan() -> None:
 @given(st.tuples(*[st.floats(-3.0, 3.0)] * 3), st.floats(-7.0, 7.0))
 def test_stated_rotations_are_those_of_another_library(x: tuple[float, float, float], angle: float) -> None:
     """Axes and quaternions of any length, angles of either sign: by SciPy."""
+    transform = pytest.importorskip("scipy.spatial.transform")
     numbers = Numbers(sf.System("s", [sf.RigidBody("b", sf.Joint("q", "revolute"), sf.Inertia(1.0))]))
     axis = np.array(x) + (0.0, 0.0, 4.0)
     known = {
