@@ -1,0 +1,14 @@
+# dart 6.20.0, mjcf: range of a hinge, angle left out: getPositionLowerLimits, getPositionUpperLimits is wrong (least and greatest coordinates).
+import numpy as np
+import dartpy as dart
+from tempfile import NamedTemporaryFile
+file = NamedTemporaryFile('w', suffix='.xml')
+print('<mujoco model="m"><worldbody><body name="a" pos="0.1 0.2 0.3" ><joint axis="0 0 1" range="-57.29577951308232 42.97183463481174"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5" ><joint axis="0 1 0" range="-30.0 75.0"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></body></worldbody></mujoco>', file=file, flush=True)
+world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))
+s = world and world.getSkeleton(0)
+if s is None: raise ValueError('no skeleton: see the log')
+links = [b for name in ['a', 'b'] if (b := s.getBodyNode(name))]
+value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]
+import numpy as np
+value, expected = np.reshape(value, (2, 2))[(1, 1)], 1.3089969389957472
+assert abs(value - expected) <= 1.3e-12, f"{value = }, {expected = }"

@@ -1,0 +1,14 @@
+# pinocchio 4.1.0, mjcf: frame of a geom after the frame of a body: nq, nv is wrong (lengths of q and v).
+import numpy as np
+import pinocchio as pin
+TEXT = '<mujoco model="m"><compiler angle="radian"/><worldbody><body name="a" pos="0.1 0.2 0.3" ><joint axis="0 0 1"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5" ><joint axis="0 1 0"/><frame pos="0 0.4 0"><body name="c"><joint axis="0 0 1"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></frame><frame pos="0.2 0 0"><geom size="0.1" mass="5"/></frame></body></body></worldbody></mujoco>'
+import tempfile
+file = tempfile.NamedTemporaryFile('w', suffix='.xml')
+print(TEXT, file=file, flush=True)
+m = pin.buildModelFromMJCF(file.name)
+fs = [m.getFrameId(name, pin.FrameType.BODY) for name in ['a', 'b', 'c']]
+d = m.createData()
+value = [m.nq, m.nv]
+import numpy as np
+value, expected = np.reshape(value, (2,))[(0,)], 3.0
+assert abs(value - expected) <= 3.0e-12, f"{value = }, {expected = }"

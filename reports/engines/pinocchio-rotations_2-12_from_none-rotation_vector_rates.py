@@ -1,0 +1,16 @@
+# pinocchio 4.1.0, rotations, 2^-12 from none: Jlog3 is imprecise (A^-1 at r = tau, in the turned axes).
+# Known: https://github.com/stack-of-tasks/pinocchio/pull/584 (bounds of the series by the scalar's precision).
+import numpy as np
+import pinocchio as pin
+m = pin.Model()
+m.gravity.linear = np.array([0.0, 0.0, 0.0])
+j0 = m.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), 'a')
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.array([0.0, 0.0, 0.0]), np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])), pin.SE3.Identity())
+fs = [m.addFrame(pin.Frame('f0', j0, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))]
+js = [j0]
+d = m.createData()
+tau = np.array([0.0, 0.0, 0.0001529811209910561])
+value = pin.Jlog3(pin.exp3(tau))
+import numpy as np
+value, expected = np.reshape(value, (3, 3))[(0, 0)], 0.9999999980497314
+assert abs(value - expected) <= 1.0e-12, f"{value = }, {expected = }"
