@@ -215,6 +215,20 @@ def test_links_lead_to_files_that_exist(page: str) -> None:
         assert target.startswith(("http", "mailto:")) or (ROOT / page).parent.joinpath(target).exists(), target
 
 
+def test_every_page_of_the_site_is_in_a_table_of_contents() -> None:
+    """A page that is in none can't be found, and ends the build of the site."""
+    docs = ROOT / "docs"
+    site = {path for path in docs.rglob("*.md") if path.relative_to(docs).parts[0] not in ("ci", "site_extensions")}
+    listed = {docs / "index.md"}
+    for page in site:
+        for table in re.findall(
+            r"^```\{toctree\}\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL
+        ):
+            entries = [line for line in table.splitlines() if line and not line.startswith(":")]
+            listed |= {(page.parent / f"{entry}.md") for entry in entries}
+    assert sorted(site - listed) == []
+
+
 def test_the_first_readme_example_is_short_and_prints_what_it_states(capsys: pytest.CaptureFixture[str]) -> None:
     first, *_ = blocks("README.md", "python")
     assert len(first.text.strip().splitlines()) <= 25
