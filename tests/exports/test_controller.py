@@ -100,7 +100,7 @@ CASES: dict[str, Callable[[], sf.Diagram]] = {
 }
 
 
-def told(diagram: sf.Diagram) -> list[str]:
+def outlets_of(diagram: sf.Diagram) -> list[str]:
     """Outlets of the diagram's own."""
     return [name for name in diagram.outlets if "." not in name]
 
@@ -144,11 +144,11 @@ def test_a_program_driven_by_steps_has_the_bits_of_one_diagram(case: str, tmp_pa
     late = {name: rows[np.maximum(np.arange(STEPS) - 1, 0)] for name, rows in values.items()}
     found = driven(diagram, tmp_path / "driven", late if case == "plant" else values)
     whole = closed(diagram, values)
-    outputs = [f"part.{name}" for name in told(diagram)]
+    outputs = [f"part.{name}" for name in outlets_of(diagram)]
     assert (found == driven(whole, tmp_path / "whole", {}, outputs=outputs)).all()
     signals: dict[str, Any] = {name: sf.Signal(RUN, rows, "hold") for name, rows in values.items()}
     moved = sf.Simulation(diagram).run(RUN[-1], dt=1e-3, record=1e-3, inputs=signals)
-    ours = np.concatenate([moved[name].reshape(STEPS, -1) for name in told(diagram)], axis=1)
+    ours = np.concatenate([moved[name].reshape(STEPS, -1) for name in outlets_of(diagram)], axis=1)
     np.testing.assert_allclose(found, ours, rtol=1e-11, atol=1e-11)
 
 

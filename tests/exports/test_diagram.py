@@ -133,17 +133,17 @@ def switching() -> tuple[sf.Diagram, list[str]]:
 
 def test_programs_switch_where_python_does(tmp_path: Path) -> None:
     """Located in time; what begins on is on, and one switches what another reads."""
-    diagram, outputs_told = switching()
-    program = build(sf.export(diagram, "c", tmp_path / "c", outputs=outputs_told).folder, "program")
+    diagram, outputs_printed = switching()
+    program = build(sf.export(diagram, "c", tmp_path / "c", outputs=outputs_printed).folder, "program")
     assert subprocess.run([program, "--check"], capture_output=True).returncode == 0
     done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)
-    told = np.array([[float(x) for x in row.split(",")] for row in done.stdout.splitlines()[1:]])
+    printed = np.array([[float(x) for x in row.split(",")] for row in done.stdout.splitlines()[1:]])
     run = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
-    last = [np.flatnonzero(np.abs(run.t - t) < 1e-12)[-1] for t in told[:, 0]]  # Crossings are recorded, too.
+    last = [np.flatnonzero(np.abs(run.t - t) < 1e-12)[-1] for t in printed[:, 0]]  # Crossings are recorded, too.
     last[0] = 0  # What is met at the start is so in the first step.
-    want = np.column_stack([run[name][last] for name in outputs_told])
+    want = np.column_stack([run[name][last] for name in outputs_printed])
     assert len({tuple(row) for row in want[:, [0, 1, 3]]}) == 4
-    np.testing.assert_allclose(told[:, 1:], want, atol=1e-9)
+    np.testing.assert_allclose(printed[:, 1:], want, atol=1e-9)
 
 
 @pytest.mark.parametrize(("shape", "method"), [*((shape, "dopri5") for shape in SHAPES), ("tent", "rk4")])

@@ -139,7 +139,7 @@ def resolution(
         speeds: Largest speed of the motion about each state, in its metric.
         metric: Mass matrix at each state (number of states, nv, nv).
         pull: The way back to the constraints, which no motion on them shows.
-        reach: Largest coordinate of the run, of whose rounding motions may be.
+        reach: Largest coordinate of the run: speeds that its rounding makes are no motion.
     """
     if max(speeds) == 0.0:  # Rest is kept exactly.
         return Resolution()

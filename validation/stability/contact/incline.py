@@ -13,7 +13,7 @@ import symofros as sf
 
 from ...adapters.mujoco import motion as mujoco_motion
 from ...reporting.findings import Finding
-from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, simulate
+from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, longest, simulate
 
 FRICTION, GRAVITY, STIFFNESS, RADIUS = 0.5, 9.81, 1e5, 0.1
 SLOW = 1e-3
@@ -123,11 +123,8 @@ def by_mujoco(name: str, share: float, h: float) -> Cell:
 
 def creep(share: float) -> float:
     """Speed at which smooth friction carries that share of what it can [m/s]: theory/rigid.md, 10.2."""
-    low, high = 0.0, 1.0
-    for _ in range(60):
-        xi = 0.5 * (low + high)
-        low, high = (xi, high) if xi * (15.0 - 10.0 * xi**2 + 3.0 * xi**4) / 8.0 < share else (low, xi)
-    return xi * 15.0 / 8.0 * SLOW
+    below = longest(lambda xi: xi * (15.0 - 10.0 * xi**2 + 3.0 * xi**4) / 8.0 < share, 1e-6 * share, 1.0, 1e-14)
+    return below * 15.0 / 8.0 * SLOW
 
 
 def judge(maps: Maps) -> Verdict:
