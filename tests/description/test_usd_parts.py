@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import symofros as sf
 from symofros.description.usd.stage import warnings_of
 from symofros.description.workers import MAX_PRINTED, answer_of
-from tests.description.usd_models import ARM, body, stage
+from tests.description.usd_models import ARM, body, joint, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")
@@ -117,3 +119,40 @@ def test_output_of_a_worker_is_bounded_and_its_failures_are_reported(tmp_path: P
     assert answer_of(str(script), {}, 60.0, "too much") == {"fault": "it takes too much", "printed": "no memory\n"}
     script.write_text("print('not JSON')")
     assert "no answer" in answer_of(str(script), {}, 60.0, "too much")["fault"]
+
+
+@pytest.mark.parametrize("absent", ["(active = false)", "class", "over"])
+@pytest.mark.parametrize(("first", "second"), [("arm", "gone"), ("gone", "arm")])
+def test_a_joint_to_what_the_stage_leaves_out_is_no_joint_to_the_world(
+    tmp_path: Path, absent: str, first: str, second: str
+) -> None:
+    """A prim that is inactive, abstract or undefined has a path and is no body."""
+    gone = body("gone", **ARM)
+    gone = (
+        gone.replace("def Xform", absent, 1)
+        if absent in ("class", "over")
+        else gone.replace("(", "(active = false\n", 1)
+    )
+    file = tmp_path / "robot.usda"
+    file.write_text(stage(body("arm", **ARM), gone, joint("Revolute", "j", first, second)))
+    with pytest.raises(sf.DescriptionError, match="joint 'j' joins no two bodies"):
+        sf.load(file)
+
+
+@pytest.mark.parametrize(
+    ("units", "note"),
+    [
+        ({"meters": 0.01}, "metersPerUnit of layers that the stage is made of ignored, .*: 1 layer .part.usda, 0.01."),
+        ({"kilograms": 0.001}, "kilogramsPerUnit of layers .* 1 layer .part.usda, 0.001."),
+        ({"up": "Y"}, "upAxis of layers .* 1 layer .part.usda, Y."),
+        ({}, ""),
+    ],
+)
+def test_parts_in_other_units_are_noted(tmp_path: Path, units: dict[str, Any], note: str) -> None:
+    """OpenUSD converts none: a part in centimetres is a hundred times as long in a stage in metres."""
+    (tmp_path / "part.usda").write_text(stage(body("arm", **ARM), **units))
+    file = tmp_path / "robot.usda"
+    part = 'def Xform "part" (prepend references = @part.usda@) {\n}\n'
+    file.write_text(stage(body("link", **ARM), part, joint("Revolute", "j", "", "link")))
+    notes = [text for text in sf.load(file).notes if " of layers " in text]
+    assert len(notes) == bool(note) and all(re.search(note, text) for text in notes)

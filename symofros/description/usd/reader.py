@@ -85,6 +85,9 @@ class _Importer:
         self.file, self.stage, self.options = file, stage, options
         self.units = Units(float(stage["meters"]), float(stage["kilograms"]))
         self.exact, self.remarks = Exact(options.snap_tol), Remarks()
+        for layer, name, value in stage["other units"]:
+            what = f"{name} of layers that the stage is made of ignored, OpenUSD converts no units"
+            self.remarks.add(what, "layer", f"{layer}, {value}")
         self.problems: list[Problem] = []
         placements = stage["placements"]
         self.placements = {path: affine(rows, self.units.meters) for path, rows in placements.items()}
@@ -167,7 +170,7 @@ class _Importer:
             missing = [row[end] for end in ("body0", "body1") if row[end] and row[end] not in self.placements]
             if missing or row["targets"] > 1 or ends[0] == ends[1]:
                 stated = f"body0 <{row['body0']}>, body1 <{row['body1']}>"
-                rule = "a joint joins two different rigid bodies, or one and the world, each by one target"
+                rule = "a joint joins two different rigid bodies, or one and the world, each by one active target"
                 what, remedy = f"joint '{name}' joins no two bodies", "mend its relationships"
                 self.problems.append(Problem(what, stated, rule, remedy, self.where(path)))
                 continue

@@ -141,6 +141,7 @@ def stage_data(file: str) -> dict[str, Any]:
         "meters": UsdGeom.GetStageMetersPerUnit(stage),
         "kilograms": UsdPhysics.GetStageKilogramsPerUnit(stage),
         "up": str(UsdGeom.GetStageUpAxis(stage)),
+        "other units": _other_units(stage),
         "scenes": [],
         "bodies": [],
         "joints": [],
@@ -170,7 +171,7 @@ def stage_data(file: str) -> dict[str, Any]:
     data["carrier"] = {path: body for path, body in carrier.items() if body}
     wanted = {body["path"] for body in data["bodies"]} | {shape["path"] for shape in data["shapes"]}
     wanted |= {end for joint in data["joints"] for end in (joint["body0"], joint["body1"]) if end}
-    for path in sorted(wanted):
+    for path in sorted(wanted & carrier.keys()):  # An inactive, abstract or undefined prim is no part of the scene.
         prim = stage.GetPrimAtPath(path)
         if prim:
             matrix = cache.GetLocalToWorldTransform(prim)
@@ -188,6 +189,24 @@ def places(layer: Any) -> list[str]:
     path = layer.realPath
     package = Ar.SplitPackageRelativePathOuter(path)[0]
     return [package] if package != path and not os.path.lexists(path) else [package, path]
+
+
+def _other_units(stage: Any) -> list[tuple[str, str, str]]:
+    """Layer, metadata and value, where a layer states another unit or axis than the stage: OpenUSD converts nothing."""
+    from pxr import UsdGeom, UsdPhysics  # An extra, looked for by `main`.
+
+    own = {
+        "metersPerUnit": UsdGeom.GetStageMetersPerUnit(stage),
+        "kilogramsPerUnit": UsdPhysics.GetStageKilogramsPerUnit(stage),
+        "upAxis": str(UsdGeom.GetStageUpAxis(stage)),
+    }
+    stated = (
+        (layer.GetDisplayName(), name, str(layer.pseudoRoot.GetInfo(name)), value)
+        for layer in stage.GetUsedLayers()
+        for name, value in own.items()
+        if layer != stage.GetRootLayer() and layer.pseudoRoot.HasInfo(name)
+    )
+    return sorted((layer, name, text) for layer, name, text, value in stated if text != str(value))
 
 
 def _schemas(prim: Any) -> list[str]:
