@@ -53,6 +53,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
         assert body.link.parent is not None
         elements[body.link.name] = _body(elements[body.link.parent], body, numbers)
     notes += _carrier_notes(bodies)
+    notes += _free_notes([body.link for body in bodies if _is_free(body.link)], numbers)
     inner = [body.link.name for body in bodies if _is_free(body.link) and body.link.parent != links[0].name]
     if inner:
         notes.append("MuJoCo refuses free joints on bodies other than the world: " + ", ".join(inner))
@@ -96,6 +97,16 @@ def _carrier_notes(bodies: list[GatheredBody]) -> list[str]:
 
 def _is_free(link: RigidLink) -> bool:
     return link.joint is not None and link.joint.kind == "free"
+
+
+def _free_notes(links: Sequence[RigidLink], numbers: Numbers) -> list[str]:
+    """Notes on what free joints mean otherwise in MuJoCo: their origin, and the forces of their armature."""
+    stated = [(link, link.joint) for link in links if link.joint is not None]
+    off = [joint.name for link, joint in stated if link.position.any() or (link.rotation != np.eye(3)).any()]
+    heavy = [joint.name for _, joint in stated if numbers.value(joint.armature) != 0.0]
+    notes = ["coordinates of free joints, here from the joint's frame, count from the world in MuJoCo: " + listed(off)]
+    notes += ["armature of free joints, here along the body's axes, acts along the world's in MuJoCo: " + listed(heavy)]
+    return [note for note, names in zip(notes, (off, heavy), strict=True) if names]
 
 
 def _moves(body: GatheredBody) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -207,3 +208,36 @@ def test_a_rigid_beam_has_the_inertia_of_its_sections(rotary: bool) -> None:
     mass, found, inertia = _beam_inertia(beam, Numbers(sf.System("taper", (beam,))))
     assert mass == pytest.approx(4.0) and found == pytest.approx(center, abs=1e-6)
     np.testing.assert_allclose(inertia, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("stated", "notes"),
+    [
+        ({}, []),
+        ({"position": (0.0, 0.0, 1e-9)}, ["coordinates of free joints"]),
+        ({"rotation": sf.Rotation.axis_angle((1, 2, 3), "0.7")}, ["coordinates of free joints"]),
+        ({"armature": 0.3}, ["armature of free joints"]),
+        ({"position": (1.0, 0.0, 0.0), "armature": 0.3}, ["coordinates of free joints", "armature of free joints"]),
+    ],
+)
+def test_what_a_free_joint_means_otherwise_in_mujoco_is_noted(tmp_path: Path, stated: Any, notes: list[str]) -> None:
+    """MuJoCo counts it from the world: the same numbers are another pose; without a note pose and motion agree."""
+    body = sf.RigidBody("base", sf.Joint("float", "free", **stated), sf.Inertia(2.0, (0.1, 0.0, 0.2), (0.3, 0.4, 0.5)))
+    system = sf.System("floating", (body,))
+    done = sf.export(system, "mjcf", tmp_path)
+    assert [note.partition(",")[0] for note in done.notes] == notes
+    assert all(note.endswith(": float") for note in done.notes)
+    model, engine = sf.compile(system), mujoco.MjModel.from_xml_path(str(done.files[0]))
+    data, q = mujoco.MjData(engine), model.neutral()
+    q[:3], q[3:] = (0.3, 0.2, 0.1), (0.5, 0.5, 0.5, 0.5)
+    data.qpos[:], data.qvel[:] = np.r_[q[:3], q[6], q[3:6]], (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)
+    mujoco.mj_forward(engine, data)
+    R = data.xmat[1].reshape(3, 3)
+    v = np.r_[R.T @ data.qvel[:3], data.qvel[3:]]
+    p, turned = model.frame_pose("base", q)
+    pose_agrees = bool(max(np.abs(p - data.xpos[1]).max(), np.abs(turned - R).max()) < SAME)
+    assert pose_agrees == ("coordinates of free joints" not in notes)
+    if pose_agrees:
+        a = model.forward_dynamics(q, v, np.zeros(0))
+        in_body_axes = np.r_[R.T @ data.qacc[:3] - np.cross(v[3:], v[:3]), data.qacc[3:]]
+        assert bool(np.abs(a - in_body_axes).max() < 1e-9) == (not notes)
