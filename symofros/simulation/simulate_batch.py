@@ -86,8 +86,7 @@ def simulate_batch(
         SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
     chosen = (options or SimulationOptions()).changed(changes)
-    ends_alone = chosen.output is None
-    if ends_alone:
+    if chosen.output is None:
         chosen = replace(chosen, output=[t_end])
     settings = Settings.of(model, chosen, t_end)
     _check_batch(settings, chosen)
@@ -122,8 +121,6 @@ def simulate_batch(
         results.status[np.broadcast_to(infinite, n)] = Status.CALLBACK_FAILED
         began = time.perf_counter(), time.process_time()
         run_batch_steppers(steppers)
-    if ends_alone:
-        _record_ends(results)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
     shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
     kept = replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())
@@ -139,12 +136,6 @@ def simulate_batch(
         examination=BatchExamination(model, settings, kept),
     )
     return of_stated(stated, runs)
-
-
-def _record_ends(results: BatchResults) -> None:
-    """Last states of runs that finished: after what acts at the very end, which samples are taken before."""
-    finished = results.status == Status.FINISHED
-    results.q[finished, -1], results.v[finished, -1] = results.q_last[finished], results.v_last[finished]
 
 
 def _check_batch(settings: Settings, options: SimulationOptions) -> None:

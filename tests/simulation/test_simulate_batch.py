@@ -216,12 +216,30 @@ def test_notes_of_a_batch_that_records_only_its_end_match_a_single_run(method: s
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853"])
-@pytest.mark.parametrize("when", [0.35, 1.0])
-def test_what_acts_at_the_very_end_is_in_the_last_state(method: str, when: float) -> None:
-    """As of a single run, which records its steps."""
-    model, events = sf.compile(slide()), {"kick": sf.Event(f"t - {when}", "rising", action={"dx": "2*dx"})}
-    runs = sf.simulate_batch(model, [0.0], [[1.0], [3.0]], when, events=events, method=method)
-    alone = sf.simulate(model, [0.0], [1.0], when, events=events, method=method)
-    assert runs.v[:, -1, 0] == pytest.approx([2.0, 6.0], abs=1e-12)
-    assert alone.v[-1, 0] == pytest.approx(2.0, abs=1e-12)
-    assert runs.q[0, -1] == pytest.approx(alone.q[-1], abs=1e-12)
+@pytest.mark.parametrize("when", [0.35, 0.3, 1.0])
+@pytest.mark.parametrize("more", [0.0, 0.25])
+@pytest.mark.parametrize("terminal", [False, True])
+def test_a_sample_at_the_instant_of_an_action_is_the_state_after_it(
+    method: str, when: float, more: float, terminal: bool
+) -> None:
+    """Whether the run ends there or goes on, alone or of a batch, at times stated or not; parameters as well."""
+    system = replace(slide(), parameters=(*slide().parameters, sf.Parameter("mark", 0.0)))
+    action = {"dx": "2*dx", "mark": 1}
+    kick = {"kick": sf.Event(f"t - {when}", "rising", terminal=terminal, action=action)}
+    model, options = sf.compile(system), {"events": kick, "method": method}
+    times = [when / 2, when, when + more] if more and not terminal else [when / 2, when]
+    runs = sf.simulate_batch(model, [0.0], [[1.0], [3.0]], when + more, output=times, **options)
+    alone = sf.simulate(model, [0.0], [1.0], when + more, output=times, **options)
+    stepwise = sf.simulate(model, [0.0], [1.0], when + more, **options)
+    after = [1.0, 2.0, 2.0][: len(times)]
+    for run in (alone, runs[0]):
+        assert list(run.t[: len(times)]) == times
+        assert run.v[: len(times), 0] == pytest.approx(after, abs=1e-12)
+        assert list(run.par_over_time[: len(times), -1]) == [0.0, 1.0, 1.0][: len(times)]
+    assert runs.v[1, : len(times), 0] == pytest.approx(3.0 * np.array(after), abs=1e-12)
+    both = np.abs(stepwise.t - when) <= 1e-14
+    assert list(stepwise.v[both, 0]) == pytest.approx([1.0, 2.0], abs=1e-12)
+    if not more:
+        ends = sf.simulate_batch(model, [0.0], [[1.0], [3.0]], when, **options)
+        assert ends.v[:, -1, 0] == pytest.approx([2.0, 6.0], abs=1e-12)
+        assert ends.q[0, -1] == pytest.approx(stepwise.q[-1], abs=1e-12)

@@ -357,7 +357,7 @@ static int32_t sym_batch_finish_step(sym_batch *b, int32_t slot, int32_t status,
     sym_workspace w = sym_workspace_of(r);
     do {
         if (status == SYM_TERMINAL_EVENT) {
-            status = r->actions != NULL ? sym_batch_act(b, slot) : status;
+            status = r->actions != NULL ? sym_record_grid_after_actions(r, sym_batch_act(b, slot)) : status;
             if (status != 0) return status;
             status = sym_begin_motion_anew(r, &w);
         }

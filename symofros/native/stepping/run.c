@@ -105,10 +105,9 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
         if (status != 0) return status;
     }
     sym_load_state(r);
-    if (r->record_every > 0 || (r->n_grid > 0 && r->grid[0] <= r->t)) {
-        const int32_t status = sym_record(r);
+    {
+        const int32_t status = r->record_every > 0 ? sym_record(r) : sym_record_grid_at_end(r, r->h);
         if (status != 0) return status;
-        if (r->record_every == 0) ++r->next_grid;
     }
     return sym_begin_motion(r, &w);
 }
@@ -120,10 +119,17 @@ static int32_t sym_begin_motion_anew(sym_run *r, sym_workspace *w) {
     return sym_begin_motion(r, w);
 }
 
+/* The times of the grid that are the instant of actions, which are done, with that status. Returns it, or another one. */
+static int32_t sym_record_grid_after_actions(sym_run *r, int32_t status) {
+    const int32_t records = r->record_every == 0 && (status == 0 || status == SYM_TERMINAL_EVENT);
+    const int32_t recorded = records ? sym_record_grid_at_end(r, r->h) : 0;
+    return recorded != 0 ? recorded : status;
+}
+
 /* After a step that ended at events: do their actions, where the run does, and go on. Returns SYM_RECORDS_FULL, so that the
  * caller sees it, or a status. */
 static int32_t sym_go_on_from_events(sym_run *r, sym_workspace *w) {
-    int32_t status = sym_run_act(r);
+    int32_t status = sym_record_grid_after_actions(r, sym_run_act(r));
     if (status != 0) return status;
     status = sym_begin_motion_anew(r, w);
     return status != 0 ? status : SYM_RECORDS_FULL;
@@ -144,7 +150,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
-    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0;
+    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0, acts = 0;
     double stop_x = 2.0;
     status = sym_load_projected_state(r, t1, w->y1);
     if (status == 0 && r->project) status = sym_judge_projection(r);
@@ -153,10 +159,11 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (s->n_events > 0) {
         status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
-        cut = stop_x <= 1.0, ended = r->terminal_event >= 0;
+        cut = stop_x <= 1.0, ended = r->terminal_event >= 0, acts = ended && sym_acts_at_cut(r);
     }
     if (r->record_every == 0) {
-        status = sym_record_grid_within_step(r, w, h, &dense_ready, cut ? stop_x : 1.0);
+        const double up_to = cut ? stop_x : 1.0, same = acts ? SYM_GRID_ACTED * fabs(r->t + stop_x * h) / h : 0.0;
+        status = sym_record_grid_within_step(r, w, h, &dense_ready, up_to - same);
         if (status != 0) return status;
     }
     if (cut) {
@@ -184,8 +191,8 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         status = sym_restart_events(r);
         if (status != 0) return status;
     }
-    if (r->record_every == 0) {
-        status = sym_record_grid_at_end(r, h);
+    if (r->record_every == 0) { /* at actions, by what does them: the state of an instant is the one after them */
+        status = acts ? 0 : sym_record_grid_at_end(r, h);
         if (status != 0) return status;
     } else if (r->steps % r->record_every == 0 || r->t >= r->t_end || ended || beyond != 0) {
         sym_load_state(r);

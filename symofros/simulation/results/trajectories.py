@@ -25,6 +25,8 @@ from symofros.simulation.stepping.status import Status
 
 Index = int | tuple[int, ...]
 
+# A sample this near before actions, as a share of its time, is their instant: dense_output.c, SYM_GRID_ACTED.
+_SAME_INSTANT = 1e-14
 # Runs whose steps the summary of a batch looks at.
 _EXAMINED = 8
 
@@ -114,7 +116,8 @@ class Trajectories(BatchResults):
         acted = [(met, met.done) for met in self._met(index) if met.done is not None and met.done.status > 0]
         lasting = [(met, done) for met, done in acted if events[met.which].restitution is None or done.rests]
         times = self.t[self._reached(index)]
-        return tuple((int(np.searchsorted(times, met.t, side="right")), done.par_set) for met, done in lasting)
+        same = 1.0 - _SAME_INSTANT
+        return tuple((int(np.searchsorted(times, met.t * same)), done.par_set) for met, done in lasting)
 
     def _number(self, index: Index) -> int:
         """Number of a run among all."""
