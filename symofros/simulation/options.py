@@ -56,8 +56,8 @@ class SimulationOptions(metaclass=CheckedCalls):
         max_steps: Number of steps after which the run ends; None for no bound.
         output: Times to record: None for every `every`-th step, an interval [s], or times (n) [s]. A batch records its
             last state by default, a diagram about 2000 times in all; it takes an interval alone, and steps end at the
-            recorded times. `record` is the same. Where events act at such a time, the state after them is recorded; without
-            `output`, both.
+            recorded times. `record` is the same. Where events act at such a time, the state after them is recorded;
+            without `output`, both.
         every: Number of steps between records where `output` is None; single runs only.
         stabilisation: How constraints are kept: "projection" onto them after each step, "baumgarte" by gains, or
             "none", by accelerations alone, which drifts.

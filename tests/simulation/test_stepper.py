@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import gc
 import weakref
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -15,6 +16,7 @@ import symofros as sf
 import symofros.simulation.stepper as front
 import symofros.simulation.stepping.by_hand as by_hand
 from tests.models import GUESSES, compiled, sampled
+from tests.simulation.mechanisms import slide
 from tests.simulation.test_prescribed_motions import crane
 
 DT, STEPS = 5e-4, 12
@@ -350,3 +352,36 @@ def test_a_long_motion_keeps_only_its_last_inputs_and_notes_it(monkeypatch: pyte
     run = stepper.trajectory()
     assert 0.0 < run.t[0] < stepper.t and any("was not looked at" in note for note in run.outcome.notes)
     np.testing.assert_allclose(run.q[-1], stepper.q, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("adaptive", [False, True])
+def test_states_outlive_the_stepper(adaptive: bool) -> None:
+    """What a function returns of a stepper of its own is no freed memory."""
+
+    def states() -> tuple[np.ndarray, ...]:
+        own = sf.Stepper(compiled("cart_pole"), method="dopri5" if adaptive else "rk4", dt=1e-2)
+        own.reset([0.25, 0.5], [1.0, 2.0])
+        return own.q, own.v
+
+    q, v = states()
+    gc.collect()
+    others = [np.full(n, np.nan) for n in range(1, 9) for _ in range(2000)]  # Would take the places of what was freed.
+    assert list(q) == [0.25, 0.5] and list(v) == [1.0, 2.0] and others
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_an_event_at_a_mark_costs_no_step(method: str) -> None:
+    """Rounding may put it behind the mark: steps that were asked for were then one too few."""
+    model = sf.compile(replace(slide(), parameters=(*slide().parameters, sf.Parameter("mark", 0.0))))
+    events = {"here": sf.Event("x - mark", "rising", action={"dx": "2*dx"})}
+    stepper = sf.Stepper(model, dt=1e-2, method=method, events=events)
+    marks = 0.01 * np.arange(1, 60)
+    ends = marks + 2.0 * (1.0 - marks)
+    for mark, end in zip(marks, ends, strict=True):
+        stepper.reset([0.0], [1.0], par={"mark": mark})
+        assert stepper.step(steps=100) and len(stepper.events) == 1
+        assert stepper.t == pytest.approx(1.0, abs=1e-12) and stepper.q[0] == pytest.approx(end, abs=1e-12)
+    if method == "rk4":
+        steppers = sf.Steppers(model, 59, dt=1e-2, method=method, events=events)
+        steppers.reset([0.0], [1.0], par={"mark": marks})
+        assert steppers.step(steps=100).all() and np.abs(steppers.q[:, 0] - ends).max() < 1e-12

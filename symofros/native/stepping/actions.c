@@ -186,9 +186,9 @@ static void sym_sort_met(sym_run *r) {
 /* Share of a step within which the end of one is another's. */
 #define SYM_AT_MARK 1e-9
 
-/* Steps of fixed length stay where they were: the next one ends where the one that was cut would have. */
+/* Steps of fixed length stay where they were: the next one ends where the one that was cut, and is counted, would have. */
 static void sym_move_marks(sym_run *r) {
-    const double mark = r->t0 + r->h * ceil((r->t - r->t0) / r->h), left = mark - r->t;
+    const double mark = sym_multiple(r->t_from + (double)(r->steps - r->n_from) * r->h, r->h), left = mark - r->t;
     if (r->adaptive || left <= SYM_AT_MARK * r->h) {
         r->t_from = r->t, r->n_from = r->steps;
         return;

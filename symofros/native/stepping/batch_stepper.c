@@ -331,6 +331,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     const size_t npar = (size_t)r->actions->npar;
     int32_t status;
     p->t = r->t, p->t0 = r->t0, p->steps = r->steps, p->acted_at = r->acted_at;
+    p->t_from = r->t_from, p->n_from = r->n_from;
     p->first_met = r->first_met, p->met_end = r->met_end, p->event_values = r->event_values;
     memcpy(p->q, r->q, (size_t)s->nq * sizeof *p->q), memcpy(p->v, r->v, (size_t)s->nv * sizeof *p->v);
     p->system->u_constant = s->u_constant, p->system->signals = s->signals, p->system->event_terminal = s->event_terminal;
@@ -340,6 +341,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     r->steps = p->steps, r->t_from = p->t_from, r->n_from = p->n_from;
     memcpy(r->par, p->par, npar * sizeof *r->par);
     p->t = own.t, p->t0 = own.t0, p->steps = own.steps, p->acted_at = own.acted_at;
+    p->t_from = own.t_from, p->n_from = own.n_from;
     p->event_values = own.event_values;
     *p->system = own_system;
     if (status < 0) return status;

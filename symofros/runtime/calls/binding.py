@@ -70,6 +70,26 @@ _POINTERS = {
 }
 
 
+class _Lent:
+    """Doubles of a memory, as NumPy takes them over; an array made of it keeps it, and so the memory.
+
+    Args:
+        memory: What has to live.
+        pointer: The doubles.
+        size: Number of them.
+    """
+
+    def __init__(self, memory: NativeMemory, pointer: Any, size: int) -> None:
+        self._memory = memory
+        address = int(memory.ffi.cast("uintptr_t", pointer))
+        self.__array_interface__ = {
+            "data": (address, False),
+            "shape": (size,),
+            "typestr": np.dtype(np.float64).str,
+            "version": 3,
+        }
+
+
 class NativeMemory:
     """Arrays and objects that C holds pointers to. They live as long as this object, which a run keeps."""
 
@@ -117,8 +137,8 @@ class NativeMemory:
         return handle
 
     def view(self, pointer: Any, size: int) -> Array:
-        """The doubles behind a pointer (size), not copied."""
-        return np.frombuffer(self.ffi.buffer(pointer, 8 * size), dtype=np.float64) if size else np.zeros(0)
+        """The doubles behind a pointer (size), not copied; this memory lives as long as the view."""
+        return np.asarray(_Lent(self, pointer, size)) if size else np.zeros(0)
 
     def raw(self, pointer: Any, kind: str, count: int) -> npt.NDArray[np.uint8]:
         """View of the bytes of `count` structs of a type at a pointer, not copied."""
