@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -53,6 +53,8 @@ class NativeCode:
 @dataclass(frozen=True, kw_only=True)
 class ExternalBlock(Block, ABC):
     """A block that the loop calls at its samples; its formulas are unknown."""
+
+    shares: ClassVar[bool] = True
 
     def feeds_through(self) -> bool:
         """Whether outputs answer to inputs of the same sample; else it is called with those of the one before."""

@@ -122,7 +122,8 @@ def simulate_batch(
         began = time.perf_counter(), time.process_time()
         run_batch_steppers(steppers)
     seconds = time.perf_counter() - began[0], time.process_time() - began[1]
-    shared = rows["par"] if rows["par"].ndim == 1 else np.broadcast_to(rows["par"], (*shape, model.npar))
+    own = rows["par"].copy()  # The caller's array may be another batch's next.
+    shared = own if own.ndim == 1 else np.broadcast_to(own, (*shape, model.npar))
     kept = replace(initial, q=initial.q.copy(), v=initial.v.copy(), par=values.copy())
     runs = Trajectories(
         **results.shaped(shape),

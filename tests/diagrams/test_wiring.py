@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -134,3 +135,31 @@ def test_invalid_blocks_are_refused(stated: list[Block], words: str) -> None:
     for block in stated:
         diagram.add(block, **({"x": "one"} if isinstance(block, Lag | Spoken) else {}))
     refused(diagram, words)
+
+
+@pytest.mark.parametrize("made", [np.array, list])
+def test_blocks_keep_what_they_were_stated_by(made: Any) -> None:
+    """A buffer that a loop fills anew for its next diagram changes no diagram before."""
+    value, table, gain = made([1.0, 2.0]), [made([0.0, 1.0])], {"rows": made([3.0])}
+    held = blocks.Constant(name="c", value=value)
+    nested = blocks.Constant(name="d", value=table)
+    named = Kept(name="e", table=gain)
+    value[0] = table[0][1] = gain["rows"][0] = 50.0
+    diagram = sf.Diagram("held")
+    diagram.add(held)
+    diagram.add(nested)
+    run = sf.Simulation(diagram).run(0.1, dt=0.1)
+    assert list(run["c.y"][-1]) == [1.0, 2.0] and list(run["d.y"][-1][0]) == [0.0, 1.0]
+    assert named.table["rows"][0] == 3.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kept(Block):
+    """A block of a user's with a table of arrays."""
+
+    table: Any
+
+
+def test_blocks_that_call_python_share_what_they_fill() -> None:
+    seen: list[float] = []
+    assert Spoken(name="s", heard=seen, period=0.1).heard is seen

@@ -243,3 +243,19 @@ def test_a_sample_at_the_instant_of_an_action_is_the_state_after_it(
         ends = sf.simulate_batch(model, [0.0], [[1.0], [3.0]], when, **options)
         assert ends.v[:, -1, 0] == pytest.approx([2.0, 6.0], abs=1e-12)
         assert ends.q[0, -1] == pytest.approx(stepwise.q[-1], abs=1e-12)
+
+
+@pytest.mark.parametrize("rows", [(), (3,)])
+@pytest.mark.parametrize("start", [(), (3,)])
+def test_a_batch_keeps_what_it_was_given(rows: tuple[int, ...], start: tuple[int, ...]) -> None:
+    """A caller fills its arrays anew for the next batch."""
+    m = model("cart_pole")
+    q, v, par = np.full((*start, m.nq), 0.3), np.ones((*start, m.nv)), np.tile(m.parameter_values, (*rows, 1))
+    u, times = np.ones(m.nu), np.array([0.0, 0.05, 0.1])
+    runs = sf.simulate_batch(m, q, v, 0.1, par=par, u=u, output=times)
+    i = (1,) if runs.shape else ()
+    before = [np.array(x) for x in (runs.par, runs.t, runs.q, runs[i].energy, runs[i].u, runs[i].par)]
+    for given in (q, v, par, u, times):
+        given[...] = 9.0
+    after = [np.array(x) for x in (runs.par, runs.t, runs.q, runs[i].energy, runs[i].u, runs[i].par)]
+    assert all(map(np.array_equal, before, after)) and runs.outcome(i).kind == "finished"
