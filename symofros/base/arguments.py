@@ -126,7 +126,8 @@ def check_fields(stated: Any) -> None:
 class CheckedCalls(ABCMeta):
     """Metaclass of public classes: a call by keywords that does not fit is refused with a message.
 
-    Only calls that fail are looked at.
+    Only calls that fail are looked at. What the fields of a frozen dataclass state is its own, whatever becomes of the
+    arrays, lists and tables that stated it, unless the class says that it `shares` them.
     """
 
     if not TYPE_CHECKING:  # Type checkers know the signature from __init__.
@@ -138,16 +139,38 @@ class CheckedCalls(ABCMeta):
                 ArgumentError: Arguments are missing, unknown, or too many.
             """
             try:
-                return super().__call__(*args, **kwargs)
+                made = super().__call__(*args, **kwargs)
             except TypeError:
                 bound(cls.__name__, cls.__signature__, args, kwargs)
                 raise
+            parameters = getattr(cls, "__dataclass_params__", None)
+            if parameters is not None and parameters.frozen and not getattr(cls, "shares", False):
+                _own_fields(made)
+            return made
 
         @property
         def __signature__(cls) -> inspect.Signature:
             """Signature of __init__; `inspect` would take that of the metaclass's __call__."""
             initialise = inspect.signature(cls.__init__)
             return initialise.replace(parameters=[*initialise.parameters.values()][1:])
+
+
+def _own_fields(made: Any) -> None:
+    """Make the fields of a frozen dataclass its own."""
+    for item in fields(made):
+        value = getattr(made, item.name)
+        own = _own(value)
+        if own is not value:
+            object.__setattr__(made, item.name, own)
+
+
+def _own(value: Any) -> Any:
+    """A copy of arrays, lists and tables, and of those in them; anything else as it is."""
+    if type(value) is np.ndarray:
+        return value.copy()
+    if type(value) is list:
+        return [_own(item) for item in value]
+    return {key: _own(item) for key, item in value.items()} if type(value) is dict else value
 
 
 def bound(

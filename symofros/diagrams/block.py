@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -207,30 +207,8 @@ class EvaluationContext:
         return Tensor.numbers(self.g, values)
 
 
-class OwnFields(CheckedCalls):
-    """Metaclass of blocks: what fields state is theirs, whatever becomes of the arrays and lists that stated it."""
-
-    if not TYPE_CHECKING:  # Type checkers know the signature from __init__.
-
-        def __call__(cls, *args: Any, **kwargs: Any) -> Any:
-            """Make a block."""
-            made = super().__call__(*args, **kwargs)
-            for item in () if cls.shares else fields(made):
-                object.__setattr__(made, item.name, _own(getattr(made, item.name)))
-            return made
-
-
-def _own(value: Any) -> Any:
-    """A copy of arrays, lists and tables, and of those in them; anything else as it is."""
-    if type(value) is np.ndarray:
-        return value.copy()
-    if type(value) is list:
-        return [_own(item) for item in value]
-    return {key: _own(item) for key, item in value.items()} if type(value) is dict else value
-
-
 @dataclass(frozen=True, kw_only=True)
-class Block(metaclass=OwnFields):
+class Block(metaclass=CheckedCalls):
     """One block of a diagram; its fields are what its form asks for.
 
     Attributes:
@@ -245,8 +223,6 @@ class Block(metaclass=OwnFields):
 
     # Fields that become run-time parameters: tuned without compiling again.
     tunable: ClassVar[tuple[str, ...]] = ()
-    # Whether fields stay the caller's objects: of blocks that call Python, which may fill them.
-    shares: ClassVar[bool] = False
     # Fields of text that name files: in a diagram's file relative to it, and inside its folder.
     paths: ClassVar[tuple[str, ...]] = ("file",)
 

@@ -54,7 +54,7 @@ class NativeCode:
 class ExternalBlock(Block, ABC):
     """A block that the loop calls at its samples; its formulas are unknown."""
 
-    shares: ClassVar[bool] = True
+    shares: ClassVar[bool] = True  # What Python calls may fill a list of the caller's.
 
     def feeds_through(self) -> bool:
         """Whether outputs answer to inputs of the same sample; else it is called with those of the one before."""

@@ -1,0 +1,42 @@
+"""What frozen public classes state is their own, whatever becomes of the arrays, lists and tables that stated it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+
+# Class, its arguments, the one that is filled anew. The latter holds one number at least.
+CASES: dict[str, tuple[Any, dict[str, Any], str]] = {
+    "action of an event": (sf.Event, {"formula": "t - 1", "action": {"dx": 2.0}}, "action"),
+    "samples": (sf.Signal, {"t": np.array([0.0, 1.0]), "values": np.array([1.0, 2.0])}, "values"),
+    "output times": (sf.SimulationOptions, {"output": np.array([0.1, 0.2])}, "output"),
+    "target": (sf.Target, {"position": np.array([0.1, 0.2, 0.3])}, "position"),
+    "condition": (sf.Condition, {"triggered": "a.y", "initial": {"y": [1.0, 2.0]}}, "initial"),
+    "machine state": (blocks.MachineState, {"during": {"tau": 2.0}}, "during"),
+    "block": (blocks.Constant, {"name": "c", "value": np.array([1.0, 2.0])}, "value"),
+    "block by lists": (blocks.LookupTable, {"name": "c", "x": [0.0, 1.0], "y": [3.0, 4.0]}, "y"),
+    "events of a block": (blocks.ForwardDynamics, {"name": "c", "model": "m", "events": {"e": "t - 1"}}, "events"),
+}
+
+
+def spoil(value: Any) -> None:
+    """Fill an array, list or table anew, and what lies in it."""
+    for key in [*value] if isinstance(value, dict) else range(len(value)):
+        if isinstance(value[key], dict | list):
+            spoil(value[key])
+        else:
+            value[key] = 99.0
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_is_stated_stays(case: str) -> None:
+    made_of, arguments, name = CASES[case]
+    made = made_of(**arguments)
+    before = repr(getattr(made, name))
+    spoil(arguments[name])
+    assert repr(getattr(made, name)) == before and repr(arguments[name]) != before
