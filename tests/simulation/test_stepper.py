@@ -385,3 +385,16 @@ def test_an_event_at_a_mark_costs_no_step(method: str) -> None:
         steppers = sf.Steppers(model, 59, dt=1e-2, method=method, events=events)
         steppers.reset([0.0], [1.0], par={"mark": marks})
         assert steppers.step(steps=100).all() and np.abs(steppers.q[:, 0] - ends).max() < 1e-12
+
+
+@pytest.mark.parametrize("law", ["abs(t - 0.5)", "sign(t - 0.55)", "max(0, t - 0.5)", "exp(-((t - 0.5)/1e-3)^2)"])
+@pytest.mark.parametrize("method", ["dopri5", "dop853", "rodas4"])
+def test_adaptive_steps_by_hand_end_where_laws_bend(law: str, method: str) -> None:
+    """A motion by hand has no end: instants of laws were looked for without end, until memory was full."""
+    model = compiled("cart_pole")
+    laws = {model.names.u[0]: law}
+    stepper = sf.Stepper(model, dt=0.1, u=laws, method=method)
+    stepper.reset([0.0, 0.3])
+    assert stepper.step(steps=10)
+    run = sf.simulate(model, [0.0, 0.3], t_end=1.0, u=laws, method=method)
+    np.testing.assert_allclose(stepper.v, run.v[-1], atol=2e-5)
