@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -132,6 +134,7 @@ def timed(_: Scene) -> Iterator[Cell]:
     d.add(blocks.Integrator(name="area"), u="pulse.y")
     d.add(blocks.StateSpace(name="lag", A=[[-2.0]], B=[[3.0]], C=[[0.5]], D=[[0.1]], start=[0.4]), u="ramp.y")
     d.add(blocks.Derivative(name="slope", tau=0.05), u="chirp.y")
+    units = _measured(d)
     run = sf.Simulation(d).run(1.0, method="dop853", rtol=1e-10, atol=1e-12, record=0.0371)
     t = run.t
     phase = 2 * math.pi * (t + t**2)
@@ -149,6 +152,23 @@ def timed(_: Scene) -> Iterator[Cell]:
     }
     for name, value in wanted.items():
         yield Cell(f"block {name}", off(np.asarray(run[name]).ravel(), value), 1e-7)
+    wrong = [f"{name} in {run.unit(name)}" for name, unit in units.items() if run.unit(name) != unit]
+    yield Cell("units of coordinates and speeds", float(len(wrong)), SAME, ", ".join(wrong))
+
+
+def _measured(d: sf.Diagram) -> dict[str, str]:
+    """Add bodies on a free joint, a ball, a plane and a slide, one picked entry of their motion a block; its units."""
+    kinds = {"free": ("m",) * 3 + ("1",) * 4, "ball": ("1",) * 4, "planar": ("m", "m", "rad"), "prismatic": ("m",)}
+    speeds = {"free": ("m",) * 3 + ("rad",) * 3, "ball": ("rad",) * 3, "planar": kinds["planar"], "prismatic": ("m",)}
+    bodies = [sf.RigidBody(kind, sf.Joint(f"j_{kind}", kind), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))) for kind in kinds]  # type: ignore[arg-type]
+    d.add_model("bodies", sf.System("bodies", tuple(bodies), gravity=(0, 0, 0)))
+    d.add(blocks.ForwardDynamics(name="bodies", model="bodies"))
+    units = {f"q{i}.y": unit for i, unit in enumerate(chain.from_iterable(kinds.values()))}
+    units |= {f"v{i}.y": f"{unit}/s" for i, unit in enumerate(chain.from_iterable(speeds.values()))}
+    for name in units:
+        entry = name.removesuffix(".y")
+        d.add(blocks.Pick(name=entry, entries=[int(entry[1:])]), u=f"bodies.{entry[0]}")
+    return units
 
 
 def _on(t: Array) -> Array:
@@ -241,17 +261,31 @@ def begun(scene: Scene) -> Iterator[Cell]:
     plain = sf.simulate(model, q[0], v[0], 0.02, dt=1e-3, method=run.cost.method)
     yield Cell("a loop in a diagram: motion", max(off(q[-1], plain.q[-1]), off(v[-1], plain.v[-1])), 1e-9)
 
-    rounded = {name: round(float(x), 4) for name, x in zip(names.q, q[0], strict=True)}
-    rounded |= {f"d{name}": round(float(x), 4) for name, x in zip(names.v, v[0], strict=True)}
-    rounded[f"d{names.v[1]}"] += 2e-5
+    stated = {name: float(x) for name, x in zip(names.q, q[0], strict=True)}
+    stated |= {f"d{name}": float(x) for name, x in zip(names.v, v[0], strict=True)}
+    yield _noted("a loop in a diagram", scene.system, stated)
+    motion = stated.pop(names.q[0]), stated.pop(f"d{names.v[0]}")
+    first, *others = scene.system.bodies
+    assert first.joint is not None
+    drive = replace(first, joint=replace(first.joint, prescribed=True))
+    yield _noted("a driven loop in a diagram", replace(scene.system, bodies=(drive, *others)), stated, motion)
+
+
+def _noted(name: str, system: sf.System, exact: Mapping[str, float], motion: tuple[float, float] | None = None) -> Cell:
+    """What is noted of a start that was stated to four digits: each coordinate and speed that changed, by its value."""
+    rounded = {name: round(x, 4) for name, x in exact.items()}
+    rounded[list(rounded)[-2]] += 2e-5
     d = sf.Diagram("loop")
-    d.add_model("plant", scene.system, start=rounded)
-    d.add(blocks.ForwardDynamics(name="plant", model="plant"))
-    run = sf.Simulation(d).run(0.02, dt=1e-3, record=0.01)
-    at = dict(zip(names.q, np.asarray(run["plant.q"])[0], strict=True))
-    at |= {f"d{name}": x for name, x in zip(names.v, np.asarray(run["plant.v"])[0], strict=True)}
+    d.add_model("plant", system, start=rounded)
+    d.add(blocks.ForwardDynamics(name="plant", model="plant"), **({"u": "drive.y"} if motion else {}))
+    if motion:
+        at, rate = motion
+        d.add(blocks.Ramp(name="drive", slope=[rate, 0.0, 0.0], start=[at, rate, 0.0]))
+    run, names = sf.Simulation(d).run(0.02, dt=1e-3, record=0.01), sf.compile(system).names
+    found = dict(zip(names.q, np.asarray(run["plant.q"])[0], strict=True))
+    found |= {f"d{name}": x for name, x in zip(names.v, np.asarray(run["plant.v"])[0], strict=True)}
     notes = (re.search(r"start: (\S+) = \S+ was taken as (\S+),", note) for note in run.outcome.notes)
-    told = {found[1]: float(found[2]) for found in notes if found}
-    moved = {name for name, x in at.items() if abs(x - rounded[name]) > 1e-6}
-    error = max((abs(told[name] - at[name]) for name in moved & told.keys()), default=0.0)
-    yield Cell("a loop in a diagram: what is said of its start", error + len(moved ^ told.keys()), 1e-5)
+    told = {note[1]: float(note[2]) for note in notes if note}
+    moved = {name for name, x in found.items() if abs(x - rounded[name]) > 1e-6}
+    error = max((abs(told[name] - found[name]) for name in moved & told.keys()), default=0.0)
+    return Cell(f"{name}: what is said of its start", error + len(moved ^ told.keys()), 1e-5)

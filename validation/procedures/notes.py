@@ -28,6 +28,15 @@ def _slide(*elements: Any, effort: str = "", limits: sf.Limits | None = None, **
     return sf.compile(sf.System("slide", (body,), gravity=(0, 0, 0), **more), TAPE)
 
 
+def _tied_ball(w: float) -> sf.Model:
+    """A body on a ball joint, on springs by which it oscillates at w about x and y; it does not turn about z."""
+    springs = tuple(sf.formula(f"-{2 * w**2}*r.q{axis}") for axis in "xyz")
+    body = sf.RigidBody("body", sf.Joint("r", "ball", effort=springs), sf.Inertia(1.0, (0, 0, 0), (1, 1, 1)))
+    return sf.compile(
+        sf.System("tied", (body,), constraints=(sf.Coupling("tie", sf.formula("r.qz")),), gravity=(0, 0, 0)), TAPE
+    )
+
+
 def _pendulum() -> sf.Model:
     hinge = sf.Joint("q", "revolute", axis=(0, 1, 0))
     return sf.compile(sf.System("pendulum", (sf.RigidBody("bob", hinge, sf.Inertia(1.0, (0, 0, -1.0))),)), TAPE)
@@ -61,13 +70,14 @@ def on_steps(_: Scene) -> Iterator[Cell]:
     w, h = 400.0, 0.01
     z = 1j * w * h
     factor = abs(1 + z + z**2 / 2 + z**3 / 6 + z**4 / 24)
-    stiff = _slide(sf.Spring(w**2))
     beyond = (
         rf"'rk4' is stable up to {_NUMBER} s for .* oscillates at {_NUMBER} rad/s .* multiplies it by {_NUMBER} each"
     )
-    run = sf.simulate(stiff, [1.0], t_end=0.5, dt=h, method="rk4")
-    yield _told("a step beyond stability", run, (beyond, (2 * math.sqrt(2) / w, w, factor)))
-    yield _told("a step within it", sf.simulate(stiff, [1.0], t_end=0.1, dt=5e-4, method="rk4"))
+    turned = [1e-3, 0.0, 0.0, math.sqrt(1.0 - 1e-6)]
+    for of, stiff, q in (("", _slide(sf.Spring(w**2)), [1.0]), (" of a ball that is tied", _tied_ball(w), turned)):
+        run = sf.simulate(stiff, q, t_end=0.5, dt=h, method="rk4")
+        yield _told(f"a step{of} beyond stability", run, (beyond, (2 * math.sqrt(2) / w, w, factor)))
+        yield _told(f"a step{of} within it", sf.simulate(stiff, q, t_end=0.1, dt=5e-4, method="rk4"))
     pendulum = _pendulum()
     run = sf.simulate(pendulum, [1.0], t_end=2.0, dt=0.02, method="euler")
     appeared = float(run.energy[-1] - run.energy[0])

@@ -27,6 +27,8 @@ _OF_TIME: Mapping[str, tuple[tuple[float, bool], ...]] = {
     "t^2 + 0.1": (),
     "-1 - t": (),
     "abs(t - 1) - 0.25": ((0.75, False), (1.25, True)),
+    "abs(t - 0.8808) - 0.0008": ((0.88, False), (0.8816, True)),  # A kink between two that are near.
+    "abs(t - 1.003007) - 7e-6": ((1.003, False), (1.003014, True)),
     "t^3 - 3*t^2 + 2.609375*t - 0.609375": ((0.375, True), (1.0, False), (1.625, True)),
 }
 _WAYS: tuple[tuple[str, dict[str, Any]], ...] = (
