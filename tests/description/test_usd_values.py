@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -62,3 +63,14 @@ def test_a_body_without_inertia_is_massless_only_without_mass_and_shapes(mass: f
     shapes = [{"path": "/b/s", "kind": "Mesh", "sizes": {}, "density": None}] if shaped else []
     made = Masses(Units(1.0, 1.0), {}, remarks, problems).of(own, "b", shapes, "")
     assert made is None and len(problems) == int(shaped or mass is not None)
+
+
+def test_a_stated_matrix_of_inertia_is_about_the_centre_in_units_of_the_stage() -> None:
+    """Newton's entries, in their order, beside the moments of principal axes."""
+    own: dict[str, Any] = {"path": "/b", "mass": 2.0, "density": None, "centerOfMass": [10.0, 0.0, -20.0]}
+    own |= {"diagonalInertia": None, "principalAxes": None, "inertia": [1.0, 2.0, 3.0, 0.1, 0.2, 0.3]}
+    placed = {"/b": SimpleNamespace(scale=0.01)}
+    made = Masses(Units(0.01, 1.0), placed, Remarks(), []).of(own, "b", [], "")
+    assert made is not None and made.mass == 2.0
+    np.testing.assert_allclose(made.center_of_mass, (0.1, 0.0, -0.2))
+    np.testing.assert_allclose(made.moments, 1e-4 * np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3]))

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from operator import add, mul, sub, truediv
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +13,7 @@ from hypothesis import strategies as st
 from symofros.expr.edges import ONE, ZERO
 from symofros.expr.graph import Graph
 from symofros.expr.ops import OPS
+from symofros.expr.terms import Term
 
 
 @pytest.fixture
@@ -75,3 +79,14 @@ def test_folding_equals_the_op_table(numbers: list[float], name: str) -> None:
     assert folded is not None
     allowed = 0.0 if name in ("add", "mul", "div", "sqrt") else 4 * math.ulp(expected)
     assert folded == expected or abs(folded - expected) <= allowed
+
+
+@pytest.mark.parametrize("operation", [add, sub, mul, truediv], ids=lambda f: f.__name__)
+def test_numbers_stand_on_either_side_of_terms(operation: Callable[[Any, Any], Any]) -> None:
+    """`2 - x` is no `x - 2`."""
+    g = Graph()
+    for value, wanted in (
+        (operation(Term(g, g.constant(0.3)), 0.7), operation(0.3, 0.7)),
+        (operation(0.7, Term(g, g.constant(0.3))), operation(0.7, 0.3)),
+    ):
+        assert g.number(value.edge) == wanted

@@ -200,3 +200,12 @@ def test_casadi_integrators_give_correct_sensitivities(method: str, name: str) -
         np.testing.assert_allclose(found, right, rtol=0, atol=1e-6 * np.abs(right).max())
     for turn in turns(m):
         assert np.linalg.norm(ends[0][0][turn]) == pytest.approx(1.0, abs=1e-9)
+
+
+def test_methods_are_the_functions_by_name(dynamics: Any, model: sf.Model) -> None:
+    """With the model's parameters where none are stated, and with others."""
+    for par in (None, 1.5 * np.asarray(model.parameter_values)):
+        for name in ("forward_dynamics", "inverse_dynamics"):
+            given = state(model, model.nu if name == "forward_dynamics" else model.nv)[:3]
+            found = getattr(dynamics, name)(*given, par)
+            np.testing.assert_allclose(np.array(found).ravel(), getattr(model, name)(*given, par=par), rtol=1e-12)

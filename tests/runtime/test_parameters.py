@@ -175,3 +175,21 @@ def inertia_is_accepted(J: Array) -> bool:
     except sf.ParameterError:
         return False
     return True
+
+
+def test_rotations_and_axes_of_parameters_are_judged_in_each_set() -> None:
+    """The first set whose axis vanishes, or whose matrix is no rotation, is named by its number."""
+    matrix = ((1.0, 0, 0), (0, "c", "-s"), (0, "s", "c"))
+    joint = sf.Joint("q", "revolute", axis=("x", 0, 1), rotation=sf.Rotation.matrix(matrix))
+    names = {"x": 0.3, "c": 0.6, "s": 0.8}
+    parameters = tuple(sf.Parameter(name, value) for name, value in names.items())
+    model = sf.compile(sf.System("s", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), parameters=parameters), FUNCTIONS)
+    good = np.array([[0.3, 0.6, 0.8], [-2.0, 1.0, 0.0], [0.3, 0.8, -0.6]])
+    assert model.mass_matrix(np.zeros((3, 1)), par=good).shape == (3, 1, 1)
+    for k in range(3):
+        bad = good.copy()
+        bad[k, 1] += 0.01
+        with pytest.raises(sf.ParameterError) as caught:
+            model.mass_matrix(np.zeros((3, 1)), par=bad)
+        stated = f"run-time parameters of set {k} (c = {bad[k, 1]:g}, s = {bad[k, 2]:g}): joint 'q': rotation"
+        assert stated in caught.value.problem.what

@@ -154,3 +154,16 @@ def test_intervals_between_samples_reach_over_the_run(samples: int) -> None:
     if len(inner) < _INTERVALS:
         assert [pair[1] for pair in pairs] == [*inner, 2.5]
     assert all(np.searchsorted(inner, a, side="right") == np.searchsorted(inner, b, side="left") for a, b in pairs)
+
+
+def test_a_batch_starts_where_its_motions_are_at_that_time() -> None:
+    """Whether a start is on its constraints depends on inputs by formulas of the time at which the run begins."""
+    hoist = sf.RigidBody("hoist", sf.Joint("th", "revolute", axis=(0, 1, 0), prescribed=True), sf.Inertia(1.0))
+    bob = sf.RigidBody("bob", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -0.5)))
+    gear = sf.Coupling("gear", sf.formula("q - 2*th"))
+    model = sf.compile(sf.System("geared", (hoist, bob), constraints=(gear,)), sf.Options(backend="tape"))
+    law = {"th": "0.3*t + 0.1*t^2", "dth": "0.3 + 0.2*t", "ddth": 0.2}
+    at = {t: ([0.6 * t + 0.2 * t**2], [0.6 + 0.4 * t]) for t in (0.0, 1.5)}
+    runs = sf.simulate_batch(model, [at[0.0][0], at[1.5][0]], [at[0.0][1], at[1.5][1]], 1.6, t0=1.5, u=law, dt=0.01)
+    assert runs.ok.tolist() == [False, True]
+    np.testing.assert_allclose(runs.q_last[1], 0.6 * 1.6 + 0.2 * 1.6**2, atol=1e-6)

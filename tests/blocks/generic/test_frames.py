@@ -12,7 +12,10 @@ from scipy.spatial.transform import Rotation
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import FrameTransform, Orientation, OrientationError, Transform
+from symofros.blocks.generic.frames import transformed
 from symofros.blocks.rotations import EULER
+from symofros.diagrams.tensor import Tensor
+from symofros.expr.graph import Graph
 from tests.blocks.support import run, run_each
 
 # Angles at which formulas lose digits: none, tiny, a right angle, half a turn and about it.
@@ -143,3 +146,17 @@ def test_frames_of_a_model_transform_vectors(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(found["R"], np.swapaxes(R_t, 1, 2) @ R_s, atol=1e-13)
     world = p_s + np.einsum("nij,nj->ni", R_s, u)
     np.testing.assert_allclose(p_t + np.einsum("nij,nj->ni", R_t, found["y"]), world, atol=1e-13)
+
+
+def test_a_wrench_has_the_power_of_its_velocity_in_both_frames(rng: np.random.Generator) -> None:
+    g, R, (p, F, M, v, w) = Graph(), Rotation.random(random_state=4).as_matrix(), rng.normal(size=(5, 3))
+
+    def seen(quantity: str, u: np.ndarray) -> np.ndarray:
+        found = transformed(quantity, *(Tensor.numbers(g, x) for x in (p, R, u)))
+        return np.array([g.number(edge) for edge in found.flat], dtype=float)
+
+    there, moving = seen("wrench", np.concatenate([F, M])), seen("velocity", np.concatenate([v, w]))
+    assert there @ moving == pytest.approx(F @ v + M @ w, abs=1e-13)
+    np.testing.assert_allclose(there, np.concatenate([R @ F, R @ M + np.cross(p, R @ F)]), atol=1e-14)
+    np.testing.assert_allclose(moving, np.concatenate([R @ v + np.cross(p, R @ w), R @ w]), atol=1e-14)
+    np.testing.assert_allclose(seen("point", F) - seen("vector", F), p, atol=1e-14)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from symofros.blocks.kinematics.tasks import damped, near_singular, resolved
+from symofros.blocks.kinematics.tasks import Task, damped, near_singular, resolved
 from symofros.diagrams.tensor import Tensor
 from symofros.expr.graph import Graph
 
@@ -53,3 +54,13 @@ def test_rates_are_least_squares(m: int, n: int, rng: np.random.Generator) -> No
     g = Graph()
     found = numbers(resolved(damped(Tensor.numbers(g, J), 0.02, NEAR), Tensor.numbers(g, x)))
     np.testing.assert_allclose(found, np.linalg.pinv(J, rcond=1e-6) @ x, atol=1e-2)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_a_turn_is_what_is_left_to_an_angle_about_the_axis(axis: int, rng: np.random.Generator) -> None:
+    """Of any size; the shorter way round."""
+    g, task = Graph(), Task("m", "tool", [0, 3 + axis], [0])
+    for angle, left in rng.uniform(-3.0, 3.0, (6, 2)):
+        R = Rotation.from_rotvec(angle * np.eye(3)[axis]).as_matrix()
+        found = task._turn(Tensor.numbers(g, angle + left), Tensor.numbers(g, R))
+        assert float(numbers(found)) == pytest.approx(left, abs=1e-14)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -156,3 +157,22 @@ def test_names_that_python_reserves_are_changed(rng: np.random.Generator) -> Non
 def test_the_equations_command_prints_text_latex_numpy_or_recursion(words: list[str], says: str) -> None:
     done = CliRunner().invoke(app, ["equations", "reference_models/closed/four_bar.yaml", *words])
     assert done.exit_code == 0 and says in done.output
+
+
+def test_a_recursion_says_how_joints_move() -> None:
+    """Pitch of a screw; place and rotation of a joint by formulas; none where they are at rest."""
+    screw = sf.RigidBody("nut", sf.Joint("s", "screw", axis=(0, 0, 1), pitch="2*h"), sf.Inertia(1.0))
+    cam = sf.Joint(
+        "g",
+        "general",
+        "nut",
+        coordinates=("c",),
+        moving_position=("r*c", 0, "c^2"),
+        moving_rotation=sf.Rotation.quaternion("sin(c)", 0, 0, "cos(c)"),
+    )
+    parameters = (sf.Parameter("h", 0.1), sf.Parameter("r", 0.2))
+    text = sf.equations(sf.System("s", (screw, sf.RigidBody("cam", cam, sf.Inertia(1.0))), parameters)).recursion()
+    nut, moved = text.split("\\paragraph{Link 2")
+    assert "pitch} &= 2 h" in nut and "p_{PD}" not in nut
+    assert re.search(r"p_\{PD\} &= .*c r|p_\{PD\} &= .*r c", moved) and "c^{2}" in moved and "pitch" not in moved
+    assert "R_{PD} &= \\text{quaternion}(" in moved

@@ -22,6 +22,7 @@ from fmpy.validation import validate_fmu
 import symofros as sf
 from reference_models import MODELS as REFERENCE
 from symofros.exports.c import compiling
+from symofros.exports.fmi.fmu_variables import Variable, _distinct
 from tests.exports.cases import MODELS, PLANAR, STARTS, STEP, STRICT, first_state, relative, run, system_of, trajectory
 from tests.exports.fmi.logs import heard
 from tests.models import sampled
@@ -464,3 +465,10 @@ def quaternion_start(path: str) -> dict[str, float]:
     variables = fmpy.read_model_description(path).modelVariables
     ends = ("qx'", "qy'", "qz'", "qw'")
     return {v.name: float(v.start) for v in variables if v.name.startswith("q.") and v.name.endswith(ends)}
+
+
+def test_equal_names_of_variables_are_numbered_inside_their_quotes() -> None:
+    names = ("'a'", "'b'", "'a'", "'a'")
+    variables = [Variable(k, name, "output", "continuous") for k, name in enumerate(names)]
+    assert [one.name for one in _distinct(variables)] == ["'a'", "'b'", "'a 1'", "'a 2'"]
+    assert [one.reference for one in variables] == [0, 1, 2, 3]

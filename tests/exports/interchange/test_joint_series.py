@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -12,6 +14,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.exports.interchange.rigid import _parents_first
 from symofros.mechanics.topology.tree import build_tree
 from tests.models import sampled
 
@@ -131,3 +134,14 @@ def test_reference_models_load_in_mujoco_or_a_note_gives_the_reason(name: str, t
         mujoco.MjModel.from_xml_path(str(done.files[0]))
     except ValueError as error:
         assert any("MuJoCo refuses" in note for note in done.notes), error
+
+
+def test_links_are_put_behind_their_parents_in_their_own_order() -> None:
+    """A child that comes first waits, and so do its children."""
+    parents = {"a": None, "b": "a", "c": "b", "d": "a", "e": "c", "f": None}
+    for order in ("abcdef", "fedcba", "ecbadf", "bfaced"):
+        links: Any = [SimpleNamespace(name=name, parent=parents[name]) for name in order]
+        found = "".join(link.name for link in _parents_first(links))
+        assert sorted(found) == sorted(order)
+        assert all(found.index(parent) < found.index(name) for name, parent in parents.items() if parent)
+        assert found == order if order == "abcdef" else found != order

@@ -103,3 +103,20 @@ def test_segments_keep_frames_at_their_stations() -> None:
     for (p, R), (other, turned) in zip(*poses, strict=True):
         assert p == pytest.approx(other, abs=1e-9)
         assert pytest.approx(turned, abs=1e-12) == R
+
+
+def test_articulated_bodies_carry_what_stands_on_sections() -> None:
+    """Two bodies on one section and one on another, against the factors of M."""
+    turned = {"axis": (0, 1, 1), "rotation": sf.Rotation.rpy(0.3, 0, 0.2)}
+    bodies = [
+        sf.RigidBody(name, sf.Joint(f"to_{name}", "prismatic", "rod", place, **turned), BODY)  # type: ignore[arg-type]
+        for name, place in (("one", "middle"), ("two", "middle"), ("three", "quarter"))
+    ]
+    beam = rod((1, 0, 0), HUB, frames=(*FRAMES, sf.Frame("quarter", at=0.25)), sections=1, rotary_inertia=True)
+    system = sf.System("whole", (beam, *bodies), gravity=GRAVITY)
+    given = {way: interpreted(system, "forward_dynamics", forward_dynamics=way) for way in ("articulated", "factors")}
+    model = given["factors"]
+    q, v = model.random_state(np.random.default_rng(4))
+    u = np.linspace(-1.0, 1.0, model.nu)
+    one, other = (m.forward_dynamics(0.3 * q, v, u) for m in given.values())
+    np.testing.assert_allclose(one, other, rtol=0, atol=1e-10 * np.abs(other).max())

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -200,3 +202,21 @@ def test_states_that_can_not_be_are_refused(fields: dict[str, Any], message: str
 def test_one_of_two_entries_of_stribeck() -> None:
     with pytest.raises(sf.DescriptionError, match="static alone"):
         sf.LuGre(1.0, 1.0, static=2.0)
+
+
+def test_copies_have_their_states_and_what_was_changed() -> None:
+    """Other parameters, another precision, no checks of parameters: (q, v) and z stay apart."""
+    options = sf.Options(("potential_energy", "generalized_force"), (), backend="interpreter")
+    model = sf.compile(arm(), options)
+    other = sf.compile(replace(arm(), parameters=(sf.Parameter("k", 5.0),)), options)
+    q, v, z, u = drawn(model, 2)
+    for copy, exact in (
+        (model.with_parameters(k=5.0), other),
+        (model.with_threads(2), model),
+        (model.with_parameter_checks(False).with_parameters(k=5.0), other),
+        (pickle.loads(pickle.dumps(model)), model),
+    ):
+        assert copy.names == exact.names and (copy.nq, copy.nv, copy.nz) == (model.nq, model.nv, model.nz)
+        assert copy.potential_energy(q, z=z) == exact.potential_energy(q, z=z)
+        found, wanted = (m.generalized_force(q, v, z=z, u=u) for m in (copy, exact))
+        np.testing.assert_array_equal(found, wanted)

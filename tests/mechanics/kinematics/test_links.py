@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+import symofros as sf
 from symofros.mechanics.kinematics.links import speeds_by_path
 from tests.mechanics.kinematics.trees import SEEDS, case
 
@@ -79,3 +81,20 @@ def test_the_first_path_is_the_longest_way_to_the_base(seed: int) -> None:
 
     paths = speeds_by_path(at.kinematics)
     assert len(paths[0]) == max(depth(i) for i in range(len(links)))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_stated_matrix_turns_at_its_own_rate(seed: int) -> None:
+    """A joint by a quaternion, or an axis, of its coordinates: w of differences of R, and of SciPy's composition."""
+    rng = np.random.default_rng(seed)
+    turns = (
+        sf.Rotation.quaternion("sin(a)", "0.5*b", "cos(b - a)", "1 + a*a"),
+        sf.Rotation.axis_angle(("1", "a", "b"), "a - 2*b"),
+    )
+    joint = sf.Joint("g", "general", coordinates=("a", "b"), moving_rotation=turns[seed % 2])
+    system = sf.System("s", (sf.RigidBody("b", joint, sf.Inertia(1.0)),))
+    model = sf.compile(system, sf.Options(("frame_pose", "frame_velocity"), ("b",), backend="interpreter"))
+    q, v, h = rng.uniform(-1.0, 1.0, 2), rng.uniform(-1.0, 1.0, 2), 1e-5
+    ahead, behind = (Rotation.from_matrix(model.frame_pose("b", q + s * h * v)[1]) for s in (1, -1))
+    w = (ahead * behind.inv()).as_rotvec() / (2 * h)
+    np.testing.assert_allclose(model.frame_velocity("b", q, v)[3:], w, atol=1e-8)

@@ -1,8 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import symofros as sf
+from symofros.mechanics.topology.coordinates import coordinate_names
+from symofros.mechanics.topology.sticking import sticking_coordinates
 from symofros.mechanics.topology.tree import build_tree, coupled_speeds
 
 SOLID = sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))
@@ -39,3 +43,17 @@ def test_coordinates_of_a_general_joint_have_different_names() -> None:
         joint = sf.Joint("g", "general", coordinates=names, moving_position=("a", 0, 0))
         with pytest.raises(sf.DescriptionError, match="joint 'g': coordinates of the same name"):
             build_tree(sf.System("s", [sf.RigidBody("b", joint, sf.Inertia(1.0))]))
+
+
+def test_a_coordinate_sticks_with_all_its_friction() -> None:
+    """Break-away forces of several elements on one coordinate add up; those that don't stick, and of others, don't."""
+
+    def friction(static: object, coordinate: int = 0, sticks: bool = True) -> sf.Friction:
+        return sf.Friction(1.0, static, viscous=0.1, coordinate=coordinate, sticks=sticks)  # type: ignore[arg-type]
+
+    elements = friction("s"), friction(5.0, 1), friction(7.0, sticks=False), friction("2*s")
+    joint = sf.Joint("x", "cylindrical", axis=(0, 0, 1), elements=elements)
+    found = list(sticking_coordinates(joint))
+    assert [one.coordinate for one in found] == list(coordinate_names(joint))
+    assert [sf.evaluate(one.breakaway, {"s": 2.0}) for one in found] == [6.0, 5.0]
+    assert not list(sticking_coordinates(replace(joint, prescribed=True)))

@@ -13,7 +13,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.beams import sections
-from symofros.description.beams.sections import Material, Section
+from symofros.description.beams.sections import Material, Section, polygons
 from symofros.errors import DescriptionError
 from tests.late import needs_extra
 
@@ -255,3 +255,39 @@ def test_a_rod_accepts_a_section_off_its_axis() -> None:
 def test_a_product_is_small_beside_both_stiffnesses() -> None:
     flat = replace(COUPLED, EI_y=1e-3, EI_z=10.0, EI_yz=5e-4)
     assert flat.beam_properties("strain")["EI_yz"] == 5e-4
+
+
+def test_outlines_enclose_what_their_names_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Area, centre and second moments of the outlines, by Green's theorem, beside sums of rectangles."""
+
+    def integrals(material: Material, outer: Any, holes: Any = ()) -> np.ndarray:
+        total = np.zeros(4)
+        for sign, ring in ((1.0, outer), *((-1.0, hole) for hole in holes)):
+            p, n = np.array(ring), np.roll(np.array(ring), -1, axis=0)
+            cross = p[:, 0] * n[:, 1] - n[:, 0] * p[:, 1]
+            squares = p**2 + p * n + n**2
+            total += sign * np.array([cross.sum() / 2, *((p + n).T @ cross / 6)[:1], *(squares.T @ cross / 12)])
+        return total
+
+    monkeypatch.setattr(polygons, "polygon", integrals)
+    y, z, t, f = 0.2, 0.1, 0.01, 0.02
+
+    def rectangle(y: float, z: float, at: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+        A = y * z
+        return np.array([A, A * at[0], A * (y**2 / 12 + at[0] ** 2), A * (z**2 / 12 + at[1] ** 2)])
+
+    hollow = rectangle(y, z) - rectangle(y - 2 * t, z - 2 * t)
+    np.testing.assert_allclose(polygons.box(STEEL, y, z, t), hollow, rtol=1e-12, atol=1e-18)
+    flanges = sum(rectangle(f, z, (s * (y - f) / 2, 0.0)) for s in (1, -1))
+    np.testing.assert_allclose(polygons.i_section(STEEL, y, z, t, f), rectangle(y - 2 * f, t) + flanges, atol=1e-16)
+    legs = rectangle(y, t, (y / 2, t / 2)) + rectangle(t, z - t, (t / 2, (z + t) / 2))
+    np.testing.assert_allclose(polygons.l_section(STEEL, y, z, t), legs, rtol=1e-12)
+
+
+def test_a_section_turned_by_a_right_angle_has_its_stiffnesses_of_shear_the_other_way_round() -> None:
+    section = sections.rectangle(STEEL, 2.0, 1.0)
+    for quarters in range(-3, 5):
+        turned = section.turned(quarters * math.pi / 2)
+        wanted = (section.GA_z, section.GA_y) if quarters % 2 else (section.GA_y, section.GA_z)
+        assert (turned.GA_y, turned.GA_z) == wanted
+    assert section.turned(0.3).GA_y is None

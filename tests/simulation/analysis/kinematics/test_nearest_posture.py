@@ -6,10 +6,12 @@ from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import nnls
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.calls.kernel import Array
+from symofros.simulation.analysis.kinematics.nearest_posture import _nonnegative
 from tests.simulation.mechanisms import links
 
 FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
@@ -115,3 +117,14 @@ def test_a_farthest_posture_is_not_returned() -> None:
     reached = sf.inverse_kinematics(m, {"tip": sf.Target([0.0, 0, 0])}, [-2.0, 0, 0], rest=[1.0, 0, 0])
     assert reached.converged
     assert abs(reached.q[2]) == pytest.approx(1.895494267, abs=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_least_squares_of_no_negative_entry_are_those_of_scipy(seed: int) -> None:
+    """Where entries that were above zero come down to it again, too."""
+    rng = np.random.default_rng(seed)
+    A = np.abs(rng.standard_normal((15, 10))) @ np.diag(10.0 ** rng.uniform(-2, 2, 10))
+    b = rng.standard_normal(15) + 1.0
+    found, (wanted, left) = _nonnegative(A, b), nnls(A, b)
+    assert found.min() >= 0.0 and np.linalg.norm(A @ found - b) == pytest.approx(left, rel=1e-12)
+    np.testing.assert_allclose(found, wanted, atol=1e-10 * np.abs(wanted).max(initial=1.0))

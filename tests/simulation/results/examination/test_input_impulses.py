@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.simulation.results.examination.input_impulses import _held, _misjudged, nodes
+from symofros.simulation.results.examination.input_impulses import _MOST, _held, _misjudged, _sharpest, nodes
 from symofros.simulation.stepping.methods import METHODS
 from tests.simulation.mechanisms import slide
 
@@ -147,3 +147,14 @@ def test_quadrature_nodes_integrate_as_steps_of_the_method_do(name: str) -> None
     by_nodes = h * float(weights @ np.sin(3.0 * h * c)) + 3.0 * of_rate * h**2
     if name != "generalized_alpha":
         assert abs(run.v[-1, 0] - by_nodes) < 1e-12
+
+
+def test_the_sharpest_samples_are_looked_at() -> None:
+    """Of more than can be looked at, those that change most, in the order of time; none that goes on as before."""
+    rng = np.random.default_rng(0)
+    t, changes = np.arange(5.0 * _MOST), rng.standard_normal(5 * _MOST)
+    found = _sharpest(t, changes)
+    assert len(found) == _MOST and np.all(np.diff(found) > 0.0)
+    left = np.setdiff1d(t, found)
+    assert np.abs(changes[found.astype(int)]).min() >= np.abs(changes[left.astype(int)]).max()
+    np.testing.assert_array_equal(_sharpest(t[:4], np.array([1.0, 0.0, -1e-16, 2.0])), [0.0, 3.0])
