@@ -53,6 +53,10 @@ def test_the_compiled_model_has_the_settings_of_the_first(cache: Path) -> None:
     assert compiled.parameters == {"m": 3.0} and compiled.threads == 2
     assert compiled.libraries
     assert pickle.loads(pickle.dumps(first)).parameters == {"m": 3.0}
+    with pytest.raises(sf.ParameterError):
+        compiled.with_parameters(m=-1.0)
+    unchecked = sf.compile(s, BACKGROUND).with_parameter_checks(False)
+    assert unchecked.ready().with_parameters(m=-1.0).parameters == {"m": -1.0}
 
 
 def test_a_failure_of_the_compiler_is_told_by_the_compiled_model(cache: Path) -> None:

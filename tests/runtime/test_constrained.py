@@ -102,3 +102,11 @@ def test_rows_that_a_pivot_leaves_alone_are_not_judged_again(
     assert list(zip(made.rows, made.columns, strict=True)) == pivots_one_by_one(G, measures, inertia)
     scale = np.abs(G).max(axis=1, keepdims=True) + 1e-9
     assert (np.abs(made.L @ made.U - G)[made.rows] <= 1e-9 * scale[made.rows]).all()
+
+
+def test_what_moves_no_mass_is_no_pivot_by_a_weak_entry() -> None:
+    """Beside a heavy body that the row binds: an entry that is rounding of none, of a speed without inertia."""
+    measures = Measures((0,), (LENGTH,), (TRANSLATION,) * 3)
+    G = np.array([[0.0, 1.0, 1e-8]])
+    for inertia, column in (([1.0, 1e12, 0.0], 1), ([1.0, 1e12, 1e-12], 2), ([1.0, 1.0, 0.0], 1)):
+        assert eliminate(G, measures, np.array(inertia)).columns.tolist() == [column]

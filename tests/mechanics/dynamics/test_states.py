@@ -220,3 +220,19 @@ def test_copies_have_their_states_and_what_was_changed() -> None:
         assert copy.potential_energy(q, z=z) == exact.potential_energy(q, z=z)
         found, wanted = (m.generalized_force(q, v, z=z, u=u) for m in (copy, exact))
         np.testing.assert_array_equal(found, wanted)
+
+
+def test_a_start_takes_speeds_of_any_form() -> None:
+    """Rows, names, and speeds that end with the states already; of a ball joint, which has a coordinate more."""
+    model = sf.compile(arm(), sf.Options(("mass_matrix",), (), backend="interpreter"))
+    q, v, z, _ = drawn(model, 5)
+    named = dict(zip(model.names.v, v.tolist(), strict=True))
+    for stated, states, wanted in (
+        (v, None, np.zeros(model.nz)),
+        (named, None, np.zeros(model.nz)),
+        (v, z, z),
+        (np.concatenate([v, z]), None, z),
+    ):
+        coordinates, speeds = model.carry(q, stated, states)  # type: ignore[arg-type]
+        np.testing.assert_array_equal(coordinates, np.concatenate([q, np.zeros(model.nz)]))
+        np.testing.assert_array_equal(speeds, np.concatenate([v, wanted]))

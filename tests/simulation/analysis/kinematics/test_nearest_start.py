@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.analysis.kinematics.assembly import shift_scales
+from symofros.simulation.analysis.kinematics.nearest_start import Instant, _Distance, _with_one_released
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start
 
 FUNCTIONS = ("constraint", "constraint_rate", "constraint_jacobian", "frame_pose")
@@ -109,3 +110,15 @@ def test_digits_that_were_not_typed_are_found_on_the_branch_that_is_stated() -> 
     found = start(q0=1.0472, q1=-1.047)
     assert found.q[:2] == pytest.approx([1.0472, -1.047], abs=3e-4)
     assert "start: q0 = 1.0472 was taken as 1.0471, which meets the constraints" in found.notes
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_postures_with_one_value_released_are_closed(name: str) -> None:
+    """Those that can't be closed with the others held are left out; there are some that can."""
+    m = four_bar(name)
+    closed = sf.assemble(m, [1.0, -1.0, -2.0], held=["q0"]).q
+    asked = closed + np.array([0.0, 0.0, 1.5])
+    distance = _Distance(Instant(m), asked, [0, 1, 2], np.ones(3))
+    found = list(_with_one_released(distance, asked, ["q0", "q1", "q2"]))
+    assert found and all(np.abs(m.constraint(q)).max() < 1e-9 for q in found)
+    assert min(map(distance, found)) <= distance(closed) + 1e-9
