@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,14 @@ int main(void) {
         place(it);
         i = sym_instance_advance(it, 0.02, 1e-3);
         show(i, it->q, HOPPER_NQ);
+    }
+    for (i = 0; i < 2; ++i) { /* a mass: nothing is made of it */
+        place(it);
+        it->par[0] = i == 0 ? -1.0 : sqrt(-1.0);
+        printf("%d", sym_instance_prepare(it));
+        printf(" %d", sym_instance_accelerate(it));
+        printf(" %d", sym_instance_project(it));
+        printf(" %d\n", sym_instance_advance(it, 0.02, 1e-3));
     }
     free(it);
     return 0;

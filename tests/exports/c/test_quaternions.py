@@ -13,7 +13,8 @@ from tests.exports.cases import build
 from tests.interop.turning import SYSTEMS
 from tests.runtime.test_unit_quaternions import with_length
 
-# Lines of q and v to lines of: status and q of a projection; status, q and v after a while; accelerations before it.
+# Lines of q and v to lines of: status and q of a projection; status, q and v after a while; accelerations before it. At
+# the end the status of all that with parameters that are refused.
 DRIVER = Path(__file__).with_name("quaternions.c").read_text()
 
 
@@ -34,8 +35,10 @@ def test_instances_normalise_or_refuse_quaternions(package: Path) -> None:
     rows = [np.concatenate([with_length(m, q, length), v]) for length in lengths]
     text = "\n".join(" ".join(map(repr, row.tolist())) for row in rows)
     done = subprocess.run([package], input=text, capture_output=True, text=True, check=True)
-    said = np.array([line.split()[0] for line in done.stdout.splitlines()], dtype=int).reshape(len(lengths), 3)
-    numbers = [np.array(line.split()[1:], dtype=np.float64) for line in done.stdout.splitlines()]
+    *lines, negative, not_finite = done.stdout.splitlines()
+    said = np.array([line.split()[0] for line in lines], dtype=int).reshape(len(lengths), 3)
+    numbers = [np.array(line.split()[1:], dtype=np.float64) for line in lines]
+    assert negative == not_finite == "-9 -9 -9 -9"
     for k, length in enumerate(lengths):
         accelerations, projected, moved = numbers[3 * k : 3 * k + 3]
         if np.isnan(length):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -73,3 +75,16 @@ def test_negative_directions_are_turned_round(rng: np.random.Generator) -> None:
     assert np.allclose(turned, (V * [3.0, 1.0, 0.5, 2.0]) @ V.T + skew, atol=1e-13)
     assert _downhill(turned)[1]
     assert _downhill(np.zeros((0, 0)))[1]
+
+
+@pytest.mark.parametrize("w", [4.0, 6.0])
+def test_a_spin_that_stays_makes_a_steady_motion(w: float) -> None:
+    """A bob on a shaft that turns hangs at cos q = g/(w^2 L); speeds by name, too."""
+    shaft = sf.RigidBody("shaft", sf.Joint("turn", "revolute", axis=(0, 0, 1)), sf.Inertia(1.0, moments=(1, 1, 1)))
+    hinge = sf.Joint("q", "revolute", "shaft", axis=(0, 1, 0))
+    bob = sf.RigidBody("bob", hinge, sf.Inertia(2.0, (0, 0, -1.0)))
+    model = sf.compile(sf.System("governor", (shaft, bob)), sf.Options(backend="interpreter"))
+    for v in ([w, 0.0], {"turn": w}):
+        steady = sf.equilibrium(model, [0.0, -0.8], v, held=["turn"])  # type: ignore[arg-type]
+        assert math.cos(steady.q[1]) == pytest.approx(9.81 / w**2, abs=1e-9)
+        assert steady.v.tolist() == [w, 0.0] and steady.efforts["turn"] == pytest.approx(0.0, abs=1e-9)

@@ -89,3 +89,17 @@ def test_projection_reports_a_half_turn_residual(backend: str) -> None:
     good = np.zeros(14)
     good[[6, 13]] = 1.0
     assert model.project(good, np.zeros(12))[2] == 0.0
+
+
+def test_inverse_kinematics_of_many_targets_close_welds_the_right_way() -> None:
+    """From guesses half a turn off, as one by one: a posture that is closed the wrong way round is not reached."""
+    model, rng = welded(), np.random.default_rng(5)
+    q = np.array([half_turn(rng.normal(size=3)) for _ in range(3)])
+    p = rng.normal(size=(3, 3))
+    many = sf.inverse_kinematics_batch(model, {"a": sf.Target(p)}, q)
+    for i in range(3):
+        one = sf.inverse_kinematics(model, {"a": sf.Target(p[i])}, q[i])
+        assert bool(many.converged[i]) == one.converged
+        np.testing.assert_allclose(many.q[i], one.q, atol=1e-9)
+        if one.converged:
+            assert model.project(many.q[i], np.zeros(12))[2] < 1e-6

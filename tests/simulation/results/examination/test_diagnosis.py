@@ -132,3 +132,17 @@ def test_quaternions_that_prescribe_a_motion_are_of_unit_length(method: str, kin
         many = sf.simulate_batch(model, [[0.3], [0.2]], u=u, t_end=0.3, dt=0.01, method=method)
         assert [many.outcome(i).reason for i in range(2)] == [run.outcome.reason] * 2
     assert sf.simulate(model, [0.3], u={"p.qw": -1.0}, t_end=0.03, dt=0.01, method=method).outcome.ok
+
+
+def test_steps_that_shrink_to_nothing_are_said_where_a_run_is_cut() -> None:
+    """A fall to the centre of a force without bound, cut early and beside the centre; advice for the latter alone."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("-1/x^2",))
+    system = sf.System("s", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0))
+    model = sf.compile(system, sf.Options(backend="tape"))
+    given: dict[str, Any] = {"t_end": 2.0, "method": "dopri5", "rtol": 1e-10, "atol": 1e-12}
+    last = sf.simulate(model, [1.0], **given)
+    assert last.outcome.kind == "step too small"
+    for steps, noted in ((20, False), (last.statistics.steps - 3, True)):
+        end = sf.simulate(model, [1.0], max_steps=steps, **given).outcome
+        assert end.kind == "interrupted" and end.reason.startswith(f"max_steps: {steps} steps are done")
+        assert ("and the next would be" in end.reason) == ("force that has no bound" in end.advice) == noted
