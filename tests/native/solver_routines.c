@@ -83,6 +83,21 @@ static void curvature(const double *const *in, double *const *out, double *work)
     for (i = 0; i < OWN; ++i) work[i] = NAN;
 }
 
+/* -(L^T L)^-1 X by blocks: L of small whole numbers with zeros below its diagonal, X with k columns. */
+static void solve_by_blocks(int n, int k) {
+    double *L = scratch((size_t)(n * n)), *X = scratch((size_t)(n * k)), *work = scratch(SYM_BLOCKS_WORK((size_t)n));
+    char name[32];
+    int i, j;
+    for (i = 0; i < n; ++i) {
+        for (j = 0; j < n; ++j) L[i * n + j] = j < i ? (3 * i + 5 * j) % 4 - 1 : j == i ? 2 + i % 3 : NAN;
+        for (j = 0; j < k; ++j) X[i * k + j] = (5 * i + 3 * j) % 7 - 3;
+    }
+    sym_block_factor(n, L, work + 8 * (n + 3));
+    sym_less_solved(n, k, work + 8 * (n + 3), X, work);
+    sprintf(name, "blocks_%d_%d", n, k), print(name, (size_t)(n * k), X);
+    free(L), free(X), free(work);
+}
+
 int main(void) {
     const double q0[NQ] = {0.3, 0.1, -0.2}, v0[N] = {1, 2, 3}, none[1] = {0};
     const double *const in[5] = {none, q0, v0, none, none};
@@ -118,5 +133,6 @@ int main(void) {
     out[0] = hessian;
     sym_hessian(N, M_, K_, &MEASURES, dynamics_terms, many_slopes, curvature, weighed, out, work);
     print("hessian", K_ * K_, hessian), free(work);
+    for (int n = 1; n < 10; ++n) solve_by_blocks(n, 1), solve_by_blocks(n, 8), solve_by_blocks(n, 19);
     return 0;
 }

@@ -30,7 +30,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     folder = tmp_path_factory.mktemp("routines")
     # The systems of packed matrices have the names of the full ones: tests/generator/codegen/test_sparse.py.
     files = dict.fromkeys(file for needed in ROUTINES.values() for file in needed if file != "sparse_system")
-    routines = "\n".join(native_text(f"model/{file}.c.in") for file in files)
+    routines = "\n".join(native_text(f"model/{file}.c.in") for file in ("pack", *files))
     head = "#include <math.h>\n#include <string.h>\n" + native_text("model/symofros_model.h")
     (folder / "driver.c").write_text(head + routines + DRIVER.read_text(encoding="utf-8"), encoding="utf-8")
     built = subprocess.run([gcc, *FLAGS, "-o", "driver", "driver.c", "-lm"], cwd=folder, capture_output=True, text=True)
@@ -85,3 +85,13 @@ def test_beside_the_constraints_the_rank_is_that_on_them(results: dict[str, np.n
 def test_projection_returns_the_initial_residual(results: dict[str, np.ndarray]) -> None:
     q0 = np.array([0.3, 0.1, -0.2])
     np.testing.assert_allclose(results["gap"], np.linalg.norm(G @ q0 - RIGHT), rtol=1e-14)
+
+
+@pytest.mark.parametrize("k", [1, 8, 19])
+def test_blocks_of_a_factor_solve_for_any_number_of_rows_and_columns(results: dict[str, np.ndarray], k: int) -> None:
+    """Rows that fill up a block, and columns that fill up a vector; zeros below the diagonal; as in the driver."""
+    for n in range(1, 10):
+        row, column, right = np.arange(n)[:, None], np.arange(n), np.arange(k)
+        L = np.tril((3 * row + 5 * column) % 4 - 1, -1) + np.diag(2 + column % 3)
+        X = (5 * row + 3 * right) % 7 - 3
+        np.testing.assert_allclose(results[f"blocks_{n}_{k}"].reshape(n, k), -np.linalg.solve(L.T @ L, X), atol=1e-11)

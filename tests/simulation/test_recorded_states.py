@@ -88,3 +88,19 @@ def test_a_projection_that_fails_names_the_constraint_and_how_far_it_is_off() ->
     run = sf.simulate(model, start.q, start.v, 1.0, u={"slide": "0.4375 + 0.1*t^2"}, dt=1e-2)
     assert run.outcome.kind == "constraints lost" and "'gudgeon" in run.outcome.reason
     assert float(run.outcome.reason.split("off by ")[1].split()[0]) > CLOSED
+
+
+@pytest.mark.parametrize("method", ["rk4", "rodas4", "generalized_alpha"])
+def test_records_within_steps_of_turning_bodies_follow_the_motion(method: str) -> None:
+    """Where coordinates are more than speeds, too: cubics by the rates at both ends, off by no more than the steps."""
+    body = sf.RigidBody("top", sf.Joint("j", "ball"), sf.Inertia(1.0, (0.1, 0.2, 0.5), (0.3, 0.4, 0.2)))
+    model = sf.compile(sf.System("top", (body,)), sf.Options(backend="tape"))
+    start = model.neutral(), np.array([2.0, -3.0, 4.0])
+    grid = np.arange(0.0, 0.201, 0.0125)
+    exact = sf.simulate(model, *start, 0.2, method="dop853", rtol=1e-11, atol=1e-12, output=grid)
+    run = sf.simulate(
+        model, *start, 0.2, method=method, dt=0.05, output=grid, adaptive=False if method == "rodas4" else None
+    )
+    at_steps = np.abs(run.v[::4] - exact.v[::4]).max()
+    assert np.abs(run.v - exact.v).max() <= 1.5 * at_steps + 2e-3
+    np.testing.assert_allclose(run.q, exact.q, atol=1.5 * np.abs(run.q[::4] - exact.q[::4]).max() + 1e-3)
