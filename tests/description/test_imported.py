@@ -255,3 +255,12 @@ def test_an_unknown_choice_is_refused(tmp_path: Path, asked: dict[str, Any], mea
     for read in (sf.load, load_with_sources):  # The second by commands.
         with pytest.raises(sf.ArgumentError, match=f"did you mean '{meant}'"):
             read(path, **asked)
+
+
+def test_bodies_are_left_out_by_name() -> None:
+    """The others in their order; a name that no body has is refused."""
+    names = ("a", "b", "c", "d")
+    system = sf.System("s", [sf.RigidBody(name, sf.Joint(f"q{name}", "revolute"), sf.Inertia(1.0)) for name in names])
+    assert [body.name for body in system.without_bodies("c", "a").bodies] == ["b", "d"]
+    with pytest.raises(sf.DescriptionError, match="nobody"):
+        system.without_bodies("a", "nobody")

@@ -17,7 +17,7 @@ from symofros.expr.program import Program
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.terms import edges_of, terms
 from symofros.expr.vector import Vec3
-from symofros.runtime.manifold import chart_coordinates, chart_rate, difference, integrate, retract
+from symofros.runtime.manifold import along_speeds, chart_coordinates, chart_rate, difference, integrate, retract
 from symofros.runtime.record import Segment
 
 SEGMENTS = (
@@ -151,3 +151,16 @@ def test_graph_and_numeric_differences_of_configurations_agree(seed: int, angle:
     a, b = (terms(g, [g.input(name, i) for i in range(NQ)]) for name in ("a", "b"))
     found = values(g, edges_of(g, difference(SEGMENTS, a, b)), a=q0, b=q1)
     np.testing.assert_allclose(found, difference(SEGMENTS, q0, q1), atol=ROUNDING, rtol=1e-15)
+
+
+def test_slopes_along_speeds_are_those_of_a_function_of_the_coordinates(rng: np.random.Generator) -> None:
+    """Of all kinds of segments, at quaternions of unit length; of many states, too."""
+    q = rng.standard_normal((3, NQ))
+    for start in (2, 9):
+        q[:, start : start + 4] /= np.linalg.norm(q[:, start : start + 4], axis=1, keepdims=True)
+    weights, h = rng.standard_normal((3, NQ)), 1e-5
+    found = along_speeds(SEGMENTS, q, weights)
+    for k, unit in enumerate(np.eye(NV)):
+        ahead, behind = (retract(SEGMENTS, q, s * h * unit) for s in (1.0, -1.0))
+        slope = ((ahead - behind) * weights).sum(axis=1) / (2 * h)
+        np.testing.assert_allclose(found[:, k], slope, atol=1e-9)

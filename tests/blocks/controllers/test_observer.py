@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import Constant, ForwardDynamics, MomentumObserver
+from symofros.blocks.controllers.observer import _turning
+from symofros.diagrams.tensor import Tensor
+from symofros.expr.graph import Graph
 
 _PUSH = np.array([1.5, 0.0, -2.0, 0.0, 0.3, 0.0])
 _RATE, _STEP = 40.0, 1e-3
@@ -68,3 +74,24 @@ def test_what_an_observer_can_not_tell_apart_is_refused() -> None:
     diagram.add(MomentumObserver(name="o", model="m"), q="plant.q", v="plant.v")
     with pytest.raises(sf.DescriptionError, match="a model with constraints"):
         sf.Simulation(diagram)
+
+
+def test_momentum_in_turning_axes_changes_as_it_does_in_axes_at_rest(rng: np.random.Generator) -> None:
+    """Of slides, a ball joint and a free joint: ad_v^T p by differences of momenta that stay in axes at rest."""
+    kinds = (("linear", 1), ("quaternion", 3), ("pose", 6), ("linear", 2))
+    starts = np.cumsum([0, *(size for _, size in kinds)])
+    segments = [SimpleNamespace(kind=kind, v=at, size=n) for (kind, n), at in zip(kinds, starts[:-1], strict=True)]
+    v, p, g = *rng.standard_normal((2, int(starts[-1]))), Graph()
+    model = SimpleNamespace(segments=segments)
+    context: Any = SimpleNamespace(
+        environment=SimpleNamespace(model=lambda _: model),
+        inputs={"v": Tensor.numbers(g, v)},
+        numbers=lambda values: Tensor.numbers(g, values),
+    )
+    found = np.array([g.number(edge) for edge in _turning(context, "m", Tensor.numbers(g, p)).flat], dtype=float)
+    wanted = np.zeros_like(v)
+    w, W, V = v[1:4], v[7:10], v[4:7]
+    wanted[1:4] = np.cross(p[1:4], w)
+    wanted[4:7], wanted[7:10] = np.cross(p[4:7], W), np.cross(p[7:10], W) + np.cross(p[4:7], V)
+    np.testing.assert_allclose(found, wanted, atol=1e-14)
+    assert found @ v == pytest.approx(0.0, abs=1e-13)  # It does no work.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from typing import Any
 
 import pytest
 
@@ -86,3 +87,21 @@ def test_indefinite_sections_are_refused_by_the_model_and_at_run_time() -> None:
     product = sf.System("s", (rod_by(EI_z=1.0, EI_y=2.0, EI_yz=1.5),))
     with pytest.raises(sf.DescriptionError, match="EI_yz too large"):
         sf.compile(product, sf.Options(("mass_matrix",), backend="interpreter"))
+
+
+COUPLINGS = {
+    "mass_center": (0.01, 0.0),
+    "tension_center": (0.0, -0.02),
+    "shear_center": (0.01, 0.02),
+    "EI_yz": 0.1,
+    "rhoI_yz": 1e-3,
+    "stiffness": tuple(map(tuple, [[float(i == j) for j in range(6)] for i in range(6)])),
+}
+
+
+@pytest.mark.parametrize("name", [None, *COUPLINGS])
+def test_a_section_is_coupled_by_each_of_its_couplings(name: str | None) -> None:
+    given: dict[str, Any] = {} if name == "stiffness" else {"EI_z": 1.0, "EI_y": 2.0}
+    given |= {} if name is None else {name: COUPLINGS[name]}
+    beam = sf.Beam("b", sf.Joint("clamp", "fixed"), 1.0, 1.0, theory="strain", **given)
+    assert beam.is_coupled == (name is not None)

@@ -176,3 +176,23 @@ def test_a_recursion_says_how_joints_move() -> None:
     assert "pitch} &= 2 h" in nut and "p_{PD}" not in nut
     assert re.search(r"p_\{PD\} &= .*c r|p_\{PD\} &= .*r c", moved) and "c^{2}" in moved and "pitch" not in moved
     assert "R_{PD} &= \\text{quaternion}(" in moved
+
+
+def test_forces_and_constraints_are_their_models(rng: np.random.Generator) -> None:
+    """Q of what acts, G of what holds, each by its name; the number of operations is that of all."""
+    hinge = sf.Joint("a", "revolute", axis=(0, 1, 0), effort=("-k*a + u",))
+    slide = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Damper(0.3),))
+    bodies = sf.RigidBody("arm", hinge, sf.Inertia(1.0, (1, 0, 0))), sf.RigidBody("block", slide, sf.Inertia(2.0))
+    gear = sf.Coupling("gear", sf.formula("x - sin(a)"))
+    system = sf.System("s", bodies, (sf.Parameter("k", 2.0),), inputs=(sf.Input("u"),), constraints=(gear,))
+    equations, model = sf.equations(system), sf.compile(system, sf.Options(backend="interpreter"))
+    q, v, u = rng.standard_normal(2), rng.standard_normal(2), rng.standard_normal(1)
+    symbols = {"a": q[0], "x": q[1], "da": v[0], "dx": v[1], "k": 2.0, "u": u[0]}
+
+    def number(matrix: Any) -> np.ndarray:
+        values = {one: symbols[str(one)] for one in matrix.free_symbols}
+        return np.array(matrix.subs(values).evalf(), dtype=float)
+
+    np.testing.assert_allclose(number(equations.Q).ravel(), model.generalized_force(q, v, u), rtol=1e-12)
+    np.testing.assert_allclose(number(equations.G), model.constraint_jacobian(q), rtol=1e-12)
+    assert equations.operations > 0 and str(equations.operations) in repr(equations)
