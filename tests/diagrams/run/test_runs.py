@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import symofros as sf
 from symofros import blocks
@@ -306,3 +307,33 @@ def test_fixed_steps_end_at_samples_of_a_held_sequence() -> None:
     diagram.add(blocks.Sequence(name="pulse", kind="hold", t=[0.0, 0.5031, 0.5049], values=values))
     run = sf.Simulation(diagram).run(1.0, method="rk4", dt=0.01, record=0.5)
     assert run["plant.v"][-1, 0] == pytest.approx(1.8, rel=1e-9)
+
+
+def test_a_loop_moves_beside_what_has_no_constraints() -> None:
+    """In one part: a mechanism on conditions, one without and a lag, each driven by another; against SciPy."""
+    lengths = {"a": 0.5, "b": 0.3}
+    hinges = [
+        sf.RigidBody(name, sf.Joint(name, "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0, 0, -length)))
+        for name, length in lengths.items()
+    ]
+    geared = sf.System("geared", hinges, constraints=(sf.Coupling("gear", sf.formula("b - 2*a")),))
+    slide = sf.RigidBody("s", sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True), sf.Inertia(2.0))
+    d = sf.Diagram("both")
+    d.add_model("loop", geared, start={"a": 0.4, "b": 0.8})
+    d.add_model("cart", sf.System("cart", [slide], gravity=(0, 0, 0)), start={"x": 0.1})
+    d.add(blocks.ForwardDynamics(name="loop", model="loop"))
+    d.add(blocks.ForwardDynamics(name="cart", model="cart"), u="force.y")
+    d.add(blocks.Pick(name="angle", entries=[0]), u="loop.q")
+    d.add(blocks.Pick(name="place", entries=[0]), u="cart.q")
+    d.add(Lag(name="lag", tau=0.2), x="place.y")
+    d.add(blocks.Formula(name="force", formulas={"y": ["3*a[0] - 0.5*b"]}), a="angle.y", b="lag.y")
+    run = sf.Simulation(d).run(0.5, method="dop853", rtol=1e-10, atol=1e-12, record=0.1)
+
+    def slope(_: float, y: np.ndarray) -> list[float]:
+        a, da, x, dx, s = y
+        pull = -9.81 * (0.5 * np.sin(a) + 2 * 0.3 * np.sin(2 * a)) / (0.25 + 4 * 0.09)
+        return [da, pull, dx, (3 * a - 0.5 * s) / 2.0, (x - s) / 0.2]
+
+    exact = solve_ivp(slope, (0.0, 0.5), [0.4, 0.0, 0.1, 0.0, 0.0], t_eval=run.t, rtol=1e-11, atol=1e-13).y.T
+    found = np.column_stack([run["loop.q"][:, 0], run["loop.v"][:, 0], run["cart.q"], run["cart.v"], run["lag.y"]])
+    np.testing.assert_allclose(found, exact, atol=1e-8)
