@@ -178,7 +178,7 @@ def inertia_is_accepted(J: Array) -> bool:
 
 
 def test_rotations_and_axes_of_parameters_are_judged_in_each_set() -> None:
-    """The first set whose axis vanishes, or whose matrix is no rotation, is named by its number."""
+    """The set in which a matrix is no rotation is named by its number."""
     matrix = ((1.0, 0, 0), (0, "c", "-s"), (0, "s", "c"))
     joint = sf.Joint("q", "revolute", axis=("x", 0, 1), rotation=sf.Rotation.matrix(matrix))
     names = {"x": 0.3, "c": 0.6, "s": 0.8}

@@ -346,3 +346,20 @@ def test_backlash_has_the_limit_cycle_of_its_describing_function(k: float) -> No
     harmonics = np.sqrt(1.0 - (spectrum[spread] ** 2).sum() / (spectrum**2).sum())
     assert harmonics < 0.06
     assert abs(found / w - 1.0) < harmonics and abs(first / amplitude - 1.0) < harmonics
+
+
+def test_runs_of_a_batch_keep_their_states_apart() -> None:
+    """Outcomes, events and last states of each run are those of a run by itself."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Hysteresis(20.0, 1.0),), effort=("4*sin(3*t)",))
+    system = sf.System("block", (sf.RigidBody("block", joint, sf.Inertia(1.5)),), gravity=(0, 0, 0))
+    model, starts = sf.compile(system, sf.Options(backend="tape")), np.array([[0.0], [0.4], [-0.2]])
+    given: dict[str, Any] = {"method": "rk4", "dt": 0.01, "events": {"back": sf.Event("dx", "falling")}}
+    runs = sf.simulate_batch(model, starts, 0.5 * starts, 2.5, **given)
+    for k, q in enumerate(starts):
+        one = sf.simulate(model, q, 0.5 * q, 2.5, **given)
+        assert runs.outcome((k,)).kind == one.outcome.kind == "finished"
+        assert [x.t for x in runs.events((k,))] == pytest.approx([x.t for x in one.events], abs=1e-9)
+        assert all(x.v.shape == (1,) for x in runs.events((k,)))
+        np.testing.assert_allclose(runs.z_last[k], one.z[-1], atol=1e-12)
+        np.testing.assert_allclose(runs[k].v[-1], one.v[-1], atol=1e-12)
+    assert all(runs.events((k,)) for k in range(3)) and not runs.bendings((0,))

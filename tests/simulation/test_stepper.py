@@ -398,3 +398,19 @@ def test_adaptive_steps_by_hand_end_where_laws_bend(law: str, method: str) -> No
     assert stepper.step(steps=10)
     run = sf.simulate(model, [0.0, 0.3], t_end=1.0, u=laws, method=method)
     np.testing.assert_allclose(stepper.v, run.v[-1], atol=2e-5)
+
+
+def test_inputs_by_name_leave_laws_as_they_are() -> None:
+    """Names that are left out are zero; those that have a law, or a number, are not given by hand."""
+    joints = [sf.Joint(n, "prismatic", axis=(1, 0, 0), effort=(f"F{n}",)) for n in "xyz"]
+    bodies = [sf.RigidBody(f"b{j.name}", j, sf.Inertia(1.0)) for j in joints]
+    system = sf.System("s", bodies, inputs=[sf.Input(f"F{n}") for n in "xyz"], gravity=(0, 0, 0))
+    stepper = sf.Stepper(sf.compile(system, sf.Options(backend="tape")), u={"Fy": 3.0}, dt=0.01)
+    assert stepper.inputs == ("Fx", "Fz")
+    stepper.reset(np.zeros(3))
+    stepper.step({"Fz": 2.0})
+    np.testing.assert_allclose(stepper.v, [0.0, 0.03, 0.02], atol=1e-15)
+    stepper.step({"Fx": 1.0})
+    np.testing.assert_allclose(stepper.v, [0.01, 0.06, 0.02], atol=1e-15)
+    with pytest.raises(sf.UnknownNameError, match="no input 'Fy' by hand"):
+        stepper.step({"Fy": 1.0})

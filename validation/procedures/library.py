@@ -285,7 +285,7 @@ def _noted(name: str, system: sf.System, exact: Mapping[str, float], motion: tup
     found = dict(zip(names.q, np.asarray(run["plant.q"])[0], strict=True))
     found |= {f"d{name}": x for name, x in zip(names.v, np.asarray(run["plant.v"])[0], strict=True)}
     notes = (re.search(r"start: (\S+) = \S+ was taken as (\S+),", note) for note in run.outcome.notes)
-    told = {note[1]: float(note[2]) for note in notes if note}
+    stated = {note[1]: float(note[2]) for note in notes if note}
     moved = {name for name, x in found.items() if abs(x - rounded[name]) > 1e-6}
-    error = max((abs(told[name] - found[name]) for name in moved & told.keys()), default=0.0)
-    return Cell(f"{name}: what is said of its start", error + len(moved ^ told.keys()), 1e-5)
+    error = max((abs(stated[name] - found[name]) for name in moved & stated.keys()), default=0.0)
+    return Cell(f"{name}: what is said of its start", error + len(moved ^ stated.keys()), 1e-5)
