@@ -24,6 +24,15 @@ def _acting() -> dict[str, Function]:
         ),
         "tendon_lengths": Function("lengths of tendons (n)", lambda t, s: _column(t.own.lines(s.q), 0), tendons),
         "tendon_arms": Function("their derivatives (n, nv)", lambda t, s: _column(t.own.lines(s.q), 1), tendons),
+        "tendon_speeds": Function(
+            "rates of lengths of tendons (n)", lambda t, s: _column(t.own.lines(s.q), 1) @ s.v, tendons
+        ),
+        "inverse_dynamics_acted": Function(
+            "M a + h less the passive forces (nv)", lambda t, s: t.ID(s.q, s.v, s.a) - t.own.passive(s.q, s.v), passive
+        ),
+        "actuator_speeds": Function(
+            "rates of actuator_lengths (nu)", lambda t, s: _column(t.own.transmissions(s.q), 1) @ s.v, actuators
+        ),
         "actuator_lengths": Function(
             "lengths that actuators act on, times gear (nu)",
             lambda t, s: _column(t.own.transmissions(s.q), 0),

@@ -47,6 +47,9 @@ def _constrained() -> dict[str, Function]:
         "constraint_forces": Function(
             "f (m): M a + h = tau + J^T f, J a + J' v = 0", lambda t, s: constraints.forces(t, s.q, s.v, s.tau)
         ),
+        "constrained_inverse": Function(
+            "forces (nv) that inverse dynamics find at the acceleration that tau makes: tau", lambda t, s: s.tau
+        ),
         "impact_velocity": Function(
             "speeds after impact (nv): M (v+ - v2) = J^T impulse, J v+ = 0",
             lambda t, s: constraints.after_impact(t, s.q, s.v2, 0 * half),

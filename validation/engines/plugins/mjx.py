@@ -2,26 +2,116 @@
 
 from __future__ import annotations
 
-from ..interface import Convention, Tree, Unsupported
+from dataclasses import replace
+
+from ..interface import STEP, Convention, Tree, Unsupported
 from . import mujoco
 from .writing.source import Source, SourcePlugin, Way
 
-_SETUP = """import jax
+# What is compiled is asked a few times: the time is that of compiling.
+_SETUP = """import os
+os.environ['XLA_FLAGS'] = os.environ.get('XLA_FLAGS', '') + ' --xla_backend_optimization_level=0'
+import jax
 jax.config.update("jax_enable_x64", True)
 from mujoco import mjx
 mx, empty = mjx.put_model(m), mjx.make_data(m)
-# Compiled once a tree: kinematics and what rests on them.
-def terms(q, v):
-    d = mjx.com_vel(mx, mjx.com_pos(mx, mjx.kinematics(mx, empty.replace(qpos=q, qvel=v))))
-    return mjx.full_m(mx, mjx.crb(mx, d)), mjx.rne(mx, d).qfrc_bias, d.xpos, d.xmat
-terms = jax.jit(terms)
-links = [m.body(name).id for name in {links}]"""
+def at(q, v, **more):
+    if m.nu: more['ctrl'] = jax.numpy.array(d.ctrl)
+    if m.na: more['act'] = jax.numpy.array(states)
+    return empty.replace(qpos=q, qvel=v, **more)
+# Each is compiled once a tree.
+def forward(q, v, tau):
+    e = mjx.forward(mx, at(q, v, qfrc_applied=tau))
+    return e, mjx.full_m(mx, e)
+forward = jax.jit(forward)
+def inverse(q, v, a):
+    e = mjx.fwd_velocity(mx, mjx.fwd_position(mx, at(q, v, qacc=a)))
+    e = mjx.sensor_vel(mx, mjx.sensor_pos(mx, e))
+    return mjx.sensor_acc(mx, e), mjx.inverse(mx, e).qfrc_inverse
+inverse = jax.jit(inverse)
+def got(e, name): return np.array(getattr(e, name) if hasattr(e, name) else getattr(e._impl, name))
+def stepped(q, v, tau, **options):
+    from copy import copy
+    n = copy(m)
+    n.opt.timestep = STEP
+    for name, value in options.items(): setattr(n.opt, name, value)
+    if (name := str(options)) not in steps:
+        my = mjx.put_model(n)
+        steps[name] = jax.jit(lambda q, v, tau: mjx.step(my, at(q, v, qfrc_applied=tau)))
+    return steps[name](q, v, tau)
+steps = {}
+links = [m.body(name).id for name in LINKS]"""
+_SENSED = (
+    "sensed = range({count})",
+    "def data(e, kind, k):\n    one = m.sensor(f'{{kind}}{{k}}')\n"
+    "    return np.array(e.sensordata)[one.adr[0]:one.adr[0] + one.dim[0]]",
+)
 
+
+def _field(name: str) -> Way:
+    """A field of what mjx.forward answers."""
+    return Way(name, f"value = got(forward(q, v, tau)[0], '{name}')")
+
+
+def _sensor(kind: str) -> Way:
+    return Way(kind, f"e = inverse(q, v, a)[0]\nvalue = [data(e, '{kind}', k) for k in sensed]")
+
+
+def _step(integrator: str) -> Way:
+    code = f"e = stepped(q, v, tau, integrator=mj.mjtIntegrator.{integrator})"
+    return Way(f"step, {integrator}", f"{code}\nvalue = np.r_[np.array(e.qpos), np.array(e.qvel)]")
+
+
+_STEPS = {
+    "step_dampers_implicit": _step("mjINT_EULER"),
+    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+}
 WAYS = {
-    "mass_matrix": Way("crb, full_m", "value = terms(q, v)[0]"),
-    "bias": Way("rne", "value = terms(q, v)[1]"),
-    "gravity": Way("rne", "value = terms(q, 0 * v)[1]"),
-    "link_poses": Way("kinematics", "p, R = terms(q, v)[2:]\nvalue = [[*p[k], *np.ravel(R[k])] for k in links]"),
+    "mass_matrix": Way("full_m", "value = forward(q, v, tau)[1]"),
+    "bias": Way("qfrc_bias", "value = got(forward(q, v, tau)[0], 'qfrc_bias')"),
+    "gravity": Way("qfrc_bias", "value = got(forward(q, 0 * v, tau)[0], 'qfrc_bias')"),
+    "link_poses": Way(
+        "xpos, xmat",
+        "e = forward(q, v, tau)[0]\nvalue = [[*got(e, 'xpos')[k], *np.ravel(got(e, 'xmat')[k])] for k in links]",
+    ),
+    "forward_dynamics": Way("forward", "value = got(forward(q, v, tau)[0], 'qacc')"),
+    "inverse_dynamics_acted": Way("inverse", "value = inverse(q, v, a)[1]"),
+    "mass_centre": Way("subtree_com", "value = got(forward(q, v, tau)[0], 'subtree_com')[0]"),
+    "link_velocities": Way(
+        "cvel",
+        "e, value = forward(q, v, tau)[0], []\nfor b in links:\n    w, u = got(e, 'cvel')[b].reshape(2, 3)\n"
+        "    value.append([*(u + np.cross(w, got(e, 'xpos')[b] - got(e, 'subtree_com')[m.body_rootid[b]])), *w])",
+    ),
+    "passive_forces": _field("qfrc_passive"),
+    "tendon_lengths": _field("ten_length"),
+    "tendon_arms": Way("ten_J", "value = got(forward(q, v, tau)[0], 'ten_J').reshape(-1, m.nv)"),
+    "tendon_speeds": _field("ten_velocity"),
+    "actuator_lengths": _field("actuator_length"),
+    "actuator_speeds": _field("actuator_velocity"),
+    "actuator_arms": Way("actuator_moment", "value = got(forward(q, v, tau)[0], 'actuator_moment').reshape(-1, m.nv)"),
+    "actuator_forces": _field("actuator_force"),
+    "actuated_forces": _field("qfrc_actuator"),
+    "activation_rates": _field("act_dot"),
+    "activations_after_step": Way(
+        "step", "value = got(stepped(q, v, 0 * v, integrator=mj.mjtIntegrator.mjINT_EULER), 'act')"
+    ),
+    "accelerometers": _sensor("accelerometer"),
+    "gyroscopes": _sensor("gyro"),
+    "velocimeters": _sensor("velocimeter"),
+    "angular_accelerations": _sensor("frameangacc"),
+    "accelerometers_driven": Way(
+        "forward, accelerometer", "e = forward(q, v, tau)[0]\nvalue = [data(e, 'accelerometer', k) for k in sensed]"
+    ),
+    "wrench_sensors": Way(
+        "force, torque",
+        "e = inverse(q, v, a)[0]\nvalue = [[*data(e, 'force', k), *data(e, 'torque', k)] for k in sensed]",
+    ),
+    "frame_poses": Way(
+        "site_xpos, site_xmat",
+        "e, own = forward(q, v, tau)[0], [m.site(f'o{k}').id for k in sensed]\n"
+        "value = np.hstack([got(e, 'site_xpos')[own], got(e, 'site_xmat')[own].reshape(-1, 9)])",
+    ),
+    **_STEPS,
 }
 
 
@@ -30,10 +120,14 @@ def write(tree: Tree) -> Source | Unsupported:
     source = mujoco.write(tree)
     if isinstance(source, Unsupported):
         return source
-    setup = _SETUP.format(links=[link.name for link in tree.links])
-    return Source((*source.lines, *setup.split("\n")), source.slots, source.nq, source.nv)
+    setup = _SETUP.replace("STEP", repr(STEP)).replace("LINKS", repr([link.name for link in tree.links]))
+    optional = {"sensed": tuple(line.format(count=len(tree.sensors)) for line in _SENSED)} if tree.sensors else {}
+    # Steps are compiled one by one: they are asked of trees that forces act on.
+    lacks = () if tree.forces else tuple(_STEPS)
+    return replace(source, lines=(*source.lines, *setup.split("\n")), optional=optional, lacks=lacks)
 
 
+_OFFERED = ("dampers", "springs", "compensation", "sensors", "tendons", "wrapped tendons", "heavy tendons")
 PLUGIN = SourcePlugin(
     name="mjx",
     package="mujoco-mjx",
@@ -45,5 +139,6 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, "actuators", "activations")},
     calls=4,
 )

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arithmetic import Exact, exact, eye, orthonormal, skew, solve, stack, zeros
+from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, solve, stack, zeros
 from .dynamics import Point, Truth
 from .kinematics import Inertia
 
@@ -59,6 +59,24 @@ def accelerations(truth: Truth, q: Exact, v: Exact, a: Exact, frame: Frame) -> E
 def classical(truth: Truth, q: Exact, v: Exact, a: Exact) -> Exact:
     """Accelerations of the links' origins and angular accelerations, along world axes (L, 6)."""
     return truth.motions(q, v, a)[2]
+
+
+def poses_seen(truth: Truth, s: Point) -> Exact:
+    """Positions and rows of R of the links, in the first link's frame (L, 12)."""
+    poses = truth.kinematics.poses(s.q)
+    R_first, p_first = poses[0]
+    return np.array([[*(R_first.T @ (p - p_first)), *(R_first.T @ R).reshape(9)] for R, p in poses], dtype=object)
+
+
+def velocities_seen(truth: Truth, s: Point) -> Exact:
+    """Rates of the links' positions in the first link's frame, and angular velocities against it, along it (L, 6)."""
+    poses, twists_ = truth.kinematics.poses(s.q), truth.kinematics.jacobians(s.q) @ s.v
+    (R_first, p_first), first = poses[0], twists_[0]
+    rows = []
+    for (_, p), own in zip(poses, twists_, strict=True):
+        linear = own[:3] - first[:3] - cross(first[3:], p - p_first)
+        rows.append(np.concatenate([R_first.T @ linear, R_first.T @ (own[3:] - first[3:])]))
+    return np.array(rows, dtype=object)
 
 
 def joint_wrenches(truth: Truth, s: Point) -> Exact:

@@ -8,7 +8,7 @@ from ...interface import Convention, Statement, Tree, Unsupported
 from ..writing.source import Source, SourcePlugin, attached, numbered
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
 from . import elements as beside
-from . import flex, forces, functions
+from . import besides, flex, forces, functions, rebuilt, turns
 from .document import CHARTS, document
 
 # Fields of MuJoCo's model that state what is changed.
@@ -34,6 +34,8 @@ def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
     if tree.asked == "flexible bodies":
         return flex.write(tree)
+    if tree.asked == "turns":
+        return turns.write()
     if tree.changed:
         first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
         if isinstance(first, Unsupported) or isinstance(last, Unsupported):
@@ -60,7 +62,9 @@ def write(tree: Tree) -> Source | Unsupported:
             "def data(kind, k): return d.sensor(f'{kind}{k}').data",
         )
     spelling = beside.spelling(tree) if tree.constraints else {}
-    return Source(tuple(lines), slots, nq, nv, optional, spelling=spelling)
+    # What is attached already is not made in other ways.
+    lacks = (*rebuilt.SENSED, *rebuilt.ways(_WAYS)) if own else ()
+    return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling)
 
 
 def _compiled(tree: Tree, xml: str) -> list[str]:
@@ -120,6 +124,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     return Source(lines, slots, nq, nv, optional)
 
 
+_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | turns.WAYS
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",
@@ -134,11 +139,12 @@ PLUGIN = SourcePlugin(
         Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=functions.WAYS | beside.WAYS | forces.WAYS,
+    ways=_WAYS | rebuilt.ways(_WAYS) | rebuilt.SENSED,
     write=write,
     constraints=beside.KINDS,
     demands={
         "attached": "MjSpec, attach_body",
+        "turns": "rotations as quaternions and matrices",
         "fused": "fusestatic",
         **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in _CHANGED.items()},
         "dampers": "damping",
@@ -174,7 +180,7 @@ PLUGIN = SourcePlugin(
             "precondition",
             "a row's reference acceleration is -b v - k r: what the rate of its Jacobian adds, J'v, is left out",
             "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
-            "constraint_velocity_products|constrained_acceleration|constraint_forces",
+            "constraint_velocity_products|constrained_acceleration(:.*)?|constraint_forces",
             lambda tree, text: any(one.kind in ("path", "polynomial") for one in tree.constraints),
         ),
         UNIT_AXIS,

@@ -1,0 +1,79 @@
+"""What MuJoCo says a second time of what is asked: other fields, functions and drivers of the same."""
+
+from __future__ import annotations
+
+from ...interface import STEP
+from ..writing.source import Way
+from .forces import COPY, QV, QVA, Q
+
+_JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor J, b in zip(value, bs):\n    "
+_STEPPED = f"{COPY}n.opt.timestep = {STEP}\n"
+_FULL = "mj.mjtState.mjSTATE_INTEGRATION"
+_COPIED = (
+    f"d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nstate = np.zeros(mj.mj_stateSize(m, {_FULL}))\n"
+    f"mj.mj_getState(m, d, state, {_FULL})\ne = mj.MjData(m)\nmj.mj_setState(m, e, state, {_FULL})\n"
+)
+# What is left of the solver's residual, beside forces that speeds make large.
+_CONVERGED = 1e-5
+
+WAYS = {
+    "link_velocities:cvel": Way(
+        "cvel",
+        f"{QV}value = []\nfor b in bs:\n    w, u = d.cvel[b].reshape(2, 3)\n"
+        "    value.append([*(u + np.cross(w, d.xpos[b] - d.subtree_com[m.body_rootid[b]])), *w])",
+    ),
+    "mass_centre:xipos": Way("xipos", f"{Q}value = m.body_mass @ d.xipos / sum(m.body_mass)"),
+    "link_jacobians:mj_jac": Way("mj_jac", f"{Q}{_JACOBIANS}mj.mj_jac(m, d, J[:3], J[3:], d.xpos[b], b)"),
+    "link_jacobians:mj_jacBodyCom": Way(
+        "mj_jacBodyCom",
+        f"{Q}{_JACOBIANS}mj.mj_jacBodyCom(m, d, J[:3], J[3:], b)\n"
+        "    J[:3] += np.cross(d.xipos[b] - d.xpos[b], J[3:].T).T",
+    ),
+    "link_jacobians:mj_jacPointAxis": Way(
+        "mj_jacPointAxis",
+        f"{Q}value = np.zeros((len(bs), 6, m.nv))\nfor J, b in zip(value, bs):\n    turned = np.zeros((3, 3, m.nv))\n"
+        "    for x, unit in zip(turned, np.eye(3)): mj.mj_jacPointAxis(m, d, J[:3], x, d.xpos[b], unit, b)\n"
+        "    J[3:] = [turned[1][2], turned[2][0], turned[0][1]]",
+    ),
+    "link_velocities:cdof": Way(
+        "cdof",
+        f"{QV}value = np.zeros((len(bs), 6))\nfor row, b in zip(value, bs):\n    place = b\n    while place:\n"
+        "        for k in range(m.body_dofadr[place], m.body_dofadr[place] + m.body_dofnum[place]):\n"
+        "            w, u = d.cdof[k].reshape(2, 3) * v[k]\n"
+        "            row += [*(u + np.cross(w, d.xpos[b] - d.subtree_com[m.body_rootid[b]])), *w]\n"
+        "        place = m.body_parentid[place]",
+    ),
+    "inverse_dynamics_acted": Way("mj_inverse", f"{QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
+    "forward_dynamics:mj_setState": Way("mj_getState, mj_setState", f"{_COPIED}mj.mj_forward(m, e)\nvalue = e.qacc"),
+    "step_dampers_implicit:mj_setState": Way(
+        "mj_getState, mj_setState, mj_step",
+        f"{_COPIED}{_STEPPED}mj.mj_step(n, e)\nvalue = np.r_[e.qpos, e.qvel]",
+    ),
+    "step_dampers_implicit:rollout": Way(
+        "rollout",
+        f"from mujoco import rollout\n{_STEPPED}d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
+        "FULL, APPLIED = mj.mjtState.mjSTATE_FULLPHYSICS, mj.mjtState.mjSTATE_CTRL | mj.mjtState.mjSTATE_QFRC_APPLIED\n"
+        "state, given = np.zeros(mj.mj_stateSize(n, FULL)), np.zeros(mj.mj_stateSize(n, APPLIED))\n"
+        "mj.mj_getState(n, d, state, FULL)\nmj.mj_getState(n, d, given, APPLIED)\n"
+        "ends, _ = rollout.rollout(n, mj.MjData(n), state[None], given[None, None], control_spec=APPLIED)\n"
+        "e = mj.MjData(n)\nmj.mj_setState(n, e, ends[0, -1], FULL)\nvalue = np.r_[e.qpos, e.qvel]",
+    ),
+    "passive_forces:parts": Way(
+        "qfrc_spring, qfrc_damper, qfrc_gravcomp, qfrc_fluid",
+        f"{QV}value = d.qfrc_spring + d.qfrc_damper + d.qfrc_gravcomp + d.qfrc_fluid",
+    ),
+    "tendon_speeds": Way("ten_velocity", f"{QV}value = d.ten_velocity"),
+    "actuator_speeds": Way("actuator_velocity", f"{QV}value = d.actuator_velocity"),
+    "constraint_jacobian:mj_mulJacVec": Way(
+        "mj_mulJacVec",
+        "m.eq_solref[:] = 0.0\nm.opt.jacobian, m.opt.tolerance = mj.mjtJacobian.mjJAC_SPARSE, 0.0\n"
+        "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nmj.mj_forward(m, d)\nJ = np.zeros((m.nv, d.nefc))\n"
+        "for column, unit in zip(J, np.eye(m.nv)): mj.mj_mulJacVec(m, d, column, unit)\nvalue = axes() @ J.T",
+    ),
+    "constrained_inverse": Way(
+        "mj_forward, mj_inverse",
+        "m.opt.tolerance = 0.0\nd.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nmj.mj_forward(m, d)\n"
+        "mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse",
+        _CONVERGED,
+    ),
+}

@@ -1,0 +1,85 @@
+"""MuJoCo's rotations: its functions of quaternions, vectors and matrices."""
+
+from __future__ import annotations
+
+from ...interface import Slot
+from ..writing.source import HALF_TURNS, Source, Way
+
+_MATRIX = "value = np.zeros(9)\nmj.mju_quat2Mat(value, {of})"
+_QUATERNION = "x = np.zeros(4)\n"
+_HALF = "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
+# The vector's length and direction, of which mju_axisAngle2Quat takes each.
+_LENGTH = "r = {of}\nangle = np.linalg.norm(r)\naxis = r / angle if angle else np.array([1.0, 0, 0])\n"
+_BY_AXIS = f"{_LENGTH}{_QUATERNION}mj.mju_axisAngle2Quat(x, axis, angle)\n{_MATRIX.format(of='x')}"
+_INTEGRATED = f"x = np.array([1.0, 0, 0, 0])\nmj.mju_quatIntegrate(x, {{of}}, 1.0)\n{_MATRIX.format(of='x')}"
+_OF_TAU = _LENGTH.format(of="tau") + f"{_QUATERNION}mj.mju_axisAngle2Quat(x, axis, angle)\n"
+_D = "value = np.zeros((3, 3))\n"
+_WAYS = {
+    "rotation_matrix": ("mju_quat2Mat", _MATRIX.format(of="q")),
+    "rotation_matrix:mju_rotVecQuat": (
+        "mju_rotVecQuat",
+        "value = np.zeros((3, 3))\nfor column, unit in zip(value, np.eye(3)): mj.mju_rotVecQuat(column, unit, q)\n"
+        "value = value.T.ravel()",
+    ),
+    "rotation_matrix:mju_mat2Quat": (
+        "mju_mat2Quat",
+        f"R = np.zeros(9)\nmj.mju_quat2Mat(R, q)\n{_QUATERNION}mj.mju_mat2Quat(x, R)\n{_MATRIX.format(of='x')}",
+    ),
+    # Of a matrix that is scaled, the nearest rotation.
+    "rotation_matrix:mju_mat2Rot": (
+        "mju_mat2Rot",
+        "R = np.zeros(9)\nmj.mju_quat2Mat(R, q)\nx = np.array([1.0, 0, 0, 0])\n"
+        f"for _ in range(9): mj.mju_mat2Rot(x, 2 * R)\n{_MATRIX.format(of='x')}",
+    ),
+    "rotation_composed": ("mju_mulQuat", f"{_QUATERNION}mj.mju_mulQuat(x, q, q2)\n{_MATRIX.format(of='x')}"),
+    "rotation_composed:mju_mulPose": (
+        "mju_mulPose",
+        f"{_QUATERNION}mj.mju_mulPose(np.zeros(3), x, a, q, v, q2)\n{_MATRIX.format(of='x')}",
+    ),
+    "rotation_angle": ("mju_subQuat", "r = np.zeros(3)\nmj.mju_subQuat(r, q, q2)\nvalue = [np.linalg.norm(r)]"),
+    "rotation_logarithm": (
+        "mju_quat2Vel",
+        "value = np.zeros(3)\nmj.mju_quat2Vel(value, q if q[0] > 0 else -q, 1.0)",
+    ),
+    "rotation_logarithm:longer": ("mju_quat2Vel", "value = np.zeros(3)\nmj.mju_quat2Vel(value, -q, 1.0)"),
+    "rotation_logarithm:mju_subQuat": (
+        "mju_subQuat",
+        "value = np.zeros(3)\nmj.mju_subQuat(value, q, np.array([1.0, 0, 0, 0]))",
+    ),
+    "rotation_exponential": ("mju_quatIntegrate", _INTEGRATED.format(of="v")),
+    "rotation_exponential:mju_axisAngle2Quat": ("mju_axisAngle2Quat", _BY_AXIS.format(of="v")),
+    "rotation_exponential_of_turns": ("mju_quatIntegrate", _INTEGRATED.format(of="16 * v")),
+    "rotation_half_turn": (
+        "mju_mat2Quat",
+        f"{_HALF}{_QUATERNION}mj.mju_mat2Quat(x, H.ravel())\n{_MATRIX.format(of='x')}",
+    ),
+    "rotation_half_turns": (
+        "mju_mat2Quat",
+        f"{HALF_TURNS}value, x = np.zeros((len(half_turns), 9)), np.zeros(4)\n"
+        "for row, H in zip(value, half_turns):\n    mj.mju_mat2Quat(x, H.ravel())\n    mj.mju_quat2Mat(row, x)",
+    ),
+    "rotation_vector_speeds": (
+        "mjd_quatIntegrate",
+        "value = np.zeros(9)\nmj.mjd_quatIntegrate(tau, 1.0, np.zeros(9), value, np.zeros(3))\nvalue = value.reshape(3, 3)",
+    ),
+    "rotation_vector_rates": (
+        "mjd_subQuat",
+        f"{_OF_TAU}{_D}mj.mjd_subQuat(x, np.array([1.0, 0, 0, 0]), value, np.zeros((3, 3)))",
+    ),
+    "twist_transform": (
+        "mju_transformSpatial",
+        "R = np.zeros(9)\nmj.mju_quat2Mat(R, q)\nR, value = R.reshape(3, 3), np.zeros((6, 6))\n"
+        "for column, unit in zip(value, np.eye(6)):\n    x = np.zeros(6)\n"
+        "    mj.mju_transformSpatial(x, np.roll(unit, 3), 0, -R.T @ a, np.zeros(3), R.T.ravel())\n"
+        "    column[:] = np.roll(x, 3)\nvalue = value.T",
+    ),
+}
+# mju_mat2Rot stops where a step would turn by less than 1e-9.
+_STOPS = {"rotation_matrix:mju_mat2Rot": 2e-9}
+WAYS = {name: Way(native, code, _STOPS.get(name, 0.0)) for name, (native, code) in _WAYS.items()}
+
+
+def write() -> Source:
+    """Text that imports it: a turn is a quaternion."""
+    slots = ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),)
+    return Source(("import numpy as np", "import mujoco as mj"), slots, 4, 3)
