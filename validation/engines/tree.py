@@ -151,12 +151,15 @@ class Constraint:
         ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
         coefficients: Of a "coupling", for each end; of a "polynomial", for each power.
         torque_scale: Of a "weld", factor of its rows of rotation.
+        by_bodies: Whether only the first frame of a "point" is stated: the second is where that is with all
+            coordinates zero.
     """
 
     kind: str
     ends: tuple[End, ...]
     coefficients: tuple[float, ...] = ()
     torque_scale: float = 1.0
+    by_bodies: bool = False
 
 
 class Wrap(NamedTuple):
@@ -300,7 +303,8 @@ class Tree:
         attached: Name of a link that begins a model of its own, which the engine attaches to the others' ("").
         fused: Whether the engine fuses links that don't move against each other.
         changed: What the engine changes, once model and data are there and used, from `before` to what is stated:
-            "mass", "inertia" (with mass centres), "frame" (placements of joints) or "gravity"; "" for nothing.
+            "mass", "inertia" (with mass centres), "frame" (placements of joints), "anchor" (first frames of
+            constraints) or "gravity"; "" for nothing.
         tendons: Lengths over its joints or links.
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
@@ -345,7 +349,9 @@ class Tree:
     def demands(self) -> frozenset[str]:
         """What an engine must know by name to be asked about it: transformations, forces, "sensors" and the like."""
         scaled = any(one.torque_scale != 1.0 for one in self.constraints)
-        stated = {"sensors": bool(self.sensors), "scaled welds": scaled, self.asked: bool(self.asked)}
+        by_bodies = any(one.by_bodies for one in self.constraints)
+        stated = {"sensors": bool(self.sensors), "scaled welds": scaled, "points by bodies": by_bodies}
+        stated[self.asked] = bool(self.asked)
         return self.transformations | self.forces | {name for name, there in stated.items() if there}
 
     @property
@@ -361,4 +367,16 @@ class Tree:
         """The tree that an engine builds first, where it changes one thing of it after."""
         x, y, z = self.gravity
         links = tuple(link.before(self.changed) for link in self.links)
-        return replace(self, links=links, gravity=(z, x, y) if self.changed == "gravity" else self.gravity, changed="")
+        constraints = self.constraints
+        if self.changed == "anchor":
+            moved = ((one, one.ends[0], one.ends[1:]) for one in self.constraints)
+            constraints = tuple(
+                replace(one, ends=(first._replace(p=(0.5, 0.25, -0.125)), *others)) for one, first, others in moved
+            )
+        return replace(
+            self,
+            links=links,
+            constraints=constraints,
+            gravity=(z, x, y) if self.changed == "gravity" else self.gravity,
+            changed="",
+        )

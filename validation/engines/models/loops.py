@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..interface import Constraint, End, Joint, Link, Tree
@@ -82,6 +84,22 @@ def _four_bar() -> Tree:
     return Tree("four-bar in a plane", links, constraints=(closing,))
 
 
+def _by_bodies() -> Tree:
+    """Two branches along the world's axes at zero, where one anchor is the other."""
+    x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    draw = np.random.default_rng(41)
+    stated = (
+        ("a0", -1, y, (0.0, 0.0, 0.0)),
+        ("a1", 0, x, (0.5, 0.0, 0.0)),
+        ("a2", 1, z, (0.5, 0.0, 0.25)),
+        ("b0", -1, y, (0.0, 0.0, 1.0)),
+        ("b1", 3, z, (0.5, 0.25, 0.0)),
+    )
+    links = tuple(link(draw, name, parent, Joint("revolute", p=p, axis=axis)) for name, parent, axis, p in stated)
+    ends = End("a2", p=(0.25, 0.5, 0.0)), End("b1", p=(0.75, 0.25, -0.75))
+    return Tree("point by bodies", links, constraints=(Constraint("point", ends, by_bodies=True),))
+
+
 def _of_joint(name: str, joint: Joint) -> Tree:
     """A joint of some kind amid one of two branches that a point binds."""
     draw = np.random.default_rng([ord(letter) for letter in name])
@@ -128,6 +146,8 @@ def trees() -> dict[str, Tree]:
         _lone_body(),
         _pair("weld"),
         _pair("point"),
+        _by_bodies(),
+        replace(_by_bodies(), name="anchor changed", changed="anchor"),
         _two_points(),
         _four_bar(),
         _of_joint("point beyond a slide", Joint("prismatic", axis=OBLIQUE)),

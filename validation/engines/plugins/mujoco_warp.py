@@ -6,7 +6,9 @@ from dataclasses import replace
 
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
 from . import mujoco
-from .mujoco.forces import COPY, EXPLICIT
+from .mujoco import rebuilt
+from .mujoco.elements import KINDS, SOFT, SOFT_FORCES
+from .mujoco.forces import COPY, EXPLICIT, SPARSE
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
@@ -23,6 +25,9 @@ def made(model, **room):
     if model.nu: put(data, ctrl=d.ctrl)
     if model.na: put(data, act=states)
     return mjw.put_model(model), data
+def sense(kind, b=None):
+    one = m.sensor(f'{{kind}}:{{m.body(b).name}}' if b else kind)
+    return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]
 wp.set_device('cpu')
 mw, dw = made(m, njmax=0, nconmax=0)"""
 _SENSED = (
@@ -72,6 +77,59 @@ def _sensor(kind: str, before: str = _INVERSE) -> Way:
     return Way(kind, f"{before}value = [data('{kind}', k) for k in sensed]")
 
 
+# Rows of constraints as MuJoCo's own data turn them (`axes`).
+_ROWS = """m.eq_solref[:] = 0.0
+m.opt.tolerance = 0.0
+{jacobian}d.qpos[:] = {at}
+mj.mj_kinematics(m, d)
+mc, dc = made(m)
+put(dc, qpos={at}, qvel=v, qfrc_applied=tau)
+mjw.forward(mc, dc)
+rows = int(dc.nefc.numpy()[0])
+def row(name): return getattr(dc.efc, name).numpy()[0][:rows]
+"""
+_DENSE = "m.opt.jacobian = mj.mjtJacobian.mjJAC_DENSE\n"
+_AGAIN = _ROWS.replace("mjw.forward(mc, dc)\n", "mjw.forward(mc, dc)\nmjw.forward(mc, dc)\n")
+_J_SPARSE = """J = np.zeros((rows, m.nv))
+parts = (row('J_rownnz'), row('J_rowadr'), dc.efc.J_colind.numpy().ravel(), dc.efc.J.numpy().ravel())
+for line, n, first in zip(J, parts[0], parts[1]): line[parts[2][first:first + n]] = parts[3][first:first + n]
+"""
+
+
+def _bound(native: str, code: str, slack: float = 0.0, at: str = "q", jacobian: str = _DENSE, rows: str = _ROWS) -> Way:
+    """A field of constraints."""
+    return Way(native, rows.format(at=at, jacobian=jacobian) + code, slack)
+
+
+_CONSTRAINED = {
+    "constraint_jacobian": _bound("efc.J", "value = axes() @ row('J')[:, :m.nv]"),
+    "constraint_jacobian:sparse": _bound(
+        "efc.J, sparse", f"{_J_SPARSE}value = axes() @ J", jacobian=SPARSE.replace("n.opt", "m.opt")
+    ),
+    "constraint_velocity_products": _bound("-efc.aref", "value = -axes() @ row('aref')"),
+    "constraint_velocity_products:forward twice": _bound(
+        "-efc.aref after a second forward", "value = -axes() @ row('aref')", rows=_AGAIN
+    ),
+    "constrained_acceleration:forward twice": _bound(
+        "qacc after a second forward", "value = got(dc, 'qacc')", SOFT, rows=_AGAIN
+    ),
+    "constraint_residuals": _bound("efc.pos", "value = row('pos') * ways_round()", at="q2"),
+    "constrained_acceleration": _bound("forward: qacc", "value = got(dc, 'qacc')", SOFT),
+    "constraint_forces": _bound("efc.force", "value = np.linalg.solve(axes().T, row('force'))", SOFT_FORCES),
+}
+
+
+def _of_links() -> dict[str, Way]:
+    """Sensors of links, of MuJoCo's model that has them."""
+    made = {}
+    for name, way in rebuilt.SENSED.items():
+        code = way.code.replace(rebuilt.QVA, _INVERSE).replace(rebuilt.QV, _FORWARD.replace("tau", "0 * v"))
+        code = code.replace("read(", "sense(").replace("d.sensor(", "sense(").replace(").data[0]", ")[0]")
+        code = code.replace("m.body_subtreemass[", "mw.body_subtreemass.numpy()[0, ")
+        made[name] = way._replace(code=code)
+    return made
+
+
 WAYS = {
     "mass_matrix": Way("crb", f"{_Q}{_FULL}"),
     "mass_matrix:mul_m": Way("mul_m", f"{_Q}{_COLUMNS.format(call='mul_m')}"),
@@ -90,12 +148,12 @@ WAYS = {
     "centroidal_momentum": Way(
         "subtree_vel",
         f"{_QV}mjw.subtree_vel(mw, dw)\n"
-        "value = np.r_[m.body_subtreemass[0] * got(dw, 'subtree_linvel')[0], got(dw, 'subtree_angmom')[0]]",
+        "value = np.r_[mw.body_subtreemass.numpy()[0, 0] * got(dw, 'subtree_linvel')[0], got(dw, 'subtree_angmom')[0]]",
     ),
     "subtree_momenta": Way(
         "subtree_vel",
         f"{_QV}mjw.subtree_vel(mw, dw)\nlinear, angular = got(dw, 'subtree_linvel'), got(dw, 'subtree_angmom')\n"
-        "value = [[*(m.body_subtreemass[b] * linear[b]), *angular[b]] for b in bs]",
+        "value = [[*(mw.body_subtreemass.numpy()[0, b] * linear[b]), *angular[b]] for b in bs]",
     ),
     # About the mass centre of the whole mechanism that the body is in.
     "joint_wrenches": Way(
@@ -112,6 +170,8 @@ for b in bs:
     "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
     "step_velocities_implicit": _step("mjINT_IMPLICIT"),
     "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+    "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
+    "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
     "step_rk4_manifold": _step("mjINT_RK4"),
     "accelerometers": _sensor("accelerometer"),
@@ -129,6 +189,18 @@ for b in bs:
     ),
     "passive_forces": _reading("qfrc_passive"),
     "tendon_lengths": _reading("ten_length"),
+    "tendon_speeds": _reading("ten_velocity"),
+    "inverse_dynamics_acted": Way("inverse", f"{_INVERSE}value = got(dw, 'qfrc_inverse')"),
+    "link_velocities": Way(
+        "cvel",
+        f"{_QV}value = []\nfor b in bs:\n    w, u = got(dw, 'cvel')[b].reshape(2, 3)\n"
+        "    value.append([*(u + np.cross(w, got(dw, 'xpos')[b] - got(dw, 'subtree_com')[m.body_rootid[b]])), *w])",
+    ),
+    "forward_dynamics:put_data": Way(
+        "put_data, get_data_into",
+        "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nmj.mj_forward(m, d)\ne = mj.MjData(m)\n"
+        "dn = mjw.put_data(m, d)\nmjw.forward(mw, dn)\nmjw.get_data_into(e, m, dn)\nvalue = e.qacc",
+    ),
     "tendon_arms": Way(
         "ten_J",
         f"{_QV}value, J = np.zeros((m.ntendon, m.nv)), got(dw, 'ten_J')\n"
@@ -136,6 +208,7 @@ for b in bs:
         "    row[m.ten_J_colind[first:first + n]] = J[first:first + n]",
     ),
     "actuator_lengths": _reading("actuator_length"),
+    "actuator_speeds": _reading("actuator_velocity"),
     "actuator_arms": Way(
         "actuator_moment",
         f"{_QV}value = np.zeros((m.nu, m.nv))\n"
@@ -152,6 +225,8 @@ for b in bs:
         "value = got(dn, 'act')",
     ),
     "actuated_forces": _reading("qfrc_actuator", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+    **_CONSTRAINED,
+    **_of_links(),
 }
 
 
@@ -163,10 +238,33 @@ def write(tree: Tree) -> Source | Unsupported:
     optional = dict(source.optional)
     if tree.sensors:
         optional["sensed"] = tuple(line.format(count=len(tree.sensors)) for line in _SENSED)
-    return replace(source, lines=(*source.lines, *_SETUP.split("\n")), optional=optional)
+    setup = tuple(_SETUP.replace("njmax=0", f"njmax={'64' if tree.constraints else '0'}").split("\n"))
+    if not tree.changed:
+        return replace(source, lines=(*source.lines, *setup), optional=optional)
+    made = _CHANGE.replace("FIELDS", repr([_place(name) for name in mujoco.CHANGED[tree.changed]]))
+    return replace(source, lines=(*source.lines, *setup, *made.split("\n")), closing=(), optional=optional)
 
 
-_UNOFFERED = ("flexible bodies", "scaled welds", "a lone body")
+def _place(name: str) -> tuple[str, str, int | None]:
+    """Where a field of a model stands: in what of it, its name, and the number of columns that count."""
+    field, _, columns = name.partition("[:, :")
+    holder, _, own = field.rpartition(".")
+    return holder, own, int(columns.rstrip("]")) if columns else None
+
+
+# Warp's models are changed once they are made of MuJoCo's first: numbers of `last` in place of theirs.
+_CHANGE = """plain = made
+def made(model, **room):
+    model, data = plain(model, **room)
+    for holder, name, count in FIELDS:
+        array = getattr(getattr(model, holder) if holder else model, name)
+        numbers = array.numpy()
+        numbers[0][..., :count] = getattr(getattr(last, holder) if holder else last, name)[..., :count]
+        array.assign(numbers)
+    mjw.set_const(model, data)
+    return model, data
+mw, dw = made(m, njmax=64, nconmax=0)"""
+_UNOFFERED = ("flexible bodies", "a lone body", "turns")
 PLUGIN = SourcePlugin(
     name="mujoco-warp",
     package="mujoco-warp",
@@ -179,11 +277,8 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
-    demands={
-        name: words
-        for name, words in mujoco.PLUGIN.demands.items()
-        if name not in _UNOFFERED and not name.startswith("changed")
-    },
+    constraints=KINDS,
+    demands={name: words for name, words in mujoco.PLUGIN.demands.items() if name not in _UNOFFERED},
     statements=tuple(one for one in mujoco.PLUGIN.statements if not one.functions.startswith("inverse_dynamics:")),
     roundoff=SINGLE,
     calls=4,

@@ -179,6 +179,9 @@ def _equality(number: int, one: Constraint) -> str:
         pose = f'relpose="{_text([*first.p, w, x, y, z])}"'
         scale = f' torquescale="{one.torque_scale!r}"' if one.torque_scale != 1.0 else ""
         return f'<weld body1="{first.link}"{others} {pose}{scale} {_HARD}/>'
+    if one.by_bodies:
+        bodies = "".join(f' body{k + 1}="{end.link}"' for k, end in enumerate(one.ends) if end.link)
+        return f'<connect{bodies} anchor="{_text(one.ends[0].p)}" {_HARD}/>'
     if one.kind in ("point", "weld"):
         name = {"point": "connect", "weld": "weld"}[one.kind]
         return f'<{name} site1="s{number}_0" site2="s{number}_1" {_HARD}/>'
@@ -286,10 +289,10 @@ _J = "J = d.efc_J.reshape(-1, m.nv)\n"
 
 # Constraints are springs by design (MuJoCo's documentation, "Constraint model"): at the largest impedance a regulariser
 # of 1e-4 of the inertia that a row sees, by an estimate at the reference configuration, stands beside J M^-1 J^T.
-_SOFT = 1e-2
+SOFT = 1e-2
 # Far from there the inertia that a row sees is a fraction of the estimate, and forces between redundant rows take the
 # weakest direction of J M^-1 J^T, down to a twentieth of its diagonal: 1e-4 becomes some hundredths.
-_SOFT_FORCES = 5e-2
+SOFT_FORCES = 5e-2
 # What is left of loops that are closed but for roundings, times the stiffness of constraints and the step.
 _AT_REST = 1e-9
 
@@ -313,8 +316,8 @@ WAYS = {
         "mj_solveM with efc_J",
         f"{_AT}{_J}X = np.zeros_like(J)\nmj.mj_solveM(m, d, X, J)\nvalue = axes() @ J @ X.T @ axes().T",
     ),
-    "constrained_acceleration": Way("mj_forward: qacc", f"{_AT}value = d.qacc", _SOFT),
+    "constrained_acceleration": Way("mj_forward: qacc", f"{_AT}value = d.qacc", SOFT),
     "constraint_forces": Way(
-        "mj_forward: efc_force", f"{_AT}value = np.linalg.solve(axes().T, d.efc_force)", _SOFT_FORCES
+        "mj_forward: efc_force", f"{_AT}value = np.linalg.solve(axes().T, d.efc_force)", SOFT_FORCES
     ),
 }

@@ -28,6 +28,7 @@ _ACCELEROMETERS = "value = [data('accelerometer', k) for k in sensed]"
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
 COPY = "from copy import copy\nn = copy(m)\n"
+SPARSE = "n.opt.jacobian = mj.mjtJacobian.mjJAC_SPARSE\n"
 EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
 
 
@@ -58,6 +59,8 @@ WAYS = {
     "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
     "step_velocities_implicit": _step("mjINT_IMPLICIT"),
     "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+    "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
+    "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     "step_dampers_implicit_derivative": Way(
         "mjd_transitionFD", f"{transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
     ),

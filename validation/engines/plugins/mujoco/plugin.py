@@ -7,16 +7,17 @@ from dataclasses import replace
 from ...interface import Convention, Statement, Tree, Unsupported
 from ..writing.source import Source, SourcePlugin, attached, numbered
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import elements as beside
 from . import besides, flex, forces, functions, rebuilt, turns
+from . import elements as beside
 from .document import CHARTS, document
 
 # Fields of MuJoCo's model that state what is changed.
-_CHANGED = {
+CHANGED = {
     "mass": ("body_mass",),
     "inertia": ("body_inertia", "body_ipos", "body_iquat"),
     "frame": ("body_pos", "body_quat"),
     "gravity": ("opt.gravity",),
+    "anchor": ("eq_data[:, :3]",),
 }
 
 
@@ -25,7 +26,7 @@ def _changing(tree: Tree, xml: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     lines = ("from copy import copy", "first = copy(m)", f"last = mj.MjModel.from_xml_string('''{xml}''')")
     closing = []
     for source in ("first", "last"):
-        closing += [f"m.{name}[:] = {source}.{name}" for name in _CHANGED[tree.changed]]
+        closing += [f"m.{name}[:] = {source}.{name}" for name in CHANGED[tree.changed]]
         closing += ["mj.mj_setConst(m, d)", *(["mj.mj_forward(m, d)"] if source == "first" else [])]
     return lines, tuple(closing)
 
@@ -146,7 +147,7 @@ PLUGIN = SourcePlugin(
         "attached": "MjSpec, attach_body",
         "turns": "rotations as quaternions and matrices",
         "fused": "fusestatic",
-        **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in _CHANGED.items()},
+        **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in CHANGED.items()},
         "dampers": "damping",
         "springs": "stiffness, springref",
         "compensation": "gravcomp",
@@ -156,6 +157,7 @@ PLUGIN = SourcePlugin(
         "heavy tendons": "tendon armature",
         "flexible bodies": "flexcomp",
         "scaled welds": "equality/weld torquescale",
+        "points by bodies": "equality/connect anchor",
         "a lone body": "efc_diagApprox",
         "actuators": "general, motor, position, velocity",
         "activations": "dyntype, dynprm, actearly, actrange",
@@ -180,7 +182,7 @@ PLUGIN = SourcePlugin(
             "precondition",
             "a row's reference acceleration is -b v - k r: what the rate of its Jacobian adds, J'v, is left out",
             "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
-            "constraint_velocity_products|constrained_acceleration(:.*)?|constraint_forces",
+            "constraint_velocity_products(:.*)?|constrained_acceleration(:.*)?|constraint_forces",
             lambda tree, text: any(one.kind in ("path", "polynomial") for one in tree.constraints),
         ),
         UNIT_AXIS,

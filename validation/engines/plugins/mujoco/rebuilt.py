@@ -83,8 +83,8 @@ _OF_FRAMES = _sensing((*_FRAMES, *_RATES))
 _SEEN = _sensing(_FRAMES, more="{'reftype': mj.mjtObj.mjOBJ_XBODY, 'refname': bodies[0]}")
 _OF_SUBTREES = _sensing((), _SUBTREES)
 _OF_ALL = _sensing((), total=1)
-_QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
-_QVA = f"{_QV}d.qacc[:] = a\nmj.mj_rnePostConstraint(m, d)\nmj.mj_sensorAcc(m, d)\n"
+QV = "d.qpos[:], d.qvel[:] = q, v\nmj.mj_forward(m, d)\n"
+QVA = f"{QV}d.qacc[:] = a\nmj.mj_rnePostConstraint(m, d)\nmj.mj_sensorAcc(m, d)\n"
 _AXES = "np.array([read(f'FRAME{x}AXIS', b) for x in 'XYZ']).T.ravel()"
 _OF_QUATERNION = (
     "value = np.zeros((len(bs), 12))\nfor row, b in zip(value, bs):\n"
@@ -94,33 +94,33 @@ _TWISTS = "value = [[*read('FRAMELINVEL', b), *read('FRAMEANGVEL', b)] for b in 
 
 SENSED = {
     "link_poses:framepos": Way(
-        "framepos, framexaxis", f"{_QV}value = [[*read('FRAMEPOS', b), *{_AXES}] for b in bs]", built=_OF_FRAMES
+        "framepos, framexaxis", f"{QV}value = [[*read('FRAMEPOS', b), *{_AXES}] for b in bs]", built=_OF_FRAMES
     ),
-    "link_poses:framequat": Way("framepos, framequat", _QV + _OF_QUATERNION, built=_OF_FRAMES),
-    "link_velocities:framelinvel": Way("framelinvel, frameangvel", _QV + _TWISTS, built=_OF_FRAMES),
+    "link_poses:framequat": Way("framepos, framequat", QV + _OF_QUATERNION, built=_OF_FRAMES),
+    "link_velocities:framelinvel": Way("framelinvel, frameangvel", QV + _TWISTS, built=_OF_FRAMES),
     "link_accelerations:framelinacc": Way(
         "framelinacc, frameangacc",
-        f"{_QVA}value = [[*(read('FRAMELINACC', b) + m.opt.gravity), *read('FRAMEANGACC', b)] for b in bs]",
+        f"{QVA}value = [[*(read('FRAMELINACC', b) + m.opt.gravity), *read('FRAMEANGACC', b)] for b in bs]",
         built=_OF_FRAMES,
     ),
     "link_poses_seen": Way(
         "framepos, framexaxis with reftype",
-        f"{_QV}value = [[*read('FRAMEPOS', b), *{_AXES}] for b in bs]",
+        f"{QV}value = [[*read('FRAMEPOS', b), *{_AXES}] for b in bs]",
         built=_SEEN,
     ),
-    "link_poses_seen:framequat": Way("framepos, framequat with reftype", _QV + _OF_QUATERNION, built=_SEEN),
-    "link_velocities_seen": Way("framelinvel, frameangvel with reftype", _QV + _TWISTS, built=_SEEN),
+    "link_poses_seen:framequat": Way("framepos, framequat with reftype", QV + _OF_QUATERNION, built=_SEEN),
+    "link_velocities_seen": Way("framelinvel, frameangvel with reftype", QV + _TWISTS, built=_SEEN),
     "subtree_momenta:subtreelinvel": Way(
         "subtreelinvel, subtreeangmom",
-        f"{_QV}value = [[*(m.body_subtreemass[b] * read('SUBTREELINVEL', b)), *read('SUBTREEANGMOM', b)] for b in bs]",
+        f"{QV}value = [[*(m.body_subtreemass[b] * read('SUBTREELINVEL', b)), *read('SUBTREEANGMOM', b)] for b in bs]",
         built=_OF_SUBTREES,
     ),
     "mass_centre:subtreecom": Way(
         "subtreecom",
-        f"{_QV}roots = [b for b in range(1, m.nbody) if m.body_parentid[b] == 0]\n"
+        f"{QV}roots = [b for b in range(1, m.nbody) if m.body_parentid[b] == 0]\n"
         "value = sum(m.body_subtreemass[b] * read('SUBTREECOM', b) for b in roots) / m.body_subtreemass[0]",
         built=_OF_SUBTREES,
     ),
-    "kinetic_energy:e_kinetic": Way("e_kinetic", f"{_QV}value = d.sensor('E_KINETIC').data[0]", built=_OF_ALL),
-    "potential_energy:e_potential": Way("e_potential", f"{_QV}value = d.sensor('E_POTENTIAL').data[0]", built=_OF_ALL),
+    "kinetic_energy:e_kinetic": Way("e_kinetic", f"{QV}value = d.sensor('E_KINETIC').data[0]", built=_OF_ALL),
+    "potential_energy:e_potential": Way("e_potential", f"{QV}value = d.sensor('E_POTENTIAL').data[0]", built=_OF_ALL),
 }

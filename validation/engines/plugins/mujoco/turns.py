@@ -60,7 +60,8 @@ _WAYS = {
     ),
     "rotation_vector_speeds": (
         "mjd_quatIntegrate",
-        "value = np.zeros(9)\nmj.mjd_quatIntegrate(tau, 1.0, np.zeros(9), value, np.zeros(3))\nvalue = value.reshape(3, 3)",
+        "value = np.zeros(9)\nmj.mjd_quatIntegrate(tau, 1.0, np.zeros(9), value, np.zeros(3))\n"
+        "value = value.reshape(3, 3)",
     ),
     "rotation_vector_rates": (
         "mjd_subQuat",

@@ -1,0 +1,92 @@
+"""MuJoCo's second ways: other fields, Jacobians, sensors of links, rotations, models that are made again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation.engines.functions import FUNCTIONS
+from validation.engines.interface import Tree, Unsupported
+from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
+from validation.engines.models import acting, loops, single, transformed
+from validation.engines.models.kinds import tree_of
+from validation.engines.plugins import OWN
+from validation.engines.verdicts import judge
+from validation.engines.workers import Job
+
+MUJOCO = OWN["mujoco"]
+ROTATIONS = [name for name in single.trees() if name.startswith("rotations")]
+# (tree, a function that is asked for, one that leaves out what it is about).
+FAULTS = [
+    (tree_of("three hinges"), "link_poses_seen", "link_poses"),
+    (tree_of("three hinges"), "link_velocities_seen", "link_velocities"),
+    (acting.trees()["springs on hinges"], "inverse_dynamics_acted", "inverse_dynamics:mj_rne"),
+    (acting.trees()["dampers on hinges"], "inverse_dynamics_acted", "inverse_dynamics:mj_rne"),
+]
+
+
+def _judged(tree: Tree, *functions: str) -> dict[str, Judged]:
+    return {one.cell.function: one for one in judged(MUJOCO, Job("mujoco", tree, functions, SEED), Truths())}
+
+
+@pytest.mark.parametrize("kind", ["ball", "free", "three hinges", "prismatic oblique"])
+def test_second_ways_are_right(kind: str) -> None:
+    tree = tree_of(kind)
+    names = [name for name in asked(MUJOCO, tree) if ":" in name or name.endswith("_seen")]
+    assert len(names) > 20
+    assert {cell.verdict for cell in cells(MUJOCO, tree, names)} == {"right"}
+
+
+@pytest.mark.parametrize("name", ROTATIONS)
+def test_rotations_are_right(name: str) -> None:
+    tree = single.trees()[name]
+    assert asked(MUJOCO, tree)
+    assert {cell.verdict for cell in cells(MUJOCO, tree)} == {"right"}
+
+
+@pytest.mark.parametrize("name", ["point by bodies", "anchor changed", "weld on the world"])
+def test_constraints_of_models_that_are_made_again_are_right(name: str) -> None:
+    verdicts = {cell.function: cell.verdict for cell in cells(MUJOCO, loops.trees()[name])}
+    assert {"constraint_residuals:attach", "constrained_inverse", "constraint_jacobian:mj_mulJacVec"} <= set(verdicts)
+    assert set(verdicts.values()) == {"right"}
+
+
+@pytest.mark.parametrize(("tree", "asked_for", "given"), FAULTS)
+def test_what_leaves_a_part_out_is_a_red_cell(tree: Tree, asked_for: str, given: str) -> None:
+    found = _judged(tree, asked_for, given)
+    want, answer = found[asked_for].want, found[given].answer
+    assert want is not None and found[asked_for].cell.verdict == "right"
+    assert judge("planted", tree, asked_for, np.asarray(answer.value), want).verdict == "wrong"
+
+
+@pytest.mark.parametrize("name", ["tendon_speeds", "actuator_speeds"])
+def test_rates_of_lengths_are_those_of_differences(name: str) -> None:
+    tree = acting.trees()["actuators on tendons"]
+    lengths = name.replace("speeds", "lengths")
+    (one,) = _judged(tree, name).values()
+    model, state = MUJOCO.build(tree), one.answer.state
+    assert not isinstance(model, Unsupported) and state is not None and one.want is not None
+    step = 1e-6
+    before, after = (model.call(lengths, replace(state, q=state.q + sign * step * state.v)) for sign in (-1.0, 1.0))
+    assert np.allclose((np.asarray(after) - np.asarray(before)) / (2.0 * step), one.want.value, atol=1e-8)
+
+
+def test_an_anchor_that_stays_is_a_red_cell() -> None:
+    tree = loops.trees()["anchor changed"]
+    (one,), (stale,) = (_judged(at, "constraint_residuals").values() for at in (tree, tree.before))
+    assert one.want is not None and one.cell.verdict == "right"
+    answer = np.asarray(stale.answer.value)
+    assert judge("planted", tree, "constraint_residuals", answer, one.want).verdict == "wrong"
+
+
+def test_what_is_attached_is_not_attached_again() -> None:
+    tree = transformed.trees()["attached chain"]
+    verdicts = {cell.function: cell.verdict for cell in cells(MUJOCO, tree)}
+    assert verdicts["mass_matrix"] == "right"
+    assert {verdict for name, verdict in verdicts.items() if name.endswith(":attach")} == {"not offered"}
+
+
+def test_every_second_way_is_one_to_a_function() -> None:
+    assert {name.partition(":")[0] for name in MUJOCO.functions} <= set(FUNCTIONS)
