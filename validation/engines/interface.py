@@ -18,23 +18,24 @@ from typing import Literal, NamedTuple, Protocol
 
 from ..contract.interface import Unsupported as Unsupported
 from ..contract.raised import Raised, attempted
-from .tree import IDENTITY as IDENTITY
-from .tree import ORIGIN as ORIGIN
-from .tree import Activation as Activation
-from .tree import Actuator as Actuator
-from .tree import Array as Array
+from .frames import IDENTITY as IDENTITY
+from .frames import ORIGIN as ORIGIN
+from .frames import Array as Array
+from .frames import End as End
+from .frames import Rows as Rows
+from .frames import Vector as Vector
+from .frames import rows as rows
+from .frames import vector as vector
+from .lines import Activation as Activation
+from .lines import Actuator as Actuator
+from .lines import Medium as Medium
+from .lines import Muscle as Muscle
+from .lines import Tendon as Tendon
+from .lines import Wrap as Wrap
 from .tree import Constraint as Constraint
-from .tree import End as End
 from .tree import Joint as Joint
 from .tree import Link as Link
-from .tree import Muscle as Muscle
-from .tree import Rows as Rows
-from .tree import Tendon as Tendon
 from .tree import Tree as Tree
-from .tree import Vector as Vector
-from .tree import Wrap as Wrap
-from .tree import rows as rows
-from .tree import vector as vector
 
 GROUP = "symofros.engines"
 # Length of the one step that integrators are asked for [s].

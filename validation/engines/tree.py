@@ -7,30 +7,11 @@ placement turns components of the placed frame into those of the frame it is pla
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Vector = tuple[float, float, float]
-Rows = tuple[Vector, Vector, Vector]
-
-
-def rows(matrix: Array) -> Rows:
-    """A matrix (3, 3) as tuples."""
-    a, b, c = (tuple(row) for row in np.asarray(matrix, dtype=float).tolist())
-    return (a, b, c)
-
-
-def vector(values: Array) -> Vector:
-    """A vector (3) as a tuple."""
-    x, y, z = np.asarray(values, dtype=float).tolist()
-    return (x, y, z)
-
-
-ORIGIN: Vector = (0.0, 0.0, 0.0)
-IDENTITY: Rows = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+from .frames import IDENTITY, ORIGIN, End, Rows, Vector, rows
+from .lines import Actuator, Medium, Tendon
 
 
 @dataclass(frozen=True)
@@ -62,6 +43,7 @@ class Joint:
         limits: Least and greatest coordinate of a joint of one coordinate, that files state and no function has; () for
             none.
         bounds: Greatest speed and greatest force of such a joint, by files; () for none.
+        drive: Stiffness, damping and coordinate that a drive holds such a joint at, by files; () for none.
     """
 
     kind: str
@@ -85,6 +67,7 @@ class Joint:
     force_limits: tuple[float, ...] = ()
     limits: tuple[float, ...] = ()
     bounds: tuple[float, ...] = ()
+    drive: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -123,20 +106,6 @@ class Link:
         return self
 
 
-class End(NamedTuple):
-    """A frame that a constraint holds.
-
-    Attributes:
-        link: Name of its link; "" for the world.
-        R: Rotation (3, 3) in the link's frame.
-        p: Position (3) in the link's frame [m].
-    """
-
-    link: str
-    R: Rows = IDENTITY
-    p: Vector = ORIGIN
-
-
 @dataclass(frozen=True)
 class Constraint:
     """An equation between positions of links.
@@ -162,135 +131,6 @@ class Constraint:
     by_bodies: bool = False
 
 
-class Wrap(NamedTuple):
-    """A surface that a tendon is tight around, on its way from one of its points to the next.
-
-    Attributes:
-        after: Number of the point before it.
-        end: Its frame: the centre of a sphere, or a point of a cylinder's axis, which is z.
-        radius: Its radius [m].
-        is_sphere: Whether it is a sphere; otherwise a cylinder, as long as need be.
-        side: Point of that frame outside of it, on whose side the tendon passes; () for the shortest way.
-    """
-
-    after: int
-    end: End
-    radius: float
-    is_sphere: bool
-    side: tuple[float, ...] = ()
-
-
-class Muscle(NamedTuple):
-    """An actuator whose gain and bias are those of a muscle, as MuJoCo's documentation states them.
-
-    With l0 the length at rest, L = (length - least) / l0 + low and V = speed / (l0 fastest), where l0 is
-    (greatest - least) / (high - low), gain = -peak FL(L) FV(V), bias = -peak FP(L).
-
-    Attributes:
-        activation: What multiplies the gain.
-        lengths: Least and greatest length of the actuator.
-        operating: What these are in units of l0: low and high.
-        peak: Greatest active force at rest.
-        zeros: L below and above which there is no active force.
-        fastest: V is in units of this.
-        passive: FP at the second of `zeros`.
-        lengthening: FV at speeds above.
-    """
-
-    activation: float
-    lengths: tuple[float, float]
-    operating: tuple[float, float] = (0.75, 1.05)
-    peak: float = 100.0
-    zeros: tuple[float, float] = (0.5, 1.6)
-    fastest: float = 1.5
-    passive: float = 1.3
-    lengthening: float = 1.2
-
-
-class Activation(NamedTuple):
-    """A state w of an actuator that its control u changes, and that stands in the control's place in its force.
-
-    Attributes:
-        kind: "integrator", w' = u; "filter", w' = (u - w) / T, stepped as w + h w'; "exact filter", the same, stepped
-            as w + (u - w) (1 - exp(-h / T)); "muscle", a filter whose time is T0 (1/2 + 3/2 w) as w grows and
-            T1 / (1/2 + 3/2 w) as it falls, with u within 0 and 1.
-        state: w.
-        times: Time constants [s]: none, T, or T0 and T1.
-        limits: Least and greatest w after a step; () for none.
-        is_early: Whether the force has w as it is after the step.
-    """
-
-    kind: str
-    state: float
-    times: tuple[float, ...] = ()
-    limits: tuple[float, ...] = ()
-    is_early: bool = False
-
-
-@dataclass(frozen=True)
-class Tendon:
-    """A length, and the spring and the damper that act along it.
-
-    Attributes:
-        kind: "coupling", a sum of coordinates, or "path", as constraints have them.
-        ends: See `Constraint`.
-        coefficients: See `Constraint`.
-        stiffness: Force against a unit of length beyond `rest`.
-        damping: Force against a unit of the length's rate.
-        rest: Length at which the spring has no force.
-        armature: Mass that moves with the length.
-        wraps: Surfaces on its way; of a "path" only.
-    """
-
-    kind: str
-    ends: tuple[End, ...]
-    coefficients: tuple[float, ...] = ()
-    stiffness: float = 0.0
-    damping: float = 0.0
-    rest: float = 0.0
-    armature: float = 0.0
-    wraps: tuple[Wrap, ...] = ()
-
-
-@dataclass(frozen=True)
-class Actuator:
-    """A force along a coordinate, a tendon or between frames: gain control + bias, with l and l' the length times gear.
-
-    Attributes:
-        link: Link whose only joint it drives; "" for a tendon.
-        tendon: Number of the tendon that it pulls; None for a joint.
-        gear: Factor of length and force.
-        gain: Force for a unit of control.
-        bias: Force b0 + b1 l + b2 l'.
-        control: Control that it has.
-        control_limits: Least and greatest control that counts; () for none.
-        force_limits: Least and greatest force; () for none.
-        ends: One frame: it makes the force and the moment `wrench` there, along its axes, and its length is zero. Two:
-            its length is how far the first is from the second along `wrench`, which stands in the second. Of a
-            `crank`: the end of the crank, and the slider's frame, which moves along its z.
-        wrench: See `ends`.
-        crank: Length of the rod of a slider and crank [m]: its length is the slider's coordinate. 0 for none.
-        muscle: Gain and bias of a muscle, in place of the stated ones; None for none.
-        is_disabled: Whether it makes no force.
-        activation: Its state; None for none.
-    """
-
-    link: str = ""
-    tendon: int | None = None
-    gear: float = 1.0
-    gain: float = 1.0
-    bias: Vector = ORIGIN
-    control: float = 0.0
-    control_limits: tuple[float, ...] = ()
-    force_limits: tuple[float, ...] = ()
-    ends: tuple[End, ...] = ()
-    wrench: tuple[float, ...] = ()
-    crank: float = 0.0
-    muscle: Muscle | None = None
-    is_disabled: bool = False
-    activation: Activation | None = None
-
-
 @dataclass(frozen=True)
 class Tree:
     """A mechanism as it is stated to all engines.
@@ -308,6 +148,7 @@ class Tree:
         tendons: Lengths over its joints or links.
         actuators: What drives it.
         sensors: Frames of links at which sensors stand.
+        medium: What surrounds its links; None for nothing.
         away: Added to the positions that random states have of free joints [m].
         near: Random states are near to where nothing has moved: coordinates' distances from there, speeds and forces
             are 2^-near of what they would be; rates of speeds are not.
@@ -325,6 +166,7 @@ class Tree:
     tendons: tuple[Tendon, ...] = ()
     actuators: tuple[Actuator, ...] = ()
     sensors: tuple[End, ...] = ()
+    medium: Medium | None = None
     away: Vector = ORIGIN
     near: int = 0
     asked: str = ""
@@ -341,6 +183,7 @@ class Tree:
             "wrapped tendons": any(tendon.wraps for tendon in self.tendons),
             "heavy tendons": any(tendon.armature for tendon in self.tendons),
             "actuators": bool(self.actuators),
+            "a medium": self.medium is not None,
             "activations": any(actuator.activation for actuator in self.actuators),
         }
         return frozenset(name for name, there in stated.items() if there)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import Tree, Unsupported
+from validation.engines.interface import Medium, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, loops, single, transformed
 from validation.engines.models.kinds import tree_of
@@ -79,6 +79,18 @@ def test_an_anchor_that_stays_is_a_red_cell() -> None:
     assert one.want is not None and one.cell.verdict == "right"
     answer = np.asarray(stale.answer.value)
     assert judge("planted", tree, "constraint_residuals", answer, one.want).verdict == "wrong"
+
+
+@pytest.mark.parametrize(
+    "medium", [Medium(0.0, 0.125, (2.0, -1.0, 0.5)), Medium(1.25, 0.0, (2.0, -1.0, 0.5)), Medium(1.25, 0.125)]
+)
+def test_a_part_of_the_drag_that_is_left_out_is_a_red_cell(medium: Medium) -> None:
+    tree = acting.trees()["links in wind"]
+    without = replace(tree, medium=medium)
+    (one,), (less,) = (_judged(at, "passive_forces").values() for at in (tree, without))
+    assert one.want is not None and one.cell.verdict == less.cell.verdict == "right"
+    answer = np.asarray(less.answer.value)
+    assert judge("planted", tree, "passive_forces", answer, one.want).verdict == "wrong"
 
 
 def test_what_is_attached_is_not_attached_again() -> None:

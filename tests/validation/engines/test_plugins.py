@@ -23,6 +23,7 @@ EXTRAS = (
     "exudyn",
     "frax",
     "idyntree",
+    "mjx",
     "mujoco-warp",
     "pybullet",
     "pykdl",

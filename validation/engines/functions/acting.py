@@ -1,4 +1,4 @@
-"""What acts on trees by their own statement, what sensors read of them, what files state of joints."""
+"""What acts on trees by their own statement, what sensors read of them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .function import Function
 
 def _acting() -> dict[str, Function]:
     """What a tree's own forces show in."""
-    passive = ("dampers", "springs", "compensation", "tendons")
+    passive = ("dampers", "springs", "compensation", "tendons", "a medium")
     tendons, actuators, states = ("tendons",), ("actuators",), ("activations",)
     return {
         "passive_forces": Function(
@@ -102,19 +102,3 @@ def _measured() -> dict[str, Function]:
 
 
 MEASURED = _measured()
-
-
-def _stated_in_files() -> dict[str, Function]:
-    """What readers make of losses of joints: no function of q and v need depend on them."""
-    rows = {
-        "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
-        "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
-        "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
-        "joint_speed_limits": ("greatest speeds (nv)", lambda t, s: t.own.bounds[:, 0]),
-        "joint_force_limits": ("greatest forces (nv)", lambda t, s: t.own.bounds[:, 1]),
-        "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
-    }
-    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
-
-
-STATED = _stated_in_files()

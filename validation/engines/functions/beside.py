@@ -6,7 +6,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import constraints, derived, turns
+from ..truth import constraints, derived, steps, turns
 from .function import Function
 
 
@@ -63,6 +63,21 @@ LONE: dict[str, Function] = {
     ),
     "constraint_diagonal": Function(
         "diagonal of J M^-1 J^T (m)", lambda t, s: np.diag(constraints.delassus(t, s.q)), ("a lone body",)
+    ),
+    "step_of_wheel": Function(
+        "q+, v+ (nq + nv): v+ = v + h M^-1 (tau - D v); q+ = q + h N(q) v+, of unit length where it is a quaternion",
+        steps.single("nothing", steps.normalized),
+        ("wheels",),
+    ),
+    "wheel_wrench": Function(
+        "force and moment on the body of what holds it, along the world's axes, at rest under tau (6)",
+        derived.held_at_rest,
+        ("wheels",),
+    ),
+    "distance_after_step": Function(
+        "distance (1) after a step at rest from |q| + 1/2: the nearest within the bounds",
+        derived.held_distance,
+        ("held distances",),
     ),
     "step_bound": Function(
         "v+ (nv) after a step from q, v2: M (v+ - v2) = h (tau - (bias)) + J^T impulse, J v+ = 0",

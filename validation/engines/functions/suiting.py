@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 
 from ..tree import Tree
-from .acting import ACTING, MEASURED, STATED
+from .acting import ACTING, MEASURED
 from .beside import LONE, TURNS
 from .constrained import CONSTRAINED
 from .function import Function
 from .integrators import STEPS
+from .stated import STATED
 from .trees import TREES
 
 FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS
@@ -17,6 +18,8 @@ _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.
 _STATELESS = re.compile("step_(midpoint|rk.*|trapezoidal)|.*_(dq|dv|derivative)")
+# Formulas that take forces at the end of a step; those of a medium are no line.
+_LINEAR = re.compile("step_(forces|velocities|stiffness).*|.*_(dq|dv|derivative)")
 # What is asked of a tree with constraints besides, for identities.
 _BESIDES = ("mass_matrix", "bias")
 
@@ -30,6 +33,8 @@ def suits(way: str, tree: Tree) -> bool:
     if tree.constraints:
         return name in CONSTRAINED or way in _BESIDES
     if "activations" in tree.forces and _STATELESS.fullmatch(name):
+        return False
+    if tree.medium and _LINEAR.fullmatch(name):
         return False
     if needs:
         return bool(tree.demands & set(needs))

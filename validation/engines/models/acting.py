@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Muscle, Tendon, Tree, Wrap
+from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Medium, Muscle, Tendon, Tree, Wrap
 from .kinds import OBLIQUE, link, placed, shifted, turned
 from .readers import about
 
@@ -45,6 +45,24 @@ def _passive() -> list[Tree]:
         Tree("a damped hinge on a damped free base", _carried(body)),
         Tree("borne weights", borne),
         Tree("borne weights of fixed links", _borne_and_fixed()),
+    ]
+
+
+def _dragged() -> list[Tree]:
+    """Links without products of inertia, in oil, in a thin fluid, in wind; free, and on joints that are damped too."""
+
+    def boxes(name: str, *joints: Joint) -> tuple[Link, ...]:
+        moments = ((0.25, 0.0, 0.0), (0.0, 0.375, 0.0), (0.0, 0.0, 0.5))
+        return tuple(replace(one, inertia=moments) for one in _chain(name, *joints))
+
+    hinges, free = boxes("drag", _HINGE, _DAMPED, _SLIDE), boxes("drag", Joint("free"))
+    alone = (replace(free[0], joints=(Joint("free"),)),)
+    wind = (2.0, -1.0, 0.5)
+    return [
+        Tree("links in oil", hinges, medium=Medium(0.0, 0.75)),
+        Tree("links in a thin fluid", hinges, medium=Medium(4.0, 0.0)),
+        Tree("links in wind", hinges, medium=Medium(1.25, 0.125, wind)),
+        Tree("free body in wind", alone, medium=Medium(1.25, 0.125, wind)),
     ]
 
 
@@ -274,6 +292,7 @@ def trees() -> dict[str, Tree]:
         tree.name: tree
         for family in (
             _passive,
+            _dragged,
             _tendons,
             _wrapped,
             _sided,

@@ -10,7 +10,7 @@ import numpy as np
 from ..interface import Joint, Tree, Unsupported
 from ..plugins import mujoco
 from ..plugins.writing import sdf, urdf
-from . import mjcf_files, mjcf_geoms, mjcf_joints, sdf_files, urdf_files, usd_files
+from . import mjcf_files, mjcf_geoms, mjcf_joints, mjcf_lines, sdf_files, urdf_files, usd_files
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed
 from .readers import Reading
@@ -21,7 +21,7 @@ _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 # MuJoCo writes six digits: files of MJCF whose numbers take more, once they are worked out, are not asked of writers.
 # Of mimic joints two are: who fails there ends a process for each function.
 _LONG = re.compile(
-    "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|geom (box|ell|cyl|cap)|"
+    "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|box fitted to|geom (box|ell|cyl|cap)|"
     "frame (around|within)|site (turned|from|by|of)|range.*(left out|degrees))|urdf: mimic( |,)(?!with).*"
 )
 
@@ -58,6 +58,7 @@ def formats() -> dict[str, Reading]:
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
     urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files() | mjcf_geoms.files() | mjcf_joints.files()
+    mjcf_stated |= mjcf_lines.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
     return urdf_stated | mjcf_stated | sdf_files.files() | usd_files.files() | made | dict(map(_written, written))
 

@@ -19,6 +19,11 @@ LIMITED = ("joint_limits",)
 BOUNDED = (*LIMITED, "joint_speed_limits", "joint_force_limits")
 PLACED = ("frame_poses",)
 DRIVEN = ("actuator_forces", "actuated_forces")
+TENDONS = ("tendon_arms", "tendon_stiffnesses", "tendon_dampings", "tendon_rests", "tendon_armatures")
+ACTUATORS = (
+    *("actuator_arms", "actuator_gears", "actuator_gains", "actuator_biases"),
+    *("actuator_control_limits", "actuator_force_limits"),
+)
 PASSIVE = ("sizes", "mass_matrix", "gravity", "link_poses")
 
 

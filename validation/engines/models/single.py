@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..interface import Joint, Link, Rows, Tree, rows, vector
+from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
 from .readers import IDENTITY, TURNED
 
 
@@ -48,11 +48,35 @@ def _ball(name: str, radius: float, density: float, **joint: Any) -> Tree:
     return _solid(name, 4.0 / 3.0 * math.pi * radius**3, (moment, moment, moment), density, **joint)
 
 
+def _wheel(name: str, kind: str, **joint: Any) -> Tree:
+    """A body on one joint through its mass centre, turned and aside, where nothing pulls at it but what drives it."""
+    moments = ((0.25, 0.0, 0.0), (0.0, 0.25, 0.0), (0.0, 0.0, 0.25))
+    placed = Joint(kind, R=TURNED, p=(0.5, -0.25, 1.0), **joint)
+    return Tree(name, (Link("a", -1, (placed,), 2.0, inertia=moments),), ORIGIN, asked="wheels")
+
+
+def _held(name: str, least: float, greatest: float) -> Tree:
+    """A body whose distance from a point of the world is held between two bounds."""
+    moments = ((0.25, 0.0, 0.0), (0.0, 0.25, 0.0), (0.0, 0.0, 0.25))
+    link = Link("a", -1, (Joint("prismatic", axis=(1.0, 0.0, 0.0), limits=(least, greatest)),), 2.0, inertia=moments)
+    return Tree(name, (link,), ORIGIN, asked="held distances")
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     low, high, aside = (0.5, -0.25, 1.0), (1.5, 0.75, 3.0), (1.0, -0.5, 2.0)
     turns = Tree("rotations", (Link("a", -1, (Joint("ball"),)),), asked="turns")
+    oblique, along = (0.6, 0.0, 0.8), {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
     made = (
+        _wheel("wheel on a hinge", "revolute", axis=oblique),
+        _wheel("wheel on a damped hinge", "revolute", axis=oblique, damping=0.5),
+        *(_wheel(f"wheel on a hinge along {x}", "revolute", axis=axis) for x, axis in along.items()),
+        _wheel("wheel on a damped hinge along z", "revolute", axis=along["z"], damping=0.5),
+        _wheel("body on a slide", "prismatic", axis=oblique),
+        _wheel("wheel on a ball", "ball"),
+        _held("distance below its bounds", 2.0, 3.0),
+        _held("distance beyond its bounds", 0.125, 0.25),
+        _held("distance within its bounds", 0.0625, 8.0),
         turns,
         *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from ..interface import Tree
+import numpy as np
+
+from ..interface import Joint, Tree, vector
 from . import readers
 from .readers import LIMITED, NEXT, Reading, about, along, hung
 
@@ -134,6 +136,89 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     yield _of("slide", _file(joint="Prismatic"), hung(body, kind="prismatic"))
 
 
+def _drives() -> Iterator[tuple[str, Reading]]:
+    """Drives, of angles for degrees; the greatest force."""
+    inertia = readers.diagonal(0.25, 0.375, 0.5)
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
+    degree, asked = math.degrees(1.0), ("joint_drives", "joint_force_limits")
+    for kind, joint, unit in (("angular", "Revolute", degree), ("linear", "Prismatic", 1.0)):
+        numbers = {"stiffness": 2.0, "damping": 0.25, "targetPosition": 0.5, "maxForce": 8.0}
+        drive = "".join(f"\n        float drive:{kind}:physics:{name} = {one}" for name, one in numbers.items())
+        text = _file(axis=_TURNS_ABOUT_Y + drive, joint=joint).replace(
+            f'Physics{joint}Joint "joint"',
+            f'Physics{joint}Joint "joint" (prepend apiSchemas = ["PhysicsDriveAPI:{kind}"])',
+        )
+        own = hung(body, drive=(2.0 * unit, 0.25 * unit, 0.5 / unit), bounds=(0.0, 8.0))
+        if joint == "Prismatic":
+            own = hung(own, kind="prismatic")
+        yield _of(f"drive, {kind}", text, own, asked=asked)
+
+
+def _frames() -> Iterator[tuple[str, Reading]]:
+    """Frames of joints on both bodies, turned and moved; bodies that are scaled."""
+    inertia = readers.diagonal(0.25, 0.375, 0.5)
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
+    (hinge,) = body.joints
+    turn, quarter = about((1.0, 0.0, 0.0), math.acos(0.28) * 2.0), "(0.28, 0.96, 0, 0)"
+    both = f"quatf physics:localRot0 = {quarter}\n        quatf physics:localRot1 = {quarter}"
+    along_it = vector(np.array(turn)[:, 1])
+    yield _of("joint turned on both bodies", _file(axis=f"{_TURNS_ABOUT_Y}\n        {both}"), hung(body, axis=along_it))
+    first = f"{_TURNS_ABOUT_Y}\n        quatf physics:localRot0 = {quarter}"
+    turned = replace(body, joints=(replace(hinge, R=turn),))
+    placed = _file(axis=first).replace(
+        'uniform token[] xformOpOrder = ["xformOp:translate"]',
+        f"quatd xformOp:orient = {quarter}\n        "
+        'uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
+        1,
+    )
+    yield _of("joint turned on the first body", placed, turned)
+    apart = f"{_TURNS_ABOUT_Y}\n        point3f physics:localPos1 = (0.25, -0.5, 0.125)"
+    back = Joint("fixed", p=(-0.25, 0.5, -0.125))
+    aside = replace(body, joints=(replace(hinge, p=(0.25, -0.5, 0.625)), back))
+    moved = _file(axis=apart).replace(
+        "point3f physics:localPos0 = (0, 0, 0.5)", "point3f physics:localPos0 = (0.25, -0.5, 0.625)"
+    )
+    yield _of("joint beside its body's origin", moved, aside)
+
+
+def _collisions() -> Iterator[tuple[str, Reading]]:
+    """Which colliders have mass: those that are enabled; a mass of zero is none."""
+    body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25))
+    moment = 3.0 * 0.5**2 / 6.0
+    solid = replace(body, mass=3.0, inertia=readers.diagonal(*[moment] * 3))
+    api = ', "PhysicsMassAPI"'
+    on = _shape("Cube", "double size = 0.5", "float physics:mass = 3", api)
+    off = _shape(
+        "Cube", "double size = 0.25", "bool physics:collisionEnabled = 0\n            float physics:mass = 4", api
+    )
+    yield _of("collider disabled beside another", _file(inertial=on + "\n        " + off.replace('"s"', '"t"')), solid)
+    side = 0.5**3
+    cube = replace(body, mass=_WATER * side, inertia=readers.diagonal(*[_WATER * side * 0.5**2 / 6.0] * 3))
+    plain = _shape("Cube", "double size = 0.5")
+    yield _of("mass of zero", _file(inertial=f"float physics:mass = 0\n        {plain}"), cube)
+    none = "float physics:mass = 0\n        float3 physics:diagonalInertia = (0, 0, 0)\n        "
+    yield _of("mass and moments of zero", _file(inertial=none + plain), cube)
+    zero = _shape("Cube", "double size = 0.5", "float physics:mass = 0", api)
+    yield _of("collider of mass zero", _file(inertial=zero), cube)
+    scaled = plain.replace(
+        'uniform token[] xformOpOrder = ["xformOp:translate"]',
+        "double3 xformOp:scale = (2, 0.5, 1)\n            "
+        'uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:scale"]',
+    )
+    mass, x, y, z = _WATER * 1.0 * 0.25 * 0.5, 1.0, 0.25, 0.5
+    moments = (mass * (y * y + z * z) / 12.0, mass * (x * x + z * z) / 12.0, mass * (x * x + y * y) / 12.0)
+    box = replace(body, mass=mass, inertia=readers.diagonal(*moments))
+    yield _of("collider scaled", _file(inertial=scaled), box)
+    radius, height = 0.25, 0.5
+    volume = math.pi * radius**2 * height
+    across, along_it = radius**2 / 4.0 + height**2 / 12.0, radius**2 / 2.0
+    for letter, own in (("Z", (across, across, along_it)), ("X", (along_it, across, across))):
+        sizes = f'double radius = 0.25\n            double height = 0.5\n            uniform token axis = "{letter}"'
+        mass = _WATER * volume
+        link = replace(body, mass=mass, inertia=readers.diagonal(*(mass * one for one in own)))
+        yield _of(f"cylinder along {letter}", _file(inertial=_shape("Cylinder", sizes)), link)
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name; numbers that floats state exactly."""
     inertia = readers.diagonal(0.25, 0.375, 0.5)
@@ -145,4 +230,4 @@ def files() -> dict[str, Reading]:
         _of("axis left out", _file(axis=""), hung(body, axis=(1.0, 0.0, 0.0))),
         _of("principal axes turned", _file(inertial=_inertial(axes="(0.70710678, 0.70710678, 0, 0)")), turned),
     )
-    return dict([*stated, *_stage(), *_masses(), *_joints()])
+    return dict([*stated, *_stage(), *_masses(), *_joints(), *_drives(), *_frames(), *_collisions()])

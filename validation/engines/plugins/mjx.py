@@ -139,6 +139,6 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
-    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, "actuators", "activations")},
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, "actuators", "activations", "a medium")},
     calls=4,
 )

@@ -126,6 +126,7 @@ def _of_links() -> dict[str, Way]:
         code = way.code.replace(rebuilt.QVA, _INVERSE).replace(rebuilt.QV, _FORWARD.replace("tau", "0 * v"))
         code = code.replace("read(", "sense(").replace("d.sensor(", "sense(").replace(").data[0]", ")[0]")
         code = code.replace("m.body_subtreemass[", "mw.body_subtreemass.numpy()[0, ")
+        code = code.replace("m.opt.gravity", "mw.opt.gravity.numpy()[0]")
         made[name] = way._replace(code=code)
     return made
 

@@ -209,7 +209,9 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         f"asked = {list(_READ)!r}",
         "m = sf.compile(system, sf.Options(functions=asked, frames=links, backend='interpreter'))",
     )
-    return Source(lines, *made)
+    # Drives of USD are no part of the mechanism that is read.
+    is_driven = any(joint.drive for link in tree.links for joint in link.joints)
+    return Source(lines, *made, lacks=("joint_force_limits",) if is_driven else ())
 
 
 _READ = ("mass_matrix", "bias", "gravity_force", "frame_pose")

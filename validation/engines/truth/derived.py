@@ -166,6 +166,19 @@ def wrench_sensors(truth: Truth, s: Point) -> Exact:
     return np.array(rows)
 
 
+def held_at_rest(truth: Truth, s: Point) -> Exact:
+    """Wrench (force; moment) of the only link's joint on it at rest under tau, at its mass centre, along world axes."""
+    still = 0 * s.v
+    a = truth.FD(s.q, still, s.tau)
+    return truth.wrenches(truth.motions(s.q, still, a), truth.kinematics.poses(s.q), list(truth.inertias))[0]
+
+
+def held_distance(truth: Truth, s: Point) -> Exact:
+    """The distance |q| + 1/2, brought within the limits of the only joint."""
+    ((least, greatest),) = truth.own.ranges
+    return np.array([min(max(abs(s.q[0]) + Decimal("0.5"), least), greatest)])
+
+
 def subtree_momenta(truth: Truth, s: Point) -> Exact:
     """Momentum (linear; angular, about its mass centre) of each link with all it carries, along world axes (L, 6)."""
     poses, velocity = truth.kinematics.poses(s.q), truth.kinematics.jacobians(s.q) @ s.v

@@ -17,6 +17,7 @@ import numpy as np
 from ..interface import Actuator, End, Muscle, Tendon, Tree
 from .activations import clipped, driving
 from .arithmetic import Exact, exact, rate, root, zeros
+from .drag import drag
 from .kinematics import Kinematics
 
 
@@ -31,7 +32,7 @@ class Forces:
     def __init__(self, tree: Tree, kinematics: Kinematics) -> None:
         self.tree, self._kinematics, self._nv = tree, kinematics, kinematics.nv
         self.damping, self.stiffness, self.friction = zeros(self._nv), zeros(self._nv), zeros(self._nv)
-        self.ranges, self.bounds = zeros(self._nv, 2), zeros(self._nv, 2)
+        self.ranges, self.bounds, self.drives = zeros(self._nv, 2), zeros(self._nv, 2), zeros(self._nv, 3)
         self._limits: dict[int, tuple[float, ...]] = {}
         self._springs: list[tuple[int, int, Exact]] = []
         for k in range(len(tree.links)):
@@ -42,6 +43,8 @@ class Forces:
                     self._limits[slot.v[0]] = joint.force_limits
                 if joint.limits:
                     self.ranges[slot.v[0]] = exact(joint.limits)
+                if joint.drive:
+                    self.drives[slot.v[0]] = exact(joint.drive)
                 if joint.bounds:
                     self.bounds[slot.v[0]] = exact(joint.bounds)
                 self.friction[list(slot.v)] = exact(joint.friction)[()]
@@ -110,7 +113,7 @@ class Forces:
                 J = self._kinematics.held(q, End(link.name, p=link.com)).J
                 weight = exact(link.mass)[()] * exact(self.tree.gravity)
                 Q = Q - exact(link.compensation)[()] * (J[:3].T @ weight)
-        return Q
+        return Q + drag(self._kinematics, self.tree.medium, q, v) if self.tree.medium else Q
 
     def stored(self, q: Exact) -> Exact:
         """Energy of springs along coordinates and tendons, zero where they have no force."""

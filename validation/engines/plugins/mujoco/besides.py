@@ -62,6 +62,19 @@ WAYS = {
         "qfrc_spring, qfrc_damper, qfrc_gravcomp, qfrc_fluid",
         f"{QV}value = d.qfrc_spring + d.qfrc_damper + d.qfrc_gravcomp + d.qfrc_fluid",
     ),
+    "tendon_stiffnesses": Way("tendon_stiffness", "value = m.tendon_stiffness"),
+    "tendon_dampings": Way("tendon_damping", "value = m.tendon_damping"),
+    "tendon_rests": Way("tendon_lengthspring", "value = m.tendon_lengthspring[:, 0]"),
+    "tendon_armatures": Way("tendon_armature", "value = m.tendon_armature"),
+    "actuator_gears": Way("actuator_gear", "value = m.actuator_gear[:, 0]"),
+    "actuator_gains": Way("actuator_gainprm", "value = m.actuator_gainprm[:, 0]"),
+    "actuator_biases": Way("actuator_biasprm", "value = m.actuator_biasprm[:, :3]"),
+    "actuator_control_limits": Way("actuator_ctrlrange", "value = m.actuator_ctrlrange"),
+    "actuator_force_limits": Way("actuator_forcerange", "value = m.actuator_forcerange"),
+    "actuator_sites": Way(
+        "actuator_trnid", "value = [np.ravel([m.site_pos[k] for k in pair if k >= 0]) for pair in m.actuator_trnid]"
+    ),
+    "weight_shares": Way("body_gravcomp", "value = m.body_gravcomp[bs]"),
     "tendon_speeds": Way("ten_velocity", f"{QV}value = d.ten_velocity"),
     "actuator_speeds": Way("actuator_velocity", f"{QV}value = d.actuator_velocity"),
     "constraint_jacobian:mj_mulJacVec": Way(

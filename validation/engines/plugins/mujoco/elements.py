@@ -150,6 +150,9 @@ def _activation(one: Actuator) -> str:
 def options(tree: Tree) -> str:
     """Attributes of options that a tree needs."""
     made = f' timestep="{STEP}"' if "activations" in tree.forces else ""
+    if tree.medium:
+        density, viscosity, wind = tree.medium
+        made += f' density="{density!r}" viscosity="{viscosity!r}" wind="{_text(wind)}"'
     return made + (' actuatorgroupdisable="1"' if any(one.is_disabled for one in tree.actuators) else "")
 
 

@@ -159,6 +159,7 @@ PLUGIN = SourcePlugin(
         "scaled welds": "equality/weld torquescale",
         "points by bodies": "equality/connect anchor",
         "a lone body": "efc_diagApprox",
+        "a medium": "density, viscosity, wind",
         "actuators": "general, motor, position, velocity",
         "activations": "dyntype, dynprm, actearly, actrange",
     },

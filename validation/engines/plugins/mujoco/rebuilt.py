@@ -10,7 +10,8 @@ from ..writing.source import Way
 _ATTACHED = """
 def made(text):
     child, parent = mj.MjSpec.from_string(text), mj.MjSpec()
-    for name in ('gravity', 'timestep', 'disableactuator'): setattr(parent.option, name, getattr(child.option, name))
+    for name in ('gravity', 'timestep', 'disableactuator', 'density', 'viscosity', 'wind'):
+        setattr(parent.option, name, getattr(child.option, name))
     parent.attach(child, prefix='own_', frame=parent.worldbody.add_frame())
     return parent.compile()"""
 _AGAIN = """

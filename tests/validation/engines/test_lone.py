@@ -1,0 +1,99 @@
+"""Bodies alone on a joint, distances that are held, what files state of lines: the truth, MuJoCo, Newton by it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.late import needs_extra
+from validation.engines.interface import STEP, Slot, Tree
+from validation.engines.matrix import SEED, Truths, cells, judged
+from validation.engines.models import mjcf_lines, single, usd_files
+from validation.engines.plugins import OWN
+from validation.engines.proving.pieces import Layout
+from validation.engines.truth import derived, steps
+from validation.engines.truth.arithmetic import many_digits
+from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.verdicts import judge
+from validation.engines.workers import Job
+
+SINGLE = single.trees()
+LINES = mjcf_lines.files()
+HINGE = Layout(1, 1, ((Slot("angle", (0,), (0,)),),))
+LENGTH = Layout(1, 1, ((Slot("length", (0,), (0,)),),))
+# What XPBD has wrong (`causes/stated/newton.yaml`).
+WRONG = {"wheel on a hinge", "wheel on a damped hinge", "wheel on a ball"}
+
+
+def _at(tree: Tree, layout: Layout) -> tuple[Truth, Point]:
+    return Truth(tree, layout), Point.of(random_state(tree, layout, SEED))
+
+
+def test_what_holds_a_wheel_is_its_torque_along_the_axis() -> None:
+    tree = SINGLE["wheel on a hinge"]
+    truth, point = _at(tree, HINGE)
+    with many_digits():
+        held, ((R, _),) = digits(derived.held_at_rest(truth, point)), truth.kinematics.poses(point.q)
+    joint = tree.links[0].joints[0]
+    assert np.allclose(held[:3], 0.0, atol=1e-15)
+    assert np.allclose(held[3:], float(point.tau[0]) * digits(R) @ joint.axis, atol=1e-15)
+
+
+def test_a_damper_slows_a_wheel() -> None:
+    for name, damping in (("wheel on a hinge", 0.0), ("wheel on a damped hinge", 0.5)):
+        truth, point = _at(SINGLE[name], HINGE)
+        end = digits(truth.value(steps.single("nothing", steps.normalized), point))
+        v, tau = float(point.v[0]), float(point.tau[0])
+        assert np.isclose(end[1], v + STEP * (tau - damping * v) / 0.25, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "want"),
+    [("distance below its bounds", 2.0), ("distance beyond its bounds", 0.25), ("distance within its bounds", None)],
+)
+def test_a_distance_is_brought_within_its_bounds(name: str, want: float | None) -> None:
+    truth, point = _at(SINGLE[name], LENGTH)
+    (distance,) = digits(derived.held_distance(truth, point))
+    assert distance == (want or abs(float(point.q[0])) + 0.5)
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_mujoco_reads_lines_as_it_documents(name: str) -> None:
+    one = LINES[name]
+    asked = one.functions(OWN["mujoco"].functions)
+    job = Job("mujoco", one.tree, asked, SEED, form=one.form, text=one.text)
+    assert asked
+    assert {found.cell.verdict for found in judged(OWN["mujoco"], job, Truths())} == {"right"}
+
+
+@pytest.mark.parametrize("function", ["tendon_rests", "tendon_armatures", "tendon_dampings", "tendon_arms"])
+def test_a_default_that_is_forgotten_is_a_red_cell(function: str) -> None:
+    """The file states all by default: without the class nothing is left of it."""
+    one = LINES["mjcf: tendon of a sum by default"]
+    text = one.text.replace('springlength="0.25" ', "").replace('armature="0.125"', "").replace('damping="0.5"', "")
+    jobs = (
+        Job("mujoco", one.tree, (function,), SEED, form="mjcf", text=each)
+        for each in (one.text, text.replace('coef="-0.5"', 'coef="0.5"'))
+    )
+    (want,), (given,) = (list(judged(OWN["mujoco"], job, Truths())) for job in jobs)
+    assert want.want is not None and want.cell.verdict == "right"
+    assert judge("planted", one.tree, function, np.asarray(given.answer.value), want.want).verdict == "wrong"
+
+
+@pytest.mark.parametrize("name", [name for name, tree in SINGLE.items() if tree.asked in ("wheels", "held distances")])
+def test_newton_steps_lone_bodies(name: str) -> None:
+    if not OWN["newton"].version():
+        pytest.skip(needs_extra("engine-newton", "newton"))
+    found = {cell.function: cell.verdict for cell in cells(OWN["newton"], SINGLE[name])}
+    right = {function for function, verdict in found.items() if verdict == "right"}
+    assert set(found) - right <= ({"step_of_wheel", "wheel_wrench"} if name in WRONG else set())
+
+
+def test_a_drive_is_read_for_radians() -> None:
+    one = usd_files.files()["usd: drive, angular"]
+    ((joint,),) = (link.joints for link in one.tree.links)
+    assert np.allclose(joint.drive, (2.0 * 180.0 / np.pi, 0.25 * 180.0 / np.pi, 0.5 * np.pi / 180.0))
+    truth, point = _at(replace(one.tree, asked=""), HINGE)
+    assert np.allclose(digits(truth.own.drives), [joint.drive]) and point is not None

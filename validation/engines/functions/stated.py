@@ -1,0 +1,71 @@
+"""What files state of joints, tendons and actuators: no function of q and v need depend on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ..interface import Actuator, Tendon
+from ..truth.arithmetic import Exact, exact
+from ..truth.derived import TruthOf
+from ..truth.dynamics import Point, Truth
+from .function import Function
+
+
+def _of_joints() -> dict[str, Function]:
+    """What readers make of losses, limits and drives of joints."""
+    rows = {
+        "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
+        "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
+        "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
+        "joint_speed_limits": ("greatest speeds (nv)", lambda t, s: t.own.bounds[:, 0]),
+        "joint_force_limits": ("greatest forces (nv)", lambda t, s: t.own.bounds[:, 1]),
+        "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
+        "joint_drives": ("stiffness, damping, coordinate of drives (nv, 3)", lambda t, s: t.own.drives),
+    }
+    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+
+
+def _each(of: Callable[[Tendon], object]) -> TruthOf:
+    """A number of each tendon."""
+    return lambda t, s: exact(np.array([of(one) for one in t.tree.tendons], dtype=float))
+
+
+def _every(of: Callable[[Actuator], object]) -> TruthOf:
+    """A number, or some, of each actuator."""
+    return lambda t, s: exact(np.array([of(one) for one in t.tree.actuators], dtype=float))
+
+
+def _shares(t: Truth, s: Point) -> Exact:
+    return exact(np.array([link.compensation for link in t.tree.links]))
+
+
+def _of_lines() -> dict[str, Function]:
+    """What readers make of tendons, actuators and borne weights."""
+    rows: dict[str, tuple[str, TruthOf]] = {
+        "tendon_stiffnesses": ("force of tendons for a unit of length (n)", _each(lambda one: one.stiffness)),
+        "tendon_dampings": ("force of tendons for a unit of their speed (n)", _each(lambda one: one.damping)),
+        "tendon_rests": ("lengths of tendons without force (n)", _each(lambda one: one.rest)),
+        "tendon_armatures": ("masses that move with lengths of tendons (n)", _each(lambda one: one.armature)),
+        "actuator_gears": ("factors of lengths and forces (nu)", _every(lambda one: one.gear)),
+        "actuator_gains": ("forces for a unit of control (nu)", _every(lambda one: one.gain)),
+        "actuator_biases": ("b0, b1, b2 of forces (nu, 3)", _every(lambda one: one.bias)),
+        "actuator_control_limits": (
+            "least and greatest controls, zeros for none (nu, 2)",
+            _every(lambda one: one.control_limits or (0.0, 0.0)),
+        ),
+        "actuator_force_limits": (
+            "least and greatest forces, zeros for none (nu, 2)",
+            _every(lambda one: one.force_limits or (0.0, 0.0)),
+        ),
+        "actuator_sites": (
+            "points of both sites of actuators between sites, in their links (nu, 6)",
+            _every(lambda one: [x for end in one.ends for x in end.p]),
+        ),
+        "weight_shares": ("part of their weights that links have borne (L)", _shares),
+    }
+    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+
+
+STATED = _of_joints() | _of_lines()

@@ -1,0 +1,89 @@
+"""What Newton offers of articulations: dynamics, kinematics, a step, what its importers keep of joints and sites."""
+
+from __future__ import annotations
+
+from ...interface import STEP
+from ..writing.source import Way
+
+# Warp prints what it compiles unless this is set before it starts: `quiet` of older releases, the level of newer ones.
+QUIET = "wp.config.quiet, wp.config.log_level = True, 30"
+# Newton's import starts Warp. `b` is the builder, `m` the model.
+IMPORTS = ("import numpy as np, warp as wp", QUIET, "import newton")
+AXIS = "axis = newton.ModelBuilder.JointDofConfig"
+ROTATION = (
+    "def rotation(x, y, z, w):",
+    "    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])",
+    "    return np.eye(3) + 2 * w * K + 2 * K @ K",
+)
+CENTRES = ("def centres(s): return [rotation(*x[3:]) @ c for x, c in zip(s.body_q.numpy(), m.body_com.numpy())]",)
+_Q = (
+    "s = m.state()\ns.joint_q.assign(q.astype(np.float32))\ns.joint_qd.zero_()\n"
+    "newton.eval_fk(m, s.joint_q, s.joint_qd, s)\n"
+)
+QV = _Q.replace("s.joint_qd.zero_()", "s.joint_qd.assign(v.astype(np.float32))")
+
+
+def _passive(name: str) -> str:
+    out = f"{name} = wp.zeros(m.joint_dof_count, device='cpu')"
+    return f"{out}\nnewton.eval_inverse_dynamics_passive(m, s, {name}_force={name})\n"
+
+
+WAYS = {
+    "mass_matrix": Way("eval_mass_matrix", f"{_Q}value = newton.eval_mass_matrix(m, s).numpy()[0]"),
+    "gravity": Way("eval_inverse_dynamics_passive", f"{_Q}{_passive('gravity')}value = gravity.numpy()"),
+    "coriolis_forces": Way("eval_inverse_dynamics_passive", f"{QV}{_passive('coriolis')}value = coriolis.numpy()"),
+    "inverse_dynamics": Way(
+        "eval_inverse_dynamics_force",
+        f"{QV}{_passive('gravity')}{_passive('coriolis')}out = wp.zeros(m.joint_dof_count, device='cpu')\n"
+        "M = newton.eval_mass_matrix(m, s)\n"
+        "newton.eval_inverse_dynamics_force(m, s, mass_matrix=M, joint_qdd=wp.array(a, dtype=float, device='cpu'),"
+        " coriolis_force=coriolis, gravity_force=gravity, joint_f=out)\nvalue = out.numpy()",
+    ),
+    "link_poses": Way("eval_fk", f"{_Q}value = [[*x[:3], *rotation(*x[3:]).flat] for x in s.body_q.numpy()]"),
+    "link_velocities": Way(
+        "eval_fk",
+        f"{QV}rotation\n"
+        "value = [[*(x[:3] - np.cross(x[3:], r)), *x[3:]] for x, r in zip(s.body_qd.numpy(), centres(s))]",
+    ),
+    # Of the mass centres.
+    "link_jacobians": Way(
+        "eval_jacobian",
+        f"""rotation
+{_Q}J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
+value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
+    ),
+}
+WAYS["step_semi_implicit_normalized"] = Way(
+    "SolverFeatherstone",
+    f"""solver, after, control = newton.solvers.SolverFeatherstone(m, angular_damping=0.0), m.state(), m.control()
+{QV}control.joint_f.assign(tau.astype(np.float32))
+solver.step(s, after, control, None, {STEP})
+value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]""",
+)
+
+
+WAYS |= {
+    "frame_poses": Way(
+        "add_site",
+        f"""{_Q}rotation, sensed
+value = []
+for k in sensed:
+    at = [x.split('/')[-1] for x in m.shape_label].index(f'o{{k}}')
+    body, own = m.shape_body.numpy()[at], m.shape_transform.numpy()[at]
+    x = s.body_q.numpy()[body] if body >= 0 else np.array([0.0, 0, 0, 0, 0, 0, 1])
+    R = rotation(*x[3:])
+    value.append([*(x[:3] + R @ own[:3]), *(R @ rotation(*own[3:])).flat])""",
+    ),
+    "joint_dampings": Way(
+        "joint_damping, mujoco.dof_passive_damping",
+        "value = m.joint_damping.numpy() if hasattr(m, 'joint_damping') else m.mujoco.dof_passive_damping.numpy()",
+    ),
+    "joint_speed_limits": Way("joint_velocity_limit", "value = m.joint_velocity_limit.numpy()"),
+    "joint_force_limits": Way("joint_effort_limit", "value = m.joint_effort_limit.numpy()"),
+    "joint_limits": Way(
+        "joint_limit_lower, joint_limit_upper",
+        "value = np.c_[m.joint_limit_lower.numpy(), m.joint_limit_upper.numpy()]",
+    ),
+    "joint_frictions": Way("joint_friction", "value = m.joint_friction.numpy()"),
+    "joint_stiffnesses": Way("mujoco.dof_passive_stiffness", "value = m.mujoco.dof_passive_stiffness.numpy()"),
+}
