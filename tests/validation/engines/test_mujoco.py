@@ -46,7 +46,7 @@ def test_rotations_are_right(name: str) -> None:
     assert {cell.verdict for cell in cells(MUJOCO, tree)} == {"right"}
 
 
-@pytest.mark.parametrize("name", ["point by bodies", "anchor changed", "weld on the world"])
+@pytest.mark.parametrize("name", ["point by bodies", "anchor of a connect constraint changed", "weld on the world"])
 def test_constraints_of_models_that_are_made_again_are_right(name: str) -> None:
     verdicts = {cell.function: cell.verdict for cell in cells(MUJOCO, loops.trees()[name])}
     assert {"constraint_residuals:attach", "constrained_inverse", "constraint_jacobian:mj_mulJacVec"} <= set(verdicts)
@@ -74,7 +74,7 @@ def test_rates_of_lengths_are_those_of_differences(name: str) -> None:
 
 
 def test_an_anchor_that_stays_is_a_red_cell() -> None:
-    tree = loops.trees()["anchor changed"]
+    tree = loops.trees()["anchor of a connect constraint changed"]
     (one,), (stale,) = (_judged(at, "constraint_residuals").values() for at in (tree, tree.before))
     assert one.want is not None and one.cell.verdict == "right"
     answer = np.asarray(stale.answer.value)

@@ -31,6 +31,10 @@ def _constrained() -> dict[str, Function]:
             "that turns the second frame into the first, in the second; lengths less those at zero",
             lambda t, s: constraints.residuals(t, s.q2),
         ),
+        "constraint_residual_products": Function(
+            "second time derivative of constraint_residuals at q2 and v, with v kept (m)",
+            lambda t, s: constraints.residual_products(t, s.q2, s.v),
+        ),
         "step_at_rest": Function("q, v (nq + nv) after a step at rest, without gravity and forces", _at_rest),
         "delassus": Function("J M^-1 J^T (m, m)", lambda t, s: constraints.delassus(t, s.q)),
         "delassus_inverse": Function(

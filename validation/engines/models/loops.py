@@ -147,7 +147,7 @@ def trees() -> dict[str, Tree]:
         _pair("weld"),
         _pair("point"),
         _by_bodies(),
-        replace(_by_bodies(), name="anchor changed", changed="anchor"),
+        replace(_by_bodies(), name="anchor of a connect constraint changed", changed="anchor"),
         _two_points(),
         _four_bar(),
         _of_joint("point beyond a slide", Joint("prismatic", axis=OBLIQUE)),

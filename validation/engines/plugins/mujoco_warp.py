@@ -113,6 +113,9 @@ _CONSTRAINED = {
     "constrained_acceleration:forward twice": _bound(
         "qacc after a second forward", "value = got(dc, 'qacc')", SOFT, rows=_AGAIN
     ),
+    "constraint_residual_products": _bound(
+        "-efc.aref after a second forward", "value = -row('aref') * ways_round()", at="q2", rows=_AGAIN
+    ),
     "constraint_residuals": _bound("efc.pos", "value = row('pos') * ways_round()", at="q2"),
     "constrained_acceleration": _bound("forward: qacc", "value = got(dc, 'qacc')", SOFT),
     "constraint_forces": _bound("efc.force", "value = np.linalg.solve(axes().T, row('force'))", SOFT_FORCES),

@@ -85,6 +85,15 @@ def residuals(t: Truth, q: Exact) -> Exact:
     return np.concatenate(parts)
 
 
+def residual_products(t: Truth, q: Exact, v: Exact) -> Exact:
+    """Second time derivative of the residuals (m), with the speeds kept: closed or not."""
+
+    def first(at: Exact) -> Exact:
+        return t.kinematics.along(lambda point: residuals(t, point), at, v)
+
+    return t.kinematics.along(first, q, v)
+
+
 def jacobian(t: Truth, q: Exact) -> Exact:
     """J (m, nv)."""
     rows = [_rows(t.kinematics, q, one) for one in t.tree.constraints]

@@ -303,6 +303,9 @@ WAYS = {
     "constraint_jacobian": Way("efc_J", f"{_AT}{_J}value = axes() @ J"),
     "constraint_velocity_products": Way("-efc_aref", f"{_AT}value = -axes() @ d.efc_aref"),
     "constraint_residuals": Way("efc_pos", f"{_AT.replace('= q, v', '= q2, v')}value = d.efc_pos * ways_round()"),
+    "constraint_residual_products": Way(
+        "-efc_aref", f"{_AT.replace('= q, v', '= q2, v')}value = -d.efc_aref * ways_round()"
+    ),
     "step_at_rest": Way(
         "mj_step",
         "from copy import copy\nn = copy(m)\n"

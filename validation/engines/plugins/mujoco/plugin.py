@@ -183,7 +183,7 @@ PLUGIN = SourcePlugin(
             "precondition",
             "a row's reference acceleration is -b v - k r: what the rate of its Jacobian adds, J'v, is left out",
             "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
-            "constraint_velocity_products(:.*)?|constrained_acceleration(:.*)?|constraint_forces",
+            "constraint_(velocity|residual)_products(:.*)?|constrained_acceleration(:.*)?|constraint_forces",
             lambda tree, text: any(one.kind in ("path", "polynomial") for one in tree.constraints),
         ),
         UNIT_AXIS,
