@@ -283,6 +283,7 @@ def _remote() -> list[Tree]:
     return [
         Tree("actuator at a site", links, actuators=(at_site,)),
         Tree("actuators between sites", links, actuators=(apart, replace(apart, ends=(c, world)))),
+        Tree("actuators between sites, seen from the link beyond", links, actuators=(replace(apart, ends=(a, c)),)),
         Tree("slider and crank", links, actuators=(crank, replace(crank, crank=3.0, ends=(c, a)))),
     ]
 

@@ -116,12 +116,12 @@ def _actuators() -> Iterator[tuple[str, Reading]]:
     on_sum = within('<motor tendon="f" gear="2"/>')
     tendon = f'<tendon><fixed name="f" {_MADE}>{_PARTS}</fixed></tendon>'
     yield stated("on a tendon", tendon + on_sum, Actuator(tendon=0, gear=2.0, control=0.5), tendons=(_SUM,))
-    ends = End("b", p=(0.0, 0.125, 0.5)), End("a", p=(0.25, 0.0, -0.5))
-    apart = Actuator(gear=1.0, control=0.5, ends=ends, wrench=(0.5, -1.0, 0.25, 0.0, 0.0, 0.0))
-    between = within('<motor site="o" refsite="n" gear="0.5 -1 0.25 0 0 0"/>')
     of_sites = ("actuator_sites", "actuator_gains", "actuator_biases", "actuator_lengths", "actuated_forces")
-    yield stated("between sites", between, apart, asked=of_sites)
-    yield stated("site that sends back", between.replace("motor", "general"), apart, asked=of_sites)
+    a, b = End("a", p=(0.25, 0.0, -0.5)), End("b", p=(0.0, 0.125, 0.5))
+    for name, ends, at in (("a site", (a, b), 'site="n" refsite="o"'), ("the other", (b, a), 'site="o" refsite="n"')):
+        apart = Actuator(control=0.5, ends=ends, wrench=(0.5, -1.0, 0.25, 0.0, 0.0, 0.0))
+        inside = within(f'<general {at} gear="0.5 -1 0.25 0 0 0"/>')
+        yield stated(f"at {name} of two, by the reference site", inside, apart, asked=of_sites)
     ranged = _JOINTS[0], '<joint name="b" axis="0 1 0" range="-0.5 1.25"/>' + MB
     servo = replace(_KINDS["position"][1], link="b", gear=1.0, control_limits=(-0.5, 1.25))
     inherits = within('<position joint="b" kp="3" inheritrange="1"/>')

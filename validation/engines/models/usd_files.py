@@ -195,6 +195,9 @@ def _collisions() -> Iterator[tuple[str, Reading]]:
     side = 0.5**3
     cube = replace(body, mass=_WATER * side, inertia=readers.diagonal(*[_WATER * side * 0.5**2 / 6.0] * 3))
     plain = _shape("Cube", "double size = 0.5")
+    # Without MassAPI of the body's own, its mass is the sum of its colliders'.
+    bare = _file(inertial=off.replace('"s"', '"t"') + "\n        " + on).replace(', "PhysicsMassAPI"]) {', "]) {", 1)
+    yield _of("collider disabled on a body without MassAPI", bare, solid)
     yield _of("mass of zero", _file(inertial=f"float physics:mass = 0\n        {plain}"), cube)
     none = "float physics:mass = 0\n        float3 physics:diagonalInertia = (0, 0, 0)\n        "
     yield _of("mass and moments of zero", _file(inertial=none + plain), cube)

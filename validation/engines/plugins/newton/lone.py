@@ -9,7 +9,9 @@ from ..writing.source import Source, Way
 from .model import write
 from .ways import IMPORTS, QV
 
-# What iterations leave of constraints; what springs in their place do.
+# Builders of some releases take a number for gravity, of others a vector.
+_WEIGHTLESS = ("m.gravity.zero_()",)
+# What iterations leave of constraints; what springs in their place do, and orientations that go along their rate.
 _LEFT, _SOFT = 1e-3, 1e-2
 _STEPPED = (
     f"{QV}after, control = m.state(), m.control()\ncontrol.joint_f.assign(tau.astype(np.float32))\n"
@@ -28,7 +30,7 @@ def _step(solver: str, slack: float) -> Way:
 
 _XPBD, _FORCES = "SolverXPBD(m, angular_damping=0.0)", "SolverSemiImplicit(m, angular_damping=0.0)"
 WAYS = {
-    "step_of_wheel": _step(_XPBD, _LEFT),
+    "step_of_wheel": _step(_XPBD, _SOFT),
     "step_of_wheel:SolverSemiImplicit": _step(_FORCES, _SOFT),
     "step_of_wheel:SolverFeatherstone": Way(
         "SolverFeatherstone",
@@ -53,12 +55,12 @@ WAYS = {
 
 def write_wheel(tree: Tree) -> Source | Unsupported:
     """Text that builds a body on its joint, whose state has the wrench of what holds it."""
-    made = write(replace(tree, asked=""))
+    made = write(replace(tree, asked="", gravity=Tree("", ()).gravity))
     if isinstance(made, Unsupported):
         return made
     asked = 'hasattr(b, "request_state_attributes") and b.request_state_attributes("body_parent_f")'
     place = next(k for k, line in enumerate(made.lines) if line.startswith("b = ")) + 1
-    return replace(made, lines=(*made.lines[:place], asked, *made.lines[place:]))
+    return replace(made, lines=(*made.lines[:place], asked, *made.lines[place:], *_WEIGHTLESS))
 
 
 def write_held(tree: Tree) -> Source:
@@ -68,9 +70,10 @@ def write_held(tree: Tree) -> Source:
     body = f"mass={mass!r}, inertia=wp.mat33({[list(row) for row in tree.links[0].inertia]!r}), lock_inertia=True"
     lines = (
         *IMPORTS,
-        "b = newton.ModelBuilder(gravity=(0.0, 0.0, 0.0))",
+        "b = newton.ModelBuilder()",
         f"b0 = b.add_link({body})",
         f"b.add_articulation([b.add_joint_distance(-1, b0, min_distance={least!r}, max_distance={greatest!r})])",
         'm = b.finalize(device="cpu")',
+        *_WEIGHTLESS,
     )
     return Source(lines, ((Slot("length", (0,), (0,)),),), 1, 1)

@@ -85,6 +85,13 @@ PLUGIN = SourcePlugin(
             holds=has_bare_shape,
         ),
         Statement(
+            "precondition",
+            "joint_damping is none of what SolverXPBD supports",
+            "newton 1.8, SolverXPBD: Joint limitations",
+            "step_of_wheel|wheel_wrench",
+            lambda tree, text: "dampers" in tree.forces,
+        ),
+        Statement(
             "repairs",
             "inertias that are too small are made larger",
             "newton 1.8, newton/_src/sim/builder.py: ModelBuilder.finalize, its warning",
