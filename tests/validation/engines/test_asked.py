@@ -38,8 +38,8 @@ def test_rates_of_rotation_vectors_are_those_of_the_rotation() -> None:
     t, s = _truth()
     with many_digits():
         small = exact(1e-12)[()]
-        before, after = (turns._exponential(s.tau + sign * small * s.a) for sign in (-1, 1))
-        spin = turns._logarithm(before.T @ after) / (2 * small)
+        before, after = (turns.turned_by(s.tau + sign * small * s.a) for sign in (-1, 1))
+        spin = turns.rotation_vector(before.T @ after) / (2 * small)
     np.testing.assert_allclose(
         digits(t.value(turns.vector_speeds, s)) @ digits(s.a), digits(spin), rtol=1e-14, atol=1e-15
     )
@@ -48,7 +48,7 @@ def test_rates_of_rotation_vectors_are_those_of_the_rotation() -> None:
 def test_a_logarithm_is_the_way_back() -> None:
     t, s = _truth()
     with many_digits():
-        back = turns._exponential(turns.logarithm(t, s)).reshape(9) - turns.matrix(t, s)
+        back = turns.turned_by(turns.logarithm(t, s)).reshape(9) - turns.matrix(t, s)
     assert np.max(np.abs(digits(back))) < 1e-100
 
 

@@ -10,10 +10,11 @@ from .beside import LONE, TURNS
 from .constrained import CONSTRAINED
 from .function import Function
 from .integrators import STEPS
+from .poses import POSES
 from .stated import STATED
 from .trees import TREES
 
-FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS
+FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.

@@ -19,33 +19,34 @@ from .dynamics import Point, Truth
 _UNIT = exact(np.eye(3))
 
 
-def _turn(t: Truth, q: Exact) -> Exact:
+def turn(t: Truth, q: Exact) -> Exact:
+    """The rotation (3, 3) that coordinates q make."""
     ((R, _),) = t.kinematics.poses(q)
     return R
 
 
 def matrix(t: Truth, s: Point) -> Exact:
     """Rows of R (9)."""
-    return _turn(t, s.q).reshape(9)
+    return turn(t, s.q).reshape(9)
 
 
 def composed(t: Truth, s: Point) -> Exact:
     """Rows of R Q (9)."""
-    return (_turn(t, s.q) @ _turn(t, s.q2)).reshape(9)
+    return (turn(t, s.q) @ turn(t, s.q2)).reshape(9)
 
 
 def angle(t: Truth, s: Point) -> Exact:
     """Angle of R^T Q (1)."""
-    vector = _logarithm(_turn(t, s.q).T @ _turn(t, s.q2))
+    vector = rotation_vector(turn(t, s.q).T @ turn(t, s.q2))
     return np.array([root(vector @ vector)])
 
 
 def logarithm(t: Truth, s: Point) -> Exact:
     """Rotation vector of R (3)."""
-    return _logarithm(_turn(t, s.q))
+    return rotation_vector(turn(t, s.q))
 
 
-def _logarithm(R: Exact) -> Exact:
+def rotation_vector(R: Exact) -> Exact:
     """Rotation vector (3), shorter than pi."""
     spin = np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]) / 2
     sine = root(spin @ spin)
@@ -54,12 +55,12 @@ def _logarithm(R: Exact) -> Exact:
 
 def exponential(t: Truth, s: Point) -> Exact:
     """Rows of the rotation by the vector v (9)."""
-    return _exponential(s.v).reshape(9)
+    return turned_by(s.v).reshape(9)
 
 
 def exponential_of_turns(t: Truth, s: Point) -> Exact:
     """Rows of the rotation by 16 v, which mostly is more than a turn (9)."""
-    return _exponential(16 * s.v).reshape(9)
+    return turned_by(16 * s.v).reshape(9)
 
 
 def half_turn(t: Truth, s: Point) -> Exact:
@@ -78,13 +79,14 @@ def half_turns(t: Truth, s: Point) -> Exact:
     return np.array([(2 * np.outer(u, u) / (u @ u) - eye(3)).reshape(9) for u in axes])
 
 
-def _exponential(r: Exact) -> Exact:
+def turned_by(r: Exact) -> Exact:
+    """The rotation (3, 3) by a vector."""
     length = root(r @ r)
     return rotation(r / length, *cos_sin(length)) if length else eye(3)
 
 
-def _speeds(r: Exact) -> Exact:
-    """A, eq. (5)."""
+def speeds(r: Exact) -> Exact:
+    """A (3, 3), eq. (5)."""
     length, S = root(r @ r), skew(r)
     if not length:
         return eye(3)
@@ -94,22 +96,22 @@ def _speeds(r: Exact) -> Exact:
 
 def vector_speeds(t: Truth, s: Point) -> Exact:
     """A at r = tau, eq. (5)."""
-    return _speeds(s.tau)
+    return speeds(s.tau)
 
 
 def vector_rates(t: Truth, s: Point) -> Exact:
     """The inverse of A at r = tau."""
-    return solve(_speeds(s.tau), eye(3))
+    return solve(speeds(s.tau), eye(3))
 
 
 def vector_rates_fixed(t: Truth, s: Point) -> Exact:
     """The inverse of A^T at r = v."""
-    return solve(_speeds(s.v).T, eye(3))
+    return solve(speeds(s.v).T, eye(3))
 
 
 def vector_rates_rate(t: Truth, s: Point) -> Exact:
     """The time derivative of the inverse of A^T at r = tau, r' = a."""
-    return rate(lambda r: solve(_speeds(r).T, eye(3)), s.tau, s.a)
+    return rate(lambda r: solve(speeds(r).T, eye(3)), s.tau, s.a)
 
 
 def _of_angles(angles: Exact) -> Exact:
@@ -132,11 +134,11 @@ def rpy_rates_rate(t: Truth, s: Point) -> Exact:
 
 def between(t: Truth, s: Point) -> Exact:
     """Rows of the rotation a quarter of the way from R to Q (9)."""
-    R = _turn(t, s.q)
-    return (R @ _exponential(_logarithm(R.T @ _turn(t, s.q2)) / 4)).reshape(9)
+    R = turn(t, s.q)
+    return (R @ turned_by(rotation_vector(R.T @ turn(t, s.q2)) / 4)).reshape(9)
 
 
 def adjoint(t: Truth, s: Point) -> Exact:
     """Twists of a frame at (R, a), in the frame that it is in (6, 6)."""
-    R = _turn(t, s.q)
+    R = turn(t, s.q)
     return np.block([[R, skew(s.a) @ R], [exact(np.zeros((3, 3))), R]])

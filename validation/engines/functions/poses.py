@@ -1,0 +1,117 @@
+"""Placements, screws, lines and planes, a body's spatial inertia: what packages offer beside rotations."""
+
+from __future__ import annotations
+
+from ..truth import poses
+from .function import Function
+
+
+def _placements() -> dict[str, Function]:
+    """X = (R, a) of the coordinates q, Y = (Q, tau) of q2; position and rows of the rotation each (12)."""
+    rows = {
+        "pose_composed": ("X Y (12)", poses.composed),
+        "pose_inverse": ("X^-1 (12)", poses.inverse),
+        "pose_relative": ("X^-1 Y (12)", poses.relative),
+        "pose_of_point": ("the point v of X, in the frame that X is in (3)", poses.placed),
+        "pose_logarithm": ("twist (linear; angular) that leads to X in unit time (6)", poses.logarithm),
+        "pose_difference": ("twist that leads from X to Y, along the axes of X (6)", poses.difference),
+        "pose_exponential": ("where the twist (v; v2) leads in unit time (12)", poses.exponential),
+        "pose_halfway": ("a quarter of the way from X to Y, along the screw (12)", poses.between),
+        "pose_halfway_apart": (
+            "a quarter of the way from X to Y: positions along a line, rotations the shorter way (12)",
+            poses.between_apart,
+        ),
+        "pose_exponential_speeds": (
+            "J: the twist of exp x in its own frame is J x', at x = (v; v2) (6, 6)",
+            poses.exponential_speeds,
+        ),
+        "pose_logarithm_rates": (
+            "J: the rates of the twist that leads to X are J times the twist of X in its own frame (6, 6)",
+            poses.logarithm_rates,
+        ),
+        "wrench_transform": (
+            "(6, 6): wrenches (force; moment) of a frame at X in the frame it is in",
+            poses.wrench_transform,
+        ),
+        "twist_transform_back": ("(6, 6): twists of the frame that X is in, in X", poses.twist_transform_back),
+        "twist_cross": ("(6, 6): product of the twist (v; v2) with twists", poses.twist_cross),
+    }
+    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+
+
+def _parameters() -> dict[str, Function]:
+    """Parameters of rotations, and matrices that are none."""
+    rows = {
+        "quaternion_rates": (
+            "rates of the quaternion (4) at angular velocity v along the turned axes",
+            poses.quaternion_rates,
+        ),
+        "quaternion_rates_fixed": ("the same with v along the axes before", poses.quaternion_rates_fixed),
+        "rotation_of_rpy": ("rows of Rz(v[2]) Ry(v[1]) Rx(v[0]) (9)", poses.of_rpy),
+        "rotation_to_rpy": ("roll, pitch, yaw of R = Rz Ry Rx, the pitch within a quarter turn (3)", poses.to_rpy),
+        "rotation_of_zyz": ("rows of Rz(v[0]) Ry(v[1]) Rz(v[2]) (9)", poses.of_zyz),
+        "zyz_speeds": ("B: w = B x' along the axes before, of these angles x = v (3, 3)", poses.zyz_speeds),
+        "are_rotations": (
+            "1, 0, 0: whether R, R with a column turned round, 1.25 R are rotations",
+            poses.are_rotations,
+        ),
+        "rotation_of_two_axes": (
+            "rows of the rotation with its third axis along v + (4, -8, 8), its second in the half plane of that and"
+            " v2 + (8, 4, 4) (9)",
+            poses.of_two_axes,
+        ),
+    }
+    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+
+
+def _lines() -> dict[str, Function]:
+    """The line through a along v + (4, -8, 8), the one through tau along v2 + (8, 4, 4); moments are x cross d."""
+    rows = {
+        "line": ("moment and unit direction of the first line (6)", poses.line),
+        "line_placed": ("the same of that line, given in Y, in the frame that Y is in (6)", poses.line_placed),
+        "line_nearest": ("its point nearest to tau (3)", poses.line_nearest),
+        "line_nearest_to_origin": ("its point nearest to the origin (3)", poses.line_nearest_to_origin),
+        "lines_apart": ("distance of the two lines (1)", poses.lines_apart),
+        "lines_perpendicular": (
+            "moment and unit direction of the line at right angles through both (6)",
+            poses.common_perpendicular,
+        ),
+        "line_of_plane": ("its point in the plane through tau, normal to v2 + (8, -4, 4) (3)", poses.line_of_plane),
+        "line_of_planes": (
+            "moment, unit direction of the line of the planes through a, tau, normal to (4, -8, 8), (8, 4, 4) (6)",
+            poses.line_of_planes,
+        ),
+        "planes_meet": ("the point of these and the one through v2 normal to (8, -4, 4) (3)", poses.planes_meet),
+        "plane_of_points": (
+            "distance of the origin from the plane of the first line and tau (1)",
+            poses.plane_of_points,
+        ),
+        "plane_of_lines": (
+            "distance of the origin from the plane of the first line that is parallel to the second (1)",
+            poses.plane_of_lines,
+        ),
+        "screw_pitch": ("advance for a radian of the twist (a; v + (4, -8, 8)) (1)", poses.screw_pitch),
+        "screw_line": ("moment and unit direction of the line that it turns about (6)", poses.screw_line),
+        "screw_pole": ("the point of that line nearest to the origin (3)", poses.screw_pole),
+        "screw_of_line": ("twist of unit angular part about the first line, of pitch 3/8 (6)", poses.screw_of_line),
+    }
+    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+
+
+def _inertias() -> dict[str, Function]:
+    """A body of 2 kg, and what its momentum is for twists (linear; angular) at the frame's origin."""
+    rows = {
+        "spatial_inertia": ("matrix of the momentum (6, 6)", poses.inertia_matrix),
+        "spatial_inertia_placed": (
+            "the same of the body, given in X, in the frame X is in (6, 6)",
+            poses.inertia_placed,
+        ),
+        "spatial_inertia_sum": ("the same of that body and the one at X (6, 6)", poses.inertia_sum),
+        "spatial_momentum": ("its momentum for the twist (v; v2) (6)", poses.momentum),
+        "spatial_momentum_cross": ("the twist's product with it (6)", poses.momentum_cross),
+        "spatial_inertia_rate": ("rate of its matrix as it moves with the twist (6, 6)", poses.inertia_rate),
+    }
+    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+
+
+POSES = _placements() | _parameters() | _lines() | _inertias()

@@ -1,0 +1,352 @@
+"""Placements, screws and lines in many digits: X = (R, a) of the coordinates q, Y = (Q, tau) of q2, twists (v; v2).
+
+With r a rotation vector, S the matrix of its cross product and p its length, a twist (u; r) leads in unit time to
+
+    exp (u; r) = (exp r, V u),  V = 1 + (1 - cos p) / p^2 S + (p - sin p) / p^3 S^2                              (6)
+
+Lines are of unit direction d and of moment c = x cross d, x any point on them. The twist (u; w) turns about a line of
+moment (u - h w) / |w| with the pitch h = u.w / w.w.
+"""
+
+from __future__ import annotations
+
+from decimal import Decimal
+
+import numpy as np
+
+from .arithmetic import Exact, arc, cos_sin, cross, exact, eye, rate, root, rotation, skew, solve, stack, zeros
+from .dynamics import Point, Truth
+from .kinematics import Inertia
+from .turns import rotation_vector, speeds, turn, turned_by
+
+# What directions have added, so that they never vanish and are never along each other.
+AWAY, ASIDE, BESIDE = (4.0, -8.0, 8.0), (8.0, 4.0, 4.0), (8.0, -4.0, 4.0)
+# Mass, mass centre, moments about it of a body that is no tree's.
+MASS, CENTRE = 2.0, (0.25, -0.5, 0.125)
+MOMENTS = ((0.5, 0.0625, -0.03125), (0.0625, 0.375, 0.125), (-0.03125, 0.125, 0.625))
+
+
+def _flat(R: Exact, p: Exact) -> Exact:
+    """Position and rows of R (12)."""
+    return np.concatenate([p, R.reshape(9)])
+
+
+def _first(t: Truth, s: Point) -> tuple[Exact, Exact]:
+    return turn(t, s.q), s.a
+
+
+def _second(t: Truth, s: Point) -> tuple[Exact, Exact]:
+    return turn(t, s.q2), s.tau
+
+
+def _apart(t: Truth, s: Point) -> tuple[Exact, Exact]:
+    """X^-1 Y."""
+    (R, p), (Q, r) = _first(t, s), _second(t, s)
+    return R.T @ Q, R.T @ (r - p)
+
+
+def composed(t: Truth, s: Point) -> Exact:
+    """X Y (12)."""
+    (R, p), (Q, r) = _first(t, s), _second(t, s)
+    return _flat(R @ Q, p + R @ r)
+
+
+def inverse(t: Truth, s: Point) -> Exact:
+    """X^-1 (12)."""
+    R, p = _first(t, s)
+    return _flat(R.T, -R.T @ p)
+
+
+def relative(t: Truth, s: Point) -> Exact:
+    """X^-1 Y (12)."""
+    return _flat(*_apart(t, s))
+
+
+def placed(t: Truth, s: Point) -> Exact:
+    """The point v of X in the frame before (3)."""
+    R, p = _first(t, s)
+    return p + R @ s.v
+
+
+def _leading(twist: Exact) -> tuple[Exact, Exact]:
+    """Where a twist leads in unit time, eq. (6)."""
+    return turned_by(twist[3:]), speeds(twist[3:]).T @ twist[:3]
+
+
+def _leads(R: Exact, p: Exact) -> Exact:
+    """The twist that leads to a placement (6)."""
+    r = rotation_vector(R)
+    return np.concatenate([solve(speeds(r).T, p), r])
+
+
+def _twist(s: Point) -> Exact:
+    return np.concatenate([s.v, s.v2])
+
+
+def logarithm(t: Truth, s: Point) -> Exact:
+    """The twist that leads to X (6)."""
+    return _leads(*_first(t, s))
+
+
+def difference(t: Truth, s: Point) -> Exact:
+    """The twist that leads from X to Y, along the axes of X (6)."""
+    return _leads(*_apart(t, s))
+
+
+def exponential(t: Truth, s: Point) -> Exact:
+    """Where the twist (v; v2) leads (12), eq. (6)."""
+    return _flat(*_leading(_twist(s)))
+
+
+def between(t: Truth, s: Point) -> Exact:
+    """A quarter of the way from X to Y, along the screw (12)."""
+    (R, p), (step, way) = _first(t, s), _leading(difference(t, s) / 4)
+    return _flat(R @ step, p + R @ way)
+
+
+def between_apart(t: Truth, s: Point) -> Exact:
+    """A quarter of the way from X to Y: of the positions along their line, of the rotations the shorter way (12)."""
+    (R, p), (Q, r) = _first(t, s), _second(t, s)
+    return _flat(R @ turned_by(rotation_vector(R.T @ Q) / 4), p + (r - p) / 4)
+
+
+def _inverse(R: Exact, p: Exact) -> tuple[Exact, Exact]:
+    return R.T, -R.T @ p
+
+
+def _body_rates(pose: tuple[Exact, Exact], rates: Exact) -> Exact:
+    """Twist in the placed frame (6) of the rates (12) of a placement."""
+    R = pose[0]
+    turning = R.T @ rates[3:].reshape(3, 3)
+    return np.concatenate([R.T @ rates[:3], np.array([turning[2, 1], turning[0, 2], turning[1, 0]])])
+
+
+def exponential_speeds(t: Truth, s: Point) -> Exact:
+    """J with the twist J x' of exp x in its own frame, at x = (v; v2) (6, 6)."""
+    return _exponential_speeds(_twist(s))
+
+
+def _exponential_speeds(twist: Exact) -> Exact:
+    pose, unit = _leading(twist), eye(6)
+    return stack([_body_rates(pose, rate(lambda x: _flat(*_leading(x)), twist, unit[k])) for k in range(6)])
+
+
+def logarithm_rates(t: Truth, s: Point) -> Exact:
+    """J with (log X)' = J times the twist of X in its own frame (6, 6)."""
+    return solve(_exponential_speeds(logarithm(t, s)), eye(6))
+
+
+def wrench_transform(t: Truth, s: Point) -> Exact:
+    """Wrenches (force; moment) of the frame X in the frame it is in (6, 6)."""
+    R, p = _first(t, s)
+    return np.block([[R, zeros(3, 3)], [skew(p) @ R, R]])
+
+
+def twist_transform_back(t: Truth, s: Point) -> Exact:
+    """Twists of the frame that X is in, in X (6, 6)."""
+    R, p = _inverse(*_first(t, s))
+    return np.block([[R, skew(p) @ R], [zeros(3, 3), R]])
+
+
+def twist_cross(t: Truth, s: Point) -> Exact:
+    """The matrix of the product of the twist (v; v2) with twists (6, 6)."""
+    return np.block([[skew(s.v2), skew(s.v)], [zeros(3, 3), skew(s.v2)]])
+
+
+def quaternion_rates(t: Truth, s: Point) -> Exact:
+    """Rates of the quaternion q (4) at the angular velocity v along the turned axes."""
+    return t.kinematics.rates(s.q) @ s.v
+
+
+def quaternion_rates_fixed(t: Truth, s: Point) -> Exact:
+    """Rates of the quaternion q (4) at the angular velocity v along the axes before."""
+    return t.kinematics.rates(s.q) @ turn(t, s.q).T @ s.v
+
+
+def _about(axis: int, angle: Exact) -> Exact:
+    return rotation(eye(3)[axis], *cos_sin(angle))
+
+
+def of_rpy(t: Truth, s: Point) -> Exact:
+    """Rows of Rz(v[2]) Ry(v[1]) Rx(v[0]) (9)."""
+    return (_about(2, s.v[2]) @ _about(1, s.v[1]) @ _about(0, s.v[0])).reshape(9)
+
+
+def to_rpy(t: Truth, s: Point) -> Exact:
+    """Roll, pitch within a quarter turn, yaw of R = Rz Ry Rx (3)."""
+    R = turn(t, s.q)
+    level = root(R[0, 0] ** 2 + R[1, 0] ** 2)
+    # The arc of cosine and sine is within half a turn; its sign is the sine's.
+    angles = ((R[2, 2], R[2, 1]), (level, -R[2, 0]), (R[0, 0], R[1, 0]))
+    return np.array([arc(c, abs(x)) * (1 if x >= 0 else -1) for c, x in angles])
+
+
+def of_zyz(t: Truth, s: Point) -> Exact:
+    """Rows of Rz(v[0]) Ry(v[1]) Rz(v[2]) (9)."""
+    return (_about(2, s.v[0]) @ _about(1, s.v[1]) @ _about(2, s.v[2])).reshape(9)
+
+
+def zyz_speeds(t: Truth, s: Point) -> Exact:
+    """B with w = B x' along the axes before, of R = Rz(x[0]) Ry(x[1]) Rz(x[2]) at x = v (3, 3)."""
+    z, y = _about(2, s.v[0]), _about(1, s.v[1])
+    return np.stack([eye(3)[2], z[:, 1], (z @ y)[:, 2]], axis=1)
+
+
+def are_rotations(t: Truth, s: Point) -> Exact:
+    """Whether R, R with its last column turned round, R times 1.25 are rotations: 1, 0, 0 (3)."""
+    return np.array([Decimal(1), Decimal(0), Decimal(0)])
+
+
+def of_two_axes(t: Truth, s: Point) -> Exact:
+    """Rows of the rotation whose third axis is along u = v + AWAY, with v2 + ASIDE in its second half plane (9)."""
+    z = _unit(s.v + exact(AWAY))
+    x = _unit(cross(s.v2 + exact(ASIDE), z))
+    return np.stack([x, cross(z, x), z], axis=1).reshape(9)
+
+
+def _unit(x: Exact) -> Exact:
+    return x / root(x @ x)
+
+
+def _line(s: Point) -> tuple[Exact, Exact]:
+    """Point and direction of the line through a along v + AWAY."""
+    return s.a, _unit(s.v + exact(AWAY))
+
+
+def line(t: Truth, s: Point) -> Exact:
+    """Moment and direction of the line through a along u = v + AWAY (6)."""
+    x, d = _line(s)
+    return np.concatenate([cross(x, d), d])
+
+
+def line_placed(t: Truth, s: Point) -> Exact:
+    """The same of that line, given in Y, in the frame that Y is in (6)."""
+    (Q, r), (x, d) = _second(t, s), _line(s)
+    return np.concatenate([cross(r + Q @ x, Q @ d), Q @ d])
+
+
+def line_nearest(t: Truth, s: Point) -> Exact:
+    """Point of that line that is the nearest to tau (3)."""
+    x, d = _line(s)
+    return x + d * (d @ (s.tau - x))
+
+
+def line_nearest_to_origin(t: Truth, s: Point) -> Exact:
+    """Point of that line that is the nearest to the origin (3)."""
+    x, d = _line(s)
+    return x - d * (d @ x)
+
+
+def lines_apart(t: Truth, s: Point) -> Exact:
+    """Distance of that line from the one through tau along v2 + ASIDE (1)."""
+    (x, d), e = _line(s), s.v2 + exact(ASIDE)
+    return np.array([abs((s.tau - x) @ _unit(cross(d, e)))])
+
+
+def common_perpendicular(t: Truth, s: Point) -> Exact:
+    """Moment and direction, that of the product of theirs, of the line that meets both at right angles (6)."""
+    (x, d), e = _line(s), _unit(s.v2 + exact(ASIDE))
+    n = cross(d, e)
+    # Where the nearest point of the first line is: (y - x) x e . n = k n . n.
+    nearest = x + d * (cross(s.tau - x, e) @ n) / (n @ n)
+    return np.concatenate([cross(nearest, _unit(n)), _unit(n)])
+
+
+def plane_of_points(t: Truth, s: Point) -> Exact:
+    """Distance of the plane through a, a + v + AWAY and tau from the origin (1)."""
+    n = cross(s.v + exact(AWAY), s.tau - s.a)
+    return np.array([abs(n @ s.a) / root(n @ n)])
+
+
+def plane_of_lines(t: Truth, s: Point) -> Exact:
+    """Distance of the plane through a along v + AWAY and v2 + ASIDE from the origin (1)."""
+    n = cross(s.v + exact(AWAY), s.v2 + exact(ASIDE))
+    return np.array([abs(n @ s.a) / root(n @ n)])
+
+
+def planes_meet(t: Truth, s: Point) -> Exact:
+    """The point of three planes: through a, tau and v2, normal to AWAY, ASIDE and BESIDE (3)."""
+    normals = exact(np.array([AWAY, ASIDE, BESIDE]))
+    return solve(normals, np.array([n @ x for n, x in zip(normals, (s.a, s.tau, s.v2), strict=True)]))
+
+
+def line_of_planes(t: Truth, s: Point) -> Exact:
+    """Moment and direction of the line of the first two of these planes (6)."""
+    first, second = exact(AWAY), exact(ASIDE)
+    d = cross(first, second)
+    x = cross((first @ s.a) * second - (second @ s.tau) * first, d) / (d @ d)
+    return np.concatenate([cross(x, d), d]) / root(d @ d)
+
+
+def line_of_plane(t: Truth, s: Point) -> Exact:
+    """Where that line meets the plane through tau, normal to v2 + BESIDE (3)."""
+    (x, d), n = _line(s), s.v2 + exact(BESIDE)
+    return x + d * (n @ (s.tau - x)) / (n @ d)
+
+
+def _screw(s: Point) -> tuple[Exact, Exact]:
+    """A twist that turns: linear part a, angular part v + AWAY."""
+    return s.a, s.v + exact(AWAY)
+
+
+def screw_pitch(t: Truth, s: Point) -> Exact:
+    """Advance of the twist (a; v + AWAY) for a radian (1)."""
+    u, w = _screw(s)
+    return np.array([u @ w / (w @ w)])
+
+
+def screw_line(t: Truth, s: Point) -> Exact:
+    """Moment and direction of the line that it turns about (6)."""
+    u, w = _screw(s)
+    size = root(w @ w)
+    return np.concatenate([(u - w * (u @ w) / (w @ w)) / size, w / size])
+
+
+def screw_of_line(t: Truth, s: Point) -> Exact:
+    """The twist of unit angular part about that line, with the pitch 0.375 (6)."""
+    x, d = _line(s)
+    return np.concatenate([cross(x, d) + Decimal("0.375") * d, d])
+
+
+def screw_pole(t: Truth, s: Point) -> Exact:
+    """The point of that line that is the nearest to the origin (3)."""
+    u, w = _screw(s)
+    return cross(w, u) / (w @ w)
+
+
+def _inertia() -> Inertia:
+    centre = skew(exact(CENTRE))
+    mass = exact(MASS)[()]
+    return Inertia(mass, mass * exact(CENTRE), exact(MOMENTS) - mass * (centre @ centre))
+
+
+def inertia_matrix(t: Truth, s: Point) -> Exact:
+    """Momentum (linear; angular, about the frame's origin) of the body of MASS, CENTRE, MOMENTS for a twist (6, 6)."""
+    return _inertia().matrix()
+
+
+def inertia_placed(t: Truth, s: Point) -> Exact:
+    """The same of that body, given in X, in the frame that X is in (6, 6)."""
+    back = twist_transform_back(t, s)
+    return back.T @ _inertia().matrix() @ back
+
+
+def inertia_sum(t: Truth, s: Point) -> Exact:
+    """The same of that body and of one more, placed at X (6, 6)."""
+    return inertia_matrix(t, s) + inertia_placed(t, s)
+
+
+def momentum(t: Truth, s: Point) -> Exact:
+    """Its momentum for the twist (v; v2) (6)."""
+    return _inertia().matrix() @ _twist(s)
+
+
+def momentum_cross(t: Truth, s: Point) -> Exact:
+    """What the twist (v; v2) makes of its momentum: v* I v (6)."""
+    return -twist_cross(t, s).T @ momentum(t, s)
+
+
+def inertia_rate(t: Truth, s: Point) -> Exact:
+    """Rate of the matrix of momentum as the body moves with the twist (v; v2) (6, 6)."""
+    product, matrix = twist_cross(t, s), _inertia().matrix()
+    return -product.T @ matrix - matrix @ product
