@@ -36,6 +36,10 @@ def _of_turns() -> dict[str, Function]:
         ),
         "rpy_rates": ("roll, pitch, yaw rates = B w, w along the axes before, at angles v (3, 3)", turns.rpy_rates),
         "rpy_rates_rate": ("time derivative of B at angles v and rates a (3, 3)", turns.rpy_rates_rate),
+        "rpy_second_rates": (
+            "second rates of roll, pitch, yaw v, of rates a, at angular acceleration tau along the axes before (3)",
+            turns.rpy_second_rates,
+        ),
         "rotation_halfway": (
             "rows of the rotation a quarter of the way from R to Q, the shorter way (9)",
             turns.between,

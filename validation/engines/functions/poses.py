@@ -48,6 +48,7 @@ def _parameters() -> dict[str, Function]:
         ),
         "quaternion_rates_fixed": ("the same with v along the axes before", poses.quaternion_rates_fixed),
         "rotation_of_rpy": ("rows of Rz(v[2]) Ry(v[1]) Rx(v[0]) (9)", poses.of_rpy),
+        "rotation_matrix_rate_of_rpy": ("their rates as v changes by a (9)", poses.rate_of_rpy),
         "rotation_to_rpy": ("roll, pitch, yaw of R = Rz Ry Rx, the pitch within a quarter turn (3)", poses.to_rpy),
         "rotation_of_zyz": ("rows of Rz(v[0]) Ry(v[1]) Rz(v[2]) (9)", poses.of_zyz),
         "zyz_speeds": ("B: w = B x' along the axes before, of these angles x = v (3, 3)", poses.zyz_speeds),

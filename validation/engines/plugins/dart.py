@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
+from . import turns
+from .turns import dart as turning
 from .writing.source import Source, SourcePlugin, Way, numbered, series
 from .writing.urdf import UNIT_AXIS, has_bare_link
 
@@ -153,6 +155,8 @@ def _inertia(link: Link) -> str:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a skeleton; links without a joint hang on weld joints."""
+    if tree.asked == "turns":
+        return turns.source(*turning.IMPORTS)
     if tree.changed:
         first = write(tree.before)
         before = _changing(replace(tree.before, changed=tree.changed))
@@ -292,11 +296,12 @@ PLUGIN = SourcePlugin(
         "free": "FreeJoint",
         "free between links": "FreeJoint",
     },
-    ways=WAYS,
+    ways=WAYS | turning.WAYS,
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,
     demands={
+        "turns": "rotations and placements",
         "dampers": "setDampingCoefficient",
         "springs": "setSpringStiffness",
         "changed mass": "setMass",

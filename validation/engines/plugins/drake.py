@@ -10,8 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree, Unsupported
+from . import turns
 from .loops import drake_forces as forces
 from .loops.drake_forces import FORCES, QV, Q
+from .turns import drake as turning
 from .writing import urdf
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import MESH_WITHIN, UNIT_AXIS
@@ -226,6 +228,8 @@ def _changing(tree: Tree) -> list[str]:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a plant; links without a joint are welded."""
+    if tree.asked == "turns":
+        return turns.source(*turning.IMPORTS)
     if tree.changed:
         first = write(tree.before)
         closing = (*_CLOSING, "p.CalcMassMatrix(c)", *_changing(tree))
@@ -380,12 +384,13 @@ PLUGIN = SourcePlugin(
         "free between links": "QuaternionFloatingJoint",
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
-    ways=WAYS | forces.WAYS,
+    ways=WAYS | forces.WAYS | turning.WAYS,
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={
+        "turns": "rotations and placements",
         "sensors": "Accelerometer, Gyroscope",
         "a bound pair": "AddWeldConstraint, AddBallConstraint",
         "changed mass": "SetSpatialInertiaInBodyFrame",

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 
 from ..interface import STEP, Convention, Statement, Tree, Unsupported
+from . import turns
+from .turns import pybullet as turning
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
@@ -85,6 +87,8 @@ WAYS["step_semi_implicit"] = Way("stepSimulation", _STEP)
 
 def write(tree: Tree) -> Source | Unsupported:
     """The tree through PyBullet's reader of URDF."""
+    if tree.asked == "turns":
+        return turns.source(*turning.IMPORTS, scalar_last=True)
     described = describe(tree)
     if isinstance(described, Unsupported):
         return described
@@ -131,11 +135,11 @@ PLUGIN = SourcePlugin(
         Convention("stepSimulation", "links are damped by 0.04 and joints held by motors unless both are set to zero"),
     ),
     kinds=KINDS,
-    ways=WAYS,
+    ways=WAYS | turning.WAYS,
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,
-    demands={"dampers": "dynamics, damping"},
+    demands={"turns": "rotations and placements", "dampers": "dynamics, damping"},
     statements=(
         Statement(
             "repairs",

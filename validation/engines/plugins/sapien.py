@@ -7,7 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..interface import SINGLE, STEP, Array, Convention, Joint, Slot, Tree, Unsupported
+from . import turns
 from .newton import quaternion
+from .turns import sapien as turning
 from .writing.source import Source, SourcePlugin, Way, numbered, series
 from .writing.urdf import UNIT_AXIS, Described, describe, of_files, slots_of
 
@@ -141,6 +143,8 @@ def _joint(k: int, steps: tuple[tuple[Array, Array, Joint], ...], end: tuple[Arr
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds an articulation on a root that is fixed."""
+    if tree.asked == "turns":
+        return turns.source(*turning.IMPORTS)
     made = numbered(tree, _CHARTS)
     if isinstance(made, Unsupported):
         return made
@@ -218,11 +222,12 @@ PLUGIN = SourcePlugin(
         "prismatic": "prismatic",
         "prismatic oblique": "prismatic",
     },
-    ways=WAYS,
+    ways=WAYS | turning.WAYS,
     write=write,
     formats=("urdf",),
     write_reading=write_reading,
     refusals=("failed to find a rendering device",),
+    demands={"turns": "rotations and placements"},
     statements=(UNIT_AXIS,),
     roundoff=SINGLE,
 )

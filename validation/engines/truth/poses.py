@@ -172,6 +172,11 @@ def of_rpy(t: Truth, s: Point) -> Exact:
     return (_about(2, s.v[2]) @ _about(1, s.v[1]) @ _about(0, s.v[0])).reshape(9)
 
 
+def rate_of_rpy(t: Truth, s: Point) -> Exact:
+    """The rate of these rows as v changes by a (9)."""
+    return rate(lambda v: of_rpy(t, s._replace(v=v)), s.v, s.a)
+
+
 def to_rpy(t: Truth, s: Point) -> Exact:
     """Roll, pitch within a quarter turn, yaw of R = Rz Ry Rx (3)."""
     R = turn(t, s.q)

@@ -132,6 +132,11 @@ def rpy_rates_rate(t: Truth, s: Point) -> Exact:
     return rate(_of_angles, s.v, s.a)
 
 
+def rpy_second_rates(t: Truth, s: Point) -> Exact:
+    """(B w)' at angles v, rates a and the angular acceleration tau along the axes before (3)."""
+    return _of_angles(s.v) @ s.tau + rate(_of_angles, s.v, s.a) @ solve(_of_angles(s.v), s.a)
+
+
 def between(t: Truth, s: Point) -> Exact:
     """Rows of the rotation a quarter of the way from R to Q (9)."""
     R = turn(t, s.q)

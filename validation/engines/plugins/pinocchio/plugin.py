@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import Convention, Statement, Tree, Unsupported
 from ..writing.source import Source, SourcePlugin, is_depth_first, numbered
 from ..writing.urdf import UNIT_AXIS
-from . import constraints, functions
+from . import constraints, functions, poses
 from .model import CLOSING, MODELS, write
 
 
@@ -53,7 +53,7 @@ PLUGIN = SourcePlugin(
         Convention("armature", "m.armature; rotorInertia and rotorGearRatio have no effect on rnea, crba, aba"),
     ),
     kinds={},
-    ways=functions.WAYS | constraints.WAYS,
+    ways=functions.WAYS | constraints.WAYS | poses.WAYS,
     write=write,
     constraints=constraints.KINDS,
     demands={

@@ -1,0 +1,131 @@
+"""Drake's rotations, placements and spatial algebra."""
+
+from __future__ import annotations
+
+from ...truth.poses import CENTRE, MASS, MOMENTS
+from ..writing.source import HALF_TURNS, Way
+
+IMPORTS = ("import pydrake.all as drake",)
+_R = "R, Q = (drake.RotationMatrix(drake.Quaternion(x)) for x in (q, q2))\n"
+_X = "X, Y = drake.RigidTransform(drake.Quaternion(q), a), drake.RigidTransform(drake.Quaternion(q2), tau)\n"
+# Angular parts come first.
+_V = "V = drake.SpatialVelocity(w=v2, v=v)\n"
+_I = (
+    f"J = drake.RotationalInertia({', '.join(repr(MOMENTS[k][k]) for k in range(3))}, "
+    f"{MOMENTS[0][1]!r}, {MOMENTS[0][2]!r}, {MOMENTS[1][2]!r})\n"
+    f"I = drake.SpatialInertia.MakeFromCentralInertia({MASS}, {list(CENTRE)}, J)\n"
+)
+_SWAPPED = "value = np.roll({of}, (3, 3), (0, 1))"
+
+
+def _flat(of: str) -> str:
+    return f"X = {of}\nvalue = [*X.translation(), *X.rotation().matrix().flat]"
+
+
+WAYS = {
+    "rotation_matrix": Way("RotationMatrix of a Quaternion", f"{_R}value = R.matrix().ravel()"),
+    "rotation_matrix:ToQuaternion": Way(
+        "RotationMatrix.ToQuaternion", f"{_R}value = drake.RotationMatrix(R.ToQuaternion()).matrix().ravel()"
+    ),
+    "rotation_matrix:ToAngleAxis": Way(
+        "RotationMatrix.ToAngleAxis", f"{_R}value = drake.RotationMatrix(R.ToAngleAxis()).matrix().ravel()"
+    ),
+    "rotation_matrix:ToRollPitchYaw": Way(
+        "RotationMatrix.ToRollPitchYaw", f"{_R}value = drake.RotationMatrix(R.ToRollPitchYaw()).matrix().ravel()"
+    ),
+    "rotation_matrix:Quaternion.ToRollPitchYaw": Way(
+        "RollPitchYaw of a Quaternion",
+        "value = drake.RollPitchYaw(drake.Quaternion(q)).ToRotationMatrix().matrix().ravel()",
+    ),
+    "rotation_composed": Way("RotationMatrix.multiply", f"{_R}value = (R @ Q).matrix().ravel()"),
+    "rotation_composed:Quaternion": Way(
+        "Quaternion.multiply", "value = drake.Quaternion(q).multiply(drake.Quaternion(q2)).rotation().ravel()"
+    ),
+    "rotation_angle": Way(
+        "RotationMatrix.InvertAndCompose", f"{_R}value = [R.InvertAndCompose(Q).ToAngleAxis().angle()]"
+    ),
+    "rotation_logarithm": Way("ToAngleAxis", f"{_R}x = R.ToAngleAxis()\nvalue = x.angle() * x.axis()"),
+    "rotation_exponential": Way(
+        "AngleAxis",
+        "n = np.linalg.norm(v)\nvalue = drake.AngleAxis(n, v / n if n else np.eye(3)[0]).rotation().ravel()",
+    ),
+    "rotation_half_turns": Way(
+        "ToQuaternion",
+        f"{HALF_TURNS}value = [drake.RotationMatrix(H).ToQuaternion().rotation().ravel() for H in half_turns]",
+    ),
+    "rotation_half_turns:ToAngleAxis": Way(
+        "ToAngleAxis",
+        f"{HALF_TURNS}value = [drake.RotationMatrix(H).ToAngleAxis().rotation().ravel() for H in half_turns]",
+    ),
+    "rotation_half_turns:ToRollPitchYaw": Way(
+        "ToRollPitchYaw",
+        f"{HALF_TURNS}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel()"
+        " for H in half_turns]",
+    ),
+    "rotation_halfway": Way(
+        "Quaternion.slerp", "value = drake.Quaternion(q).slerp(0.25, drake.Quaternion(q2)).rotation().ravel()"
+    ),
+    "rotation_of_rpy": Way("RollPitchYaw", "value = drake.RollPitchYaw(v).ToRotationMatrix().matrix().ravel()"),
+    "rotation_of_rpy:ToQuaternion": Way(
+        "RollPitchYaw.ToQuaternion", "value = drake.RollPitchYaw(v).ToQuaternion().rotation().ravel()"
+    ),
+    "rotation_to_rpy": Way("RollPitchYaw", f"{_R}value = drake.RollPitchYaw(R).vector()"),
+    "rpy_rates": Way(
+        "CalcRpyDtFromAngularVelocityInParent",
+        "value = np.stack([drake.RollPitchYaw(v).CalcRpyDtFromAngularVelocityInParent(e) for e in np.eye(3)], axis=1)",
+    ),
+    "rpy_rates:CalcAngularVelocityInParentFromRpyDt": Way(
+        "CalcAngularVelocityInParentFromRpyDt",
+        "A = drake.RollPitchYaw(v)\n"
+        "value = np.linalg.inv(np.stack([A.CalcAngularVelocityInParentFromRpyDt(e) for e in np.eye(3)], axis=1))",
+    ),
+    "rpy_second_rates": Way(
+        "CalcRpyDDtFromRpyDtAndAngularAccelInParent",
+        "value = drake.RollPitchYaw(v).CalcRpyDDtFromRpyDtAndAngularAccelInParent(a, tau)",
+    ),
+    "rpy_second_rates:CalcRpyDDtFromAngularAccelInChild": Way(
+        "CalcRpyDDtFromAngularAccelInChild",
+        "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
+        "value = A.CalcRpyDDtFromAngularAccelInChild(a, R.T @ tau)",
+    ),
+    "rotation_matrix_rate_of_rpy": Way(
+        "CalcRotationMatrixDt", "value = drake.RollPitchYaw(v).CalcRotationMatrixDt(a).ravel()"
+    ),
+    "rpy_rates:InChild": Way(
+        "CalcRpyDtFromAngularVelocityInChild",
+        "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
+        "value = np.stack([A.CalcRpyDtFromAngularVelocityInChild(R.T @ e) for e in np.eye(3)], axis=1)",
+    ),
+    "are_rotations": Way(
+        "RotationMatrix.IsValid",
+        f"{_R}R = R.matrix()\n"
+        "every = (drake.RotationMatrix.MakeUnchecked(A) for A in (R, R * [1, 1, -1], 1.25 * R))\n"
+        "value = [float(A.IsValid()) for A in every]",
+    ),
+    "pose_composed": Way("RigidTransform.multiply", f"{_X}{_flat('X @ Y')}"),
+    "pose_inverse": Way("RigidTransform.inverse", f"{_X}{_flat('X.inverse()')}"),
+    "pose_relative": Way("RigidTransform.InvertAndCompose", f"{_X}{_flat('X.InvertAndCompose(Y)')}"),
+    "pose_of_point": Way("RigidTransform.multiply", f"{_X}value = X.multiply(p_BoQ_B=v)"),
+    "wrench_transform": Way(
+        "SpatialForce.Shift, Rotate",
+        f"{_X}F = [drake.SpatialForce(tau=e[3:], f=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]\n"
+        "value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)",
+    ),
+    "twist_transform": Way(
+        "SpatialVelocity.Shift, Rotate",
+        f"{_X}F = [drake.SpatialVelocity(w=e[3:], v=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]\n"
+        "value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)",
+    ),
+    "spatial_inertia": Way("SpatialInertia", f"{_I}{_SWAPPED.format(of='I.CopyToFullMatrix6()')}"),
+    "spatial_inertia_placed": Way(
+        "SpatialInertia.ReExpress, Shift",
+        f"{_X}{_I}{_SWAPPED.format(of='I.ReExpress(X.rotation()).Shift(-a).CopyToFullMatrix6()')}",
+    ),
+    "spatial_inertia_sum": Way(
+        "SpatialInertia +=",
+        f"{_X}{_I}K = I.ReExpress(X.rotation()).Shift(-a)\nK += I\n{_SWAPPED.format(of='K.CopyToFullMatrix6()')}",
+    ),
+    "spatial_momentum": Way(
+        "SpatialInertia * SpatialVelocity", f"{_I}{_V}L = I * V\nvalue = [*L.translational(), *L.rotational()]"
+    ),
+}
