@@ -26,7 +26,7 @@ from .functions import FUNCTIONS
 from .identities import held
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, names, suited
-from .models import acting, flexible, hostile, kinds, loops, sensed, single, transformed
+from .models import acting, flexible, hostile, kinds, loops, sensed, single, stated, transformed
 from .models.formats import formats
 from .models.readers import Reading
 from .plugins import OWN
@@ -73,7 +73,7 @@ Questions = Mapping[str, Tree | Reading]
 def lots() -> list[Questions]:
     """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
     own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
-    trees = (family.trees() for family in (hostile, loops, transformed, acting, sensed, flexible, single))
+    trees = (family.trees() for family in (hostile, loops, transformed, stated, acting, sensed, flexible, single))
     return [*own, *trees, formats()]
 
 

@@ -154,6 +154,8 @@ class Tree:
             are 2^-near of what they would be; rates of speeds are not.
         asked: What else an engine must know by name to be asked about it, such as "turns" or "flexible bodies"; only
             functions that need it are asked of such a tree.
+        stated: In which way of its own the engine states it, where that is not link by link: "a base",
+            "Denavit-Hartenberg parameters" (`models.stated`).
     """
 
     name: str
@@ -170,6 +172,7 @@ class Tree:
     away: Vector = ORIGIN
     near: int = 0
     asked: str = ""
+    stated: str = ""
 
     @property
     def forces(self) -> frozenset[str]:
@@ -201,7 +204,12 @@ class Tree:
     def transformations(self) -> frozenset[str]:
         """What engines must do to it once it is built: "locked", "attached", "fused", "changed mass" and the like."""
         locked = any(joint.locked is not None for link in self.links for joint in link.joints)
-        stated = {"locked": locked, "attached": bool(self.attached), "fused": self.fused}
+        stated = {
+            "locked": locked,
+            "attached": bool(self.attached),
+            "fused": self.fused,
+            self.stated: bool(self.stated),
+        }
         names = {name for name, there in stated.items() if there}
         return frozenset(names | ({f"changed {self.changed}"} if self.changed else set()))
 

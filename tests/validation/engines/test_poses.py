@@ -27,7 +27,7 @@ def _of(name: str, state: State = _STATE) -> Array:
 def _matrix(q: Array) -> Array:
     w, x, y, z = q
     S = _cross(np.array([x, y, z]))
-    return np.eye(3) + 2 * w * S + 2 * S @ S
+    return np.asarray(np.eye(3) + 2 * w * S + 2 * S @ S)
 
 
 def _cross(x: Array) -> Array:
@@ -59,7 +59,7 @@ _APART = np.linalg.inv(_X) @ _Y
 _TWIST = np.array([*_STATE.v, *_STATE.v2])
 _EXPECTED = {
     "pose_composed": _flat(_X @ _Y),
-    "pose_inverse": _flat(np.linalg.inv(_X)),
+    "pose_inverse": _flat(np.asarray(np.linalg.inv(_X), dtype=float)),
     "pose_relative": _flat(_APART),
     "pose_of_point": (_X @ [*_STATE.v, 1.0])[:3],
     "pose_logarithm": _vee(np.real(logm(_X))),
@@ -154,13 +154,13 @@ def test_lines_and_planes_are_where_their_points_are() -> None:
     met = _of("line_of_plane")
     assert np.allclose(np.cross(met - s.a, first), 0.0) and abs((met - s.tau) @ (s.v2 + BESIDE)) < 1e-12
     met = _of("planes_meet")
-    for normal, point in ((AWAY, s.a), (ASIDE, s.tau), (BESIDE, s.v2)):
-        assert abs((met - point) @ normal) < 1e-12
+    for across, point in ((AWAY, s.a), (ASIDE, s.tau), (BESIDE, s.v2)):
+        assert abs((met - point) @ across) < 1e-12
     x, d = _points(_of("line_of_planes"))
-    for normal, point in ((AWAY, s.a), (ASIDE, s.tau)):
-        assert abs(d @ normal) + abs((x - point) @ normal) < 1e-12
-    for name, across in (("plane_of_points", s.tau - s.a), ("plane_of_lines", second)):
-        normal = np.cross(first, across)
+    for across, point in ((AWAY, s.a), (ASIDE, s.tau)):
+        assert abs(d @ across) + abs((x - point) @ across) < 1e-12
+    for name, second_way in (("plane_of_points", s.tau - s.a), ("plane_of_lines", second)):
+        normal = np.cross(first, second_way)
         assert abs(normal @ s.a) / np.linalg.norm(normal) == pytest.approx(_of(name)[0])
 
 

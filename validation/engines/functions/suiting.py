@@ -6,6 +6,7 @@ import re
 
 from ..tree import Tree
 from .acting import ACTING, MEASURED
+from .arms import ARMS
 from .beside import LONE, TURNS
 from .constrained import CONSTRAINED
 from .function import Function
@@ -14,7 +15,7 @@ from .poses import POSES
 from .stated import STATED
 from .trees import TREES
 
-FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES
+FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | ARMS
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.

@@ -150,6 +150,20 @@ def solve(matrix: Exact, right: Exact) -> Exact:
     return rows[:, n:].reshape(right.shape)
 
 
+def volume(matrix: Exact) -> Exact:
+    """The absolute value of a determinant, by elimination with pivots."""
+    rows, product = np.array(matrix), Decimal(1)
+    for k in range(len(rows)):
+        pivot = k + int(np.argmax([abs(x) for x in rows[k:, k]]))
+        rows[[k, pivot]] = rows[[pivot, k]]
+        product = product * abs(rows[k, k])
+        if not product:
+            break
+        for i in range(k + 1, len(rows)):
+            rows[i] = rows[i] - rows[i, k] / rows[k, k] * rows[k]
+    return product
+
+
 def rate(function: Callable[[Exact], Exact], point: Exact, direction: Exact) -> Exact:
     """The derivative of a function along a direction.
 

@@ -179,11 +179,13 @@ def rate_of_rpy(t: Truth, s: Point) -> Exact:
 
 def to_rpy(t: Truth, s: Point) -> Exact:
     """Roll, pitch within a quarter turn, yaw of R = Rz Ry Rx (3)."""
-    R = turn(t, s.q)
+    return angles_of(turn(t, s.q))
+
+
+def angles_of(R: Exact) -> Exact:
+    """Roll, pitch within a quarter turn, yaw of a rotation (3)."""
     level = root(R[0, 0] ** 2 + R[1, 0] ** 2)
-    # The arc of cosine and sine is within half a turn; its sign is the sine's.
-    angles = ((R[2, 2], R[2, 1]), (level, -R[2, 0]), (R[0, 0], R[1, 0]))
-    return np.array([arc(c, abs(x)) * (1 if x >= 0 else -1) for c, x in angles])
+    return np.array([arc(R[2, 2], R[2, 1]), arc(level, -R[2, 0]), arc(R[0, 0], R[1, 0])])
 
 
 def of_zyz(t: Truth, s: Point) -> Exact:

@@ -114,7 +114,7 @@ def vector_rates_rate(t: Truth, s: Point) -> Exact:
     return rate(lambda r: solve(speeds(r).T, eye(3)), s.tau, s.a)
 
 
-def _of_angles(angles: Exact) -> Exact:
+def of_angles(angles: Exact) -> Exact:
     """B with (roll, pitch, yaw)' = B w, w along the axes before."""
     _, pitch, yaw = (cos_sin(one) for one in angles)
     z, y = rotation(_UNIT[2], *yaw), rotation(_UNIT[1], *pitch)
@@ -124,17 +124,17 @@ def _of_angles(angles: Exact) -> Exact:
 
 def rpy_rates(t: Truth, s: Point) -> Exact:
     """B at the angles v (3, 3)."""
-    return _of_angles(s.v)
+    return of_angles(s.v)
 
 
 def rpy_rates_rate(t: Truth, s: Point) -> Exact:
     """The time derivative of B at angles v and rates a (3, 3)."""
-    return rate(_of_angles, s.v, s.a)
+    return rate(of_angles, s.v, s.a)
 
 
 def rpy_second_rates(t: Truth, s: Point) -> Exact:
     """(B w)' at angles v, rates a and the angular acceleration tau along the axes before (3)."""
-    return _of_angles(s.v) @ s.tau + rate(_of_angles, s.v, s.a) @ solve(_of_angles(s.v), s.a)
+    return of_angles(s.v) @ s.tau + rate(of_angles, s.v, s.a) @ solve(of_angles(s.v), s.a)
 
 
 def between(t: Truth, s: Point) -> Exact:

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from ..interface import Array, Convention, Slot, Tree, Unsupported, Vector
-from .writing.source import Source, SourcePlugin, Way, numbered
+from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
+from ...models.stated import BASE, DENAVIT, MODIFIED
+from ..writing.source import Source, SourcePlugin, Way, numbered
+from . import denavit
+from .denavit import lacking, pose, without_tool
 
 # Before 1.1 robots of elementary transforms had a class of their own.
 _ROBOT = "Robot = getattr(rtb, 'ERobot', None) if getattr(rtb.Robot, '__abstractmethods__', ()) else rtb.Robot"
+_IMPORTS = ("import numpy as np", "import roboticstoolbox as rtb", "from roboticstoolbox import ET, ETS, Link", _ROBOT)
 _CHARTS = {"revolute": "angle", "prismatic": "length"}
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", (0.0, 0.0, 1.0): "z"}
 # In the axes of the link: those of the robot's frame are turned where the axis is oblique.
 _IN_LINKS = """value = np.zeros((len(links), 6, robot.n))
 for J, (name, (A, path)) in zip(value, links.items()):
     J[:, path] = np.kron(np.eye(2), A) @ robot."""
+# Jacobians are along the axes of the robot's base.
+_TURN = "turn = np.kron(np.eye(2), robot.base.R)\n"
 # Its first index is the coordinate that is differentiated by.
-_HESSIANS = """value = np.zeros((len(links), 6, robot.n, robot.n))
+_HESSIANS = f"""{_TURN}value = np.zeros((len(links), 6, robot.n, robot.n))
 for H, (name, (_, path)) in zip(value, links.items()):
-    H[np.ix_(range(6), path, path)] = np.transpose(robot."""
+    H[np.ix_(range(6), path, path)] = np.tensordot(turn, robot."""
 WAYS = {
     "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
     # The call takes the links from the robot: each call has a robot of its own.
@@ -35,21 +43,23 @@ value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T
     ),
     "link_jacobians": Way(
         "jacob0",
-        """value = np.zeros((len(links), 6, robot.n))
+        f"""{_TURN}value = np.zeros((len(links), 6, robot.n))
 for J, (name, (_, path)) in zip(value, links.items()):
-    J[:, path] = robot.jacob0(q, end=name)""",
+    J[:, path] = turn @ robot.jacob0(q, end=name)""",
     ),
     "link_jacobians:ETS": Way(
         "ETS.jacob0",
-        """value = np.zeros((len(links), 6, robot.n))
+        f"""{_TURN}value = np.zeros((len(links), 6, robot.n))
 for J, (name, (_, path)) in zip(value, links.items()):
-    J[:, path] = robot.ets(end=name).jacob0(q[path])""",
+    J[:, path] = turn @ robot.ets(end=name).jacob0(q[path])""",
     ),
     "jacobian_local": Way("jacobe", f"{_IN_LINKS}jacobe(q, end=name)"),
     "jacobian_local:ETS": Way("ETS.jacobe", f"{_IN_LINKS}ets(end=name).jacobe(q[path])"),
-    "jacobian_dq_aligned": Way("hessian0", f"{_HESSIANS}hessian0(q, end=name), (1, 2, 0))"),
-    "jacobian_dq_aligned:ETS": Way("ETS.hessian0", f"{_HESSIANS}ets(end=name).hessian0(q[path]), (1, 2, 0))"),
-}
+    "jacobian_dq_aligned": Way("hessian0", f"{_HESSIANS}hessian0(q, end=name), (1, 1)).transpose(0, 2, 1)"),
+    "jacobian_dq_aligned:ETS": Way(
+        "ETS.hessian0", f"{_HESSIANS}ets(end=name).hessian0(q[path]), (1, 1)).transpose(0, 2, 1)"
+    ),
+} | denavit.WAYS
 
 
 _AGAINST = {(-x, -y, -z): letter for (x, y, z), letter in _LETTERS.items()}
@@ -78,6 +88,10 @@ def _symmetric(matrix: Array) -> Array:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree; where an axis is oblique, the link's frame is turned so that it is z."""
+    if tree.stated in (DENAVIT, MODIFIED):
+        made = denavit.write(tree)
+        return made if isinstance(made, Unsupported) else replace(made, lacks=lacking(tree.stated, tuple(WAYS)))
+    bodies, tool = without_tool(tree)
     lines: list[str] = []
     # For each link: variable, joints on its path, turn of its frame.
     ends: list[str] = []
@@ -85,14 +99,16 @@ def write(tree: Tree) -> Source | Unsupported:
     slots: list[tuple[Slot, ...]] = []
     turns: list[Array] = []
     count = 0
-    for k, link in enumerate(tree.links):
+    for k, link in enumerate(bodies):
         own: list[Slot] = []
         before, turn = ("None", np.eye(3)) if link.parent < 0 else (ends[link.parent], turns[link.parent])
         for place, joint in enumerate(link.joints):
             last = place == len(link.joints) - 1
             title = link.name if last else f"{link.name}_{place}"
             T = np.eye(4)
-            T[:3, :3], T[:3, 3] = turn.T @ joint.R, turn.T @ joint.p
+            # The base has what is before the first joint.
+            if tree.stated != BASE or link.parent >= 0 or place:
+                T[:3, :3], T[:3, 3] = turn.T @ joint.R, turn.T @ joint.p
             turn = np.eye(3)
             moves = motor = ""
             if joint.kind != "fixed":
@@ -119,12 +135,16 @@ def write(tree: Tree) -> Source | Unsupported:
         ends.append(before)
         turns.append(turn)
     every = ", ".join(line.split(" =")[0] for line in lines)
-    robot = f"robot = Robot([{every}], gravity={list(tree.gravity)!r})"
-    setup = ("import numpy as np", "import roboticstoolbox as rtb", "from roboticstoolbox import ET, ETS, Link", _ROBOT)
+    more = f", base={pose(tree.links[0].joints[0])}" if tree.stated == BASE else ""
+    more += f", tool={pose(tool)}" if tool else ""
+    robot = f"robot = Robot([{every}], gravity={list(tree.gravity)!r}{more})"
+    imports = ("from spatialmath import SE3",) if more else ()
+    setup = (*_IMPORTS, *imports)
+    slots += [()] if tool else []
     # Turn of each link's frame, and the joints that move it.
-    pairs = zip(tree.links, turns, paths, strict=True)
+    pairs = zip(bodies, turns, paths, strict=True)
     links = f"links = {{{', '.join(f'{link.name!r}: ({turn.tolist()!r}, {path})' for link, turn, path in pairs)}}}"
-    return Source(setup, tuple(slots), count, count, {"links": (links,)}, closing=(*lines, robot))
+    return Source(setup, tuple(slots), count, count, {"links": (links,)}, lacking(tree.stated, ()), (*lines, robot))
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -147,7 +167,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     )
     names = {link.name: (np.eye(3).tolist(), path) for link, path in zip(tree.links, paths, strict=True)}
     robot = f"robot = Robot(URDF_file(io.StringIO(TEXT))[0], gravity={list(tree.gravity)!r})"
-    return Source(setup, slots, nq, nv, {"links": (f"links = {names!r}",)}, closing=(robot,))
+    return Source(setup, slots, nq, nv, {"links": (f"links = {names!r}",)}, lacking("", ()), (robot,))
 
 
 def _mimics(tree: Tree) -> bool:
@@ -164,6 +184,10 @@ PLUGIN = SourcePlugin(
         Convention("coriolis", "a matrix C with C v = h - g"),
         Convention("armature", "motor inertia Jm, times G^2"),
         Convention("gravity", "acceleration of gravity, as its name says (since 1.0; before, its negative)"),
+        Convention("Jacobians of a robot with a base", "along the base's axes; of a DHRobot along the world's"),
+        Convention(
+            "fext of rne", "what the last link exerts, at its frame, along its axes; the tool has no part in it"
+        ),
         Convention("floating base", "none"),
     ),
     kinds={
@@ -173,6 +197,12 @@ PLUGIN = SourcePlugin(
         "prismatic": "ET.tx",
     },
     ways=WAYS,
+    demands={
+        BASE: "base",
+        DENAVIT: "DHRobot of RevoluteDH, PrismaticDH",
+        MODIFIED: "DHRobot of RevoluteMDH, PrismaticMDH",
+        "arms": "tool",
+    },
     write=write,
     formats=("urdf",),
     write_reading=write_reading,

@@ -1,0 +1,39 @@
+"""What is asked of arms: their end, which carries a tool, and what is seen from there."""
+
+from __future__ import annotations
+
+from ..truth import arms
+from .function import Function
+
+
+def _arms() -> dict[str, Function]:
+    """J is the end's Jacobian along the world's axes (6, nv), R_WE its rotation."""
+    rows = {
+        "end_pose": ("position and rows of R_WE (12)", arms.pose),
+        "end_jacobian": ("J (6, nv)", arms.jacobian),
+        "end_jacobian_local": ("along the axes of the end (6, nv)", arms.jacobian_local),
+        "end_jacobian_rate": ("dJ/dt (6, nv)", arms.jacobian_rate),
+        "end_jacobian_dq": ("derivatives of J by q (6, nv, nv)", arms.jacobian_dq),
+        "end_jacobian_of_rpy": (
+            "J with rates of roll, pitch, yaw in place of the angular velocity (6, nv)",
+            arms.of_rpy,
+        ),
+        "manipulability": ("root of det(J J^T) (1)", arms.manipulability),
+        "manipulability_dq": ("its derivatives (nv)", arms.manipulability_dq),
+        "end_mass_matrix": ("K^-T M K^-1 (6, 6), K of end_jacobian_of_rpy", arms.mass_matrix),
+        "end_gravity": ("K^-T g (6)", arms.gravity),
+        "end_loads_local": (
+            "what makes the wrench (force tau[:3], moment tau[3:]) that the last link before the tool exerts, at its"
+            " origin, along its axes (nv)",
+            arms.loads_local,
+        ),
+        "inertia_forces": ("M a (nv)", lambda t, s: t.M(s.q) @ s.a),
+        "end_point_mass": (
+            "gravity forces with a point of 2 kg at (0.25, -0.5, 0.125) of the last link (nv)",
+            arms.burdened,
+        ),
+    }
+    return {name: Function(text, truth, ("arms",)) for name, (text, truth) in rows.items()}
+
+
+ARMS = _arms()
