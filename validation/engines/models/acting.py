@@ -180,6 +180,20 @@ def _actuators() -> list[Tree]:
     ]
 
 
+def _plain_motors() -> list[Tree]:
+    """Forces along joints and no more: alone, at their bounds, and with rotors."""
+    links = _chain("plain motors", _HINGE, _SLIDE, _HINGE)
+    geared = _chain("geared motors", *(replace(one, armature=(0.75,)) for one in (_HINGE, _SLIDE)), _HINGE)
+    motors = tuple(Actuator(one.name, control=force) for one, force in zip(links, (0.75, -2.5, 1.25), strict=True))
+    bounded = tuple(replace(one, force_limits=(-1.0, 1.0)) for one in motors)
+    return [
+        Tree("forces along joints", links, actuators=motors),
+        Tree("forces along two of three joints", links, actuators=motors[1:]),
+        Tree("forces along joints at their bounds", links, actuators=bounded),
+        Tree("forces along joints with rotors", geared, actuators=bounded[:2]),
+    ]
+
+
 def _plain_actuators() -> list[Tree]:
     """Actuators of bodies of equal moments: velocity feedback, and what is disabled, alone and beside others."""
     inertia = ((0.125, 0.0, 0.0), (0.0, 0.125, 0.0), (0.0, 0.0, 0.125))
@@ -300,6 +314,7 @@ def trees() -> dict[str, Tree]:
             _sided,
             _heavy,
             _actuators,
+            _plain_motors,
             _plain_actuators,
             _muscles,
             _states,

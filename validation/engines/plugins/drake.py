@@ -12,6 +12,7 @@ import numpy as np
 from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree, Unsupported
 from . import turns
 from .loops import drake_forces as forces
+from .loops import drake_gradients as gradients
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
 from .writing import urdf
@@ -121,41 +122,6 @@ WAYS = {
 }
 
 
-def _gradient(result: str, seeds: str) -> str:
-    """Derivatives by Drake's automatic differentiation."""
-    return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
-ad = p.ToAutoDiffXd()
-d = ad.CreateDefaultContext()
-d.SetTimeStateAndParametersFrom(c)
-{QV}N = p.MakeVelocityToQDotMap(c).toarray()
-{seeds}
-ad.SetPositions(d, q_)
-ad.SetVelocities(d, v_)
-{result}
-value = ExtractGradient(out)"""
-
-
-_BY_Q = "q_ = InitializeAutoDiff(q, N).flatten()\nv_ = InitializeAutoDiff(v, np.zeros((len(v), len(v)))).flatten()"
-_BY_V = "q_ = InitializeAutoDiff(q, 0 * N).flatten()\nv_ = InitializeAutoDiff(v, np.eye(len(v))).flatten()"
-_INVERSE = """from pydrake.multibody.tree import MultibodyForces_
-applied = MultibodyForces_[AutoDiffXd](ad)
-ad.CalcForceElementsContribution(d, applied)
-out = ad.CalcInverseDynamics(d, InitializeAutoDiff(a, np.zeros((len(v), len(v)))).flatten(), applied)"""
-_FORWARD = """port = ad.get_applied_generalized_force_input_port()
-port.FixValue(d, InitializeAutoDiff(tau, np.zeros((len(v), len(v)))).flatten())
-out = ad.EvalTimeDerivatives(d).CopyToVector()[len(q):]"""
-WAYS |= {
-    "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_Q)),
-    "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_V)),
-    "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_Q)),
-    "forward_dynamics_dv": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_V)),
-    "gravity_dq": Way(
-        "CalcGravityGeneralizedForces, AutoDiffXd",
-        _gradient("out = -ad.CalcGravityGeneralizedForces(d)", _BY_Q),
-    ),
-}
-
-
 # Each call has a context of its own: no speeds, no forces of others.
 _CLOSING = ("c = p.CreateDefaultContext()",)
 
@@ -237,6 +203,9 @@ def write(tree: Tree) -> Source | Unsupported:
     lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
     lines += _gravity(tree)
     chosen: list[list[_Native]] = []
+    driven = forces.driven(tree)
+    if isinstance(driven, Unsupported):
+        return driven
     for k, link in enumerate(tree.links):
         lines.append(
             f"b{k} = p.AddRigidBody({link.name!r}, inertia({link.mass!r}, {list(link.com)!r}, {link.inertia!r}))"
@@ -264,9 +233,12 @@ def write(tree: Tree) -> Source | Unsupported:
         turn = 2 * math.pi * joint.pitch
         call = native.call.format(frames=frames, axis=_array(joint.axis), turn=turn)[:-1] + _damping(joint) + ")"
         lines.append(f"j{k} = p.AddJoint(drake.{call})")
+        if any(joint.armature) or link.name in driven:
+            limit = f", {driven[link.name]!r}" if driven.get(link.name, math.inf) < math.inf else ""
+            lines.append(f"motor = p.AddJointActuator('m{k}', j{k}{limit})")
         if any(joint.armature):
-            lines.append(f"motor = p.AddJointActuator('m{k}', j{k})")
-            lines.append(f"motor.set_default_rotor_inertia({joint.armature[0]!r}); motor.set_default_gear_ratio(1.0)")
+            rotor = joint.armature[0] / 4.0
+            lines.append(f"motor.set_default_rotor_inertia({rotor!r}); motor.set_default_gear_ratio(2.0)")
         if joint.stiffness:
             if joint.kind not in ("revolute", "prismatic"):
                 return Unsupported("springs act on joints of one coordinate", offered=False)
@@ -288,7 +260,7 @@ def write(tree: Tree) -> Source | Unsupported:
         places = [link.name for link in tree.links]
         frames = ", ".join(f"({places.index(end.link)}, {end.R!r}, {list(end.p)!r})" for end in tree.sensors)
         optional["sensed"] = (f"sensed, gravity = [{frames}], {list(tree.gravity)!r}",)
-    return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING)
+    return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING, spelling=forces.spelling(tree))
 
 
 _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
@@ -365,6 +337,7 @@ PLUGIN = SourcePlugin(
         Convention("screw", "pitch for a whole turn"),
         Convention("gravity forces", "as applied: the negative of g"),
         Convention("armature", "of actuators, times gear ratio squared"),
+        Convention("actuators", "their inputs are joints' forces: the gear ratio is no part of them"),
         Convention("bodies", "whose inertia no body can have are refused"),
     ),
     kinds={
@@ -384,7 +357,7 @@ PLUGIN = SourcePlugin(
         "free between links": "QuaternionFloatingJoint",
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
-    ways=WAYS | forces.WAYS | turning.WAYS,
+    ways=WAYS | gradients.WAYS | forces.WAYS | turning.WAYS,
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),
@@ -399,6 +372,7 @@ PLUGIN = SourcePlugin(
         "dampers": "damping",
         "springs": "RevoluteSpring, PrismaticSpring",
         "tendons": "LinearSpringDamper",
+        "actuators": "JointActuator",
     },
     statements=(UNIT_AXIS, MESH_WITHIN),
 )

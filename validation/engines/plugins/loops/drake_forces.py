@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from ...interface import STEP
+from ...interface import ORIGIN, STEP, Tree, Unsupported
+from ...truth.derived import WRENCH
 from ..writing.source import Way
 
-QV = "p.SetPositions(c, q)\np.SetVelocities(c, v)\n"
+SPEEDS = "p.SetVelocities(c, v)\n"
+QV = f"p.SetPositions(c, q)\n{SPEEDS}"
 Q = "p.SetPositions(c, q)\n"
 FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
 # A simulator has a context of its own: it may take one that it is given for good.
@@ -16,6 +18,41 @@ value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
 _FIXED = f"""drake.ResetIntegratorFromFlags(sim, 'NAME', {STEP})
 sim.get_mutable_integrator().set_fixed_step_mode(True)
 """
+
+
+def driven(tree: Tree) -> dict[str, float] | Unsupported:
+    """Links whose joints actuators drive -> greatest effort; Drake's are plain motors with one bound either way."""
+    found = {}
+    for one in tree.actuators:
+        limits = one.force_limits or (-float("inf"), float("inf"))
+        is_plain = one.link and one.gear == 1.0 and one.bias == ORIGIN and limits[0] == -limits[1]
+        if not is_plain or one.muscle or one.activation or one.control_limits or one.is_disabled:
+            return Unsupported("actuators are forces along joints, with one bound either way", offered=False)
+        found[one.link] = limits[1]
+    if any(joint.force_limits for link in tree.links for joint in link.joints):
+        return Unsupported("joints have no bounds of forces of their own", offered=False)
+    return found
+
+
+def spelling(tree: Tree) -> dict[str, str]:
+    """Where speeds are set, inputs are, too."""
+    if not tree.actuators:
+        return {}
+    # Actuators are numbered in the order of links; those of rotors alone have no input.
+    made = [
+        link.name for link in tree.links if any(any(joint.armature) for joint in link.joints) or link.name in _on(tree)
+    ]
+    inputs = [_on(tree).get(name, 0.0) for name in made]
+    # Inputs are none of the state that a plant of other numbers takes over.
+    many = f"InitializeAutoDiff(np.array({inputs!r}), np.zeros(({len(inputs)}, len(v)))).flatten()"
+    return {
+        SPEEDS: f"{SPEEDS}p.get_actuation_input_port().FixValue(c, {inputs!r})\n",
+        "ad.SetVelocities(d, v_)": f"ad.SetVelocities(d, v_)\nad.get_actuation_input_port().FixValue(d, {many})",
+    }
+
+
+def _on(tree: Tree) -> dict[str, float]:
+    return {one.link: one.gain * one.control for one in tree.actuators}
 
 
 def _integrated(name: str) -> Way:
@@ -102,6 +139,26 @@ for j in js:
         f"{Q}W, V = p.world_frame(), drake.JacobianWrtVariable.kV\nlinks\n"
         "value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, links[k].body_frame(), r, W, W), 3, axis=0)"
         " for k, R, r in sensed]",
+    ),
+    "actuator_forces": Way("get_net_actuation_output_port", f"{QV}value = p.get_net_actuation_output_port().Eval(c)"),
+    "actuated_forces": Way(
+        "MakeActuationMatrix", f"{QV}value = p.MakeActuationMatrix() @ p.get_net_actuation_output_port().Eval(c)"
+    ),
+    "forward_dynamics:port": Way(
+        "generalized_acceleration output port",
+        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        "value = p.get_generalized_acceleration_output_port().Eval(c)",
+    ),
+    "applied_wrenches": Way(
+        "AddInForce, CalcInverseDynamics",
+        f"""{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))
+links
+applied, zero = drake.MultibodyForces(p), np.zeros(p.num_velocities())
+for k, R, r in sensed:
+    X = p.EvalBodyPoseInWorld(c, links[k]).rotation().matrix()
+    push, turn = X @ R @ {list(WRENCH[:3])}, X @ R @ {list(WRENCH[3:])}
+    links[k].AddInForce(c, X @ r, drake.SpatialForce(turn, push), p.world_frame(), applied)
+value = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p)) - p.CalcInverseDynamics(c, zero, applied)""",
     ),
     "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
 }

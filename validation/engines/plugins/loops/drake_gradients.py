@@ -1,0 +1,41 @@
+"""Derivatives of dynamics by Drake's automatic differentiation."""
+
+from __future__ import annotations
+
+from ..writing.source import Way
+from .drake_forces import QV
+
+
+def _gradient(result: str, seeds: str) -> str:
+    """Derivatives by Drake's automatic differentiation."""
+    return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
+ad = p.ToAutoDiffXd()
+d = ad.CreateDefaultContext()
+d.SetTimeStateAndParametersFrom(c)
+{QV}N = p.MakeVelocityToQDotMap(c).toarray()
+{seeds}
+ad.SetPositions(d, q_)
+ad.SetVelocities(d, v_)
+{result}
+value = ExtractGradient(out)"""
+
+
+_BY_Q = "q_ = InitializeAutoDiff(q, N).flatten()\nv_ = InitializeAutoDiff(v, np.zeros((len(v), len(v)))).flatten()"
+_BY_V = "q_ = InitializeAutoDiff(q, 0 * N).flatten()\nv_ = InitializeAutoDiff(v, np.eye(len(v))).flatten()"
+_INVERSE = """from pydrake.multibody.tree import MultibodyForces_
+applied = MultibodyForces_[AutoDiffXd](ad)
+ad.CalcForceElementsContribution(d, applied)
+out = ad.CalcInverseDynamics(d, InitializeAutoDiff(a, np.zeros((len(v), len(v)))).flatten(), applied)"""
+_FORWARD = """port = ad.get_applied_generalized_force_input_port()
+port.FixValue(d, InitializeAutoDiff(tau, np.zeros((len(v), len(v)))).flatten())
+out = ad.EvalTimeDerivatives(d).CopyToVector()[len(q):]"""
+WAYS = {
+    "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_Q)),
+    "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_V)),
+    "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_Q)),
+    "forward_dynamics_dv": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_V)),
+    "gravity_dq": Way(
+        "CalcGravityGeneralizedForces, AutoDiffXd",
+        _gradient("out = -ad.CalcGravityGeneralizedForces(d)", _BY_Q),
+    ),
+}
