@@ -39,14 +39,28 @@ DIMENSIONS = (
     Dimension("mass_matrix_inverse|forward_dynamics|delassus(?!_inverse)|constrained_acceleration|impact|kkt", -1, -2),
     Dimension(
         "bias|gravity|coriolis_forces|inverse_dynamics|joint_wrenches|potential_energy$|constraint_forces|wrench_sens"
-        "|passive_forces|actuat.*_forces",
+        "|passive_forces|actuat.*_forces|mechanical_energy|conservative_power|base_wrench",
         1,
         1,
         1,
     ),
-    Dimension("link_acc|link_velocity_prod|mass_centre_velocity_prod|accelero|acceleration|angular_acc", 0, 0, 1),
-    Dimension("mass_centre|link_|jacobian|veloci|integrate|difference|interpolate|step_|tendon_|actuator_", 0, 1),
-    Dimension("constraint_jacobian|constraint_velocity|torque_reg|kinetic_energy_reg|potential_energy_reg", 0, 2),
+    Dimension(
+        "link_acc|link_velocity_prod|mass_centre_(velocity_prod|acc)|relative_acc|accelero|acceleration|angular_acc",
+        0,
+        0,
+        1,
+    ),
+    Dimension(
+        "mass_centre|subtree_cen|static_reg|coordinate_ra|speeds_of|relative|link_(?!reg)|jacobian|veloci|integrate|difference|interpolate|step_|tendon_|actuator_",
+        0,
+        1,
+    ),
+    Dimension(
+        "constraint_jacobian|constraint_velocity|torque_reg|kinetic_energy_reg|potential_energy_reg|link_reg|squared_dist",
+        0,
+        2,
+    ),
+    Dimension("subtree_masses", 1, 0),
     Dimension("sizes|gyroscopes", 0, 0),
     Dimension("", 1, 2),
 )

@@ -8,6 +8,7 @@ from ..tree import Tree
 from .acting import ACTING, MEASURED
 from .arms import ARMS
 from .beside import LONE, TURNS
+from .carried import CARRIED
 from .constrained import CONSTRAINED
 from .function import Function
 from .integrators import STEPS
@@ -15,7 +16,9 @@ from .poses import POSES
 from .stated import STATED
 from .trees import TREES
 
-FUNCTIONS: dict[str, Function] = TREES | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | ARMS
+FUNCTIONS: dict[str, Function] = (
+    TREES | CARRIED | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | ARMS
+)
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.

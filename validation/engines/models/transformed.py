@@ -40,6 +40,13 @@ def _fused_at_one_point(name: str, *turn: Rows) -> Tree:
     return Tree(name, (first, Link("b", 0, (held,), 0.75, inertia=principal)), fused=True)
 
 
+def _fixed_parts() -> tuple[Link, ...]:
+    """Links of which those of an attached model don't move in it, but for the last."""
+    draw = np.random.default_rng(14)
+    held = [_hinge(draw), _hinge(draw), *(placed(draw, Joint("fixed")) for _ in range(2)), _hinge(draw)]
+    return tuple(link(draw, "abcde"[k], k - 1, joint) for k, joint in enumerate(held))
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     free, held = Joint("revolute", axis=OBLIQUE), Joint("revolute", axis=OBLIQUE, locked=0.75)
@@ -55,6 +62,7 @@ def trees() -> dict[str, Tree]:
         _locked("locked hinge on a free base", held, free, base=True),
         Tree("attached chain", parts[:4], attached="c"),
         Tree("attached branches", parts, attached="c"),
+        Tree("attached fixed links", _fixed_parts(), attached="c"),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
         _fused_at_one_point("fixed links fused at one point"),
         _fused_at_one_point("fixed links fused at a quarter turn", in_series(("z", math.pi / 2.0))),

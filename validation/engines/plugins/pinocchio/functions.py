@@ -185,3 +185,66 @@ WAYS |= {
         _SENSED.format("ClassicalAcceleration", "linear - d.oMf[f].rotation.T @ m.gravity.linear"),
     ),
 }
+
+# Of joints whose frames are the links'.
+_JOINTS = "js\nvalue = np.array([{of} for j in js])"
+WAYS |= {
+    "mass_centre_velocity": Way("centerOfMass", "pin.centerOfMass(m, d, q, v)\nvalue = d.vcom[0]"),
+    "mass_centre_acceleration": Way("centerOfMass", "pin.centerOfMass(m, d, q, v, a)\nvalue = d.acom[0]"),
+    "mass_centre:computeAllTerms": Way("computeAllTerms", "pin.computeAllTerms(m, d, q, v)\nvalue = d.com[0]"),
+    "mass_centre_jacobian:computeAllTerms": Way("computeAllTerms", "pin.computeAllTerms(m, d, q, v)\nvalue = d.Jcom"),
+    "subtree_masses": Way("computeSubtreeMasses", f"pin.computeSubtreeMasses(m, d)\n{_JOINTS.format(of='d.mass[j]')}"),
+    "subtree_centres": Way(
+        "centerOfMass",
+        f"pin.centerOfMass(m, d, q)\n{_JOINTS.format(of='d.oMi[j].act(d.com[j])')}",
+    ),
+    "subtree_centre_jacobians": Way(
+        "jacobianSubtreeCenterOfMass", _JOINTS.format(of="pin.jacobianSubtreeCenterOfMass(m, d, q, j)")
+    ),
+    "subtree_centre_jacobians:getJacobianSubtreeCenterOfMass": Way(
+        "getJacobianSubtreeCenterOfMass",
+        f"pin.jacobianCenterOfMass(m, d, q)\n{_JOINTS.format(of='pin.getJacobianSubtreeCenterOfMass(m, d, j)')}",
+    ),
+    "carried_inertias": Way(
+        "crba: Ycrb", f"pin.crba(m, d, q, pin.Convention.LOCAL)\n{_JOINTS.format(of='d.Ycrb[j].matrix()')}"
+    ),
+    "link_regressors": Way(
+        "jointBodyRegressor",
+        f"pin.rnea(m, d, q, v, a)\n{_JOINTS.format(of='pin.jointBodyRegressor(m, d, j)')}",
+    ),
+    "static_regressor": Way("computeStaticRegressor", "js\nvalue = pin.computeStaticRegressor(m, d, q)"),
+    "mechanical_energy": Way("computeMechanicalEnergy", "value = pin.computeMechanicalEnergy(m, d, q, v)"),
+    "coordinate_rates": Way("tangentMap", "value = pin.tangentMap(m, q) @ v"),
+    "coordinate_rates:tangentMapProduct": Way(
+        "tangentMapProduct", "value = pin.tangentMapProduct(m, q, v.reshape(-1, 1)).ravel()"
+    ),
+    "squared_distance": Way("squaredDistance", "value = [np.sum(pin.squaredDistance(m, q, pin.integrate(m, q, v2)))]"),
+    "squared_distance:distance": Way("distance", "value = [pin.distance(m, q, pin.integrate(m, q, v2)) ** 2]"),
+    "mass_matrix_inverse:cholesky": Way(
+        "cholesky.computeMinv",
+        "pin.crba(m, d, q, pin.Convention.WORLD)\npin.cholesky.decompose(m, d)\nvalue = pin.cholesky.computeMinv(m, d)",
+    ),
+    "forward_dynamics:cholesky": Way(
+        "cholesky.solve",
+        "pin.crba(m, d, q, pin.Convention.WORLD)\npin.cholesky.decompose(m, d)\n"
+        "value = pin.cholesky.solve(m, d, tau - pin.nonLinearEffects(m, d, q, v))",
+    ),
+    "centroidal_matrix:computeCentroidalMap": Way("computeCentroidalMap", "value = pin.computeCentroidalMap(m, d, q)"),
+    "centroidal_matrix_rate:computeCentroidalMapTimeVariation": Way(
+        "computeCentroidalMapTimeVariation", "value = pin.computeCentroidalMapTimeVariation(m, d, q, v)"
+    ),
+    "applied_wrenches:computeStaticTorque": Way(
+        "computeStaticTorque",
+        WAYS["applied_wrenches"].code[: WAYS["applied_wrenches"].code.index("value =")]
+        + "value = pin.computeGeneralizedGravity(m, d, q) - pin.computeStaticTorque(m, d, q, pin.StdVec_Force(given))",
+    ),
+}
+for _frame, _rf in _FRAMES.items():
+    _own = ALIGNED[0] if _frame == "aligned" else f"jacobian_{_frame}"
+    _derived = f"{_FK_D}value = np.array([pin.getFrame{{}}Derivatives(m, d, f, {_rf})[{{}}] for f in fs])"
+    WAYS |= {
+        f"{_own}:getFrameVelocityDerivatives": Way("getFrameVelocityDerivatives", _derived.format("Velocity", 1)),
+        f"{_own}:getFrameAccelerationDerivatives": Way(
+            "getFrameAccelerationDerivatives", _derived.format("Acceleration", 3)
+        ),
+    }

@@ -105,7 +105,11 @@ class _ModelText:
             values = f"{link.mass!r}, {_array(link.com)}, {_array(link.inertia)}"
             self.lines += ["b = pin.Inertia.Zero()", f"b.mass, b.lever, b.inertia = {values}"]
             inertia = "b"
-        self.lines.append(f"{self._model_of(k)}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
+        if name == "0" and k in self.own_model:  # What the joints that it is attached to will carry.
+            body = f"pin.Frame('b{k}', 0, 0, {_placement(R, p)}, pin.FrameType.BODY, {inertia})"
+            self.lines.append(f"m2.addFrame({body})")
+        else:
+            self.lines.append(f"{self._model_of(k)}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
         frame = f"pin.Frame('f{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.OP_FRAME)"
         self.frames.append(f"{self._model_of(k)}.addFrame({frame})")
         self.joints.append(name if not np.any(p) and np.array_equal(R, np.eye(3)) else "")

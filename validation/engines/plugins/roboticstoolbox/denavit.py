@@ -16,6 +16,8 @@ _POSES = (
     "every = [X.A for X in robot.fkine_all(q)][1 : len(links) + 1]\n"
     "value = [[*X[:3, 3], *X[:3, :3].flat] for X in every]"
 )
+# About the base's origin, along its axes.
+_FROM_BASE = "value = robot.base.inv().Ad().T @ own"
 # Ways that only robots by parameters have.
 DENAVIT_WAYS = {
     "end_loads_local": Way(
@@ -24,6 +26,10 @@ DENAVIT_WAYS = {
     "end_loads_local:rne_python": Way(
         "rne_python with a wrench",
         "value = robot.rne_python(q, 0 * v, 0 * v, fext=tau) - robot.rne_python(q, 0 * v, 0 * v)",
+    ),
+    "base_wrench": Way("rne, base_wrench", f"_, own = robot.rne(q, v, a, base_wrench=True)\n{_FROM_BASE}"),
+    "base_wrench:rne_python": Way(
+        "rne_python, base_wrench", f"_, own = robot.rne_python(q, v, a, base_wrench=True)\n{_FROM_BASE}"
     ),
     "gravity:argument": Way("rne with gravity", "value = robot.rne(q, 0 * v, 0 * v, gravity=robot.gravity)"),
     "inverse_dynamics:rne_python": Way("rne_python", "value = robot.rne_python(q, v, a)"),

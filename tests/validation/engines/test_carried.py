@@ -1,0 +1,109 @@
+"""Wholes and subtrees follow from single links; what a link sees, from its axes; powers, from energies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from validation.engines.functions import FUNCTIONS
+from validation.engines.functions.carried import CARRIED
+from validation.engines.interface import Slot, State
+from validation.engines.models import hostile
+from validation.engines.proving.pieces import Layout
+from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+
+Array = NDArray[np.float64]
+_TREE = hostile.trees()["branches, numbered across"]
+_N = len(_TREE.links)
+_LAYOUT = Layout(_N, _N, tuple((Slot("angle", (k,), (k,)),) for k in range(_N)))
+_STATE = random_state(_TREE, _LAYOUT, 5)
+_SIZE = 1e-6
+
+
+def _of(name: str, state: State = _STATE) -> Array:
+    return digits(Truth(_TREE, _LAYOUT).value(FUNCTIONS[name].truth, Point.of(state)))
+
+
+def _slope(name: str) -> Array:
+    """The rate of a function of q as the tree moves."""
+    before, after = (_of(name, replace(_STATE, q=_STATE.q + sign * _SIZE * _STATE.v)) for sign in (-1, 1))
+    return np.asarray((after - before) / (2 * _SIZE))
+
+
+def test_centres_move_as_they_say() -> None:
+    np.testing.assert_allclose(_of("mass_centre_velocity"), _slope("mass_centre"), atol=1e-8)
+    np.testing.assert_allclose(_of("subtree_centre_jacobians") @ _STATE.v, _slope("subtree_centres"), atol=1e-8)
+    still = replace(_STATE, v=0 * _STATE.v)
+    np.testing.assert_allclose(
+        _of("mass_centre_acceleration", still), _of("mass_centre_jacobian") @ _STATE.a, atol=1e-12
+    )
+    turning = _of("mass_centre_acceleration") - _of("mass_centre_jacobian") @ _STATE.a
+    np.testing.assert_allclose(turning, _slope("mass_centre_jacobian") @ _STATE.v, atol=1e-8)
+
+
+def test_a_whole_is_the_sum_of_its_branches() -> None:
+    roots = [k for k, link in enumerate(_TREE.links) if link.parent < 0]
+    masses, centres = _of("subtree_masses")[roots], _of("subtree_centres")[roots]
+    assert len(roots) == 2 and masses.sum() == pytest.approx(sum(link.mass for link in _TREE.links))
+    np.testing.assert_allclose(masses @ centres / masses.sum(), _of("mass_centre"), atol=1e-13)
+    regressor = _of("static_regressor").reshape(3, _N, 4)
+    stated = np.array([[link.mass, *(link.mass * np.array(link.com))] for link in _TREE.links])
+    np.testing.assert_allclose(np.einsum("ikj,kj->i", regressor, stated), _of("mass_centre"), atol=1e-13)
+
+
+def test_a_link_that_turns_alone_carries_the_inertia_that_its_force_takes() -> None:
+    """The diagonal of the mass matrix is the energy of each link with all it carries, as one body."""
+    J, M = _of("jacobian_local"), _of("mass_matrix")
+    for k, whole in enumerate(_of("carried_inertias")):
+        assert J[k][:, k] @ whole @ J[k][:, k] == pytest.approx(M[k, k])
+
+
+def test_links_have_what_moves_them() -> None:
+    """Of a link that carries none, what holds it is what moves it; of roots, what the world exerts."""
+    held = _of("joint_wrenches")
+    leaves = [k for k in range(_N) if all(link.parent != k for link in _TREE.links)]
+    for k in leaves:
+        link = _TREE.links[k]
+        c = np.array(link.com)
+        about = np.array(link.inertia) + link.mass * (c @ c * np.eye(3) - np.outer(c, c))
+        moments = [about[place] for place in ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))]
+        np.testing.assert_allclose(
+            _of("link_regressors")[k] @ [link.mass, *(link.mass * c), *moments], held[k], atol=1e-12
+        )
+    poses, total = _of("link_poses"), np.zeros(6)
+    for k, link in enumerate(_TREE.links):
+        if link.parent < 0:
+            force, moment = (poses[k, 3:].reshape(3, 3) @ part for part in (held[k, :3], held[k, 3:]))
+            total += [*force, *(moment + np.cross(poses[k, :3], force))]
+    np.testing.assert_allclose(_of("base_wrench"), total, atol=1e-12)
+    whole, weight = sum(link.mass for link in _TREE.links), np.array(_TREE.gravity)
+    np.testing.assert_allclose(_of("base_wrench")[:3], whole * (_of("mass_centre_acceleration") - weight), atol=1e-12)
+
+
+def test_powers_and_energies() -> None:
+    assert _of("mechanical_energy") == pytest.approx(_of("kinetic_energy") + _of("potential_energy"))
+    assert _of("conservative_power") == pytest.approx(-_of("gravity") @ _STATE.v)
+    np.testing.assert_array_equal(_of("coordinate_rates"), _STATE.v)
+    assert _of("squared_distance")[0] == pytest.approx(_STATE.v2 @ _STATE.v2)
+
+
+def test_what_the_first_link_sees() -> None:
+    poses = _of("link_poses")
+    A, x = poses[0, 3:].reshape(3, 3), poses[0, :3]
+    for pose, seen in zip(poses, _of("relative_poses"), strict=True):
+        np.testing.assert_allclose(seen[:3], A.T @ (pose[:3] - x), atol=1e-13)
+        np.testing.assert_allclose(seen[3:].reshape(3, 3), A.T @ pose[3:].reshape(3, 3), atol=1e-13)
+    moved, velocities = _slope("relative_poses"), _of("relative_velocities")
+    for k, seen in enumerate(_of("relative_poses")):
+        spin = moved[k, 3:].reshape(3, 3) @ seen[3:].reshape(3, 3).T
+        np.testing.assert_allclose(velocities[k], [*moved[k, :3], spin[2, 1], spin[0, 2], spin[1, 0]], atol=1e-8)
+    np.testing.assert_allclose(_of("relative_jacobians") @ _STATE.v, velocities, atol=1e-12)
+    gained = _of("relative_accelerations") - _of("relative_jacobians") @ _STATE.a
+    np.testing.assert_allclose(gained, _slope("relative_jacobians") @ _STATE.v, atol=1e-8)
+
+
+def test_all_of_them_are_asked_of_any_tree() -> None:
+    assert not any(function.needs for function in CARRIED.values())

@@ -1,0 +1,49 @@
+"""Wholes of trees and of subtrees, links as another sees them, rates of coordinates."""
+
+from __future__ import annotations
+
+from ..truth import carried
+from .function import Function
+
+
+def _wholes() -> dict[str, Function]:
+    rows = {
+        "mass_centre_velocity": ("velocity of the mass centre (3)", carried.centre_velocity),
+        "mass_centre_acceleration": ("its acceleration (3)", carried.centre_acceleration),
+        "subtree_masses": ("masses of each link with all it carries (L)", carried.subtree_masses),
+        "subtree_centres": ("their mass centres (L, 3)", carried.subtree_centres),
+        "subtree_centre_jacobians": ("their Jacobians (L, 3, nv)", carried.subtree_jacobians),
+        "carried_inertias": (
+            "momentum of each link with all it carries, as one body, for twists of its frame along its axes (L, 6, 6)",
+            carried.carried_inertias,
+        ),
+        "link_regressors": (
+            "Y (L, 6, 10): wrench that moves each link against gravity, at its origin along its axes, is Y parameters",
+            carried.link_regressors,
+        ),
+        "static_regressor": ("Y (3, 4 L): the mass centre is Y (m, m c of each link)", carried.static_regressor),
+        "mechanical_energy": ("T + V (1)", carried.energy),
+        "conservative_power": ("- dV/dt (1)", carried.power_of_weights),
+        "base_wrench": (
+            "what the world exerts on the first links, about its origin along its axes (6)",
+            carried.base_wrench,
+        ),
+        "coordinate_rates": ("N v (nq)", carried.coordinate_rates),
+        "speeds_of_rates": ("v, of N v (nv)", lambda t, s: s.v),
+        "squared_distance": ("the square of v2, of q and where v2 leads (1)", carried.squared_distance),
+    }
+    return {name: Function(text, truth) for name, (text, truth) in rows.items()}
+
+
+def _relative() -> dict[str, Function]:
+    """Links as the first link sees them, along its axes."""
+    rows = {
+        "relative_poses": ("positions and rows of R in the first link (L, 12)", carried.relative_poses),
+        "relative_velocities": ("rates of these positions, angular velocities (L, 6)", carried.relative_velocities),
+        "relative_accelerations": ("rates of the rates, angular accelerations (L, 6)", carried.relative_accelerations),
+        "relative_jacobians": ("Jacobians of these velocities (L, 6, nv)", carried.relative_jacobians),
+    }
+    return {name: Function(text, truth) for name, (text, truth) in rows.items()}
+
+
+CARRIED = _wholes() | _relative()
