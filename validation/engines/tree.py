@@ -13,6 +13,9 @@ import numpy as np
 from .frames import IDENTITY, ORIGIN, End, Rows, Vector, rows
 from .lines import Actuator, Medium, Tendon
 
+# Ways of stating a tree (`Tree.stated`).
+BASE, DENAVIT, MODIFIED = "a base", "Denavit-Hartenberg parameters", "modified Denavit-Hartenberg parameters"
+
 
 @dataclass(frozen=True)
 class Joint:

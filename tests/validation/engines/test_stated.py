@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from validation.engines.functions.arms import ARMS
 from validation.engines.interface import Slot, State
 from validation.engines.models import stated
-from validation.engines.models.stated import BASE, DENAVIT, MODIFIED
 from validation.engines.plugins.roboticstoolbox import denavit
 from validation.engines.plugins.writing.source import Source
 from validation.engines.proving.pieces import Layout
+from validation.engines.tree import BASE, DENAVIT, MODIFIED
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.engines.truth.kinematics import Kinematics
 

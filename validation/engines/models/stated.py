@@ -12,9 +12,9 @@ from math import cos, sin
 import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows
+from ..tree import BASE, DENAVIT, MODIFIED
 from .kinds import link, placed, shifted
 
-BASE, DENAVIT, MODIFIED = "a base", "Denavit-Hartenberg parameters", "modified Denavit-Hartenberg parameters"
 # Kind, d or theta, a, alpha, offset.
 _Parameters = tuple[str, float, float, float, float]
 _SHORT: tuple[_Parameters, ...] = (

@@ -8,7 +8,7 @@ from math import atan2
 import numpy as np
 
 from ...interface import Array, Joint, Link, Slot, Tree, Unsupported
-from ...models.stated import BASE, MODIFIED
+from ...tree import BASE, MODIFIED
 from ...truth.arms import AT, BURDEN
 from ..writing.source import Source, Way
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
-from ...models.stated import BASE, DENAVIT, MODIFIED
+from ...tree import BASE, DENAVIT, MODIFIED
 from ..writing.source import Source, SourcePlugin, Way, numbered
 from . import denavit
 from .denavit import lacking, pose, without_tool
