@@ -24,6 +24,8 @@ from symofros.simulation.stepping.stepper import Stepper
 RECORD = "(record)"
 # Rows of records in C, which are taken between two calls.
 _ROWS = 4096
+# Share of a number of ticks that is rounding of a time.
+_ROUNDING = 1e-12
 _BLOCK_CALLBACK = "int32_t(void *, int32_t, double, const double *, double *)"
 
 
@@ -171,7 +173,7 @@ class Loop:
             realtime: Seconds of motion a second; 0: as fast as possible.
             threads: Number of threads that share the parts.
             instants: Number of instants in all.
-            after: Time of an instant that is over, from which the run goes on [s].
+            after: Time from which the run goes on; an instant then is over [s].
         """
         d = self.diagram
         d.t0, d.t_end = t0, t_end
@@ -185,7 +187,8 @@ class Loop:
         if after is not None:
             d.begun = 1
             ticks = [int(d.instant_tick[i]) for i in range(d.n_instants)]
-            d.cycle, rest = divmod(round((after - t0) * float(d.base_denominator / d.base_numerator)), d.cycle_ticks)
+            over = (after - t0) * float(d.base_denominator / d.base_numerator)
+            d.cycle, rest = divmod(math.floor(over + _ROUNDING * max(1.0, over)), d.cycle_ticks)
             d.next_instant, d.t[0] = bisect_right(ticks, rest), after
             if d.next_instant == len(ticks):
                 d.next_instant, d.cycle = 0, d.cycle + 1

@@ -43,9 +43,9 @@ def events_of(compiled: CompiledDiagram, met: Sequence[Met], par: Array) -> Mapp
     return {name: tuple(events) for name, events in found.items()}
 
 
-def acted(met: Sequence[Met]) -> bool:
-    """Whether an event has changed how mechanisms move."""
-    return any(one.done is not None and one.done.status > 0 for one in met)
+def acted_at(met: Sequence[Met]) -> Array:
+    """Instants at which events have changed how mechanisms move (k) [s], in order."""
+    return np.unique([one.t for one in met if one.acted])
 
 
 def _found(compiled: CompiledDiagram, part: Part, block: str, number: int, met: Met, par: Array) -> Found:

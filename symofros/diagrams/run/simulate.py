@@ -26,7 +26,7 @@ from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
-from symofros.diagrams.run.met import acted, crossings_of, events_of
+from symofros.diagrams.run.met import acted_at, crossings_of, events_of
 from symofros.diagrams.run.parts import Placed, place_parts, start_parts
 from symofros.diagrams.run.python_blocks import Called, CalledBefore, ExternalCalls, NotKeptError, begun
 from symofros.diagrams.run.recording import Cost, Records
@@ -39,12 +39,12 @@ from symofros.runtime.calls import CompiledKernel
 from symofros.runtime.model import Model
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
+from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded, drive
 from symofros.simulation.stepping.status import Status
 
-NOT_EXAMINED = "the steps of a diagram in which events act are not examined: sf.simulate says more of one mechanism"
 # What external blocks gave, by block and time.
 Given = dict[tuple[str, float], dict[str, Array]]
 
@@ -110,12 +110,10 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
     def signal(source: Source) -> Array:
         return records[".".join(source)]
 
-    again = _rerun(task, ended.states, given, acts=acted(ended.recorded.events))
+    again = _rerun(task, ended, given)
     outcome, modes = diagnose(ended, bendings, again)
     outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
-    if acted(ended.recorded.events):
-        outcome = replace(outcome, notes=(*outcome.notes, NOT_EXAMINED))
-    elif outcome.kind == "finished" and not options.realtime:
+    if outcome.kind in ("finished", "event") and not options.realtime:
         notes = remarks(_examined(task, ended, given), modes, signal)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
     outcome = blamed(outcome, resolved, again)
@@ -154,7 +152,7 @@ class PlannedRun:
 
 def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     """A run as its steps are judged."""
-    layout, parts, states = ended.layout, task.compiled.parts, ended.states
+    layout, parts, states, met = ended.layout, task.compiled.parts, ended.states, ended.recorded.events
     settings = ended.settings[0] if ended.settings else None
     h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
 
@@ -164,30 +162,27 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
         if refinements:
             dt = 0.5**refinements * h
             once = replace(once, dt=dt) if h else replace(once, rtol=tighter * o.rtol, atol=tighter * o.atol)
-        return _resumed(replace(task, options=once, t_end=t_end, threads=1), states, given, i)
+        return _resumed(replace(task, options=once, t_end=t_end, threads=1), ended, given, i)
 
-    def accelerations(rows: Array) -> Array:
+    def accelerations(rows: Numbers) -> Array:
         t, q, v, u = (array[rows] for array in states)
-        a = np.zeros_like(v)
+        a, par = np.zeros_like(v), layout.present(ended.par, u)
         for part, model in zip(layout.parts, parts, strict=True):
-            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=ended.par, t=t)
+            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=par, t=t)
         return np.asarray(a)
 
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))
     energies = Energies(ended.resolved, ended.par, task.compiled.energies)
-    return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations)
+    return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations, acted_at(met))
 
 
-def _rerun(task: PlannedRun, states: Sequence[Array], given: Given, *, acts: bool) -> Rerun:
-    """Function that repeats a span of a run with other records and steps; it returns None where it can't.
-
-    acts: whether events have acted, so that a record is not all that a run goes on from.
-    """
+def _rerun(task: PlannedRun, ended: Ended, given: Given) -> Rerun:
+    """Function that repeats a span of a run with other records and steps; it returns None where it can't."""
     wired = task.compiled.resolved.wired
 
     def again(span: RerunSpan) -> Sequence[Array] | None:
-        t = states[0]
-        if not len(t) or acts:
+        t = ended.states[0]
+        if not len(t):
             return None
         i = max(0, int(np.searchsorted(t, span.start, "right")) - 1)
         if not t[i] < span.stop:
@@ -195,36 +190,39 @@ def _rerun(task: PlannedRun, states: Sequence[Array], given: Given, *, acts: boo
         plan = schedule([*rates_of(task.compiled.resolved.pieces), (RECORD, span.interval, 0.0)], wired.name)
         options = replace(task.options, realtime=False, dt=span.dt)
         finer = replace(task, options=options, plan=plan, t_end=span.stop, threads=1, hold=span.hold)
-        found = _continued_run(finer, states, given, i)
+        found = _continued_run(finer, ended, given, i)
         return found and found[1]
 
     return again
 
 
-def _resumed(task: PlannedRun, states: Sequence[Array], given: Given, i: int) -> Sequence[Array] | None:
+def _resumed(task: PlannedRun, before: Ended, given: Given, i: int) -> Sequence[Array] | None:
     """The records of a run that goes on from a record; None where it does not come to its end.
 
     Raises:
         NotKeptError: What external blocks gave is not known.
     """
-    found = _continued_run(task, states, given, i)
+    found = _continued_run(task, before, given, i)
     if found is None:
         return None
     ended, joined = found
     if isinstance(ended.loop.failure, NotKeptError):
         raise ended.loop.failure
-    return joined if ended.recorded.status == Status.FINISHED else None
+    ends = ended.recorded.status == Status.TERMINAL_EVENT and ended.t > task.t_end - task.plan.spacing
+    return joined if ended.recorded.status == Status.FINISHED or ends else None
 
 
-def _continued_run(
-    task: PlannedRun, states: Sequence[Array], given: Given, i: int
-) -> tuple[Ended, Sequence[Array]] | None:
+def _continued_run(task: PlannedRun, before: Ended, given: Given, i: int) -> tuple[Ended, Sequence[Array]] | None:
     """A run continued from record i, and its states from there on; None if it fails.
 
     Of the records of a crossing, at one time, the last has what the crossing changed: from that the run goes on.
     """
+    states = before.states
     last = int(np.searchsorted(states[0], states[0][i], "right")) - 1
-    begin = Start(float(states[0][last]), *(array[last].copy() for array in states[1:]))
+    t = float(states[0][last])
+    met = tuple(one for one in before.recorded.events if one.t <= t)
+    q, v, u = (array[last].copy() for array in states[1:])
+    begin = Start(t, q, v, u, met)
     try:
         ended = run_from(task, begin, CalledBefore(task.compiled.resolved.wired, given), resumed=True)
     except SymofrosError:

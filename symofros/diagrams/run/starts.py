@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +11,7 @@ from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.simulation.analysis.kinematics.starts import changes, closed_start, stated_names
+from symofros.simulation.stepping.met import Met
 
 
 @dataclass(frozen=True)
@@ -22,12 +23,14 @@ class Start:
         q: Configuration (nq).
         v: Speeds and continuous states (nv).
         u: Inputs, with all that is held between samples (nu).
+        met: Events that were met before, of a run that goes on.
     """
 
     t: float
     q: Array
     v: Array
     u: Array
+    met: Sequence[Met] = ()
 
     @classmethod
     def of(cls, resolved: Resolved, t0: float, par: Array) -> Start:

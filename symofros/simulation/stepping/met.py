@@ -74,3 +74,8 @@ class Met(NamedTuple):
     q: Array
     v: Array
     done: Done | None = None
+
+    @property
+    def acted(self) -> bool:
+        """Whether its action has been done."""
+        return self.done is not None and self.done.status > 0

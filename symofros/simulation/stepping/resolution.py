@@ -50,6 +50,11 @@ class Resolution:
     worst: Mode | None = None
     evident: bool = True
 
+    def and_then(self, other: Resolution) -> Resolution:
+        """Of both: the mode of this one, but for one that steps amplify in the other."""
+        is_worse = self.worst is None or (other.worst is not None and other.worst.amplified)
+        return Resolution(other.worst if is_worse else self.worst, self.evident and other.evident)
+
 
 @dataclass(frozen=True)
 class Pull:

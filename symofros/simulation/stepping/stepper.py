@@ -101,6 +101,14 @@ class Stepper(BoundRun):
         """An event is not looked for any more."""
         self.system.event_terminal[which] = -1
 
+    def recall(self, met: Sequence[Met]) -> None:
+        """Events that were met before the present state: those that count once are over, and when others acted."""
+        for one in met:
+            if self.events[one.which].once:
+                self.ignore_event(one.which)
+            if one.acted:
+                self.run.acted_at[one.which] = one.t
+
     def act(self) -> tuple[int, list[Met]]:
         """Do the actions of the events at which the run has been cut: a Status, 0 where it goes on, and the events."""
         status = int(self.native.sym_run_act(self.run))

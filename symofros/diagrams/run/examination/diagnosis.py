@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,13 +20,14 @@ from symofros.diagrams.run.loop import Loop
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes, largest_bending
 from symofros.simulation.analysis.beam_theory import amplified_in_motion
-from symofros.simulation.analysis.kinematics.postures import MAX_BETWEEN
+from symofros.simulation.analysis.kinematics.postures import MAX_BETWEEN, nearest_to_singular, regular_rank
 from symofros.simulation.events import event_notes
 from symofros.simulation.results.acted import failure_of, notes_of
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, past_stability
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
-from symofros.simulation.results.examination.constraint_faults import constraint_notes
+from symofros.simulation.results.examination.constraint_faults import constraint_notes, near_singular_notes
 from symofros.simulation.results.examination.finer_steps import States
+from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.step_size import examine_steps, remedy, step_size_note
 from symofros.simulation.results.notes import distinct
@@ -34,6 +37,12 @@ from symofros.simulation.stepping.loops import Recorded
 from symofros.simulation.stepping.resolution import Resolution
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.user_functions import raised_where
+
+# Most values of parameters that events have set, and most phases between changes of constraints, that are examined.
+_GROUPS, _PHASES = 8, 64
+# Records, about, at which the rank of constraints is looked for.
+_SOME = 16
+_ALL = slice(None)
 
 
 @dataclass(frozen=True)
@@ -131,9 +140,7 @@ def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tup
     failed, modes = status in (Status.DIVERGED, Status.BEYOND_THEORY), Resolution()
     for i, settings in enumerate(ended.settings):
         steps = _resolution(ended, i, failed)
-        mode = steps.worst
-        is_worse = modes.worst is None or (mode is not None and mode.amplified)
-        modes = Resolution(mode if is_worse else modes.worst, modes.evident and steps.evident)
+        mode, modes = steps.worst, modes.and_then(steps)
         if mode is not None:
             notes = (*notes, step_size_note(mode, settings.method, _stepped(ended, settings).dt))
             if failed and mode.amplified:
@@ -154,47 +161,86 @@ def _stepped(ended: Ended, settings: Settings) -> Settings:
     return replace(settings, dt=min(settings.dt, ended.spacing))
 
 
-def _part_run(ended: Ended, part: int, settings: Settings, steps: float) -> ExaminedRun:
-    """The run of one part as an ExaminedRun with this many steps, at least one."""
-    (t, q, v, u), place = ended.states, ended.layout.parts[part]
+def _part_run(ended: Ended, part: int, settings: Settings, steps: float, rows: Numbers | slice = _ALL) -> ExaminedRun:
+    """The run of one part as an ExaminedRun with this many steps, at least one, and with some of the records."""
+    (t, q, v, u), place = (x[rows] for x in ended.states), ended.layout.parts[part]
     states = (t, q[:, place.q], v[:, place.v], u)
     return ExaminedRun(ended.loop.parts[part], settings, (states[1][0], states[2][0]), states, max(1, round(steps)))
 
 
 def _resolution(ended: Ended, part: int, failed: bool) -> Resolution:
-    """How well the fixed steps of a part resolve its modes, under the inputs held at each state."""
+    """How well the fixed steps of a part resolve its modes, under the inputs held at each state.
+
+    Where events change parameters, the records under each of their values by themselves, those of the most common ones.
+    """
     settings = _stepped(ended, ended.settings[part])
     if not len(ended.states[0]) or settings.adaptive:
         return Resolution()
     steps = ((settings.t_end if failed else ended.t) - settings.t0) / settings.dt
-    return examine_steps(_part_run(ended, part, settings, steps))
+    stepper, (t, _, _, u) = ended.loop.parts[part], ended.states
+    if not ended.layout.kept:
+        return examine_steps(_part_run(ended, part, settings, steps))
+    _, of, counts = np.unique(u[:, _kept(ended.layout)], axis=0, return_inverse=True, return_counts=True)
+    found = Resolution()
+    for group in np.argsort(-counts, kind="stable")[:_GROUPS]:
+        rows = np.flatnonzero(of.reshape(-1) == group)
+        stepper.set_parameters(ended.layout.present(ended.par, u[rows[0]]))
+        own = replace(settings, t0=float(t[rows[0]]))
+        found = found.and_then(examine_steps(_part_run(ended, part, own, steps * len(rows) / len(t), rows)))
+    return found
+
+
+def _kept(layout: Layout) -> list[int]:
+    """Inputs that remember the parameters which events change."""
+    return [i for of in layout.kept.values() for i in of.memory.range]
 
 
 def _posture_notes(ended: Ended, again: Rerun) -> list[str]:
     """Notes on singular postures that the parts passed through or came close to.
 
-    Where constraints engage or release on the way, their rank changes at any posture: nothing is said.
+    Where constraints engage or release on the way, their rank changes at any posture, and each part of the run in which
+    the same ones hold is looked at by itself.
     """
-    t, q, v, u = ended.states
-    kept = [i for of in ended.layout.kept.values() for i in of.memory.range]
-    locks = u[:, [*ended.layout.lock_inputs, *kept]]
-    if not len(t) or (locks != locks[0]).any():
-        return []
+    phases = _phases(ended)
     notes: list[str] = []
     for i, settings in enumerate(ended.settings):
-        place = ended.layout.parts[i]
+        for rows in phases:
+            with suppress(SymofrosError):  # Conditions that a block makes depend on speeds have no strength by posture.
+                between = partial(_between, ended, again, settings, ended.layout.parts[i], rows.start)
+                run = _part_run(ended, i, settings, int(ended.loop.diagram.steps), rows)
+                notes += constraint_notes(run, between) if len(phases) == 1 else _phase_notes(ended, run, between)
+    return list(distinct(notes))
 
-        def between(first: int, last: int, settings: Settings = settings, place: Part = place) -> States | None:
-            apart = float(t[last] - t[first]) / MAX_BETWEEN
-            dt = apart if settings.adaptive else min(apart, settings.dt)
-            along = None if settings.realtime else again(RerunSpan(float(t[first]), float(t[last]), apart, dt))
-            if along is None or along[0][-1] < t[last] - apart:
-                return None
-            return [along[0], along[1][:, place.q], along[2][:, place.v], along[3]]
 
-        with suppress(SymofrosError):  # A block makes conditions depend on speeds: they have no strength by posture.
-            notes += constraint_notes(_part_run(ended, i, settings, int(ended.loop.diagram.steps)), between)
-    return notes
+def _between(
+    ended: Ended, again: Rerun, settings: Settings, place: Part, begin: int, first: int, last: int
+) -> States | None:
+    """The motion of a part between two records, counted from the one that a phase begins with, in short steps."""
+    t = ended.states[0][begin:]
+    apart = float(t[last] - t[first]) / MAX_BETWEEN
+    dt = apart if settings.adaptive else min(apart, settings.dt)
+    along = None if settings.realtime else again(RerunSpan(float(t[first]), float(t[last]), apart, dt))
+    if along is None or along[0][-1] < t[last] - apart:
+        return None
+    return [along[0], along[1][:, place.q], along[2][:, place.v], along[3]]
+
+
+def _phases(ended: Ended) -> list[slice]:
+    """The records between which no constraint engages or releases and no parameter changes: the longest such parts."""
+    u = ended.states[3][:, [*ended.layout.lock_inputs, *_kept(ended.layout)]]
+    begins = [0, *(1 + np.flatnonzero((np.diff(u, axis=0) != 0.0).any(axis=1))).tolist(), len(u)]
+    parts = [slice(first, end) for first, end in pairwise(begins) if end > first]
+    return sorted(sorted(parts, key=lambda part: part.start - part.stop)[:_PHASES], key=lambda part: part.start)
+
+
+def _phase_notes(ended: Ended, run: ExaminedRun, between: Callable[[int, int], States | None]) -> list[str]:
+    """Note on a singular posture that a part came close to in one phase, of whose constraints no rank is counted."""
+    model, states = run.model, run.states
+    if not model.nc:
+        return []
+    par, some = ended.layout.present(ended.par, states[3][0]), [x[:: max(1, len(x) // _SOME)] for x in states]
+    (G,) = model.evaluate("constraint_jacobian", q=some[1], u=some[3], par=par, t=some[0])
+    return near_singular_notes(nearest_to_singular(model, states, par, regular_rank(G), between))
 
 
 def _signal_fault(ended: Ended) -> str:

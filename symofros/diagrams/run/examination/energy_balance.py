@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.diagrams.run.examination.examined import Examined
+from symofros.diagrams.run.examination.examined import Examined, before_jump
 from symofros.simulation.results.examination.finer_steps import HALVINGS, SETTLED
+from symofros.simulation.results.examination.paths import Numbers
 
 # Change of energy without work, over the largest kinetic energy, that is worth a note.
 _NOTED = 0.05
@@ -34,17 +36,16 @@ def energy_note(run: Examined) -> str:
     few = min(len(states[0]), int(min(max(_SHARE * run.steps, _FEWEST), _MOST)))
     if layout.driven or few < 3:
         return ""
-    rows = np.unique(np.linspace(0, len(states[0]) - 1, few).astype(int))
+    rows = _rows(run, few)
     some = [x[rows] for x in states]
     with np.errstate(all="ignore"):  # What has exploded overflows.
         a = run.accelerations(rows)
-        locks = some[3][:, layout.lock_inputs]
-        engages = (np.diff(locks, axis=0) != 0.0).any(axis=1)  # Constraints that engage take energy.
+        acts = _acts(run, rows)
         for name in layout.q:
-            kinetic, energy = energies.of(name, *some[:3])
+            kinetic, energy = energies.of(name, some)
             power, spans = energies.powers(name, some, a), np.diff(some[0])
-            gained = np.where(engages, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
-            unseen = _SMOOTH * np.abs(np.diff(power, n=2, prepend=power[:1])) * spans
+            gained = np.where(acts, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
+            unseen = _SMOOTH * np.abs(_bends(power, acts)) * spans
             unexplained, uncertain = np.abs(np.cumsum(gained)), np.cumsum(unseen)
             noted = _NOTED * kinetic.max()
             # Where the power bends, a small sum shows nothing: it may be what errors leave.
@@ -58,6 +59,25 @@ def energy_note(run: Examined) -> str:
                     " tolerances"
                 )
     return ""
+
+
+def _rows(run: Examined, few: int) -> Numbers:
+    """The records that are looked at: some spread over the run, and those on both sides of actions, if not too many."""
+    before, after = (index[:: max(1, math.ceil(len(index) / _MOST))] for index in run.sides)
+    return np.unique(np.concatenate([np.linspace(0, len(run.states[0]) - 1, few).astype(int), before, after]))
+
+
+def _acts(run: Examined, rows: Numbers) -> Array:
+    """Whether something acts within each interval between records (n - 1): energy then has a cause."""
+    (before, after), locks = run.sides, run.states[3][rows][:, run.layout.lock_inputs]
+    begun, over = np.searchsorted(before, rows[1:], "left"), np.searchsorted(after, rows[:-1], "right")
+    return np.asarray((begun > over) | (np.diff(locks, axis=0) != 0.0).any(axis=1))
+
+
+def _bends(power: Array, acts: Array) -> Array:
+    """Second differences of the power (n), of each interval (n - 1); where something acts, it begins anew."""
+    changes = np.where(acts, 0.0, np.diff(power))
+    return np.where(acts, 0.0, np.diff(changes, prepend=0.0))
 
 
 @dataclass(frozen=True)
@@ -77,7 +97,7 @@ class _Doubts:
     evident: bool
 
 
-def _is_numerical(run: Examined, name: str, rows: Array, doubts: _Doubts) -> bool:
+def _is_numerical(run: Examined, name: str, rows: Numbers, doubts: _Doubts) -> bool:
     """Whether finer steps change the energy gained over the intervals in which most of it is doubtful."""
     states = run.states
     gained, kinetic = doubts.gained, doubts.kinetic
@@ -87,6 +107,9 @@ def _is_numerical(run: Examined, name: str, rows: Array, doubts: _Doubts) -> boo
     # the motion before it is looked at, too.
     beside = doubtful[1:] / sizes[:-1]
     chosen = np.unique([*np.argsort(-doubtful)[:_REPEATED], *(1 + np.argsort(-beside)[:1])])
+    chosen = chosen[doubtful[chosen] > 0.0]
+    if not len(chosen):
+        return False
     share = _CHANGED_MOTION * float(kinetic.max())
     if doubts.evident:
         share = min(_CHANGED * float(np.abs(gained[chosen]).sum()), share)
@@ -98,8 +121,9 @@ def _is_numerical(run: Examined, name: str, rows: Array, doubts: _Doubts) -> boo
             finer = run.repeat(first, float(states[0][last]), level)
             if finer is None:
                 return True
-            ends = (np.stack([x[last], y[-1]]) for x, y in zip(states[:3], finer[:3], strict=True))
-            _, energy = run.energies.of(name, *ends)
+            end = before_jump(finer)
+            ends = [np.stack([x[last], y[end]]) for x, y in zip(states, finer, strict=False)]
+            _, energy = run.energies.of(name, ends)
             changes[k] = energy[1] - energy[0]
         if float(np.abs(changes).sum()) >= share:
             return True

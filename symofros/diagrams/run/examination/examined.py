@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,7 @@ from symofros.runtime.manifold import difference, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.finer_steps import HALVINGS, HeldRun, Part, States
+from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import Window
 
@@ -27,6 +28,9 @@ from symofros.simulation.stepping.windows import Window
 _POSITIONS = 3.0
 # Share of the tolerance that is allowed where external blocks do not answer to the change.
 _UNANSWERED = 0.08
+
+# Share of a step: a record that is nearer to a jump may be from before it or after it.
+_AT_JUMP = 1e-3
 
 # A power is a difference of energies over this share of the time between records, or of the time in which the largest
 # speed arises where that is shorter.
@@ -50,7 +54,7 @@ def _mean(rows: Array) -> float:
 
 
 # Accelerations (n, nv) at some of the records, by number.
-Accelerations = Callable[[Array], Array]
+Accelerations = Callable[[Numbers], Array]
 
 
 @dataclass(frozen=True)
@@ -67,10 +71,16 @@ class Energies:
     par: Array
     model_of: Callable[[str], Model]
 
-    def of(self, name: str, t: Array, q: Array, v: Array) -> tuple[Array, Array]:
-        """Kinetic and total energy (n) [J] of a block's mechanism at states of the diagram (n, nq), (n, nv)."""
-        layout, mechanism = self.resolved.layout, self.resolved.pieces[name].block.mechanism()
-        model, par = self.model_of(mechanism), layout.parameters_of(name, mechanism, self.par)
+    def of(self, name: str, states: States) -> tuple[Array, Array]:
+        """Kinetic and total energy (n) [J] of a block's mechanism, by the parameters that events have set by then.
+
+        Args:
+            name: Block of the mechanism.
+            states: States of the diagram: t (n), q (n, nq), v (n, nv), and u (n, nu) where events act.
+        """
+        (t, q, v), layout, mechanism = states[:3], self.resolved.layout, self.resolved.pieces[name].block.mechanism()
+        present = layout.present(self.par, states[3]) if layout.kept else self.par
+        model, par = self.model_of(mechanism), layout.parameters_of(name, mechanism, present)
         q, v = (np.ascontiguousarray(x[:, places[name].slice]) for x, places in ((q, layout.q), (v, layout.v)))
         kinetic = model.kinetic_energy(q, v, par=par)
         return kinetic, kinetic + model.potential_energy(q, par=par, t=t, z=model.states_of(v))
@@ -80,7 +90,7 @@ class Energies:
 
         Args:
             name: Block of the mechanism.
-            states: States of the diagram: t (n), q (n, nq), v (n, nv).
+            states: States of the diagram, as of `of`.
             a: Accelerations (n, nv).
         """
         (t, q, v), at = states[:3], self.resolved.layout.v[name].slice
@@ -90,7 +100,7 @@ class Energies:
         ends = []
         for s in (moment, -moment):
             q_s = retract(self.resolved.layout.segments, q, s[:, np.newaxis] * v)
-            ends.append(self.of(name, t + s, q_s, v + s[:, np.newaxis] * a)[1])
+            ends.append(self.of(name, [t + s, q_s, v + s[:, np.newaxis] * a, *states[3:]])[1])
         return np.asarray((ends[0] - ends[1]) / np.maximum(2.0 * moment, 1e-300))
 
 
@@ -108,6 +118,7 @@ class Examined(HeldRun):
         steps: Number of steps.
         repeat: Makes a part of the run once more, from a record to a time, as it was or with finer steps.
         accelerations: Accelerations at records.
+        acted: Instants at which events have acted (k) [s], in order; of each the run has records from before and after.
     """
 
     energies: Energies
@@ -117,6 +128,7 @@ class Examined(HeldRun):
     steps: int
     repeat: Repeat
     accelerations: Accelerations
+    acted: Array = field(default_factory=lambda: np.zeros(0))
     longer = math.inf  # A loop through samples amplifies errors by no power of time: no shorter part tells.
 
     @property
@@ -144,6 +156,12 @@ class Examined(HeldRun):
     def tolerance(self) -> float:
         """Relative change above which a note is made."""
         return (_UNANSWERED if self.external else 1.0) * TOLERANCE
+
+    @cached_property
+    def sides(self) -> tuple[Numbers, Numbers]:
+        """The first record and the last one at each instant at which events have acted (k), by number."""
+        t = self.states[0]
+        return np.searchsorted(t, self.acted, "left"), np.searchsorted(t, self.acted, "right") - 1
 
     def coarse(self, window: Window, every: int) -> States | None:
         """The window's records; recomputed if the window contains none."""
@@ -173,8 +191,38 @@ class Examined(HeldRun):
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
         """Relative change of the mechanism that changes most, and the name of its block."""
         run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
+        coarse, fine = at_equal_times(coarse, fine, _AT_JUMP * self.mean_step)
         shares = ((_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v)
         return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)
+
+
+def jumps_at(states: States) -> Numbers:
+    """Numbers of the records (k) after which something has jumped: the next is another state at the same time."""
+    t, q, v = states[:3]
+    moved = (np.diff(q, axis=0) != 0.0).any(axis=1) | (np.diff(v, axis=0) != 0.0).any(axis=1)
+    return np.flatnonzero((np.diff(t) == 0.0) & moved)
+
+
+def before_jump(states: States) -> int:
+    """Number of the last record before something jumps after the first time; of the last of all where nothing does."""
+    jumped = jumps_at(states)
+    later = jumped[states[0][jumped] > states[0][0]]
+    return int(later[0]) if len(later) else len(states[0]) - 1
+
+
+def at_equal_times(coarse: States, fine: States, near: float) -> tuple[States, States]:
+    """Records of both at the times that they have in common: crossings are met at times of their own.
+
+    Those within `near` [s] of an instant at which either jumps are left out: one of them may have jumped already.
+    """
+    t, i, j = np.intersect1d(coarse[0], fine[0], return_indices=True)
+    jumped = np.sort(np.concatenate([states[0][jumps_at(states)] for states in (coarse, fine)]))
+    after = np.searchsorted(jumped, t)
+    ends = np.concatenate([[-np.inf], jumped, [np.inf]])
+    apart = np.minimum(t - ends[after], ends[after + 1] - t)
+    clear = apart > near
+    clear[:1] = True
+    return [x[i[clear]] for x in coarse[:3]], [x[j[clear]] for x in fine[:3]]
 
 
 def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States, norm: Norm) -> float:
@@ -186,13 +234,12 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         run: Records of the whole run, where these are of a window: its largest speed counts, and what that makes of
             the window's time, up to its largest displacement.
         coarse: Records by the step.
-        fine: Records by half of it.
+        fine: Records by half of it, at the same times.
         norm: What counts of the records.
     """
     at = layout.v[block].slice
     with np.errstate(all="ignore"):  # What has exploded overflows.
-        _, i, j = np.intersect1d(coarse[0], fine[0], return_indices=True)  # Crossings are met at times of their own.
-        q, v, q_half, v_half = coarse[1][i], coarse[2][i], fine[1][j], fine[2][j]
+        q, v, q_half, v_half = (*coarse[1:3], *fine[1:3])
         moved = difference(layout.segments, np.broadcast_to(q_half[0], q_half.shape), q_half)[:, at]
         apart = difference(layout.segments, q_half, q)[:, at]
         fastest, faster = norm(v_half[:, at]), norm((v - v_half)[:, at])

@@ -17,6 +17,7 @@ from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, r
 from symofros.diagrams.run.python_blocks import Called, CalledBefore
 from symofros.runtime.manifold import chart_rate, retract
 from symofros.runtime.model import Model
+from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.step_size import step_size_note
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import Resolution, Spectrum, resolution
@@ -117,7 +118,7 @@ class _Revisited:
         blocks.accelerate()
         return h * np.concatenate([chart_rate(segments, x[:nv], blocks.v), h * blocks.a])
 
-    def _accelerations(self, rows: Array) -> Array:
+    def _accelerations(self, rows: Numbers) -> Array:
         a = np.empty((len(rows), self._run.v.shape[1]))
         for k, i in enumerate(rows):
             self._place(int(i))

@@ -7,12 +7,10 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.examined import Examined
 from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
-from symofros.simulation.analysis.kinematics.postures import nearest_to_singular
+from symofros.simulation.analysis.kinematics.postures import nearest_to_singular, regular_rank
 from symofros.simulation.results.examination.constraint_faults import near_singular_notes
 from symofros.simulation.results.examination.finer_steps import States
 
-# Singular values of a smaller share of the largest are of conditions that repeat others.
-_RANK = 1e-9
 # Records, about, at which the rank is looked for.
 _SOME = 16
 
@@ -48,6 +46,5 @@ def posture_notes(run: Examined, signal: Signals) -> list[str]:
         moved = states((t, q, v))
         some = [x[:: max(1, len(t) // _SOME)] for x in moved]
         (G,) = model.evaluate("constraint_jacobian", q=some[1], u=some[3], par=par, t=some[0])
-        rank = int(np.linalg.matrix_rank(G, rtol=_RANK).max())
-        notes += near_singular_notes(nearest_to_singular(model, moved, par, rank, between))
+        notes += near_singular_notes(nearest_to_singular(model, moved, par, regular_rank(G), between))
     return notes

@@ -25,6 +25,8 @@ MANY, PROOFS, MAX_ENTRIES = 16, 4, 4e6
 FAR, MAX_BETWEEN = 0.05, 16
 # Parts of the motion that are asked for where the straight way between records meets weak conditions.
 ASKED = 4
+# Singular values of a smaller share of the largest are of conditions that repeat others.
+_RANK = 1e-9
 # Change of a row of G, relative to its size, while the configuration changes by MAX_CHANGE [rad, m], halved BISECTIONS
 # times: a smooth row changes by far less.
 TURN, MAX_CHANGE, BISECTIONS = 0.3, 0.02, 16
@@ -124,6 +126,11 @@ def worst_violation(model: Model, t: Array, states: tuple[Array, Array, Array], 
     return Violation(
         model.names.constraints[worst], share, float(t[chosen[int(np.argmax(shares[:, worst] > 0.5 * share))]])
     )
+
+
+def regular_rank(jacobians: Array) -> int:
+    """The highest rank of Jacobians of constraints (n, nc, nv): that at regular postures."""
+    return int(np.linalg.matrix_rank(jacobians, rtol=_RANK).max(initial=0))
 
 
 def nearest_to_singular(

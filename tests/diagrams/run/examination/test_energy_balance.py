@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from symofros.diagrams.run.examination.energy_balance import _Doubts, _is_numerical
+from symofros.diagrams.run.examination.energy_balance import _Doubts, _is_numerical, energy_note
 
 
 def judged(
@@ -30,7 +30,7 @@ def judged(
         energy = change(first, level)
         return None if energy is None else [np.array([t_end]), np.array([[energy]]), np.zeros((1, 1))]
 
-    energies = SimpleNamespace(of=lambda _, t, q, v: (None, q[:, 0]))
+    energies = SimpleNamespace(of=lambda _, states: (None, states[1][:, 0]))
     run: Any = SimpleNamespace(states=states, h=h, repeat=repeat, energies=energies)
     doubts = _Doubts(gained, np.full(len(gained), unseen), kinetic, evident)
     return _is_numerical(run, "arm", np.arange(len(kinetic)), doubts), made
@@ -78,3 +78,63 @@ def test_small_changes_of_many_intervals_add_up(change: float, numerical: bool, 
     """A hundred intervals that gain a hundredth each: 15 % of the motion's energy is too much."""
     gained = np.full(100, 0.01 * size)
     assert judged(gained, np.full(101, size), lambda *_: change * size)[0] == numerical
+
+
+class Told:
+    """A run of one mechanism whose energy is its coordinate and whose power is its speed; 1 J of it moves.
+
+    Args:
+        t: Times of its records (n) [s].
+        energy: Energies (n) [J].
+        power: Powers (n) [W].
+        sides: First and last record of each action, by number.
+        finer: Records of an interval by finer steps: t, energy.
+    """
+
+    h, steps = 0.01, 1000
+
+    def __init__(self, t: Any, energy: Any, power: Any, sides: Any, finer: Any = None) -> None:
+        column = np.zeros((len(t), 1))
+        self.states = [np.array(t, float), column + np.array(energy)[:, np.newaxis], column + np.array(power)[:, None]]
+        self.states.append(column[:, :0])
+        self.sides = tuple(np.array(side, int) for side in zip(*sides, strict=True))
+        self.layout = SimpleNamespace(driven=False, lock_inputs=[], q={"arm": None})
+        one = SimpleNamespace(layout=self.layout)
+        self.energies = SimpleNamespace(
+            resolved=one, of=lambda _, x: (np.ones(len(x[0])), x[1][:, 0]), powers=lambda _, x, a: x[2][:, 0]
+        )
+        self.finer, self.repeated = finer, list[int]()
+
+    def accelerations(self, rows: Any) -> Any:
+        return np.zeros((len(rows), 1))
+
+    def repeat(self, first: int, t_end: float, level: int) -> Any:
+        self.repeated.append(first)
+        t, energy = self.finer
+        return [
+            np.array(t, float),
+            np.array(energy, float)[:, np.newaxis],
+            np.zeros((len(t), 1)),
+            np.zeros((len(t), 0)),
+        ]
+
+
+def test_energy_that_actions_add_is_not_that_of_steps() -> None:
+    """Five actions of 10 J each, and 0.2 J that come between two records, where finer steps find none."""
+    t = np.repeat(np.arange(7.0), 2)[1:-1]
+    energy = np.cumsum([0.0, *([0.0, 10.0] * 5), 0.2])
+    actions = [(2 * i + 1, 2 * i + 2) for i in range(5)]
+    run: Any = Told(t, energy, 0.0 * t, actions, finer=([5.0, 6.0], [50.0, 50.0]))
+    note = energy_note(run)
+    assert "changes by 0.2 J" in note and set(run.repeated) == {10}
+
+
+def test_an_interval_that_ends_at_an_action_ends_before_it() -> None:
+    """Finer steps meet the action a little sooner: what it adds is not theirs."""
+    run: Any = Told([0, 1, 1, 2], [0.0, 0.5, 9.0, 9.0], [0.0] * 4, [(1, 2)], finer=([0.0, 0.99, 0.99], [0.0, 0.5, 9.0]))
+    assert energy_note(run) == "" and 0 in run.repeated
+
+
+def test_a_power_that_begins_with_an_action_has_no_bend() -> None:
+    run: Any = Told([0, 1, 2, 2, 3, 4], [0.0, 0.0, 0.0, 7.0, 17.0, 27.0], [0.0] * 3 + [10.0] * 3, [(2, 3)])
+    assert energy_note(run) == "" and not run.repeated
