@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +28,7 @@ from symofros.studio.editor.editing.yaml_spans import YamlText
 BlockNeeds = Mapping[str, frozenset[str]]
 
 MAX_KNOWN, MAX_LOOPS = 1000, 20
-# What was found out of blocks: the same block with the same model and the same inputs needs what it needed before.
+# What was found out of blocks: the same block with the same model, file and inputs needs what it needed before.
 _known: dict[str, BlockNeeds | tuple[Problem, ...]] = {}
 
 
@@ -147,7 +148,18 @@ def _identity(diagram: Diagram, wired: Wired, name: str) -> str:
     block = wired.blocks[name]
     fed = [(port.name, port.shape, (name, port.name) in wired.sources) for port in wired.ports[name].inputs]
     model: Any = diagram.models.get(getattr(block, "model", ""))
-    return repr((block, fed, model and (model.system, model.start, model.parameters)))
+    return repr(
+        (block, fed, _version(getattr(block, "file", "")), model and (model.system, model.start, model.parameters))
+    )
+
+
+def _version(file: str) -> tuple[int, int]:
+    """When the file of a block was changed last [ns], and its size; zeros where there is none."""
+    try:
+        known = os.stat(file)
+    except OSError:
+        return 0, 0
+    return known.st_mtime_ns, known.st_size
 
 
 def _names(plain: Any, section: str) -> list[str]:

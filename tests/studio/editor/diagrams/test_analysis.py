@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +24,22 @@ blocks:
   a: {kind: sum, inputs: {u1: b.y, u2: c}}
   b: {kind: gain, inputs: {u: a}}
   c: {kind: constant, value: 1}
+"""
+
+UNIT = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="2.0" modelName="unit" guid="unit">
+  <CoSimulation modelIdentifier="unit" canHandleVariableCommunicationStepSize="true"/>
+  <ModelVariables>
+    <ScalarVariable name="u" valueReference="0" causality="input"><Real start="0"/></ScalarVariable>
+    <ScalarVariable name="y" valueReference="1" causality="output"><Real/></ScalarVariable>
+  </ModelVariables>
+  <ModelStructure><Outputs><Unknown index="2" {}/></Outputs></ModelStructure>
+</fmiModelDescription>
+"""
+FED = """symofros_diagram: 1
+blocks:
+  unit: {kind: fmu, file: unit.fmu, period: 0.1, inputs: {u: back}}
+  back: {kind: gain, gain: 0.5, period: 0.1, inputs: {u: unit.y}}
 """
 
 
@@ -115,3 +133,14 @@ def test_an_open_input_that_a_step_is_taken_of_is_told() -> None:
     text = CHAIN + f"  d: {integrator}\n  e: {{kind: gain, gain: 2, inputs: {{u: d.y}}}}\n"
     (problem,) = drawn(text).problems
     assert "'d.reset' is not connected" in problem["object"]
+
+
+@pytest.mark.skipif(find_spec("fmpy") is None, reason="reads a unit by FMPy")
+def test_a_unit_that_is_exchanged_is_read_anew(tmp_path: Path) -> None:
+    """The first one's output depends on its input at once, which closes a loop; that of the second does not."""
+    loops = []
+    for stated in ("", 'dependencies=""'):
+        with zipfile.ZipFile(tmp_path / "unit.fmu", "w") as archive:
+            archive.writestr("modelDescription.xml", UNIT.format(stated))
+        loops.append(["algebraic loop" in one["object"] for one in analyse(tmp_path / "fed.yaml", FED).problems])
+    assert loops == [[True], []]
