@@ -1,8 +1,11 @@
-"""Parts that run while a signal is above zero, or at its edges (docs/theory/diagrams.md, section 11)."""
+"""Parts that run while a signal is above zero, or at its edges (docs/theory/diagrams.md, section 11).
+
+What of them is continuous: `enabled.py`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -11,14 +14,13 @@ import numpy as np
 from symofros.base.arguments import CheckedCalls
 from symofros.base.arrays import Array, numeric
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
-from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.simulation.inputs import Signal
 
-# Blocks of a conditional part that read its signals, their input and their output.
-ENABLED, TRIGGERED, SIGNAL, ON = "enabled", "triggered", "signal", "on"
+# Blocks of a conditional part that read its signals, their input and their outputs.
+ENABLED, TRIGGERED, SIGNAL, ON, LEVEL = "enabled", "triggered", "signal", "on", "level"
 _EDGES, _KEPT = ("rising", "falling", "either"), ("held", "reset")
 # Memory of a block that runs on a condition: whether it was enabled, whether the trigger was above zero (-1: unknown),
 # outputs; memory of the block itself.
@@ -79,17 +81,17 @@ class AboveZero(Block):
     """Whether a signal is above zero: what a condition reads."""
 
     def ports(self, environment: Environment) -> Ports:
-        """Input signal, a scalar; output on."""
-        return Ports((Port(SIGNAL, ()),), (Port(ON, ()),))
+        """Input signal, a scalar; outputs on, and level, the signal itself."""
+        return Ports((Port(SIGNAL, ()),), (Port(ON, ()), Port(LEVEL, ())))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """1 above zero, else 0."""
-        return {ON: 1.0 - (-context.inputs[SIGNAL]).apply("step")}
+        """1 above zero, else 0; the signal, whose crossings are located."""
+        return {ON: 1.0 - (-context.inputs[SIGNAL]).apply("step"), LEVEL: context.inputs[SIGNAL]}
 
 
 @dataclass(frozen=True, kw_only=True)
-class Conditional(Block):
-    """A sampled block that runs on a condition; at other samples its memory and outputs stay.
+class OnCondition(Block):
+    """A block that runs on a condition.
 
     Attributes:
         block: The block.
@@ -114,8 +116,26 @@ class Conditional(Block):
         for port in ports.inputs:
             if port.name in self.inputs.values():
                 rule, remedy = "a block of a conditional part has no input of its condition's name", "rename the input"
-                raise _refused(self.name, f"input '{port.name}' is taken", port.name, rule, remedy)
+                raise refused(self.name, f"input '{port.name}' is taken", port.name, rule, remedy)
         return Ports((*ports.inputs, *(Port(name, ()) for name in self.inputs.values())), ports.outputs)
+
+    def initial_value(self, port: Port) -> Array:
+        """Value of an output before the block runs."""
+        value = np.asarray(self.initial.get(port.name, self.initial.get("", 0.0)), dtype=np.float64)
+        shape = port.shape or ()
+        if value.shape not in ((), shape):
+            rule = f"a number for all entries, or shape {shape}"
+            raise refused(self.name, f"initial value of '{port.name}'", value.shape, rule, "give it that shape")
+        return np.broadcast_to(value, shape)
+
+    def inside(self, context: EvaluationContext) -> EvaluationContext:
+        """Where the block's own formulas are written: without the condition's signals."""
+        inputs = {key: value for key, value in context.inputs.items() if key not in self.inputs.values()}
+        return replace(context, inputs=inputs)
+
+    def is_outlet(self, output: str) -> bool:
+        """Whether an outlet of the part reads an output."""
+        return output in self.initial or "" in self.initial
 
     def samples(self) -> Mapping[str, Signal]:
         """Those of the block."""
@@ -133,21 +153,17 @@ class Conditional(Block):
         """Those of the block."""
         return self.block.parameters()
 
+
+@dataclass(frozen=True, kw_only=True)
+class Conditional(OnCondition):
+    """A sampled block that runs on a condition; at other samples its memory and outputs stay."""
+
     def memory(self, environment: Environment) -> dict[str, Any]:
         """That of the block, its outputs, and what the condition's signals were."""
         own = {_OWN + key: value for key, value in self.block.memory(environment).items()}
-        held = {_HELD + port.name: self._initial(port) for port in self.block.ports(environment).outputs}
+        held = {_HELD + port.name: self.initial_value(port) for port in self.block.ports(environment).outputs}
         was = {ENABLED: {_WAS_ENABLED: 0.0}, TRIGGERED: {_WAS_ABOVE: -1.0}}
         return {**own, **held, **{key: value for signal in self.inputs for key, value in was[signal].items()}}
-
-    def _initial(self, port: Port) -> Array:
-        """Value of an output before the block runs."""
-        value = np.asarray(self.initial.get(port.name, self.initial.get("", 0.0)), dtype=np.float64)
-        shape = port.shape or ()
-        if value.shape not in ((), shape):
-            rule = f"a number for all entries, or shape {shape}"
-            raise _refused(self.name, f"initial value of '{port.name}'", value.shape, rule, "give it that shape")
-        return np.broadcast_to(value, shape)
 
     def compute(self, context: EvaluationContext) -> Values:
         """Outputs of the block where it runs; else those before, or those that they are reset to."""
@@ -155,9 +171,9 @@ class Conditional(Block):
         outputs = {}
         for name, value in self.block.compute(now.inside).items():
             other = context.memory[_HELD + name]
-            if self.condition.outputs == "reset" and self._is_outlet(name):
+            if self.condition.outputs == "reset" and self.is_outlet(name):
                 port = next(port for port in self.block.ports(context.environment).outputs if port.name == name)
-                other = now.enabled * other + (1.0 - now.enabled) * self._initial(port)
+                other = now.enabled * other + (1.0 - now.enabled) * self.initial_value(port)
             outputs[name] = now.runs * value + (1.0 - now.runs) * other
         return outputs
 
@@ -174,9 +190,6 @@ class Conditional(Block):
             **dict(was[signal] for signal in self.inputs),
         }
 
-    def _is_outlet(self, output: str) -> bool:
-        return output in self.initial or "" in self.initial
-
     def _run(self, context: EvaluationContext) -> _Run:
         """Whether the block runs, and where its formulas are written."""
         memory, inputs, one = context.memory, context.inputs, context.numbers(1.0)
@@ -191,13 +204,12 @@ class Conditional(Block):
             above, was = inputs[self.inputs[TRIGGERED]], memory[_WAS_ABOVE]
             rises, falls = above * (1.0 - was * was), (1.0 - above) * (0.5 * was * (was + 1.0))
             runs = runs * {"rising": rises, "falling": falls, "either": rises + falls}[self.condition.edge]
-        own_inputs = {key: value for key, value in inputs.items() if key not in self.inputs.values()}
-        return _Run(runs, enabled, above, replace(context, inputs=own_inputs, memory=own))
+        return _Run(runs, enabled, above, replace(self.inside(context), memory=own))
 
 
 def unconditional(block: Block) -> Block:
     """The block itself, of one that runs on conditions."""
-    return unconditional(block.block) if isinstance(block, Conditional) else block
+    return unconditional(block.block) if isinstance(block, OnCondition) else block
 
 
 def _numbers(value: Any) -> Array:
@@ -221,74 +233,6 @@ class _Run:
     inside: EvaluationContext
 
 
-def _refused(block: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
+def refused(block: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
+    """A refusal, said of a block."""
     return DescriptionError(Problem(f"block '{block}': {what}", f"{found}", rule, remedy))
-
-
-def on_condition(
-    blocks: Mapping[str, Block], condition: Condition, outlets: Mapping[str, str]
-) -> Iterator[tuple[str, Block]]:
-    """Blocks of a part as they run on a condition, by their names in the part.
-
-    Args:
-        blocks: Name in the part -> block.
-        condition: The condition.
-        outlets: Outlet -> source, in the part.
-
-    Raises:
-        DescriptionError: A block can't run on a condition, or an initial value is that of no outlet.
-    """
-    initial: dict[str, dict[str, Any]] = {}
-    for outlet, source in outlets.items():
-        name, _, port = source.rpartition(".") if "." in source else (source, "", "")
-        initial.setdefault(name, {})[port] = condition.initial.get(outlet, 0.0)
-    problems = list(_unmet(blocks, condition, outlets))
-    for name, block in blocks.items():
-        problems += _unfit(block, name in initial)
-    if problems:
-        raise DescriptionError(problems)
-    for name, block in blocks.items():
-        if block.period is None:
-            yield name, block
-            continue
-        sampling: dict[str, Any] = {"period": block.period, "offset": block.offset}
-        level = block.level + 1 if isinstance(block, Conditional) else 0
-        known: dict[str, Any] = {"condition": condition, "initial": initial.get(name, {}), "level": level}
-        yield name, Conditional(name=block.name, block=block, **sampling, **known)
-    for name in condition.signals():
-        yield name, AboveZero(name=name)
-
-
-def _unmet(blocks: Mapping[str, Block], condition: Condition, outlets: Mapping[str, str]) -> Iterator[Problem]:
-    """Why blocks can't have a condition together."""
-    for outlet in condition.initial.keys() - outlets.keys():
-        what, known = f"condition: initial value of '{outlet}'", ", ".join(outlets) or "none"
-        yield Problem(what, "no such outlet", f"outlets: {known}", did_you_mean(outlet, outlets))
-    for name in condition.signals():
-        if name in blocks:
-            rule, remedy = "the signals of a condition are read by blocks of these names", "rename the block"
-            yield Problem(f"condition: block '{name}' is taken", name, rule, remedy)
-    rates = {(block.period, block.offset) for block in blocks.values() if block.period is not None}
-    if condition.triggered and len(rates) > 1:
-        rule = "all samples of a triggered part look for the edge at the same times"
-        found = ", ".join(f"{period} s from {offset} s" for period, offset in sorted(rates)[:4])
-        yield Problem("condition: a triggered part of several rates", found, rule, "give all one period")
-
-
-def _unfit(block: Block, is_read: bool) -> Iterator[Problem]:
-    """Why a block can't run on a condition."""
-    what, kind = f"block '{block.name}' in a conditional part", type(block)
-    if isinstance(block, ExternalBlock):
-        rule = "Python is called at each sample of its block"
-        yield Problem(f"{what} calls Python", kind.__name__, rule, "leave it outside, and feed the part by it")
-    elif block.period is None:
-        moves = [kind.states, kind.memory, kind.crossings, kind.mechanism] != [
-            Block.states,
-            Block.memory,
-            Block.crossings,
-            Block.mechanism,
-        ]
-        rule = "what a condition holds is sampled: states, and what outlets read"
-        if moves or is_read:
-            found = "states of its own" if moves else "an outlet reads it"
-            yield Problem(f"{what} is continuous", found, rule, "give it a period")

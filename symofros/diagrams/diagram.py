@@ -10,7 +10,8 @@ from typing import Any
 from symofros.base.arguments import CheckedCalls, checked
 from symofros.description import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup, Port
-from symofros.diagrams.conditional import SIGNAL, Condition, Conditional, on_condition
+from symofros.diagrams.conditional import LEVEL, ON, SIGNAL, Condition, OnCondition
+from symofros.diagrams.enabled import Enabled, on_condition
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
 from symofros.errors import DescriptionError, Problem, did_you_mean
@@ -173,7 +174,7 @@ class Diagram(metaclass=CheckedCalls):
             name: Name of the part.
             part: A diagram with inlets and outlets.
             models: The part's name of a model -> this diagram's; models that are left out come along as "name/model".
-            condition: When its sampled blocks run; None: at all their samples.
+            condition: When its blocks run; None: always.
             inputs: Inlet -> source.
 
         Raises:
@@ -222,8 +223,9 @@ class Diagram(metaclass=CheckedCalls):
         """Feed what tells the signals of a part's condition, and by it the part's blocks."""
         for signal, by in condition.signals().items():
             for block in blocks.values():
-                if isinstance(block, Conditional):
-                    self.wires[f"{part}{INSIDE}{block.name}", block.inputs[signal]] = f"{part}{INSIDE}{signal}"
+                if isinstance(block, OnCondition):
+                    told = LEVEL if isinstance(block, Enabled) else ON
+                    self.wires[f"{part}{INSIDE}{block.name}", block.inputs[signal]] = f"{part}{INSIDE}{signal}.{told}"
             if isinstance(by, str):
                 self.connect(by, f"{part}{INSIDE}{signal}.{SIGNAL}")
 
@@ -282,7 +284,7 @@ class Diagram(metaclass=CheckedCalls):
 
 def _renamed(block: Block, part: str, models: Mapping[str, str]) -> Block:
     changes: dict[str, Any] = {"name": f"{part}{INSIDE}{block.name}"}
-    if isinstance(block, Conditional):
+    if isinstance(block, OnCondition):
         changes["block"] = _renamed(block.block, part, models)
     model = getattr(block, "model", None)
     if isinstance(model, str) and model in models:

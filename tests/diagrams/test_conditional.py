@@ -182,18 +182,25 @@ def test_what_a_file_says_wrong_is_told_with_its_line(stated: str, words: list[s
         assert word in str(caught.value), str(caught.value)
 
 
-def _with(block: Any, outlet: str = "", **wires: str) -> sf.Diagram:
+def _with(block: Any, outlet: str = "", inner: bool = False, **wires: str) -> sf.Diagram:
     part = summing()
     part.add(block, **wires)
     part.outlets |= {"more": outlet} if outlet else {}
-    return part
+    if not inner:
+        return part
+    around = sf.Diagram("around")
+    around.include("inner", part, None, sf.Condition(enabled="inner.x"))
+    around.add_inlet("u", "inner.u")
+    return around
 
 
 @pytest.mark.parametrize(
     ("part", "condition", "words"),
     [
-        (_with(Lag(name="lag"), x="sum"), {}, ["'lag'", "is continuous", "give it a period"]),
-        (_with(blocks.Gain(name="g", gain=1.0), "g", u="sum"), {}, ["'g'", "an outlet reads it"]),
+        (_with(Lag(name="lag"), x="sum"), {"triggered": "trigger"}, ["'lag'", "is continuous", "enable the part"]),
+        (_with(blocks.Gain(name="g"), "g", u="sum"), {"triggered": "trigger"}, ["'g'", "an outlet reads it"]),
+        (_with(blocks.Relay(name="r"), "r", u="sum"), {}, ["'part/r'", "it keeps memory", "is_on", "give it a period"]),
+        (_with(Lag(name="lag", tau=1.0), x="sum", inner=True), {}, ["a condition within another", "one signal"]),
         (_with(Spoken(name="talk", heard=[], period=STEP), x="sum"), {}, ["'talk'", "calls Python"]),
         (_with(Counter(name="enabled", period=STEP)), {}, ["'enabled' is taken", "rename the block"]),
         (_with(Counter(name="n", period=0.03)), {"triggered": "trigger"}, ["several rates", "0.03 s from"]),

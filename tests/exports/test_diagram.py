@@ -115,7 +115,7 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
 
 
 def switching() -> tuple[sf.Diagram, list[str]]:
-    """A relay that begins on, and a machine that reads it; nothing moves. And outputs that tell what they do."""
+    """A relay that begins on, a machine that reads it, integrals that are enabled; and outputs that tell of them."""
     diagram = sf.Diagram("switching")
     diagram.add(blocks.Sine(name="u", frequency=1.0, phase=2.0))
     diagram.add(blocks.Relay(name="relay", lower=-0.5, upper=0.5), u="u.y")
@@ -128,7 +128,14 @@ def switching() -> tuple[sf.Diagram, list[str]]:
     diagram.add(
         blocks.StateMachine(name="m", machine_states=states, transitions=ways, outputs=outputs), u="u.y", on="relay.y"
     )
-    return diagram, ["relay.y", "m.state", "m.y", "m.n"]
+    part = sf.Diagram("part")
+    part.add(blocks.Integrator(name="sum", start=0.25))
+    part.add_inlet("u", "sum.u")
+    part.outlets = {"x": "sum.y"}
+    resets = sf.Condition(enabled="u.y", outputs="reset", states="reset", initial={"x": -1.0})
+    diagram.include("wave", part, None, resets, u="u.y")
+    diagram.include("relayed", part, None, sf.Condition(enabled="relay.y"), u="u.y")
+    return diagram, ["relay.y", "m.state", "m.y", "m.n", "wave/sum.y", "relayed/sum.y"]
 
 
 def test_programs_switch_where_python_does(tmp_path: Path) -> None:
