@@ -26,7 +26,6 @@ from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import check_layer, initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
-from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
@@ -36,9 +35,12 @@ from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
+from symofros.studio.viewer.replays.reduced import reducing, tolerance_of
+from symofros.studio.viewer.replays.replay import lighter, replay_page
 
 MAX_FRAMES = 20_000  # Eleven minutes at thirty a second.
 _INK = (60, 60, 60)
+_POSE_STEP = 2.0**-17  # Of the mechanism's size: the step of positions in pages.
 _SUFFIXES = (".html", ".mp4", ".gif", ".png")
 
 
@@ -234,7 +236,7 @@ def _asked(
 
 
 def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Mapping[str, Any]) -> Mapping[str, Any]:
-    from symofros.studio.viewer.page.onward import onward  # With exports, which other recordings need not import.
+    from symofros.studio.viewer.replays.onward import onward  # With exports, which other recordings need not import.
 
     return onward(system, run, frames.t, frames.q, {} if isinstance(simulate, bool) else simulate)
 
@@ -242,17 +244,21 @@ def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Ma
 def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any] | None) -> bytes:
     model, units = mechanism.model, coordinate_units(mechanism.tree)
     pace = "" if frames.speed == 1.0 else f", at {frames.speed:g} × its speed"
+    tolerance = tolerance_of(frames.drawing)
+    reduced = reducing(frames.layers, tolerance)
     server = start_server(LOOPBACK, 0, secrets.token_urlsafe(16))
     try:
-        scene = ViserScene(server, frames.drawing, frames.postures[0], frames.layers)
+        shown = frames.drawing
+        scene = ViserScene(server, reduced(shown), frames.postures[0], frames.layers)
         serializer = server.get_scene_serializer()
         for drawing, posture, arrows in frames:
-            if drawing is not scene.drawing:
-                scene = ViserScene(server, drawing, posture, frames.layers)
+            if drawing is not shown:
+                shown = drawing
+                scene = ViserScene(server, reduced(shown), posture, frames.layers)
             scene.move(posture, arrows)
             serializer.insert_sleep(frames.period)
         return replay_page(
-            serializer.as_html(),
+            lighter(serializer.as_html(), frames.drawing.size * _POSE_STEP),
             f"{mechanism.system.name} - SYMOFROS",
             frames.camera,
             frames.t,
@@ -262,6 +268,7 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
             model.names.q,
             [units.get(name, "") for name in model.names.q],
             simulated,
+            tolerance if any(part.kind == "visuals" for part in frames.drawing.parts) else 0.0,
         ).encode()
     finally:
         stop_server(server)

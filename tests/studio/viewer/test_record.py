@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import importlib.util
 import re
 import sys
@@ -16,10 +15,11 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.errors import SymofrosError
 from symofros.studio.viewer.drawing.poses import Mechanism
-from symofros.studio.viewer.page.replay import replay_page
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import scale_bar
+from symofros.studio.viewer.replays.replay import replay_page
 from tests.late import require
+from tests.studio.viewer.replays.unpacking import messages_of
 
 SYSTEM = MODELS["planar_robot"]
 NQ = 10
@@ -56,15 +56,10 @@ def test_a_film_is_as_long_as_the_motion(tmp_path: Path) -> None:
 def test_a_page_holds_all_states_and_asks_for_nothing_else(tmp_path: Path) -> None:
     file = sf.record(SYSTEM, swing(0.5), tmp_path / "m.html", rate=10)
     page = file.read_text()
-    (data,) = re.findall(r'__VISER_EMBED_DATA__="([^"]+)"', page)
-    scene = base64.b64decode(data)
-    whole = import_module("zstandard").ZstdDecompressor().decompress(scene[8:], max_output_size=1 << 26)
-    size = int.from_bytes(whole[:8], "little")
-    found = import_module("msgspec").msgpack.decode(whole[8 : 8 + size])
-    assert found["durationSeconds"] == pytest.approx(0.6)
-    kinds = [message["type"] for _, message in found["messages"]]
+    messages = messages_of(page)
+    kinds = [message["type"] for _, message in messages]
     assert kinds.count("SkinnedMeshMessage") == 2  # Its beams.
-    times = {round(time, 6) for time, message in found["messages"] if message["type"] == "SetPositionMessage"}
+    times = {time for time, message in messages if message["type"] == "SetPositionMessage"}
     assert times == {0.0, 0.1, 0.2, 0.3, 0.4, 0.5}
     assert not re.findall(r'<(?:script|link)[^>]+(?:src|href)="https?:', page)
 

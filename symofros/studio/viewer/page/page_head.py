@@ -24,6 +24,6 @@ def page_head(title: str, panel: bool = True) -> str:
 
 
 @cache
-def fragment(name: str) -> str:
-    """A file of this package, as text."""
-    return (files("symofros.studio.viewer.page") / name).read_text(encoding="utf-8")
+def fragment(name: str, folder: str = "page") -> str:
+    """A file of the viewer's package `page`, or of another folder of the viewer, as text."""
+    return (files(f"symofros.studio.viewer.{folder}") / name).read_text(encoding="utf-8")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import re
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,6 +18,7 @@ from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
 from symofros.studio.viewer.playing.motion import read_motion
 from symofros.studio.viewer.viewer import Viewer
+from tests.studio.viewer.replays.unpacking import messages_of
 
 
 def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
@@ -154,8 +153,5 @@ def test_a_replay_uses_the_parameters_that_events_set(way: str, tmp_path: Path) 
 def test_a_page_has_the_geometry_of_each_time(tmp_path: Path) -> None:
     """Drawn anew at the picture from which on the arm is longer."""
     page = sf.record(lengthened_by("diagram"), tmp_path / "m.html", rate=100).read_text()
-    (data,) = re.findall(r'__VISER_EMBED_DATA__="([^"]+)"', page)
-    whole = import_module("zstandard").ZstdDecompressor().decompress(base64.b64decode(data)[8:], 1 << 26)
-    found = import_module("msgspec").msgpack.decode(whole[8 : 8 + int.from_bytes(whole[:8], "little")])
-    drawn = {round(time, 6) for time, message in found["messages"] if message["type"] == "MeshMessage"}
+    drawn = {time for time, message in messages_of(page) if message["type"] == "MeshMessage"}
     assert drawn == {0.0, 0.05}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -13,9 +14,12 @@ from symofros.base.arrays import Array
 from symofros.studio.viewer.page.page_head import VISER_TITLE, fragment, page_head
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import LONGEST, UNITS
+from symofros.studio.viewer.replays.packing import packed
 
 # Of viser's environment, which alone is too weak before a dark ground.
 _DARK_INTENSITY = 3.0
+_RECORDING = re.compile(r'window\.__VISER_EMBED_DATA__="([^"]*)";')
+_PROGRAM, _HELD = "<script data-p=", '<script type="text/plain" id="held" data-p='
 _LIGHT = "darkMode:false"
 _ASKED = 'darkMode:matchMedia("(prefers-color-scheme: dark)").matches'
 
@@ -31,6 +35,7 @@ def replay_page(
     names: Sequence[str],
     units: Sequence[str],
     onward: Mapping[str, Any] | None = None,
+    tolerance: float = 0.0,
 ) -> str:
     """A recording's page with a title and the controls of a replay.
 
@@ -45,6 +50,7 @@ def replay_page(
         names: Their names (nq).
         units: Their units (nq); "" where there is none.
         onward: What simulates on (`onward.onward`), where the page is to do that.
+        tolerance: How far shapes are from those of their files, which the page tells [m]; 0: not at all.
     """
     forward = camera.axes[2]
     given: dict[str, Any] = {
@@ -62,8 +68,25 @@ def replay_page(
         "units": UNITS,
         "dark_intensity": _DARK_INTENSITY,
         "onward": onward,
+        "tolerance": tolerance,
     }
     # No "<" of a name may end the script.
     data = json.dumps(given).replace("<", "\\u003c")
-    head = page_head(title) + fragment("replay.html").replace("/*given*/", data)
+    head = page_head(title) + fragment("replay.html", "replays").replace("/*given*/", data)
     return page.replace(VISER_TITLE, head, 1).replace(_LIGHT, _ASKED, 1)
+
+
+def lighter(page: str, step: float) -> str:
+    """A page of viser with the recording in it packed; viser's program waits for it to be unpacked.
+
+    Args:
+        page: Page of viser, with the recording in it as it writes it.
+        step: Step of positions [m].
+    """
+    recording = _RECORDING.search(page)
+    if recording is None or _PROGRAM not in page:
+        return page
+    data = base64.b64encode(packed(base64.b64decode(recording[1]), step)).decode()
+    script = fragment("unpack.js", "replays").replace("/*packed*/", data)
+    page = page.replace(recording[0], "", 1).replace(_PROGRAM, _HELD, 1)
+    return page.replace("</head>", f"<script>{script}</script></head>", 1)
