@@ -26,10 +26,12 @@ from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import check_layer, initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
+from symofros.studio.viewer.page.ghost_scene import GhostScene, legend_of
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
-from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
+from symofros.studio.viewer.playing.diagram_motion import played, shown_system_and_states
+from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.render.camera import Camera
@@ -56,6 +58,7 @@ class _Recording:
         exaggeration: float,
         show: frozenset[str] = frozenset(),
         run: Trajectory | None = None,
+        ghosts: Mapping[str, Played] | None = None,
     ) -> None:
         self.period = period
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
@@ -81,6 +84,10 @@ class _Recording:
         acting = run is not None and not self.layers.isdisjoint(ARROWS)
         self._forces = RunForces(run, mechanism.tree, self.drawing) if run is not None and acting else None
         self.count, self.exaggeration, self.speed = count, exaggeration, speed
+        self.ghosts = ghosts_of(mechanism, ghosts or {}, self.drawing)
+        self._ghost_postures = [
+            (ghost.is_shown(self.t), ghost.posture(mechanism, self.t, exaggeration)) for ghost in self.ghosts
+        ]
 
     def __iter__(self) -> Iterator[tuple[Drawing, Posture, Arrows]]:
         drawing = self.drawing
@@ -89,6 +96,10 @@ class _Recording:
             posture, forces = self.postures[i], self._forces
             arrows = {} if forces is None else forces.arrows(float(self.t[i]), posture, self.layers)
             yield drawing, posture, arrows
+
+    def ghost_postures(self, index: int) -> list[Posture | None]:
+        """Postures of the ghosts in a picture; None of those that have no state then."""
+        return [postures[index] if is_shown[index] else None for is_shown, postures in self._ghost_postures]
 
     def pictures(self, size: tuple[int, int]) -> Iterator[Image]:
         return (picture(drawing, posture, self.layers, self.camera, *size, arrows) for drawing, posture, arrows in self)
@@ -122,6 +133,7 @@ def record(
     size: tuple[int, int] = (960, 720),
     caption: bool = False,
     show: Collection[str] = (),
+    ghosts: Mapping[str, Played | DiagramRun] | None = None,
     simulate: bool | Mapping[str, Any] = False,
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
@@ -142,6 +154,8 @@ def record(
         caption: Whether time, exaggeration and a scale bar are on films and pictures (Pillow, of the extra `view`).
         show: Layers that are shown beside those that a `Viewer` begins with (`Viewer.set_layer`): "forces", "moments",
             "frames" (in pages), "inertias" and others.
+        ghosts: Other runs of the mechanism by names for the legend, transparent beside the motion, at the same times;
+            in pages (.html).
         simulate: Whether the page simulates, too, on from any instant of the replay, with states, inputs and parameters
             that its reader may change (needs a trajectory, and the extra `zig`); or how: `method`, `dt`, `rtol`,
             `atol`, `beam_limit` as of `sf.export`. By default the method of the run and steps of a millisecond; inputs
@@ -172,13 +186,18 @@ def record(
         raise SymofrosError(
             Problem("record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out")
         )
+    if ghosts and file.suffix != ".html":
+        raise SymofrosError(
+            Problem("record: only pages show ghosts", f"'{file.name}'", "ghosts are for .html", "leave ghosts out")
+        )
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
         motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par[-1:])
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
     whole = run if isinstance(run, Trajectory) else None
-    frames = _Recording(mechanism, motion, period, speed, exaggeration, _layers(show, whole), whole)
+    others = played(ghosts, block)
+    frames = _Recording(mechanism, motion, period, speed, exaggeration, _layers(show, whole), whole, others)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
         ".html": lambda: _page(frames, mechanism, _onward(system, run, frames, simulate) if asked else None),
@@ -250,12 +269,14 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
     try:
         shown = frames.drawing
         scene = ViserScene(server, reduced(shown), frames.postures[0], frames.layers)
+        beside = GhostScene(server, [(ghost.color, reduced(ghost.drawing)) for ghost in frames.ghosts], frames.layers)
         serializer = server.get_scene_serializer()
-        for drawing, posture, arrows in frames:
+        for i, (drawing, posture, arrows) in enumerate(frames):
             if drawing is not shown:
                 shown = drawing
                 scene = ViserScene(server, reduced(shown), posture, frames.layers)
             scene.move(posture, arrows)
+            beside.move(frames.ghost_postures(i))
             serializer.insert_sleep(frames.period)
         return replay_page(
             lighter(serializer.as_html(), frames.drawing.size * _POSE_STEP),
@@ -268,6 +289,7 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
             model.names.q,
             [units.get(name, "") for name in model.names.q],
             simulated,
+            legend_of(frames.ghosts) if frames.ghosts else "",
             tolerance if any(part.kind == "visuals" for part in frames.drawing.parts) else 0.0,
         ).encode()
     finally:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import os
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
+from symofros.errors import Problem, SymofrosError
 from symofros.loading import load
 from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT
-from symofros.studio.viewer.playing.diagram_motion import shown_system_and_states
+from symofros.studio.viewer.playing.diagram_motion import played, shown_system_and_states
 from symofros.studio.viewer.playing.motion import Played
 from symofros.studio.viewer.viewer import Viewer
 
@@ -29,6 +30,7 @@ def view(
     par: ArrayLike | None = None,
     exaggeration: float = 1.0,
     speed: float = 1.0,
+    ghosts: Mapping[str, Played | DiagramRun] | None = None,
     paths: Sequence[Sequence[Any]] = (),
     host: str = LOOPBACK,
     port: int = PORT,
@@ -48,6 +50,7 @@ def view(
         par: Run-time parameters (npar).
         exaggeration: Factor of the elastic coordinates in the picture.
         speed: Seconds of the motion a second.
+        ghosts: Other runs of the mechanism by names for the legend, transparent beside the motion, at the same times.
         paths: Curves drawn beside it, as of `Viewer`.
         host: Address that it is served at.
         port: Port of the page; 0 for any free one.
@@ -60,16 +63,19 @@ def view(
         DescriptionError: The system can't be read, or can't be a mechanism.
         ShapeError: An array does not fit the model, or a path can't be drawn.
         UnknownNameError: The diagram's run has no such mechanism, or several.
-        SymofrosError: viser is not installed, or the address can't be served at.
+        SymofrosError: viser is not installed, the address can't be served at, or ghosts can't be shown.
     """
     if isinstance(system, DiagramRun):
         stated, run = shown_system_and_states(system, block)
     else:
         stated = system if isinstance(system, System) else load(system)
+    if ghosts and run is None:
+        rule = "ghosts are beside a motion, at the same times"
+        raise SymofrosError(Problem("view: ghosts of no motion", "no run", rule, "give the run that plays"))
     viewer = Viewer(stated, host=host, port=port, exaggeration=exaggeration, paths=paths)
     try:
         if run is not None:
-            viewer.play(run, speed=speed)
+            viewer.play(run, speed=speed, ghosts=played(ghosts, block))
         elif q is not None or u is not None or par is not None:
             viewer.show(q, u=u, par=par)
     except Exception:

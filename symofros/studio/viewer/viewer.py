@@ -5,7 +5,7 @@ from __future__ import annotations
 import secrets
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, NamedTuple, Self
@@ -18,6 +18,7 @@ from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.camera_watch import CameraWatch
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
+from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.playing.player import Player
 
@@ -143,6 +144,7 @@ class Viewer(ViewerPage):
         with self._painting:
             self._discard()
             self._player = self._forces = None
+            self._show_ghosts(())
             self._scene_state.change(mechanism)
             self._keep_handle()
             self._panel = self._new_panel()
@@ -185,24 +187,30 @@ class Viewer(ViewerPage):
             self._wanted = wanted
             self._wake.notify()
 
-    def play(self, run: Played, *, speed: float = 1.0, loop: bool = True) -> None:
+    def play(
+        self, run: Played, *, speed: float = 1.0, loop: bool = True, ghosts: Mapping[str, Played] | None = None
+    ) -> None:
         """Show a motion from its beginning, with controls to pause, to go to a time, and to change the speed.
 
         Args:
             run: A trajectory of this system, or times (n) and coordinates (n, nq).
             speed: Seconds of the motion a second: 0.1 is ten times slower than it happens.
             loop: Whether it begins again at its end.
+            ghosts: Other runs by names for the legend, transparent beside it, at the same times; each is shown from its
+                first time to its last.
 
         Raises:
-            ShapeError: The motion does not fit the model.
-            SymofrosError: The speed is not a number above 0.
+            ShapeError: The motion, or a ghost, does not fit the model.
+            SymofrosError: The speed is not a number above 0, or ghosts are too many or change their shapes.
         """
         motion = motion_of(self.mechanism.model, run)
+        shown = ghosts_of(self.mechanism, ghosts or {}, self.mechanism.drawing(motion.par[0]))
         player = Player(motion, speed, loop, run if isinstance(run, Trajectory) else None)
         player.start()
         with self._painting:
             self._discard()
             self._player, self._forces = player, None
+            self._show_ghosts(shown)
             self._panel = self._new_panel()
             self._judge_bending()
             self._paint_motion()

@@ -13,6 +13,8 @@ from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
 from symofros.studio.viewer.page.force_plot import ForcePlot
+from symofros.studio.viewer.page.ghost_scene import legend_of
+from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.sliders import Slider
 from symofros.studio.viewer.render.scale_bar import scale_bar
@@ -76,6 +78,7 @@ class Panel:
         player: Player of the motion, if there is one.
         controls_shown: Whether there are any; the panel is empty and minimized otherwise.
         dark: Whether colours are dark.
+        ghosts: Other runs that are shown.
     """
 
     def __init__(
@@ -89,6 +92,7 @@ class Panel:
         player: Player | None,
         controls_shown: bool = True,
         dark: bool = False,
+        ghosts: Sequence[Ghost] = (),
     ) -> None:
         self._gui = gui = server.gui
         self._controls = controls
@@ -110,7 +114,7 @@ class Panel:
             return
         gui.main_panel.dock_right()  # Beside the picture, not over it.
         if player is not None:
-            self._add_player(player)
+            self._add_player(player, ghosts)
         self._add_layers(layers, exaggeration, player is not None and player.run is not None)
         self._boxes[_DARK] = gui.add_checkbox(_DARK, dark)
         self._on(self._boxes[_DARK], controls.set_dark)
@@ -137,7 +141,7 @@ class Panel:
         handle.on_update(lambda event: act(event.target.value) if event.client is not None else None)
         return handle
 
-    def _add_player(self, player: Player) -> None:
+    def _add_player(self, player: Player, ghosts: Sequence[Ghost]) -> None:
         gui, motion = self._gui, player.motion
         with gui.add_folder("Motion"):
             self._play = gui.add_button("Pause" if player.playing else "Play")
@@ -148,6 +152,8 @@ class Panel:
             speeds = sorted({*_SPEEDS, f"{player.speed:g}"}, key=float)
             chosen = gui.add_dropdown("speed", speeds, initial_value=f"{player.speed:g}")
             self._on(chosen, lambda text: self._controls.set_speed(float(text)))
+            if ghosts:
+                gui.add_html(legend_of(ghosts))
         if player.run is not None and player.run.model.names.sections:
             self.force_plot = ForcePlot(gui, player.run)
 

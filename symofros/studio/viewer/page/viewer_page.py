@@ -7,14 +7,18 @@ import time
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
+import numpy as np
+
 from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
 from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.frame_handle import FrameHandle
+from symofros.studio.viewer.page.ghost_scene import GhostScene
 from symofros.studio.viewer.page.panel import Panel
 from symofros.studio.viewer.page.scene_state import Acting, SceneState
+from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.run_forces import RunForces
@@ -57,6 +61,8 @@ class ViewerPage:
         self._scene_state = SceneState(server, mechanism, exaggeration, on_pick)
         self._height: float | None = None
         self._forces: RunForces | None = None  # Of the run that plays, once they are shown.
+        self._ghosts: tuple[Ghost, ...] = ()
+        self._ghost_scene: GhostScene | None = None
         self._handle: FrameHandle | None = None
         self._on_drag: Callable[[], None] | None = None
         self.bendings: tuple[BeamBending, ...] = ()
@@ -125,6 +131,8 @@ class ViewerPage:
         """
         with self._painting:
             self._scene_state.scene.show(layer, visible)
+            if self._ghost_scene is not None:
+                self._ghost_scene.show(layer, visible)
             if layer in ARROWS:
                 self._scene_state.repaint(self._acting())
                 self._show_legend()
@@ -182,6 +190,7 @@ class ViewerPage:
         with self._painting:
             self._scene_state.exaggeration = finite("exaggeration", factor)
             self._paint(self._scene_state.state)
+            self._move_ghosts()
             self._panel.show(self._scene_state.scene.layers, self._scene_state.exaggeration)
 
     def set_dark(self, dark: bool) -> None:
@@ -257,8 +266,26 @@ class ViewerPage:
         if self._player is not None:
             motion = self._player.motion
             self._paint(State(*motion.at(self._player.time)), self._acting())
+            self._move_ghosts()
             if time.monotonic() - self._followed > _FOLLOWED or not self._player.playing:
                 self._follow()
+
+    def _show_ghosts(self, ghosts: tuple[Ghost, ...]) -> None:
+        """Show these ghosts in place of those before."""
+        if self._ghost_scene is not None:
+            self._ghost_scene.remove()
+        drawn = [(ghost.color, ghost.drawing) for ghost in ghosts]
+        self._ghosts, self._ghost_scene = ghosts, GhostScene(self._server, drawn, self.layers) if ghosts else None
+
+    def _move_ghosts(self) -> None:
+        if self._ghost_scene is not None and self._player is not None:
+            t = np.array([self._player.time])
+            self._ghost_scene.move(
+                [
+                    ghost.posture(self.mechanism, t, self.exaggeration)[0] if ghost.is_shown(t)[0] else None
+                    for ghost in self._ghosts
+                ]
+            )
 
     def _stand(self, state: State) -> None:
         self._pause()
@@ -322,6 +349,7 @@ class ViewerPage:
             self._player,
             self._controls,
             self._dark,
+            self._ghosts,
         )
         panel.follow(scene_state.values, self._player)
         panel.legend([] if self._forces is None else self._forces.legend(scene_state.scene.layers))

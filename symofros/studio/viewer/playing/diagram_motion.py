@@ -8,7 +8,7 @@ from symofros.description import System
 from symofros.diagrams.block import Block
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, UnknownNameError, did_you_mean
-from symofros.studio.viewer.playing.motion import States
+from symofros.studio.viewer.playing.motion import Played, States
 
 
 def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str:
@@ -52,3 +52,15 @@ def shown_system_and_states(run: DiagramRun, block: str = "") -> tuple[System, S
     u = None if source is None else run[".".join(source)]
     par = layout.parameters_of(block, model, layout.present(run.par, run.u))
     return wired.models.system(model), States(run.t, run.motion(block)[0], u, par)
+
+
+def played(runs: Mapping[str, Played | DiagramRun] | None, block: str = "") -> dict[str, Played]:
+    """Runs by name, those of diagrams as states of the mechanism that a block moves.
+
+    Raises:
+        UnknownNameError: As `chosen_block`.
+    """
+    return {
+        name: shown_system_and_states(run, block)[1] if isinstance(run, DiagramRun) else run
+        for name, run in (runs or {}).items()
+    }

@@ -35,6 +35,7 @@ def replay_page(
     names: Sequence[str],
     units: Sequence[str],
     onward: Mapping[str, Any] | None = None,
+    legend: str = "",
     tolerance: float = 0.0,
 ) -> str:
     """A recording's page with a title and the controls of a replay.
@@ -50,6 +51,7 @@ def replay_page(
         names: Their names (nq).
         units: Their units (nq); "" where there is none.
         onward: What simulates on (`onward.onward`), where the page is to do that.
+        legend: What tells ghosts apart, as HTML.
         tolerance: How far shapes are from those of their files, which the page tells [m]; 0: not at all.
     """
     forward = camera.axes[2]
@@ -68,6 +70,7 @@ def replay_page(
         "units": UNITS,
         "dark_intensity": _DARK_INTENSITY,
         "onward": onward,
+        "legend": legend,
         "tolerance": tolerance,
     }
     # No "<" of a name may end the script.

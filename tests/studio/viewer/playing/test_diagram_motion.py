@@ -155,3 +155,24 @@ def test_a_page_has_the_geometry_of_each_time(tmp_path: Path) -> None:
     page = sf.record(lengthened_by("diagram"), tmp_path / "m.html", rate=100).read_text()
     drawn = {time for time, message in messages_of(page) if message["type"] == "MeshMessage"}
     assert drawn == {0.0, 0.05}
+
+
+def test_ghosts_of_diagrams_look_as_their_own_parameters_say() -> None:
+    def hanging(length: float) -> DiagramRun:
+        d = sf.Diagram("arm")
+        d.add_model("arm", MODELS["double_pendulum"], {"q1": 0.5})
+        d.add(blocks.ForwardDynamics(name="plant", model="arm"))
+        return sf.Simulation(d).run(0.02, dt=1e-2, parameters={"arm.L1": length})
+
+    with sf.view(hanging(0.9), port=0, browser=False, ghosts={"shorter": hanging(0.4)}) as viewer:
+        viewer.seek(0.01)
+        elbows = [
+            viewer._server.scene.get_handle_by_name(f"/{name}/link1").position for name in ("mechanism", "ghosts/0")
+        ]
+        np.testing.assert_allclose(np.linalg.norm(elbows, axis=1), [0.9, 0.4])
+
+
+def test_a_ghost_whose_shape_changes_is_refused(tmp_path: Path) -> None:
+    shown = lengthened_by("diagram")
+    with pytest.raises(SymofrosError, match=r"ghost 'it' changes its shape\n  found:  parameters that events set"):
+        sf.record(shown, tmp_path / "m.html", ghosts={"it": shown})
