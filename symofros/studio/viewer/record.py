@@ -20,6 +20,7 @@ from symofros.base.atomic import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.arrows import ARROWS, Arrows
 from symofros.studio.viewer.drawing.drawing import Drawing
@@ -34,6 +35,7 @@ from symofros.studio.viewer.playing.diagram_motion import played, shown_system_a
 from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.playing.run_forces import RunForces
+from symofros.studio.viewer.playing.signals import Signal, signals_of
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.raster import Image, picture
 from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
@@ -134,6 +136,7 @@ def record(
     caption: bool = False,
     show: Collection[str] = (),
     ghosts: Mapping[str, Played | DiagramRun] | None = None,
+    signals: Mapping[str, ArrayLike] | None = None,
     simulate: bool | Mapping[str, Any] = False,
 ) -> Path:
     """Write a motion as a file that others can look at without SYMOFROS.
@@ -156,6 +159,8 @@ def record(
             "frames" (in pages), "inertias" and others.
         ghosts: Other runs of the mechanism by names for the legend, transparent beside the motion, at the same times;
             in pages (.html).
+        signals: More that pages plot over time beside coordinates, inputs and energies, by name: a value, or several,
+            at each time of the run (n) or (n, k).
         simulate: Whether the page simulates, too, on from any instant of the replay, with states, inputs and parameters
             that its reader may change (needs a trajectory, and the extra `zig`); or how: `method`, `dt`, `rtol`,
             `atol`, `beam_limit` as of `sf.export`. By default the method of the run and steps of a millisecond; inputs
@@ -194,13 +199,16 @@ def record(
     motion = motion_of(mechanism.model, run)
     if file.suffix == ".png":
         motion = PlayedMotion(motion.model, motion.t[-1:], motion.q[-1:], motion.u[-1:], motion.par[-1:])
+    plotted = signals_of(
+        motion, coordinate_units(mechanism.tree), run if isinstance(run, Trajectory) else None, signals
+    )
     period = max(round(100.0 / rate), 1) / 100.0 if file.suffix == ".gif" else 1.0 / rate
     whole = run if isinstance(run, Trajectory) else None
     others = played(ghosts, block)
     frames = _Recording(mechanism, motion, period, speed, exaggeration, _layers(show, whole), whole, others)
     pictures = _captioned(frames, size) if caption else frames.pictures(size)
     write: dict[str, Callable[[], bytes]] = {
-        ".html": lambda: _page(frames, mechanism, _onward(system, run, frames, simulate) if asked else None),
+        ".html": lambda: _page(frames, mechanism, plotted, _onward(system, run, frames, simulate) if asked else None),
         ".mp4": lambda: _film(pictures, frames.period, size),
         ".gif": lambda: _gif(pictures, frames.period),
         ".png": lambda: _png(pictures),
@@ -260,7 +268,9 @@ def _onward(system: System, run: Played, frames: _Recording, simulate: bool | Ma
     return onward(system, run, frames.t, frames.q, {} if isinstance(simulate, bool) else simulate)
 
 
-def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any] | None) -> bytes:
+def _page(
+    frames: _Recording, mechanism: Mechanism, signals: Sequence[Signal], simulated: Mapping[str, Any] | None
+) -> bytes:
     model, units = mechanism.model, coordinate_units(mechanism.tree)
     pace = "" if frames.speed == 1.0 else f", at {frames.speed:g} × its speed"
     tolerance = tolerance_of(frames.drawing)
@@ -288,6 +298,7 @@ def _page(frames: _Recording, mechanism: Mechanism, simulated: Mapping[str, Any]
             frames.q,
             model.names.q,
             [units.get(name, "") for name in model.names.q],
+            signals,
             simulated,
             legend_of(frames.ghosts) if frames.ghosts else "",
             tolerance if any(part.kind == "visuals" for part in frames.drawing.parts) else 0.0,

@@ -31,6 +31,7 @@ def view(
     exaggeration: float = 1.0,
     speed: float = 1.0,
     ghosts: Mapping[str, Played | DiagramRun] | None = None,
+    signals: Mapping[str, ArrayLike] | None = None,
     paths: Sequence[Sequence[Any]] = (),
     host: str = LOOPBACK,
     port: int = PORT,
@@ -51,6 +52,8 @@ def view(
         exaggeration: Factor of the elastic coordinates in the picture.
         speed: Seconds of the motion a second.
         ghosts: Other runs of the mechanism by names for the legend, transparent beside the motion, at the same times.
+        signals: More to plot over time beside coordinates, inputs and energies, by name: a value, or several, at each
+            time of the run (n) or (n, k).
         paths: Curves drawn beside it, as of `Viewer`.
         host: Address that it is served at.
         port: Port of the page; 0 for any free one.
@@ -75,7 +78,7 @@ def view(
     viewer = Viewer(stated, host=host, port=port, exaggeration=exaggeration, paths=paths)
     try:
         if run is not None:
-            viewer.play(run, speed=speed, ghosts=played(ghosts, block))
+            viewer.play(run, speed=speed, ghosts=played(ghosts, block), signals=signals)
         elif q is not None or u is not None or par is not None:
             viewer.show(q, u=u, par=par)
     except Exception:

@@ -18,9 +18,11 @@ from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.camera_watch import CameraWatch
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
+from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.signals import signals_of
 
 _READY = 60.0  # Seconds that a page's first word waits for the picture.
 RATE = 60.0  # Pictures a second at most; browsers show no more.
@@ -188,7 +190,13 @@ class Viewer(ViewerPage):
             self._wake.notify()
 
     def play(
-        self, run: Played, *, speed: float = 1.0, loop: bool = True, ghosts: Mapping[str, Played] | None = None
+        self,
+        run: Played,
+        *,
+        speed: float = 1.0,
+        loop: bool = True,
+        ghosts: Mapping[str, Played] | None = None,
+        signals: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         """Show a motion from its beginning, with controls to pause, to go to a time, and to change the speed.
 
@@ -198,19 +206,24 @@ class Viewer(ViewerPage):
             loop: Whether it begins again at its end.
             ghosts: Other runs by names for the legend, transparent beside it, at the same times; each is shown from its
                 first time to its last.
+            signals: More to plot by name beside coordinates, inputs and energies: a value, or several, at each time
+                of the motion (n) or (n, k).
 
         Raises:
-            ShapeError: The motion, or a ghost, does not fit the model.
+            ShapeError: The motion, a ghost or a signal does not fit the model.
             SymofrosError: The speed is not a number above 0, or ghosts are too many or change their shapes.
         """
         motion = motion_of(self.mechanism.model, run)
         shown = ghosts_of(self.mechanism, ghosts or {}, self.mechanism.drawing(motion.par[0]))
-        player = Player(motion, speed, loop, run if isinstance(run, Trajectory) else None)
+        whole = run if isinstance(run, Trajectory) else None
+        plotted = signals_of(motion, coordinate_units(self.mechanism.tree), whole, signals)
+        player = Player(motion, speed, loop, whole)
         player.start()
         with self._painting:
             self._discard()
             self._player, self._forces = player, None
             self._show_ghosts(shown)
+            self._signals = plotted
             self._panel = self._new_panel()
             self._judge_bending()
             self._paint_motion()

@@ -113,3 +113,52 @@ def test_a_replay_simulates_on_without_a_server(open_page: Open, tmp_path: Path)
     np.testing.assert_allclose(v, native.v[-1], rtol=1e-9, atol=1e-10)
     page.get_by_role("button", name="Back to the replay").click()
     until(page, lambda: not page.locator("#onward").is_visible())
+
+
+def swung() -> tuple[np.ndarray, np.ndarray]:
+    t = np.linspace(0.0, 2.0, 21)
+    return t, np.sin(t)[:, None] * np.linspace(0.5, 0.1, 10)
+
+
+def click_at(plot: Any, share: float) -> None:
+    box = plot.bounding_box()
+    plot.click(position={"x": 1 + share * (box["width"] - 2), "y": box["height"] / 2})
+
+
+def test_a_click_into_the_plot_of_a_replay_moves_its_time(open_page: Open, tmp_path: Path) -> None:
+    t, q = swung()
+    extra = {"twice <t>": 2.0 * t}
+    file = sf.record(MODELS["planar_robot"], (t, q), tmp_path / "m.html", rate=10, signals=extra)
+    page = open_page(file.as_uri())
+    page.locator("details.plot summary").click()
+    page.get_by_label("Over time").select_option("q1 [rad]")
+    plot = page.locator("canvas.over-time")
+    click_at(plot, 0.75)
+    shown = page.locator("#replay p").first
+    until(page, lambda: shown.text_content() == "t = 1.500 s")
+    legend = page.locator("ul.over-time")
+    until(page, lambda: legend.text_content().endswith(f"q1 = {0.5 * np.sin(1.5):.4g}"))
+    plot.press("ArrowLeft")
+    plot.press("Home")
+    until(page, lambda: shown.text_content() == "t = 0.000 s")
+    plot.press("End")
+    until(page, lambda: shown.text_content() == "t = 2.000 s")
+    page.get_by_label("Over time").select_option("twice <t>")
+    until(page, lambda: legend.text_content().endswith("twice <t> = 4.000"))
+
+
+def test_a_click_into_the_plot_of_a_view_moves_its_time(open_page: Open) -> None:
+    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
+        viewer.play(swung())
+        viewer.toggle()
+        page = open_page(viewer.url)
+        page.get_by_text("Plot", exact=True).click()
+        page.get_by_role("combobox", name="over time").click()
+        page.get_by_role("option", name="q1 [rad]").click()
+        plot = page.locator("canvas.over-time")
+        plot.wait_for(timeout=PATIENCE_MS)
+        click_at(plot, 0.25)
+        until(page, lambda: abs(viewer._player.time - 0.5) < 0.02)
+        np.testing.assert_allclose(viewer.state.q[0], 0.5 * np.sin(viewer._player.time), atol=1e-3)
+        viewer.seek(1.0)
+        until(page, lambda: plot.get_attribute("aria-valuenow") == "1.000")

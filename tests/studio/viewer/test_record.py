@@ -106,7 +106,7 @@ def test_names_cannot_end_the_script_of_a_replay() -> None:
     page = f"<head><title>Viser</title>{'{darkMode:false}'}</head>"
     made = replay_page(page, evil, camera, np.zeros(1), 0.1, "", np.zeros((1, 1)), [evil], [evil])
     assert (
-        evil not in made and made.count("</script>") == 2 and "prefers-color-scheme" in made.rpartition("</script>")[2]
+        evil not in made and made.count("</script>") == 3 and "prefers-color-scheme" in made.rpartition("</script>")[2]
     )
 
 

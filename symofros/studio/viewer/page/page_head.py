@@ -20,7 +20,8 @@ def page_head(title: str, panel: bool = True) -> str:
         title: Title of the page, which its tab shows.
         panel: Whether the page has a panel of controls.
     """
-    return f"<title>{html.escape(title)}</title>{fragment('access.html')}{'' if panel else _NO_PANEL}"
+    plots = f"<script>{fragment('plot.js')}</script>"
+    return f"<title>{html.escape(title)}</title>{fragment('access.html')}{plots}{'' if panel else _NO_PANEL}"
 
 
 @cache

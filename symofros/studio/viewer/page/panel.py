@@ -14,8 +14,10 @@ from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
 from symofros.studio.viewer.page.force_plot import ForcePlot
 from symofros.studio.viewer.page.ghost_scene import legend_of
+from symofros.studio.viewer.page.signal_plot import SignalPlot
 from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.signals import Signal
 from symofros.studio.viewer.playing.sliders import Slider
 from symofros.studio.viewer.render.scale_bar import scale_bar
 
@@ -79,6 +81,7 @@ class Panel:
         controls_shown: Whether there are any; the panel is empty and minimized otherwise.
         dark: Whether colours are dark.
         ghosts: Other runs that are shown.
+        signals: Signals of the motion, to be plotted.
     """
 
     def __init__(
@@ -93,6 +96,7 @@ class Panel:
         controls_shown: bool = True,
         dark: bool = False,
         ghosts: Sequence[Ghost] = (),
+        signals: Sequence[Signal] = (),
     ) -> None:
         self._gui = gui = server.gui
         self._controls = controls
@@ -101,6 +105,7 @@ class Panel:
         self._exaggeration: Any = None
         self._legend: Any = None
         self.force_plot: ForcePlot | None = None
+        self.signal_plot: SignalPlot | None = None
         self._boxes: dict[str, Any] = {}
         self._sliders: list[Any] = []
         gui.reset()
@@ -115,6 +120,7 @@ class Panel:
         gui.main_panel.dock_right()  # Beside the picture, not over it.
         if player is not None:
             self._add_player(player, ghosts)
+            self.signal_plot = SignalPlot(gui, signals)
         self._add_layers(layers, exaggeration, player is not None and player.run is not None)
         self._boxes[_DARK] = gui.add_checkbox(_DARK, dark)
         self._on(self._boxes[_DARK], controls.set_dark)

@@ -22,6 +22,7 @@ from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.motion import finite, positive
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.run_forces import RunForces
+from symofros.studio.viewer.playing.signals import Signal
 from symofros.studio.viewer.playing.sliders import Slider
 
 _DARK_LIGHT = 5.0  # Before a dark ground viser's own light is too weak for the bodies' colours.
@@ -63,6 +64,7 @@ class ViewerPage:
         self._forces: RunForces | None = None  # Of the run that plays, once they are shown.
         self._ghosts: tuple[Ghost, ...] = ()
         self._ghost_scene: GhostScene | None = None
+        self._signals: tuple[Signal, ...] = ()
         self._handle: FrameHandle | None = None
         self._on_drag: Callable[[], None] | None = None
         self.bendings: tuple[BeamBending, ...] = ()
@@ -350,6 +352,7 @@ class ViewerPage:
             self._controls,
             self._dark,
             self._ghosts,
+            self._signals,
         )
         panel.follow(scene_state.values, self._player)
         panel.legend([] if self._forces is None else self._forces.legend(scene_state.scene.layers))

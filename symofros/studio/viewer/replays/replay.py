@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.studio.viewer.page.page_head import VISER_TITLE, fragment, page_head
+from symofros.studio.viewer.playing.signals import Signal
 from symofros.studio.viewer.render.camera import Camera
 from symofros.studio.viewer.render.scale_bar import LONGEST, UNITS
 from symofros.studio.viewer.replays.packing import packed
@@ -34,6 +35,7 @@ def replay_page(
     q: Array,
     names: Sequence[str],
     units: Sequence[str],
+    signals: Sequence[Signal] = (),
     onward: Mapping[str, Any] | None = None,
     legend: str = "",
     tolerance: float = 0.0,
@@ -50,6 +52,7 @@ def replay_page(
         q: Coordinates in the pictures (n, nq).
         names: Their names (nq).
         units: Their units (nq); "" where there is none.
+        signals: Signals of the motion, to be plotted.
         onward: What simulates on (`onward.onward`), where the page is to do that.
         legend: What tells ghosts apart, as HTML.
         tolerance: How far shapes are from those of their files, which the page tells [m]; 0: not at all.
@@ -69,6 +72,7 @@ def replay_page(
         "longest": LONGEST,
         "units": UNITS,
         "dark_intensity": _DARK_INTENSITY,
+        "signals": _packed(signals, t, names),
         "onward": onward,
         "legend": legend,
         "tolerance": tolerance,
@@ -77,6 +81,19 @@ def replay_page(
     data = json.dumps(given).replace("<", "\\u003c")
     head = page_head(title) + fragment("replay.html", "replays").replace("/*given*/", data)
     return page.replace(VISER_TITLE, head, 1).replace(_LIGHT, _ASKED, 1)
+
+
+def _packed(signals: Sequence[Signal], t: Array, names: Sequence[str]) -> list[dict[str, Any]]:
+    """Signals at the times of the pictures (n), in single precision; those of coordinates by their indices only."""
+    places, packed = {name: i for i, name in enumerate(names)}, []
+    for signal in signals:
+        if all(curve in places for curve in signal.curves):
+            packed.append({"name": signal.name, "of": [places[curve] for curve in signal.curves]})
+        else:
+            values = np.ascontiguousarray(signal.at(t).T, dtype="<f4").tobytes()
+            curves, data = list(signal.curves), base64.b64encode(values).decode()
+            packed.append({"name": signal.name, "curves": curves, "values": data})
+    return packed
 
 
 def lighter(page: str, step: float) -> str:
