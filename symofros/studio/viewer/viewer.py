@@ -147,6 +147,7 @@ class Viewer(ViewerPage):
             self._discard()
             self._player = self._forces = None
             self._show_ghosts(())
+            self._camera_follow = None
             self._scene_state.change(mechanism)
             self._keep_handle()
             self._panel = self._new_panel()

@@ -162,3 +162,34 @@ def test_a_click_into_the_plot_of_a_view_moves_its_time(open_page: Open) -> None
         np.testing.assert_allclose(viewer.state.q[0], 0.5 * np.sin(viewer._player.time), atol=1e-3)
         viewer.seek(1.0)
         until(page, lambda: plot.get_attribute("aria-valuenow") == "1.000")
+
+
+def test_a_camera_is_kept_when_its_page_is_loaded_again_and_follows_a_body(open_page: Open) -> None:
+    with sf.Viewer(MODELS["planar_robot"], port=0) as viewer:
+        viewer.play(swung())
+        viewer.toggle()
+        viewer.seek(0.0)
+        page = open_page(viewer.url)
+        until(page, lambda: viewer.picture_height is not None)
+        (client,) = viewer._server.get_clients().values()
+        client.camera.position = client.camera.position + np.array([0.3, 0.1, 0.2])
+        kept = np.array(client.camera.position)
+        page.wait_for_timeout(1000)
+        page.reload()
+
+        def shown() -> bool:
+            pages = list(viewer._server.get_clients().values())
+            if len(pages) != 1 or pages[0].client_id == client.client_id or viewer.picture_height is None:
+                return False
+            return bool(np.allclose(pages[0].camera.position, kept, atol=1e-3))
+
+        until(page, shown)
+        page.get_by_role("combobox", name="camera follows").click()
+        body = viewer.mechanism.tree.links[-1].name
+        page.get_by_role("option", name=body, exact=True).click()
+        until(page, lambda: viewer._camera_follow is not None)
+        before = viewer._scene_state.posture.p[-2]
+        viewer.seek(1.5)
+        moved = viewer._scene_state.posture.p[-2] - before
+        (client,) = viewer._server.get_clients().values()
+        until(page, lambda: np.allclose(client.camera.position, kept + moved, atol=5e-3))

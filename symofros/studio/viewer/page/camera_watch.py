@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from threading import Timer
 from typing import Any
@@ -29,7 +30,7 @@ class CameraWatch:
         self._reported: float | None = None
         self._placed: set[int] = set()
         server.on_client_connect(self._attend)
-        server.on_client_disconnect(lambda _: self._report())
+        server.on_client_disconnect(self._leave)
 
     @property
     def height(self) -> float | None:
@@ -45,6 +46,16 @@ class CameraWatch:
         last.daemon = True
         last.start()
         self._follow(client)
+
+    def _leave(self, client: Any) -> None:
+        """Let the next page begin where the camera of the one that closes was: a page that is loaded again keeps it."""
+        if client.client_id in self._placed:
+            self._placed.discard(client.client_id)
+            left, initial = client.camera, self._server.initial_camera
+            with warnings.catch_warnings():  # Viser tells the page that closes as well, and warns that it is closed.
+                warnings.filterwarnings("ignore", "Queued a", UserWarning)
+                initial.position, initial.look_at, initial.up = left.position, left.look_at, left.up_direction
+        self._report()
 
     def _follow(self, client: Any) -> None:
         if client.client_id not in self._placed:

@@ -29,6 +29,7 @@ _LAYER_NAMES = {
     "ground": "ground and gravity",
 }
 _DARK = "dark"
+_NOBODY = "no body"
 _MAX_EXAGGERATION = 50.0
 _STEPS = 500  # Of a slider.
 # The bar fits the panel in windows of up to 1800 pixels: it is at most 0.3 of this part of their height.
@@ -63,6 +64,9 @@ class Controls(Protocol):
     def reset(self) -> None:
         """Show the configuration that was shown first."""
 
+    def follow(self, body: str | None) -> None:
+        """Let the camera go along with a body."""
+
     def set_dark(self, dark: bool) -> None:
         """Show page and picture in dark colours, or in light ones."""
 
@@ -82,6 +86,7 @@ class Panel:
         dark: Whether colours are dark.
         ghosts: Other runs that are shown.
         signals: Signals of the motion, to be plotted.
+        bodies: Names of the bodies that the camera can follow.
     """
 
     def __init__(
@@ -97,6 +102,7 @@ class Panel:
         dark: bool = False,
         ghosts: Sequence[Ghost] = (),
         signals: Sequence[Signal] = (),
+        bodies: Sequence[str] = (),
     ) -> None:
         self._gui = gui = server.gui
         self._controls = controls
@@ -104,6 +110,7 @@ class Panel:
         self._time: Any = None
         self._exaggeration: Any = None
         self._legend: Any = None
+        self._followed: Any = None
         self.force_plot: ForcePlot | None = None
         self.signal_plot: SignalPlot | None = None
         self._boxes: dict[str, Any] = {}
@@ -122,6 +129,8 @@ class Panel:
             self._add_player(player, ghosts)
             self.signal_plot = SignalPlot(gui, signals)
         self._add_layers(layers, exaggeration, player is not None and player.run is not None)
+        self._followed = gui.add_dropdown("camera follows", (_NOBODY, *bodies), initial_value=_NOBODY)
+        self._on(self._followed, lambda body: controls.follow(None if body == _NOBODY else body))
         self._boxes[_DARK] = gui.add_checkbox(_DARK, dark)
         self._on(self._boxes[_DARK], controls.set_dark)
         self._add_sliders(sliders)
@@ -185,6 +194,11 @@ class Panel:
         self._gui.configure_theme(show_logo=False, show_share_button=False, dark_mode=dark)
         if _DARK in self._boxes:
             self._boxes[_DARK].value = dark
+
+    def show_followed(self, body: str | None) -> None:
+        """Set the control to the body that the camera follows."""
+        if self._followed is not None:
+            self._followed.value = body or _NOBODY
 
     def say(self, text: str) -> None:
         """Show a line of text above the controls."""

@@ -22,7 +22,7 @@ Acting = tuple[RunForces, float]
 
 
 class SceneState:
-    """A mechanism on a server.
+    """A mechanism on a server; `posture` is the one that is shown.
 
     Args:
         server: Server of viser.
@@ -40,7 +40,8 @@ class SceneState:
         self._acting: Acting | None = None
         drawing = mechanism.drawing(self.state.par)
         self._drawn_par = self.state.par
-        self.scene = ViserScene(server, drawing, self._posture(), initial_layers(drawing), on_pick=on_pick)
+        self.posture = self._posture()
+        self.scene = ViserScene(server, drawing, self.posture, initial_layers(drawing), on_pick=on_pick)
 
     def change(self, mechanism: Mechanism) -> None:
         """Show another mechanism; where it has the same coordinates, they stay, and so do the layers shown."""
@@ -78,11 +79,11 @@ class SceneState:
         self._move()
 
     def _move(self) -> None:
-        posture, arrows = self._posture(), None
+        self.posture, arrows = self._posture(), None
         if self._acting is not None:
             forces, t = self._acting
-            arrows = forces.arrows(t, posture, self.scene.layers)
-        self.scene.move(posture, arrows)
+            arrows = forces.arrows(t, self.posture, self.scene.layers)
+        self.scene.move(self.posture, arrows)
 
     @property
     def sliders(self) -> tuple[Slider, ...]:

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import SymofrosError
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
+from symofros.studio.viewer.page.camera_follow import CameraFollow
 from symofros.studio.viewer.page.frame_handle import FrameHandle
 from symofros.studio.viewer.page.ghost_scene import GhostScene
 from symofros.studio.viewer.page.panel import Panel
@@ -64,6 +65,7 @@ class ViewerPage:
         self._forces: RunForces | None = None  # Of the run that plays, once they are shown.
         self._ghosts: tuple[Ghost, ...] = ()
         self._ghost_scene: GhostScene | None = None
+        self._camera_follow: CameraFollow | None = None
         self._signals: tuple[Signal, ...] = ()
         self._handle: FrameHandle | None = None
         self._on_drag: Callable[[], None] | None = None
@@ -187,6 +189,23 @@ class ViewerPage:
         frame = None if self._handle is None else self._handle.frame
         self.drag(frame if frame in self.mechanism.model.names.frames else None, self._on_drag)
 
+    def follow(self, body: str | None) -> None:
+        """Let the cameras of all pages go along with a body, whose name is in the description; None: with none.
+
+        Raises:
+            UnknownNameError: There is no such body.
+        """
+        with self._painting:
+            links = {link.name: i for i, link in enumerate(self.mechanism.tree.links)}
+            if body is not None and body not in links:
+                rule, remedy = "a body of the mechanism", did_you_mean(body, links)
+                raise UnknownNameError(Problem(f"view: no body '{body}' to follow", f"'{body}'", rule, remedy))
+            place = self._scene_state.posture.p
+            self._camera_follow = (
+                None if body is None else CameraFollow(self._server, body, links[body], place[links[body]])
+            )
+            self._panel.show_followed(body)
+
     def set_exaggeration(self, factor: float) -> None:
         """Multiply elastic coordinates in the picture."""
         with self._painting:
@@ -300,6 +319,9 @@ class ViewerPage:
 
     def _paint(self, state: State, acting: Acting | None = None) -> None:
         self.painted += self._scene_state.paint(state, acting)
+        if self._camera_follow is not None:
+            place = self._scene_state.posture.p[self._camera_follow.link]
+            self._camera_follow.move(place, self._scene_state.scene.drawing.size)
         if self._handle is not None:
             self._handle.follow(self._scene_state.state)
 
@@ -353,7 +375,9 @@ class ViewerPage:
             self._dark,
             self._ghosts,
             self._signals,
+            tuple(dict.fromkeys(link.name for link in mechanism.tree.links)),
         )
+        panel.show_followed(None if self._camera_follow is None else self._camera_follow.body)
         panel.follow(scene_state.values, self._player)
         panel.legend([] if self._forces is None else self._forces.legend(scene_state.scene.layers))
         panel.scale(self._height)

@@ -22,6 +22,8 @@ def camera(distance: float) -> SimpleNamespace:
     return SimpleNamespace(
         position=np.array([distance, 0, 0]),
         look_at=np.zeros(3),
+        up_direction=np.array([0.0, 0.0, 1.0]),
+        up=None,
         fov=FOV,
         callbacks=callbacks,
         on_update=callbacks.append,
@@ -87,3 +89,14 @@ def test_two_pages_have_no_common_view_height(pages: Pages) -> None:
     assert watch.height is None and pages.heights == [pytest.approx(4.0), None]
     pages.disconnect(pages.clients.pop(1))
     assert watch.height == pytest.approx(4.0) and pages.heights[2:] == pytest.approx([4.0])
+
+
+def test_a_page_begins_where_the_camera_of_the_last_one_was(pages: Pages) -> None:
+    CameraWatch(pages, pages.heights.append)
+    page = pages.open(1, 2.0)
+    pages.move(page, 7.0)
+    pages.disconnect(pages.clients.pop(1))
+    np.testing.assert_array_equal(pages.initial_camera.position, [7.0, 0.0, 0.0])
+    np.testing.assert_array_equal(pages.initial_camera.up, [0.0, 0.0, 1.0])
+    pages.disconnect(pages.clients.setdefault(2, SimpleNamespace(client_id=2, camera=camera(3.0))))
+    np.testing.assert_array_equal(pages.initial_camera.position, [7.0, 0.0, 0.0])  # That one was never placed.
