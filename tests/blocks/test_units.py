@@ -217,3 +217,11 @@ def test_a_scalar_and_a_vector_of_one_entry_are_interchangeable(given: object, t
     for run in (simulation.run(0.01, dt=0.01), simulation.interpret(0.01, dt=0.01)):
         last = {name: float(np.ravel(run[name][-1])[0]) for name in ("s", "p", "pd.effort")}
         assert last == {"s": 3.5, "p": 1.5, "pd.effort": -2.0}
+
+
+@pytest.mark.parametrize("make", CONTROLLERS)
+def test_a_controller_of_no_motion_at_all_is_refused(make: Callable[[], Block]) -> None:
+    """Each of its wires, where all have a unit and none that of joints that turn or slide."""
+    for unit in ("N m", "s"):
+        problems = wired(make(), dict.fromkeys(RIGHT["rad"], unit))
+        assert len(problems) == 4 and all("units differ" in problem and unit in problem for problem in problems)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
 import symofros.blocks as blocks
+from symofros.diagrams.run import projection
 from symofros.simulation.results.engaging import ENGAGE_TOLERANCE
 from tests.diagrams.parts import moving
 
@@ -49,3 +53,27 @@ def test_engaging_a_weld_half_a_turn_off_ends_the_run() -> None:
     diagram.add(blocks.Step(name="grip", time=0.02, before=[0.0], after=[1.0], period=0.01))
     run = sf.Simulation(diagram).run(0.05, dt=1e-3, record=0.01)
     assert run.outcome.kind == "constraints lost"
+
+
+@pytest.mark.parametrize("engaged", [(1.0, 0.0, 1.0), (1.0, 1.0, 0.0), (0.0, 0.0, 0.0)])
+def test_the_constraint_that_engages_apart_is_named(
+    engaged: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The one that holds and did not before; all of them where none has begun to. The state stays."""
+
+    def apart(scene: Any) -> float:
+        scene.q[:] = 7.0
+        return 1.0
+
+    monkeypatch.setattr(projection, "project_all", apart)
+    names = ("first", "second", "third")
+    resolved = SimpleNamespace(layout=SimpleNamespace(lock_names=names))
+    scene: Any = SimpleNamespace(q=np.ones(2), v=np.zeros(2), engaged=lambda: np.array(engaged), resolved=resolved)
+    before = np.array([1.0, 0.0, 0.0])
+    rising = [name for name, now, then in zip(names, engaged, before, strict=True) if now > then]
+    with pytest.raises(projection.EngagedApartError) as caught:
+        projection.engage(scene, before)
+    assert caught.value.args[-1] == (rising[-1] if rising else "first, second, third") and scene.q.tolist() == [
+        1.0,
+        1.0,
+    ]
