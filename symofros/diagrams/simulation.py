@@ -144,7 +144,7 @@ class Simulation:
             observer: Receiver of the records while the run goes on, which may stop it by time.
 
         Raises:
-            SymofrosError: The method is implicit or adaptive, or the diagram has crossings or events of mechanisms.
+            SymofrosError: The method is implicit or adaptive, or the diagram has events of mechanisms.
         """
         resolved = self._given(inputs)
         if not (math.isfinite(dt) and dt > 0.0):
@@ -159,9 +159,9 @@ class Simulation:
                     "use run",
                 )
             )
-        if any(piece.crossings or piece.switching for piece in resolved.pieces.values()):
-            what = f"diagram '{resolved.wired.name}': crossings, or events of mechanisms"
-            rule = "it does not locate crossings, nor events and modes of friction that sticks"
+        if any(piece.switching for piece in resolved.pieces.values()):
+            what = f"diagram '{resolved.wired.name}': events of mechanisms"
+            rule = "it does not locate events of mechanisms, nor modes of friction that sticks"
             raise SymofrosError(Problem(what, "an interpreted run", rule, "use run"))
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None

@@ -126,11 +126,16 @@ def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
             " steps cannot tell whether it gets there"
         )
     if run.unresolved_event >= 0:
-        notes.append(
-            f"event '{events[run.unresolved_event].name}' changes too often in the step from t = {run.unresolved_t:.6g}"
-            " s on to be followed: zeros may be missing; take shorter steps"
-        )
+        notes.append(unresolved_note(events[run.unresolved_event].name, run.unresolved_t))
     return tuple(notes)
+
+
+def unresolved_note(name: str, t: float) -> str:
+    """Note on an event that was not followed in the step from t [s] on."""
+    return (
+        f"event '{name}' changes too often in the step from t = {t:.6g} s on to be followed: zeros may be missing;"
+        " take shorter steps"
+    )
 
 
 def events_of(model: Model, given: Mapping[str, Any] | None) -> tuple[Event, ...]:

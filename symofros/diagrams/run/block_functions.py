@@ -69,6 +69,10 @@ class Blocks:
         stated["rates"] = {f"d_{key}": value for key, value in piece.rates.items()}
         stated["updates"] = {f"n_{key}": value for key, value in piece.updates.items()}
         stated["motion"] = {f"t_{key}": value for key, value in piece.terms.stated().items()}
+        stated["begins"] = {f"n_{key}": value for key, value in piece.begins.items()}
+        stated["crossings"] = {f"c_{key}": crossing.value for key, crossing in piece.crossings.items()}
+        for which, jump in piece.jumps.items():
+            stated[f"crossed_{which}"] = {f"n_{key}": value for key, value in jump.items()}
         functions, sizes = [], {"par": 0}
         for which, outputs in stated.items():
             if outputs:
@@ -168,14 +172,45 @@ class Blocks:
 
     def update(self, due: frozenset[str]) -> None:
         """Memory of the sampled blocks that are due."""
-        new = []
-        for name in sorted(due):
-            if (name, "updates") in self.calls:
-                call, outputs = self.calls[name, "updates"]
+        self._change([(name, "updates") for name in sorted(due)])
+
+    def begin(self) -> None:
+        """Memory that begins by what signals are."""
+        self._change([(name, "begins") for name in self.resolved.pieces])
+
+    def cross(self, name: str, which: str) -> None:
+        """What a crossing changes: memory, states, the motion of a mechanism."""
+        self._change([(name, f"crossed_{which}")])
+
+    def crossing_values(self, values: Array) -> None:
+        """Values of all crossings (n) at the present point, whose signals are known."""
+        i = 0
+        for name, piece in self.resolved.pieces.items():
+            if piece.crossings:
+                call, outputs = self.calls[name, "crossings"]
                 call()
-                new += [((name, key.removeprefix("n_")), value.copy()) for key, value in outputs.items()]
-        for key, value in new:
-            self.memory[key][...] = value
+                for which in piece.crossings:
+                    values[i], i = outputs[f"c_{which}"], i + 1
+
+    def _change(self, functions: list[tuple[str, str]]) -> None:
+        """Memory and states as functions of blocks have them next, all of the values before."""
+        new = []
+        for name, function in functions:
+            if (name, function) in self.calls:
+                call, outputs = self.calls[name, function]
+                call()
+                new += [(self._place_of(name, key.removeprefix("n_")), value.copy()) for key, value in outputs.items()]
+        for place, value in new:
+            place[...] = value.reshape(place.shape)
+
+    def _place_of(self, name: str, key: str) -> Array:
+        """What holds a memory or a state of a block, or the motion of its mechanism."""
+        layout = self.resolved.layout
+        if (name, key) in self.memory:
+            return self.memory[name, key]
+        if (name, key) in layout.states:
+            return self.v[layout.states[name, key].slice]
+        return self.q[layout.q[name].slice] if key == "q" else self.v[layout.v[name].slice]
 
     def accelerate(self) -> None:
         """The accelerations a and multipliers of all mechanisms, and rates of states, at the present point."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,12 +12,13 @@ from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver, Observer
 from symofros.diagrams.program.compiled import Resolved, part_beams
 from symofros.diagrams.run.block_functions import Blocks
-from symofros.diagrams.run.examination.faults import first_fault
-from symofros.diagrams.run.projection import engage, project_all
+from symofros.diagrams.run.examination.faults import first_fault, without_end
+from symofros.diagrams.run.interpreted_steps import Crossings, NotFiniteError, step
+from symofros.diagrams.run.projection import engage
 from symofros.diagrams.run.python_blocks import Called
+from symofros.diagrams.run.recording import Crossed
 from symofros.diagrams.wiring import Source
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, bending_notes, largest_bending
-from symofros.runtime.manifold import chart_rate, retract
 from symofros.simulation.analysis.beam_theory import UNAMPLIFIED, amplifying
 from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory
 from symofros.simulation.results.engaging import EngagedApartError, engaged_apart, engaging_notes
@@ -51,6 +51,7 @@ class InterpretedRun:
         steps: Number of steps.
         bendings: Bending of each beam at the step where its theory errs most.
         kept: Block -> what it kept of the run, by name.
+        crossings: Crossings that were met, in order.
     """
 
     resolved: Resolved
@@ -63,49 +64,11 @@ class InterpretedRun:
     steps: int
     bendings: tuple[BeamBending, ...] = ()
     kept: Mapping[str, Mapping[str, Array]] = field(default_factory=dict)
+    crossings: tuple[Crossed, ...] = ()
 
     def __getitem__(self, name: str) -> Array:
         """A signal over time."""
         return self.values[self.resolved.wired.output(name)]
-
-
-class NotFiniteError(Exception):
-    """An acceleration, a rate or a state that is no finite number ends an interpreted run."""
-
-
-def step(blocks: Blocks, tableau: Tableau, h: float, projects: bool) -> None:
-    """One step of an explicit Runge-Kutta method, all parts together.
-
-    Raises:
-        NotFiniteError: The motion has no finite rate at a stage, where the blocks then are.
-    """
-    segments, nv = blocks.resolved.layout.segments, len(blocks.v)
-    t, q, v = float(blocks.t[0]), blocks.q.copy(), blocks.v.copy()
-    k: list[Array] = []
-
-    def increments(weights: Array) -> tuple[Array, Array]:
-        total = np.zeros(2 * nv)
-        for weight, slope in zip(weights, k, strict=False):
-            if weight != 0.0:
-                total += weight * slope
-        return h * total[:nv], h * total[nv:] + v
-
-    blocks.step_end = t + h
-    for i in range(tableau.stages):
-        theta, speeds = increments(tableau.a[i])
-        blocks.t[0] = t + tableau.c[i] * h
-        blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
-        blocks.signals()
-        blocks.accelerate()
-        if not np.isfinite(blocks.a).all():
-            raise NotFiniteError
-        k.append(np.concatenate([chart_rate(segments, theta, speeds), blocks.a]))
-    theta, speeds = increments(tableau.b)
-    blocks.t[0] = t + h
-    blocks.q[:], blocks.v[:] = retract(segments, q, theta), speeds
-    if projects:
-        project_all(blocks)
-    blocks.step_end = math.inf
 
 
 class _RecordFeed:
@@ -236,6 +199,7 @@ class Course:
         spacing: Shortest time between two instants [s].
         tableau: Tableau of the method.
         projects: Whether constraints are met again after each step.
+        begins: Whether it begins the run: memory then is what signals say.
     """
 
     instants: Sequence[Instant]
@@ -244,6 +208,7 @@ class Course:
     spacing: float
     tableau: Tableau
     projects: bool
+    begins: bool = True
 
     @property
     def step(self) -> float:
@@ -283,24 +248,38 @@ def run_interpreted(
     instants, t_end, dt, projects = course.instants, course.t_end, course.dt, course.projects
     feed, goes_on = _RecordFeed(observer or NoObserver(), blocks, rows, kept), True
     steps, within, failed = 0, watch.judge(blocks.q, float(blocks.t[0])), False
-    closed, apart = (0.0, 0.0), None
+    closed, apart, endless = (0.0, 0.0), None, False
+    crossings = Crossings(blocks, projects)
+    crossings.restart()
+
+    def record_now() -> None:
+        _know(blocks)
+        record()
+
     with np.errstate(all="ignore"):  # What is not finite ends the run, and is named.
         for i, instant in enumerate(instants):
             try:
-                closed = max(closed, (_meet(blocks, called, instant, projects, record), instant[0]))
+                closed = max(closed, (_meet(blocks, called, instant, projects), instant[0]))
             except EngagedApartError as error:
                 apart = error
                 break
+            if i == 0 and course.begins:
+                blocks.signals()
+                blocks.begin()
+                crossings.look_anew()
+            if instant[2]:
+                record_now()
+            crossings.begin_span()
             show(instant[0])
             goes_on = feed.send(instant[0])
             if not goes_on:
                 break
             until = min(instants[i + 1][0] if i + 1 < len(instants) else t_end, t_end)
-            while blocks.t[0] < until and within and not failed:
+            while blocks.t[0] < until and within and not failed and not endless:
                 now = float(blocks.t[0])
                 last = now + dt >= until - 1e-9 * dt
                 try:
-                    step(blocks, course.tableau, (until if last else now + dt) - now, projects)
+                    made = step(blocks, course.tableau, (until if last else now + dt) - now, projects)
                 except NotFiniteError:
                     failed = True
                     break
@@ -308,10 +287,15 @@ def run_interpreted(
                 failed = not (np.abs(np.concatenate([blocks.q, blocks.v])) < _BEYOND_MOTION).all()
                 if last:
                     blocks.t[0] = until
+                met = [] if failed else crossings.stop(made)
+                if met:
+                    record_now()
+                    endless = not crossings.execute(met)
+                    record_now()
                 within = watch.judge(blocks.q, float(blocks.t[0]))
-            if failed or not within:
+            if failed or endless or not within:
                 break
-        if goes_on and not failed and apart is None:
+        if goes_on and not failed and not endless and apart is None:
             end = t_end if within else float(blocks.t[0])
             if rows and rows[-1][0] >= end - 1e-9 * dt:
                 rows[-1] = (end, *rows[-1][1:])
@@ -325,16 +309,28 @@ def run_interpreted(
     outcome = _outcome(watch, t_last, steps, fault, failed=failed, within=within)
     if apart is not None:
         outcome = engaged_apart(t_last, apart.gap, apart.name, outcome.notes)
-    outcome = replace(outcome, notes=(*outcome.notes, *engaging_notes(closed[1], closed[0])))
+    if endless:
+        last_met = (f"{one.block}.{one.crossing}" for one in crossings.met[-8:])
+        outcome = without_end(t_last, last_met, outcome.notes)
+    outcome = replace(outcome, notes=(*outcome.notes, *crossings.notes, *engaging_notes(closed[1], closed[0])))
     if not goes_on:
         outcome = INTERRUPTED.outcome(outcome.t, outcome.notes, "stopped; the part up to here is kept")
     t, q, v = (np.array(column) for column in zip(*rows, strict=True)) if rows else (np.zeros(0), blocks.q, blocks.v)
     values, memories = ({key: np.array(one) for key, one in by.items()} for by in (kept, memory))
-    return InterpretedRun(blocks.resolved, t, values, memories, q, v, outcome, steps, watch.bendings, called.kept())
+    kept_by, met_all = called.kept(), tuple(crossings.met)
+    return InterpretedRun(blocks.resolved, t, values, memories, q, v, outcome, steps, watch.bendings, kept_by, met_all)
 
 
-def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, record: Callable[[], None]) -> float:
-    """Handle an instant: sample blocks, engage constraints, record signals.
+def _know(blocks: Blocks) -> None:
+    """All signals at the present point, with those that read accelerations and multipliers."""
+    blocks.signals()
+    if len(blocks.lam):
+        blocks.accelerate()
+        blocks.signals()
+
+
+def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool) -> float:
+    """Handle an instant: sample blocks, engage constraints.
 
     Returns:
         The largest |phi| that engaging has closed.
@@ -343,7 +339,7 @@ def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, reco
         EngagedApartError: It is more than may be closed.
     """
     gap = 0.0
-    t, due, recorded = instant
+    t, due, _ = instant
     blocks.t[0] = t
     reads_accelerations = bool(len(blocks.lam))
     if due:
@@ -355,12 +351,6 @@ def _meet(blocks: Blocks, called: Called, instant: Instant, projects: bool, reco
         blocks.update(due)
         if projects and not np.array_equal(before, blocks.engaged()):
             gap = engage(blocks, before)
-    if recorded:
-        blocks.signals()
-        if reads_accelerations:
-            blocks.accelerate()
-            blocks.signals()
-        record()
     return gap
 
 

@@ -299,8 +299,7 @@ SYM_EXPORT int32_t sym_event_search_next(sym_event_search *s, int32_t *which, do
     return 0;
 }
 
-/* Whether event i, not yet met up to x, has arrived at zero there by that value: within rounding, at the same time. */
-static int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, double value) {
+SYM_EXPORT int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, double value) {
     const sym_event_rows rows = sym_rows_of_search(s);
     return rows.next_x[i] > x && rows.next_x[i] <= x + SYM_EVENT_RESOLUTION &&
            sym_arrives_at_zero(s->direction[i], rows.before[i], value);

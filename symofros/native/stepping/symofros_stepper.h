@@ -356,6 +356,8 @@ void sym_event_search_set_step(sym_event_search *search, double h, double way, i
 int32_t sym_event_search_begin(sym_event_search *search);
 /* The events in the order of time, one a call: which, and where; -1: there is none any more. Returns 0 or a status. */
 int32_t sym_event_search_next(sym_event_search *search, int32_t *which, double *x);
+/* Whether event i, not yet met up to x, has arrived at zero there by that value: within rounding, at the same time. */
+int32_t sym_event_is_met(const sym_event_search *search, int32_t i, double x, double value);
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
 /* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.runtime.calls import constants
+from symofros.runtime.calls import NativeMemory, constants, native_library
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -23,6 +23,79 @@ class MetEvent(NamedTuple):
     y: Array
 
 
+class StepSearch:
+    """Where functions of x in [0, 1], the events along one step, arrive at zero: native/stepping/event_search.c.
+
+    Args:
+        directions: Of the arrivals that count: 1 rising, -1 falling, 0 both.
+        evaluate: x, array -> values of all events at x into the array; returns a Status.
+
+    Attributes:
+        values: Memory of the search; the first row has the values at the end of the step before.
+        noted: The sym_event_search, which notes what it does not follow.
+    """
+
+    def __init__(self, directions: Sequence[int], evaluate: Callable[[float, Array], int]) -> None:
+        self._native, self._memory, n = native_library(), NativeMemory(), len(directions)
+        self._evaluate, self._failure = evaluate, list[BaseException]()
+        self.values = np.zeros((constants()["SYM_EVENT_ROWS"], n))
+        self.noted = self._memory.ffi.new("sym_event_search *")
+        self.noted.n, self.noted.direction = n, self._memory.own("int32_t[]", list(directions))
+        self.noted.memory, self.noted.start_changes = self._memory.shared(self.values), 1
+        self.noted.evaluate = self._memory.callback(_EVALUATE, self._called)
+
+    def restart(self) -> None:
+        """Nothing is known of steps before."""
+        self.values[constants()["SYM_EVENT_EARLIER"]] = np.nan
+
+    def arrivals(self, h: float, way: float, number: int) -> Iterator[tuple[int, float]]:
+        """Which events arrive, and at which x of a step, in the order of time.
+
+        Args:
+            h: Length of the step [s].
+            way: The largest way of a coordinate in it [rad or m].
+            number: Number of the step.
+
+        Raises:
+            SearchFailedError: The events have no values there.
+        """
+        ffi, native, noted = self._memory.ffi, self._native, self.noted
+        native.sym_event_search_set_step(noted, h, way, number)
+        which, x = ffi.new("int32_t *"), ffi.new("double *")
+        self._check(native.sym_event_search_begin(noted))
+        while True:
+            self._check(native.sym_event_search_next(noted, which, x))
+            if which[0] < 0:
+                return
+            yield int(which[0]), float(x[0])
+
+    def is_met(self, which: int, x: float, value: float) -> bool:
+        """Whether an event that was not returned yet has arrived by x by that value, which is rounding."""
+        return bool(self._native.sym_event_is_met(self.noted, which, x, value))
+
+    def end_step(self) -> None:
+        """The next step begins where this one ended."""
+        self.values[0] = self.values[constants()["SYM_EVENT_NODES"] - 1]
+
+    def _called(self, _data: Any, x: float, values: Any) -> int:
+        """Values of all events at x; what goes wrong is kept, since it may not pass through C."""
+        try:
+            return self._evaluate(x, self._memory.view(values, self.noted.n))
+        except BaseException as error:
+            self._failure.append(error)
+            return int(Status.CALLBACK_FAILED)
+
+    def _check(self, status: int) -> None:
+        if self._failure:
+            raise self._failure.pop()
+        if status != Status.RUNNING:
+            raise SearchFailedError(int(status))
+
+
+class SearchFailedError(Exception):
+    """Events have no values within a step; its argument is a Status."""
+
+
 class EventSearch:
     """The events of one run, step by step.
 
@@ -31,21 +104,14 @@ class EventSearch:
     """
 
     def __init__(self, stepper: Stepper) -> None:
-        self.stepper = stepper
-        self._failure: BaseException | None = None
+        self.stepper, self._steps = stepper, 0
         self._step: tuple[float, float, Callable[[float], Array]]
-        self._steps, n, memory = 0, len(stepper.events), stepper.memory
-        self._last = constants()["SYM_EVENT_NODES"] - 1
-        self._values = np.zeros((constants()["SYM_EVENT_ROWS"], n))
-        self._search = stepper.ffi.new("sym_event_search *")
-        self._search.n, self._search.direction = n, stepper.system.event_direction
-        self._search.memory, self._search.start_changes = memory.shared(self._values), 1
-        self._search.evaluate = memory.callback(_EVALUATE, self._evaluate)
+        self._search = StepSearch([event.sign for event in stepper.events], self._evaluate)
 
     def start(self, t: float, y: Array) -> int:
         """Evaluate the events at the first state; returns a Status."""
-        self._values[constants()["SYM_EVENT_EARLIER"]] = np.nan
-        return self.stepper.event_values(t, y, self._values[0])
+        self._search.restart()
+        return self.stepper.event_values(t, y, self._search.values[0])
 
     def find(self, t0: float, t1: float, state: Callable[[float], Array]) -> tuple[int, list[MetEvent]]:
         """The events of a step, in the order of time, up to the first terminal one.
@@ -58,48 +124,39 @@ class EventSearch:
         Returns:
             A Status, and the events.
         """
-        native, search, stepper = self.stepper.native, self._search, self.stepper
+        stepper, status = self.stepper, int(Status.RUNNING)
         self._step = (t0, t1, state)
         nq, nv = stepper.model.nq, stepper.model.nv
         speeds = np.abs([state(t)[nq : nq + nv] for t in (t0, t1)])
         self._steps += 1
-        native.sym_event_search_set_step(search, t1 - t0, (t1 - t0) * speeds.max(initial=0.0), self._steps)
-        which, x, met = stepper.ffi.new("int32_t *"), stepper.ffi.new("double *"), list[MetEvent]()
-        status = native.sym_event_search_begin(search)
-        while status == Status.RUNNING:
-            status = native.sym_event_search_next(search, which, x)
-            if status != Status.RUNNING or which[0] < 0:
-                break
-            event = stepper.events[which[0]]
-            if event.once and stepper.system.event_terminal[which[0]] == -1:
-                continue  # In this step, too, the first one alone counts.
-            met.append(MetEvent(which[0], self._time(x[0]), state(self._time(x[0])).copy()))
-            if event.once:
-                stepper.ignore_event(which[0])
-            if event.terminal:
-                break
-        self._values[0] = self._values[self._last]
-        if self._failure is not None:
-            raise self._failure
+        met = list[MetEvent]()
+        try:
+            for which, x in self._search.arrivals(t1 - t0, (t1 - t0) * speeds.max(initial=0.0), self._steps):
+                event = stepper.events[which]
+                if event.once and stepper.system.event_terminal[which] == -1:
+                    continue  # In this step, too, the first one alone counts.
+                met.append(MetEvent(which, self._time(x), state(self._time(x)).copy()))
+                if event.once:
+                    stepper.ignore_event(which)
+                if event.terminal:
+                    break
+        except SearchFailedError as failed:
+            (status,) = failed.args
+        self._search.end_step()
         self._keep_notes()
-        return int(status), met
+        return status, met
 
     def _time(self, x: float) -> float:
         t0, t1, _ = self._step
         return t1 if x == 1.0 else t0 + x * (t1 - t0)
 
-    def _evaluate(self, _data: Any, x: float, values: Any) -> int:
-        """Values of all events at x; what goes wrong is kept, since it may not pass through C."""
-        try:
-            t = self._time(x)
-            return self.stepper.event_values(t, self._step[2](t), self.stepper.memory.view(values, self._search.n))
-        except BaseException as error:
-            self._failure = error
-            return int(Status.CALLBACK_FAILED)
+    def _evaluate(self, x: float, values: Array) -> int:
+        t = self._time(x)
+        return self.stepper.event_values(t, self._step[2](t), values)
 
     def _keep_notes(self) -> None:
         """Keep the first event of each kind: one that turns too near to zero, one that was not followed."""
-        run, search = self.stepper.run, self._search
+        run, search = self.stepper.run, self._search.noted
         if run.unresolved_event < 0 <= search.unresolved:
             run.unresolved_event, run.unresolved_t = search.unresolved, self._step[0]
         if run.touched_event < 0 <= search.touched:

@@ -14,7 +14,7 @@ from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan
-from symofros.diagrams.run.examination.faults import fault_at
+from symofros.diagrams.run.examination.faults import fault_at, without_end
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.loop import Loop
 from symofros.errors import SymofrosError
@@ -95,10 +95,7 @@ class Ended:
 def _without_end(ended: Ended, notes: tuple[str, ...]) -> Outcome:
     """The outcome of a run in which crossings bring each other about at one instant."""
     crossings, last = ended.resolved.crossings, [met for met in ended.recorded.events if met.t == ended.t][-8:]
-    names = ", ".join(dict.fromkeys(crossings[met.which].name for met in last if met.which < len(crossings)))
-    reason = f"crossings bring each other about at the same instant without end: {names or 'events'}"
-    advice = "part the levels at which they switch, or sample one of these blocks, so that time passes between"
-    return Outcome("interrupted", ended.t, reason, advice, notes)
+    return without_end(ended.t, (crossings[met.which].name for met in last if met.which < len(crossings)), notes)
 
 
 def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tuple[Outcome, Resolution]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.run.block_functions import Blocks
+from symofros.simulation.results.outcome import Outcome
 
 # Size of a state that makes what is computed of it overflow.
 _EXPLODED = 1e100
@@ -71,3 +74,11 @@ def _inputs(blocks: Blocks, name: str) -> str:
             shown = ", ".join(entries[:_LISTED]) + (", ..." if len(entries) > _LISTED else "")
             said.append(f"{port} = {shown}" if blocks.out[source].ndim == 0 else f"{port} = ({shown})")
     return f", with {'; '.join(said[:_LISTED])}" if said else ""
+
+
+def without_end(t: float, names: Iterable[str], notes: tuple[str, ...]) -> Outcome:
+    """The outcome of a run in which crossings of these names bring each other about at one instant."""
+    said = ", ".join(dict.fromkeys(names)) or "events"
+    reason = f"crossings bring each other about at the same instant without end: {said}"
+    advice = "part the levels at which they switch, or sample one of these blocks, so that time passes between"
+    return Outcome("interrupted", t, reason, advice, notes)

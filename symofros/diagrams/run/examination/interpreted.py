@@ -147,8 +147,10 @@ class _Revisited:
             instants=[(float(self._run.t[i]), frozenset(), True), *later],
             t_end=t_end,
             dt=0.5**refinements * course.step if refinements else course.dt,
+            begins=False,
         )
-        self._place(i)
+        # Of the records of a crossing, at one time, the last has what the crossing changed.
+        self._place(int(np.searchsorted(self._run.t, self._run.t[i], "right")) - 1)
         watch = BeamWatch(self._run.resolved, self._blocks.par, np.inf)
         run = run_interpreted(self._blocks, self._called, again, watch)
         return (run.t, run.q, run.v) if run.outcome.ok else None
