@@ -47,6 +47,17 @@ def looped() -> sf.Diagram:
     return diagram
 
 
+def rounded() -> sf.Diagram:
+    """Relays whose inputs differ by rounding: they switch at one instant, whichever is found first."""
+    diagram = sf.Diagram("rounded")
+    diagram.add(blocks.Integrator(name="x"), u="rate.y")
+    diagram.add(blocks.Formula(name="rate", formulas={"y": "cos(3*t)"}))
+    for i, factor in enumerate((1.0, 3.0, 7.0, 0.1, 1.7)):
+        diagram.add(blocks.Formula(name=f"by{i}", formulas={"y": f"({factor}*x)/{factor}"}), x="x.y")
+        diagram.add(blocks.Relay(name=f"r{i}", lower=-0.2, upper=0.2), u=f"by{i}.y")
+    return diagram
+
+
 CASES: dict[str, Callable[[], sf.Diagram]] = {
     "ball": ball,
     "relayed": relayed,
@@ -77,6 +88,15 @@ def test_instants_have_the_bits_of_the_compiled_run_where_signals_do() -> None:
     simulation = sf.Simulation(whole(EVERY, "wave"), SAME_BITS)
     run, other = simulation.run(2.5, dt=5e-3), simulation.interpret(2.5, dt=5e-3, compiled=False)
     assert len(run.crossings) == 24 and run.crossings == other.crossings and np.array_equal(run.t, other.t)
+
+
+def test_what_rounding_tells_apart_is_met_at_one_instant() -> None:
+    """In any order; none is lost behind the one that is found first."""
+    runs = [sf.Simulation(rounded(), SAME_BITS).interpret(1.5, dt=5e-3), sf.Simulation(rounded()).run(1.5, dt=5e-3)]
+    for run in runs:
+        assert sorted(one[:2] for one in run.crossings) == [
+            (f"r{i}", which) for i in range(5) for which in ("off", "on")
+        ]
 
 
 def test_crossings_without_end_end_an_interpreted_run_too() -> None:
