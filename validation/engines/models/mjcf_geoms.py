@@ -72,23 +72,24 @@ def _meshes() -> Iterator[tuple[str, Reading]]:
 def _fitted() -> Iterator[tuple[str, Reading]]:
     """Boxes that are fitted to a mesh: around its vertices, or of its moments of inertia.
 
-    It is a pyramid on z, of which the principal axes are known, and the mass centre is not amid the vertices.
+    It is a pyramid along x, of which the principal axes are known, and the mass centre is not amid the vertices. Its
+    own frame takes y, z, x for x, y, z by MuJoCo's order of moments: a rotation whose quaternion floats state exactly.
     """
-    a, b, h = 0.5, 0.25, 2.0
-    corners = [(-a, -b, 0.0), (a, -b, 0.0), (a, b, 0.0), (-a, b, 0.0), (0.0, 0.0, h)]
+    h, b, c = 2.0, 0.25, 0.5
+    corners = [(0.0, -b, -c), (0.0, b, -c), (0.0, b, c), (0.0, -b, c), (h, 0.0, 0.0)]
     faces = ((0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))
     data = f'vertex="{"  ".join(" ".join(map(repr, one)) for one in corners)}"'
     data += f' face="{"  ".join(" ".join(map(str, three)) for three in faces)}"'
-    # For unit mass, about the mass centre, at h / 4: a^2 / 5, b^2 / 5 and 3 h^2 / 80 along x, y, z.
-    spread = np.array([a * a / 5.0, b * b / 5.0, 3.0 * h * h / 80.0])
+    # For unit mass, about the mass centre, at h / 4: 3 h^2 / 80, b^2 / 5, c^2 / 5 along x, y, z.
+    spread = np.array([3.0 * h * h / 80.0, b * b / 5.0, c * c / 5.0])
 
     def second(name: str, half: Array, at: float, head: str) -> tuple[str, Reading]:
         text = f'{head}<asset><mesh name="t" {data}/></asset>'
-        link = dense(solid_of("box", *map(float, half)), com=(0.0, 0.0, at))
+        link = dense(solid_of("box", *map(float, half)), com=(at, 0.0, 0.0))
         return _of(f"box fitted {name}", file(b=f'{JOINT_B}<geom type="box" mesh="t"/>', head=text), FIRST, link)
 
     fitted = RADIAN.replace("/>", ' fitaabb="true"/>')
-    yield second("around a mesh", np.array([a, b, h / 2.0]), h / 2.0, fitted)
+    yield second("around a mesh", np.array([h / 2.0, b, c]), h / 2.0, fitted)
     yield second("to a mesh's moments", np.sqrt(3.0 * spread), h / 4.0, RADIAN)
 
 
