@@ -39,7 +39,7 @@ DIMENSIONS = (
     Dimension("mass_matrix_inverse|forward_dynamics|delassus(?!_inverse)|constrained_acceleration|impact|kkt", -1, -2),
     Dimension(
         "bias|gravity|coriolis_forces|inverse_dynamics|joint_wrenches|potential_energy$|constraint_forces|wrench_sens"
-        "|passive_forces|actuat.*_forces|mechanical_energy|conservative_power|base_wrench",
+        "|passive_forces|actuat.*_forces|mechanical_energy|base_wrench",
         1,
         1,
         1,

@@ -15,6 +15,8 @@ from .lines import Actuator, Medium, Tendon
 
 # Ways of stating a tree (`Tree.stated`).
 BASE, DENAVIT, MODIFIED = "a base", "Denavit-Hartenberg parameters", "modified Denavit-Hartenberg parameters"
+# The first link that is fixed to another begins a gripper.
+GRIPPER = "a gripper"
 
 
 @dataclass(frozen=True)

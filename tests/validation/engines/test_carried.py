@@ -83,9 +83,11 @@ def test_links_have_what_moves_them() -> None:
     np.testing.assert_allclose(_of("base_wrench")[:3], whole * (_of("mass_centre_acceleration") - weight), atol=1e-12)
 
 
-def test_powers_and_energies() -> None:
+def test_energies_and_rates() -> None:
     assert _of("mechanical_energy") == pytest.approx(_of("kinetic_energy") + _of("potential_energy"))
-    assert _of("conservative_power") == pytest.approx(-_of("gravity") @ _STATE.v)
+    np.testing.assert_array_equal(_of("speeds_of_rates"), _STATE.v)
+    driven = replace(_STATE, a=_of("forward_dynamics"))
+    np.testing.assert_allclose(_of("link_accelerations_driven"), _of("link_accelerations", driven), atol=1e-11)
     np.testing.assert_array_equal(_of("coordinate_rates"), _STATE.v)
     assert _of("squared_distance")[0] == pytest.approx(_STATE.v2 @ _STATE.v2)
 

@@ -23,11 +23,11 @@ def _wholes() -> dict[str, Function]:
         ),
         "static_regressor": ("Y (3, 4 L): the mass centre is Y (m, m c of each link)", carried.static_regressor),
         "mechanical_energy": ("T + V (1)", carried.energy),
-        "conservative_power": ("- dV/dt (1)", carried.power_of_weights),
         "base_wrench": (
             "what the world exerts on the first links, about its origin along its axes (6)",
             carried.base_wrench,
         ),
+        "link_accelerations_driven": ("link_accelerations at the accelerations that tau makes (L, 6)", carried.driven),
         "coordinate_rates": ("N v (nq)", carried.coordinate_rates),
         "speeds_of_rates": ("v, of N v (nv)", lambda t, s: s.v),
         "squared_distance": ("the square of v2, of q and where v2 leads (1)", carried.squared_distance),

@@ -10,6 +10,7 @@ from ..interface import Actuator, Tendon
 from ..truth.arithmetic import Exact, exact
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
+from ..truth import carried
 from .function import Function
 
 
@@ -21,6 +22,10 @@ def _of_joints() -> dict[str, Function]:
         "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
         "joint_speed_limits": ("greatest speeds (nv)", lambda t, s: t.own.bounds[:, 0]),
         "joint_force_limits": ("greatest forces (nv)", lambda t, s: t.own.bounds[:, 1]),
+        "link_bodies": (
+            "mass, mass times mass centre, moments about it xx, yy, zz, xy, xz, yz along the link's axes (L, 10)",
+            carried.bodies,
+        ),
         "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
         "joint_drives": ("stiffness, damping, coordinate of drives (nv, 3)", lambda t, s: t.own.drives),
     }

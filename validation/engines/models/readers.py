@@ -12,7 +12,7 @@ from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
 
 # What a file's reading shows in: the functions that every number of it enters. PASSIVE: with springs or dampers, which
 # some engines count among their forces.
-READ = ("sizes", "mass_matrix", "bias", "link_poses")
+READ = ("sizes", "mass_matrix", "bias", "link_poses", "link_bodies")
 # What joints state beside their motion, sites, actuators.
 LOSSES = ("joint_dampings", "joint_frictions", "joint_stiffnesses")
 LIMITED = ("joint_limits",)

@@ -12,7 +12,7 @@ from math import cos, sin
 import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows
-from ..tree import BASE, DENAVIT, MODIFIED
+from ..tree import BASE, DENAVIT, GRIPPER, MODIFIED
 from .kinds import link, placed, shifted
 
 # Kind, d or theta, a, alpha, offset.
@@ -82,6 +82,14 @@ def _based(name: str, *kinds: str) -> Tree:
     return Tree(name, tuple(link(draw, "abcdef"[k], k - 1, joint) for k, joint in enumerate(joints)), stated=BASE)
 
 
+def _gripped() -> Tree:
+    """Two hinges and a gripper of three links, which don't move in it."""
+    draw = np.random.default_rng(34)
+    joints = [Joint("revolute"), Joint("revolute", axis=(0.0, 1.0, 0.0)), *[Joint("fixed")] * 3]
+    links = tuple(link(draw, "abcde"[k], min(k, 3) - 1, placed(draw, joint)) for k, joint in enumerate(joints))
+    return Tree("fixed links of a gripper", links, stated=GRIPPER)
+
+
 def _with_tool(tree: Tree) -> Tree:
     """An arm: its end is a tool, without mass, beyond the last link."""
     draw = np.random.default_rng(31)
@@ -111,6 +119,7 @@ def trees() -> dict[str, Tree]:
         hinges,
         mixed,
         replace(hinges, name=f"{hinges.name}, gravity aside", gravity=aside),
+        _gripped(),
         _with_tool(six),
         *(_with_tool(_chain(f"arm by {stated}, with a tool", _ARM, stated)) for stated in (DENAVIT, MODIFIED)),
     )

@@ -25,8 +25,10 @@ from . import (
     spatialmath,
     symofros,
     trimesh,
+    yourdfpy,
 )
 from .loops import exudyn as exudyn_joints
+from .turns import mink
 
 _MODULES = (
     pinocchio,
@@ -51,5 +53,7 @@ _MODULES = (
     spatialmath,
     symofros,
     trimesh,
+    mink,
+    yourdfpy,
 )
 OWN: dict[str, EnginePlugin] = {module.PLUGIN.name: module.PLUGIN for module in _MODULES}

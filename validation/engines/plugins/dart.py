@@ -117,6 +117,28 @@ for b in links:
     "integrate": Way("integratePositions", f"{_INTEGRATED}value = s.getPositions()"),
     "difference": Way("getPositionDifferences", f"{_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)"),
 }
+# As the first link sees them, along its axes.
+_SEEN = "A = links[0]\n"
+WAYS |= {
+    "relative_poses": Way(
+        "getTransform, withRespectTo",
+        f"{_Q}{_SEEN}X = [b.getTransform(A) for b in links]\n"
+        "value = [[*x.translation(), *x.rotation().flat] for x in X]",
+    ),
+    "relative_velocities": Way(
+        "getLinearVelocity, getAngularVelocity relative to",
+        f"{_QV}{_SEEN}value = [[*b.getLinearVelocity(A, A), *b.getAngularVelocity(A, A)] for b in links]",
+    ),
+    "relative_accelerations": Way(
+        "getLinearAcceleration, getAngularAcceleration relative to",
+        f"{_QVA}{_SEEN}value = [[*b.getLinearAcceleration(A, A), *b.getAngularAcceleration(A, A)] for b in links]",
+    ),
+    "mass_centre_velocity": Way("getCOMLinearVelocity", f"{_QV}value = s.getCOMLinearVelocity()"),
+    "mass_centre_acceleration": Way("getCOMLinearAcceleration", f"{_QVA}value = s.getCOMLinearAcceleration()"),
+    "mechanical_energy": Way(
+        "computeKineticEnergy, computeLagrangian", f"{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()"
+    ),
+}
 
 
 def _array(values: object) -> str:

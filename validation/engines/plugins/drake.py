@@ -255,6 +255,7 @@ def write(tree: Tree) -> Source | Unsupported:
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
     optional: dict[str, tuple[str, ...]] = {"links": (links,)}
+    optional["parents"] = (f"parents = {[link.parent for link in tree.links]}",)
     optional["js"] = (f"js = [p.GetJointByName(f'j{{k}}') for k in range({len(tree.links)})]",)
     if tree.sensors:
         places = [link.name for link in tree.links]

@@ -6,8 +6,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, eye, skew, zeros
-from .derived import com_jacobian, joint_wrenches, unit_inertias
+from .arithmetic import Exact, cross, exact, eye, skew, zeros
+from .derived import classical, com_jacobian, joint_wrenches, unit_inertias
 from .dynamics import Point, Truth
 
 
@@ -87,9 +87,9 @@ def energy(truth: Truth, s: Point) -> Exact:
     return truth.T(s.q, s.v) + truth.V(s.q)
 
 
-def power_of_weights(truth: Truth, s: Point) -> Exact:
-    """Power of gravity and of springs: what the potential energy loses."""
-    return -truth.kinematics.along(lambda q: np.array([truth.V(q)], dtype=object), s.q, s.v)[0]
+def driven(truth: Truth, s: Point) -> Exact:
+    """Accelerations of links (L, 6) at those that the forces make."""
+    return classical(truth, s.q, s.v, truth.FD(s.q, s.v, s.tau))
 
 
 def coordinate_rates(truth: Truth, s: Point) -> Exact:
@@ -131,6 +131,15 @@ def relative_velocities(truth: Truth, s: Point) -> Exact:
 def relative_accelerations(truth: Truth, s: Point) -> Exact:
     """Accelerations of links' origins as the first link sees them, and angular ones, along its axes (L, 6)."""
     return _relative(truth, s.q) @ s.a + truth.kinematics.along(lambda q: _relative(truth, q), s.q, s.v) @ s.v
+
+
+def bodies(truth: Truth, s: Point) -> Exact:
+    """Mass, first moment, moments about the mass centre (L, 10) of each link, as it is stated."""
+    places, rows = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)), []
+    for inertia, link in zip(truth.inertias, truth.tree.links, strict=True):
+        stated = exact(link.inertia)
+        rows.append(np.array([inertia.mass, *inertia.first, *(stated[place] for place in places)]))
+    return np.array(rows)
 
 
 def base_wrench(truth: Truth, s: Point) -> Exact:

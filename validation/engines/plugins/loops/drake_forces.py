@@ -162,3 +162,67 @@ value = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p)) - p.CalcInverse
     ),
     "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
 }
+
+# As the first link sees them, along its axes.
+_SEEN = "A, W, V = links[0].body_frame(), p.world_frame(), drake.JacobianWrtVariable.kV\n"
+_EACH = "for b in links"
+WAYS |= {
+    "relative_poses": Way(
+        "CalcRelativeTransform",
+        f"{Q}{_SEEN}poses = [p.CalcRelativeTransform(c, A, b.body_frame()) {_EACH}]\n"
+        "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
+    ),
+    "relative_poses:CalcPointsPositions": Way(
+        "CalcPointsPositions, CalcRelativeRotationMatrix",
+        f"{Q}{_SEEN}value = [[*p.CalcPointsPositions(c, b.body_frame(), [[0], [0], [0]], A).ravel(),"
+        f" *p.CalcRelativeRotationMatrix(c, A, b.body_frame()).matrix().flat] {_EACH}]",
+    ),
+    "relative_velocities": Way(
+        "Frame.CalcSpatialVelocity",
+        f"{QV}{_SEEN}twists = [b.body_frame().CalcSpatialVelocity(c, A, A) {_EACH}]\n"
+        "value = [[*t.translational(), *t.rotational()] for t in twists]",
+    ),
+    "relative_jacobians": Way(
+        "CalcJacobianSpatialVelocity in a frame",
+        f"{Q}{_SEEN}"
+        f"value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, b.body_frame(), [0, 0, 0], A, A), 3, axis=0) {_EACH}]",
+    ),
+    "relative_jacobians:translational and angular": Way(
+        "CalcJacobianTranslationalVelocity, CalcJacobianAngularVelocity",
+        f"{Q}{_SEEN}value = [np.r_[p.CalcJacobianTranslationalVelocity(c, V, b.body_frame(), [0, 0, 0], A, A),"
+        f" p.CalcJacobianAngularVelocity(c, V, b.body_frame(), A, A)] {_EACH}]",
+    ),
+    "link_velocity_products:CalcBiasTranslationalAcceleration": Way(
+        "CalcBiasTranslationalAcceleration",
+        f"{QV}{_SEEN}value = [[*p.CalcBiasTranslationalAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).ravel(),"
+        f" *p.CalcBiasSpatialAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).rotational()] {_EACH}]",
+    ),
+    "mass_centre_velocity": Way(
+        "CalcCenterOfMassTranslationalVelocityInWorld", f"{QV}value = p.CalcCenterOfMassTranslationalVelocityInWorld(c)"
+    ),
+    "mechanical_energy": Way(
+        "EvalKineticEnergy, EvalPotentialEnergy", f"{QV}value = p.EvalKineticEnergy(c) + p.EvalPotentialEnergy(c)"
+    ),
+    "coordinate_rates": Way("MapVelocityToQDot", f"{QV}value = p.MapVelocityToQDot(c, v)"),
+    "coordinate_rates:MakeVelocityToQDotMap": Way(
+        "MakeVelocityToQDotMap", f"{QV}value = p.MakeVelocityToQDotMap(c).toarray() @ v"
+    ),
+    "speeds_of_rates": Way("MapQDotToVelocity", f"{QV}value = p.MapQDotToVelocity(c, p.MapVelocityToQDot(c, v))"),
+    "speeds_of_rates:MakeQDotToVelocityMap": Way(
+        "MakeQDotToVelocityMap", f"{QV}value = p.MakeQDotToVelocityMap(c).toarray() @ p.MapVelocityToQDot(c, v)"
+    ),
+    "link_accelerations_driven": Way(
+        "body_spatial_accelerations output port",
+        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
+        "every = p.get_body_spatial_accelerations_output_port().Eval(c)\n"
+        f"value = [[*every[b.index()].translational(), *every[b.index()].rotational()] {_EACH}]",
+    ),
+    "carried_inertias": Way(
+        "CalcSpatialInertia",
+        f"""{Q}value = []
+def below(b): return [b.index()] + [k for x in links if parents[links.index(x)] == links.index(b) for k in below(x)]
+for b in links:
+    K = p.CalcSpatialInertia(c, b.body_frame(), below(b))
+    value.append(np.roll(K.CopyToFullMatrix6(), (3, 3), (0, 1)))""",
+    ),
+}

@@ -8,7 +8,7 @@ from math import atan2
 import numpy as np
 
 from ...interface import Array, Joint, Link, Slot, Tree, Unsupported
-from ...tree import BASE, MODIFIED
+from ...tree import BASE, GRIPPER, MODIFIED
 from ...truth.arms import AT, BURDEN
 from ..writing.source import Source, Way
 
@@ -145,6 +145,6 @@ def write(tree: Tree) -> Source | Unsupported:
 
 def lacking(stated: str, ways: tuple[str, ...]) -> tuple[str, ...]:
     """Ways that a tree that is stated so has not."""
-    if stated in ("", BASE):
+    if stated in ("", BASE, GRIPPER):
         return tuple(DENAVIT_WAYS)
     return tuple(way for way in ways if way not in (*_PLAIN, *ARM_WAYS))

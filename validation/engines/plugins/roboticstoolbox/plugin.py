@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
-from ...tree import BASE, DENAVIT, MODIFIED
+from ...tree import BASE, DENAVIT, GRIPPER, MODIFIED
 from ..writing.source import Source, SourcePlugin, Way, numbered
 from . import denavit
 from .denavit import lacking, pose, without_tool
@@ -39,6 +39,12 @@ WAYS = {
     "link_poses": Way(
         "fkine",
         """T = [robot.fkine(q, end=name).A for name in links]
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]""",
+    ),
+    "link_poses:fkine_all": Way(
+        "fkine_all",
+        """every = robot.fkine_all(q)
+T = [every[robot.link_dict[name].number].A for name in links]
 value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]""",
     ),
     "link_jacobians": Way(
@@ -137,6 +143,8 @@ def write(tree: Tree) -> Source | Unsupported:
     every = ", ".join(line.split(" =")[0] for line in lines)
     more = f", base={pose(tree.links[0].joints[0])}" if tree.stated == BASE else ""
     more += f", tool={pose(tool)}" if tool else ""
+    held = next((k for k, link in enumerate(bodies) if link.joints[0].kind == "fixed"), None)
+    more += f", gripper_links=[l{held}_0]" if tree.stated == GRIPPER and held is not None else ""
     robot = f"robot = Robot([{every}], gravity={list(tree.gravity)!r}{more})"
     imports = ("from spatialmath import SE3",) if more else ()
     setup = (*_IMPORTS, *imports)
@@ -201,6 +209,7 @@ PLUGIN = SourcePlugin(
         BASE: "base",
         DENAVIT: "DHRobot of RevoluteDH, PrismaticDH",
         MODIFIED: "DHRobot of RevoluteMDH, PrismaticMDH",
+        GRIPPER: "gripper_links",
         "arms": "tool",
     },
     write=write,
