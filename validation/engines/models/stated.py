@@ -116,6 +116,7 @@ def trees() -> dict[str, Tree]:
         replace(other, name=f"{other.name}, gravity aside", gravity=aside),
         _on_base(short),
         _on_base(other),
+        _based("hinge on a turned base", "revolute"),
         hinges,
         mixed,
         replace(hinges, name=f"{hinges.name}, gravity aside", gravity=aside),
