@@ -59,6 +59,7 @@ _APART = np.linalg.inv(_X) @ _Y
 _TWIST = np.array([*_STATE.v, *_STATE.v2])
 _EXPECTED = {
     "pose_composed": _flat(_X @ _Y),
+    "pose_unset": _flat(np.eye(4)),
     "pose_inverse": _flat(np.asarray(np.linalg.inv(_X), dtype=float)),
     "pose_relative": _flat(_APART),
     "pose_of_point": (_X @ [*_STATE.v, 1.0])[:3],

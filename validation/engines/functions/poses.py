@@ -10,6 +10,7 @@ def _placements() -> dict[str, Function]:
     """X = (R, a) of the coordinates q, Y = (Q, tau) of q2; position and rows of the rotation each (12)."""
     rows = {
         "pose_composed": ("X Y (12)", poses.composed),
+        "pose_unset": ("a placement as it is before anybody sets it: zeros and rows of 1 (12)", poses.unset),
         "pose_inverse": ("X^-1 (12)", poses.inverse),
         "pose_relative": ("X^-1 Y (12)", poses.relative),
         "pose_of_point": ("the point v of X, in the frame that X is in (3)", poses.placed),

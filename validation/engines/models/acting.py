@@ -187,9 +187,9 @@ def _plain_motors() -> list[Tree]:
     motors = tuple(Actuator(one.name, control=force) for one, force in zip(links, (0.75, -2.5, 1.25), strict=True))
     bounded = tuple(replace(one, force_limits=(-1.0, 1.0)) for one in motors)
     return [
+        Tree("forces along joints at their bounds", links, actuators=bounded),
         Tree("forces along joints", links, actuators=motors),
         Tree("forces along two of three joints", links, actuators=motors[1:]),
-        Tree("forces along joints at their bounds", links, actuators=bounded),
         Tree("forces along joints with rotors", geared, actuators=bounded[:2]),
     ]
 
@@ -307,6 +307,7 @@ def trees() -> dict[str, Tree]:
     return {
         tree.name: tree
         for family in (
+            _plain_motors,
             _passive,
             _dragged,
             _tendons,
@@ -314,7 +315,6 @@ def trees() -> dict[str, Tree]:
             _sided,
             _heavy,
             _actuators,
-            _plain_motors,
             _plain_actuators,
             _muscles,
             _states,

@@ -108,6 +108,7 @@ def trees() -> dict[str, Tree]:
     )
     six = replace(_based("arm with a tool", *["revolute"] * 6), stated="")
     made = (
+        *(replace(one, name=one.name.replace("chain", "hinge"), links=one.links[:1]) for one in (short, other)),
         short,
         other,
         _chain(f"chain by {DENAVIT}, armature", _SHORT, DENAVIT, 0.25),

@@ -41,6 +41,32 @@ WAYS = {
 }
 for _own, _of in _SETS.items():
     WAYS |= _ways_of(_own, _of)
+# Modules of effectors, and the placements that they begin with.
+_EFFECTORS = {
+    "hingedRigidBody": ("r_HB_B, dcm_HB",),
+    "nHingedRigidBody": ("r_HB_B, dcm_HB",),
+    "dualHingedRigidBody": ("r_H1B_B, dcm_H1B",),
+    "spinningBodyOneDOF": ("r_SB_B, dcm_S0B",),
+    "spinningBodyTwoDOF": ("r_S1B_B, dcm_S10B", "r_S2S1_S1, dcm_S20S1"),
+}
+_UNSET = """from Basilisk.simulation import {module}
+one = {module}.{name}()
+p, C = (np.array(x) for x in ({p}, {C}))
+value = [*p.flat, *C.T.flat]"""
+
+
+def _unset() -> dict[str, Way]:
+    """Placements of effectors before anybody sets them."""
+    ways = {}
+    for short, pairs in _EFFECTORS.items():
+        module, name = f"{short}StateEffector", f"{short[0].upper()}{short[1:]}StateEffector"
+        for p, C in (pair.split(", ") for pair in pairs):
+            code = _UNSET.format(module=module, name=name, p=f"one.{p}", C=f"one.{C}")
+            ways[f"pose_unset:{name} {C}"] = Way(f"{name}: {p}, {C}", code)
+    return ways
+
+
+WAYS |= _unset()
 
 
 def write(tree: Tree) -> Source | Unsupported:

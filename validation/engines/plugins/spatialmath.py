@@ -62,6 +62,7 @@ def _flat(of: str) -> str:
 
 WAYS |= {
     "pose_composed": Way("SE3 * SE3", f"{_X}{_flat('(X * Y).A')}"),
+    "pose_unset": Way("SE3", f"import spatialmath as cls\n{_flat('cls.SE3().A')}"),
     "pose_inverse": Way("SE3.inv", f"{_X}{_flat('X.inv().A')}"),
     "pose_inverse:trinv": Way("trinv", f"{_T}{_flat('sm.trinv(T)')}"),
     "pose_relative": Way("SE3 / SE3", f"{_X}{_flat('(X.inv() / Y.inv()).A')}"),

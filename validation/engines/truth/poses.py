@@ -51,6 +51,11 @@ def composed(t: Truth, s: Point) -> Exact:
     return _flat(R @ Q, p + R @ r)
 
 
+def unset(t: Truth, s: Point) -> Exact:
+    """A placement that nobody has set (12)."""
+    return _flat(eye(3), zeros(3))
+
+
 def inverse(t: Truth, s: Point) -> Exact:
     """X^-1 (12)."""
     R, p = _first(t, s)

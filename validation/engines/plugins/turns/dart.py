@@ -48,6 +48,7 @@ WAYS = {
         "verifyRotation", f"{_R}value = [float(dart.math.verifyRotation(A)) for A in (R, R * [1, 1, -1], 1.25 * R)]"
     ),
     "pose_composed": Way("Isometry3.multiply", f"{_X}{_flat('X.multiply(Y)')}"),
+    "pose_unset": Way("Isometry3", _flat("dart.math.Isometry3()")),
     "pose_inverse": Way("Isometry3.inverse", f"{_X}{_flat('X.inverse()')}"),
     "pose_exponential": Way("expMap", f"{_flat('dart.math.expMap(np.r_[v2, v])')}"),
     "spatial_inertia": Way("Inertia.getSpatialTensor", f"{_I}{_SWAPPED.format(of='I.getSpatialTensor()')}"),

@@ -103,6 +103,7 @@ WAYS = {
         "value = [float(A.IsValid()) for A in every]",
     ),
     "pose_composed": Way("RigidTransform.multiply", f"{_X}{_flat('X @ Y')}"),
+    "pose_unset": Way("RigidTransform", _flat("drake.RigidTransform()")),
     "pose_inverse": Way("RigidTransform.inverse", f"{_X}{_flat('X.inverse()')}"),
     "pose_relative": Way("RigidTransform.InvertAndCompose", f"{_X}{_flat('X.InvertAndCompose(Y)')}"),
     "pose_of_point": Way("RigidTransform.multiply", f"{_X}value = X.multiply(p_BoQ_B=v)"),

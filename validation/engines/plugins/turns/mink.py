@@ -40,6 +40,7 @@ _ROTATIONS = {
 }
 _PLACEMENTS = {
     "pose_composed": Way("SE3.multiply", f"{_X}{_flat('X @ Y')}"),
+    "pose_unset": Way("SE3.identity", _flat("mink.SE3.identity()")),
     "pose_inverse": Way("SE3.inverse", f"{_X}{_flat('X.inverse()')}"),
     "pose_relative": Way("SE3.inverse", f"{_X}{_flat('X.inverse() @ Y')}"),
     "pose_of_point": Way("SE3.apply", f"{_X}value = X.apply(v)"),

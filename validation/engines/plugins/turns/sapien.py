@@ -26,6 +26,7 @@ WAYS = {
         "Pose.get_rpy, set_rpy", f"{_X}Y.set_rpy(X.get_rpy())\nvalue = Y.to_transformation_matrix()[:3, :3].ravel()"
     ),
     "pose_composed": Way("Pose * Pose", f"{_X}{_flat('X * Y')}"),
+    "pose_unset": Way("Pose", _flat("sapien.Pose()")),
     "pose_inverse": Way("Pose.inv", f"{_X}{_flat('X.inv()')}"),
     "pose_relative": Way("Pose.inv", f"{_X}{_flat('X.inv() * Y')}"),
 }
