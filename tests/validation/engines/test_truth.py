@@ -16,7 +16,7 @@ from validation.engines.interface import STEP, Joint, Link, Slot, State, Tree
 from validation.engines.models.kinds import tree_of
 from validation.engines.proving.pieces import Layout
 from validation.engines.proving.shrink import Case, size, smallest
-from validation.engines.truth import derived
+from validation.engines.truth import displacements
 from validation.engines.truth.arithmetic import cos_sin, exact, many_digits, rate, solve
 from validation.engines.truth.charts import CHARTS, GEOMETRIES
 from validation.engines.truth.dynamics import Point, Truth, digits, neutral, random_state
@@ -123,7 +123,8 @@ def test_forward_and_inverse_dynamics_undo_each_other_to_all_digits() -> None:
     again = truth.value(lambda t, s: t.FD(s.q, s.v, t.ID(s.q, s.v, s.a)) - s.a, point)
     assert np.max(np.abs(digits(again))) < 1e-30
     both = truth.value(
-        lambda t, s: derived.integrated_dv(t, s) - solve(derived.difference_dq2(t, s), exact(np.eye(3))), point
+        lambda t, s: displacements.integrated_dv(t, s) - solve(displacements.difference_dq2(t, s), exact(np.eye(3))),
+        point,
     )
     assert np.max(np.abs(digits(both))) < 1e-30
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from ..interface import Actuator, Tendon
+from ..truth import carried
 from ..truth.arithmetic import Exact, exact
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
-from ..truth import carried
 from .function import Function
 
 

@@ -6,7 +6,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import derived
+from ..truth import derived, displacements
 from ..truth.arithmetic import Exact
 from ..truth.derived import FRAMES, Frame
 from ..truth.dynamics import Point, Truth
@@ -96,15 +96,19 @@ TREES: dict[str, Function] = {
     ),
     "kinetic_energy_regressor": Function("Y (10 L): T = Y parameters", derived.kinetic_regressor),
     "potential_energy_regressor": Function("Y (10 L): V = Y parameters", derived.potential_regressor),
-    "integrate": Function("where q' = N(q) v2 leads in unit time (nq)", lambda t, s: derived.integrated(t, s.q, s.v2)),
+    "integrate": Function(
+        "where q' = N(q) v2 leads in unit time (nq)", lambda t, s: displacements.integrated(t, s.q, s.v2)
+    ),
     "difference": Function("v2, of q and where v2 leads from it (nv)", lambda t, s: np.array(s.v2)),
     "interpolate": Function(
-        "a quarter of the way from q to where v2 leads (nq)", lambda t, s: derived.integrated(t, s.q, s.v2 / 4)
+        "a quarter of the way from q to where v2 leads (nq)", lambda t, s: displacements.integrated(t, s.q, s.v2 / 4)
     ),
-    "difference_dq": Function("derivative of difference by its first configuration (nv, nv)", derived.difference_dq),
-    "difference_dq2": Function("derivative of difference by its second (nv, nv)", derived.difference_dq2),
-    "integrate_dq": Function("derivative of integrate by q (nv, nv)", derived.integrated_dq),
-    "integrate_dv": Function("derivative of integrate by v2 (nv, nv)", derived.integrated_dv),
+    "difference_dq": Function(
+        "derivative of difference by its first configuration (nv, nv)", displacements.difference_dq
+    ),
+    "difference_dq2": Function("derivative of difference by its second (nv, nv)", displacements.difference_dq2),
+    "integrate_dq": Function("derivative of integrate by q (nv, nv)", displacements.integrated_dq),
+    "integrate_dv": Function("derivative of integrate by v2 (nv, nv)", displacements.integrated_dv),
 }
 
 

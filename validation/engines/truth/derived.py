@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, solve, stack, zeros
+from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, stack, zeros
 from .dynamics import Point, Truth
 from .kinematics import Inertia
 
@@ -355,69 +355,3 @@ def potential_regressor(truth: Truth, s: Point) -> Exact:
 def mass_matrix_rate(truth: Truth, s: Point) -> Exact:
     """dM/dt (nv, nv)."""
     return truth.kinematics.along(truth.M, s.q, s.v)
-
-
-ROWS = 13
-
-
-def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits.
-
-    Args:
-        truth: The truth.
-        q: Coordinates.
-        v: Speeds.
-        rows: Rows of the table: what v of order one takes, unless other is said.
-    """
-    rates = truth.kinematics.rates
-    if not truth.kinematics.curved:
-        return q + rates(q) @ v
-    table: list[Exact] = []
-    for row in range(rows):
-        n = 2 * (row + 1)
-        before, point = q, q + (rates(q) @ v) / n
-        for _ in range(n - 1):
-            before, point = point, before + 2 * (rates(point) @ v) / n
-        last = (before + point + (rates(point) @ v) / n) / 2
-        line = [last]
-        for k in range(row):
-            ratio = Decimal((row + 1) ** 2) / Decimal((row - k) ** 2)
-            line.append(line[k] + (line[k] - table[k]) / (ratio - 1))
-        table = line
-    return table[-1]
-
-
-def to_tangent(truth: Truth, q: Exact, columns: Exact) -> Exact:
-    """Speeds (nv, n) whose rates are nearest to columns (nq, n)."""
-    N = truth.kinematics.rates(q)
-    return solve(N.T @ N, N.T @ columns)
-
-
-def integrated_dq(truth: Truth, s: Point) -> Exact:
-    """Derivatives (nv, nv) of integrate by its configuration, in tangents at both."""
-
-    def compute() -> Exact:
-        columns = truth.kinematics.tangent(lambda q: integrated(truth, q, s.v2), s.q)
-        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
-
-    return truth.once(("integrated_dq", *s.q, *s.v2), compute)
-
-
-def integrated_dv(truth: Truth, s: Point) -> Exact:
-    """Derivatives (nv, nv) of integrate by its speeds, in the tangent at the result."""
-
-    def compute() -> Exact:
-        columns = truth.along_speeds(lambda v: integrated(truth, s.q, v), s.v2)
-        return to_tangent(truth, integrated(truth, s.q, s.v2), columns)
-
-    return truth.once(("integrated_dv", *s.q, *s.v2), compute)
-
-
-def difference_dq(truth: Truth, s: Point) -> Exact:
-    """Derivatives (nv, nv) of the difference of q and where v2 leads by q, the other configuration kept."""
-    return -solve(integrated_dv(truth, s), integrated_dq(truth, s))
-
-
-def difference_dq2(truth: Truth, s: Point) -> Exact:
-    """Derivatives (nv, nv) of the difference of q and where v2 leads by the latter."""
-    return solve(integrated_dv(truth, s), eye(truth.nv))

@@ -22,9 +22,10 @@ from typing import Literal
 import numpy as np
 
 from ..interface import STEP
-from . import derived
+from . import displacements
 from .arithmetic import Exact, eye, rate, root, solve, stack, zeros
-from .derived import TruthOf, to_tangent
+from .derived import TruthOf
+from .displacements import to_tangent
 from .dynamics import Point, Truth
 
 _H = Decimal(STEP)
@@ -69,7 +70,7 @@ def derivative(step: TruthOf) -> TruthOf:
 
 def along(t: Truth, q: Exact, u: Exact) -> Exact:
     """The configuration q (+) u."""
-    return derived.integrated(t, q, u, _ROWS if max(map(abs, u)) < _SHORT else derived.ROWS)
+    return displacements.integrated(t, q, u, _ROWS if max(map(abs, u)) < _SHORT else displacements.ROWS)
 
 
 def straight(t: Truth, q: Exact, u: Exact) -> Exact:
