@@ -187,10 +187,10 @@ def _plain_motors() -> list[Tree]:
     motors = tuple(Actuator(one.name, control=force) for one, force in zip(links, (0.75, -2.5, 1.25), strict=True))
     bounded = tuple(replace(one, force_limits=(-1.0, 1.0)) for one in motors)
     return [
-        Tree("forces along joints at their bounds", links, actuators=bounded),
+        Tree("forces along joints at their effort limits", links, actuators=bounded),
         Tree("forces along joints", links, actuators=motors),
         Tree("forces along two of three joints", links, actuators=motors[1:]),
-        Tree("forces along joints with rotors", geared, actuators=bounded[:2]),
+        Tree("forces along joints with rotors at their effort limits", geared, actuators=bounded[:2]),
     ]
 
 
