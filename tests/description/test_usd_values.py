@@ -20,7 +20,7 @@ SIZES = {"centerOfMass": 3, "gravityDirection": 3, "rotation0": 4, "inertia": 6}
 
 def stage(**scene: Any) -> dict[str, Any]:
     scenes = [{"path": "/scene", **scene}] if scene else []
-    lists = dict.fromkeys(("bodies", "joints", "shapes"), [])
+    lists = dict.fromkeys(("bodies", "joints", "shapes", "other units"), [])
     return {"meters": 0.01, "kilograms": 1.0, "up": "Z", "placements": {}, "scenes": scenes, **lists}
 
 
