@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 from symofros.base.names import name_of, symbol_of
+from symofros.description.contacts import Contact
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
@@ -286,9 +287,47 @@ class Switch:
             )
 
 
-Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic
+@dataclass(frozen=True)
+class Touching(_OnCoordinates):
+    """Conditions that a ball of a rigid contact meets, stated by the generator (docs/theory/constraints.md, 15).
+
+    Attributes:
+        name: Unique name.
+        contact: The contact.
+        ball: Number of the ball.
+        axes: Axes of the plane, 2 its normal, along which the ball is held.
+    """
+
+    name: str
+    contact: Contact
+    ball: int
+    axes: tuple[int, ...]
+
+    @property
+    def first(self) -> Anchor:
+        """The frame of the plane."""
+        return self.contact.second
+
+    @property
+    def second(self) -> Anchor:
+        """The frame of the ball."""
+        return self.contact.first
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Its own name for the normal, with the axis for those across it."""
+        return (self.name,) if self.axes == (2,) else tuple(f"{self.name}.{AXES[axis]}" for axis in self.axes)
+
+    @property
+    def on_speeds(self) -> tuple[str, ...]:
+        """Those across the normal: where a ball is has no part in how it rolls."""
+        return () if self.axes == (2,) else self.conditions
+
+
+# What a description states, and what the generator adds of rigid contacts.
+Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic | Touching
 # What joins two frames.
-BETWEEN_FRAMES = (Closure, Rod)
+BETWEEN_FRAMES = (Closure, Rod, Touching)
 # What knows no bodies, and so has no wrench.
 BY_FORMULA = (Coupling, Nonholonomic)
 

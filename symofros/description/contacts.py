@@ -1,4 +1,4 @@
-"""Compliant contact: balls on one frame, which the surface of a solid on another frame pushes back."""
+"""Contact of balls on one frame with the surface of a solid on another frame: compliant, or rigid."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
 _NUMBERS = (
     *("stiffness", "radius", "surface_radius", "length", "dissipation"),
-    *("friction", "minimum_velocity", "bristle_stiffness", "bristle_damping"),
+    *("friction", "minimum_velocity", "bristle_stiffness", "bristle_damping", "restitution"),
 )
+# What rigid contacts have no use for, and what stands there unless it is stated.
+_COMPLIANT = {"exponent": 1.5, "dissipation": 0.0, "minimum_velocity": 1e-3, "bristle_stiffness": None}
 # Balls of a contact.
 _MOST = 1000
 
@@ -32,11 +34,12 @@ _MOST = 1000
 @refuses_unknown_entries
 @dataclass(frozen=True)
 class Contact:
-    """Balls that a surface pushes back where they penetrate it: one-sided, dissipative, with friction.
+    """Balls that a surface pushes back: compliant, where they penetrate it, or rigid, so that they do not.
 
-    At a penetration d > 0 the surface pushes by N = stiffness d^exponent max(0, 1 + dissipation d'), and friction drags
-    by up to `friction` N against the slip (docs/theory/rigid.md, section 10.2). It never pulls, and what it stores,
-    stiffness d^(exponent + 1)/(exponent + 1), is potential energy.
+    *Compliant*, with `stiffness`: one-sided, dissipative, with friction. At a penetration d > 0 the surface pushes by
+    N = stiffness d^exponent max(0, 1 + dissipation d'), and friction drags by up to `friction` N against the slip
+    (docs/theory/rigid.md, section 10.2). It never pulls, and what it stores, stiffness d^(exponent + 1)/(exponent + 1),
+    is potential energy.
 
     Friction is smooth through zero slip unless bristles are stated: then it holds nothing at rest, and a body on an
     incline creeps, as a joint with `Friction` does. With `bristle_stiffness` and `bristle_damping` each ball sticks
@@ -44,11 +47,15 @@ class Contact:
     "BALL.bristle_x" and so on in the axes of the second frame, of a plane two, of other surfaces three
     (docs/theory/states.md, section 5).
 
+    *Rigid*, with `restitution` in place of `stiffness`: balls on a plane strike, slide, stick and part by Coulomb's
+    law, exactly, as modes of a run ("BALL.mode": 0 open, 1 slides, 2 sticks; docs/theory/constraints.md, section 15).
+    `simulate` and `Stepper` choose the modes; all other functions see an open contact unless a mode is set.
+
     Attributes:
         name: Unique name, among connections too.
         first: Frame that the balls are fixed to: (body, frame), frame None for the body frame; "world" for the ground.
         second: Frame of the surface: (body, frame).
-        stiffness: Stiffness, in N/m^exponent.
+        stiffness: Stiffness, in N/m^exponent; None: the contact is rigid.
         surface: Solid on the second frame, about its origin: "plane", all below its x-y plane; "sphere"; "cylinder",
             along its z axis without end; "capsule", along its z axis; "box", along its axes.
         radius: Radius of the balls; 0 of points [m].
@@ -65,12 +72,14 @@ class Contact:
         minimum_velocity: Speed of slip that smooths friction without bristles: its maximum is from 15/8 of it on [m/s].
         bristle_stiffness: Stiffness against displacement across the surface where a ball sticks [N/m].
         bristle_damping: Damping of that displacement [N s/m].
+        restitution: Of a rigid contact, Stronge's energetic coefficient, 0 to 1: the normal impulse gives back its
+            square of the work that it took.
     """
 
     name: str
     first: Anchor
     second: Anchor
-    stiffness: Value
+    stiffness: Value | None = None
     surface: Surface = "plane"
     radius: Value = 0.0
     points: tuple[Vector, ...] = (ORIGIN,)
@@ -84,6 +93,7 @@ class Contact:
     minimum_velocity: Value = 1e-3
     bristle_stiffness: Value | None = None
     bristle_damping: Value | None = None
+    restitution: Value | None = None
 
     def __post_init__(self) -> None:
         """Convert the numbers, and refuse measures that the surface lacks or does not have."""
@@ -117,7 +127,31 @@ class Contact:
             return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")
         if not 1 <= len(self.points) <= _MOST:
             return Problem(f"{what}: points", f"{len(self.points)}", f"from 1 to {_MOST} balls", "state their centres")
-        return self._bristle_problem(what)
+        return self._bristle_problem(what) or self._rigid_problem(what)
+
+    def _rigid_problem(self, what: str) -> Problem | None:
+        """What is wrong about the choice of a compliant or a rigid contact."""
+        if (self.stiffness is None) == (self.restitution is None):
+            found = "neither" if self.stiffness is None else "stiffness and restitution"
+            rule = "a contact is compliant, with a stiffness, or rigid, with a coefficient of restitution"
+            return Problem(f"{what}: compliant or rigid", found, rule, "state one of the two")
+        if not self.rigid:
+            return None
+        if self.surface != "plane":
+            rule = "rigid contacts are of balls on planes"
+            return Problem(f"{what}: rigid", f"a {self.surface}", rule, "state a stiffness, or a plane")
+        for label, left_out in _COMPLIANT.items():
+            if getattr(self, label) != left_out:
+                remedy = "leave it out, or state a stiffness in place of restitution"
+                return Problem(
+                    f"{what}: {label}", f"{getattr(self, label)}"[:80], "it is of compliant contacts", remedy
+                )
+        return None
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the contact is rigid."""
+        return self.stiffness is None
 
     def _bristle_problem(self, what: str) -> Problem | None:
         """What is wrong about the bristles."""

@@ -152,6 +152,7 @@ def export(
     check_folder(place)  # Before the work, not only after it.
     if target == "cuda":
         Compilation(system).record.refuse_sticking(f"export: '{target}'")
+        Compilation(system).record.refuse_rigid_contacts(f"export: '{target}'")
     if target not in _WITH_STATES:
         Compilation(system).record.refuse_states(f"export '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:

@@ -18,6 +18,7 @@ from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
+from symofros.mechanics.topology.rigid_contacts import rigid_balls
 from symofros.mechanics.topology.sticking import sticking_coordinates
 from symofros.mechanics.topology.switches import offset_names, rotation_names, switches_of
 from symofros.mechanics.topology.tree import (
@@ -28,7 +29,15 @@ from symofros.mechanics.topology.tree import (
     prescribed_speeds,
     section_names,
 )
-from symofros.runtime.record import ClosureRecord, JointLimit, ModelRecord, Segment, StickingRecord, SwitchRecord
+from symofros.runtime.record import (
+    ClosureRecord,
+    JointLimit,
+    ModelRecord,
+    RigidContactRecord,
+    Segment,
+    StickingRecord,
+    SwitchRecord,
+)
 
 GENERATOR = "symofros 0.1.0"
 
@@ -97,6 +106,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         contact_names=ball_names(tree),
         switches=_switches(tree),
         sticking=_sticking(tree),
+        rigid_contacts=_rigid_contacts(tree),
         state_names=names.states,
     )
 
@@ -137,6 +147,22 @@ def _sticking(tree: SpanningTree) -> tuple[StickingRecord, ...]:
         for link in tree.links
         for one in sticking_coordinates(link.joint)
     )
+
+
+def _rigid_contacts(tree: SpanningTree) -> tuple[RigidContactRecord, ...]:
+    conditions = [name for item in tree.system.constraints for name in item.conditions]
+    place = tree.coordinates.par.index
+    records = []
+    for ball in rigid_balls(tree.system):
+        friction, restitution = _text(ball.contact.friction), _text(ball.contact.restitution or 0.0)
+        rows = tuple(map(conditions.index, ball.conditions))
+        first, second = map(_text, ball.watched)
+        pushes, way = (tuple(map(place, names)) for names in (ball.pushes, ball.way))
+        record = RigidContactRecord(
+            ball.name, place(ball.mode), pushes, way, place(ball.apart), rows, friction, restitution, (first, second)
+        )
+        records.append(record)
+    return tuple(records)
 
 
 def _text(value: Value) -> str:

@@ -111,6 +111,37 @@ class StickingRecord(NamedTuple):
     watch: str
 
 
+# Modes of a ball of a rigid contact.
+OPEN, SLIDES, STICKS = 0.0, 1.0, 2.0
+
+
+class RigidContactRecord(NamedTuple):
+    """A ball of a rigid contact.
+
+    Attributes:
+        name: Name of the ball.
+        mode: Run-time parameter that is its mode: 0 open, 1 slides, 2 sticks.
+        pushes: Parameters that are a further force on the ball, along the axes of the plane.
+        way: Parameters that are the direction in which it has begun to slide (2), and its speed then.
+        apart: Parameter that is how far it may pass the plane, open, by rounding.
+        rows: Rows of G that hold it along the axes of the plane.
+        friction: Formula of parameters: coefficient of friction.
+        restitution: Formula of parameters: energetic coefficient of restitution.
+        watched: Formulas that fall to zero where the mode ends: distance or normal force; slip, or what is left of
+            friction.
+    """
+
+    name: str
+    mode: int
+    pushes: tuple[int, ...]
+    way: tuple[int, ...]
+    apart: int
+    rows: tuple[int, ...]
+    friction: str
+    restitution: str
+    watched: tuple[str, str]
+
+
 class JointLimit(NamedTuple):
     """Limit of a joint, which no force keeps.
 
@@ -160,6 +191,7 @@ class ModelRecord:
         contact_names: Balls of compliant contacts: the contact's name, of several with their numbers.
         switches: Constraints that engage and release.
         sticking: Coordinates with friction that sticks.
+        rigid_contacts: Balls of rigid contacts.
         state_names: States of forces, carried as the last speeds, each beside an idle coordinate, the last ones.
     """
 
@@ -195,6 +227,7 @@ class ModelRecord:
     contact_names: tuple[str, ...] = ()
     switches: tuple[SwitchRecord, ...] = ()
     sticking: tuple[StickingRecord, ...] = ()
+    rigid_contacts: tuple[RigidContactRecord, ...] = ()
     state_names: tuple[str, ...] = ()
 
     @cached_property
@@ -202,6 +235,11 @@ class ModelRecord:
         """First index of each quaternion among the coordinates, "q", and among the inputs, "u"; empty without any."""
         of_q = tuple(segment.q + segment.translations for segment in self.segments if segment.kind != "linear")
         return {group: firsts for group, firsts in (("q", of_q), ("u", self.quaternion_inputs)) if firsts}
+
+    @property
+    def has_compliant_contacts(self) -> bool:
+        """Whether balls of contacts push where they penetrate a surface, which no event finds."""
+        return len(self.contact_names) > len(self.rigid_contacts)
 
     @property
     def facing_conditions(self) -> tuple[int, ...]:
@@ -265,6 +303,18 @@ class ModelRecord:
             rule = "it has modes: `simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them"
             remedy = "sticks=False: friction that is smooth, and creeps"
             raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
+
+    def refuse_rigid_contacts(self, what: str) -> None:
+        """Refuse rigid contacts where nothing chooses their modes.
+
+        Raises:
+            SymofrosError: There are some.
+        """
+        if self.rigid_contacts:
+            found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
+            rule = "it has modes: `simulate` and `Stepper` choose them, by explicit Runge-Kutta methods"
+            remedy = "a compliant contact: stiffness in place of restitution"
+            raise SymofrosError(Problem(f"{what}: rigid contact", found, rule, remedy))
 
     def refuse_states(self, what: str) -> None:
         """Refuse states of forces where nothing takes them.

@@ -9,8 +9,11 @@ from typing import Any, Literal
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
-from symofros.runtime.record import HELD, ModelRecord
+from symofros.runtime.record import ModelRecord
 
+# Of friction by the size of its mode, where 0 is smooth; of a rigid contact.
+FRICTION_WORDS = ("slides", "slides", "sticks")
+CONTACT_WORDS = ("opens", "slides", "sticks")
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
 
@@ -94,22 +97,28 @@ class Event(metaclass=CheckedCalls):
 
 @dataclass(frozen=True)
 class ModeEvent(Event):
-    """The end of a mode of friction that sticks (docs/theory/constraints.md, section 14).
+    """The end of a mode of friction that sticks, or of a rigid contact (docs/theory/constraints.md, 14 and 15).
 
     Attributes:
         mode: Run-time parameter that is the mode.
+        words: What has begun, by the mode afterwards.
     """
 
     mode: int = 0
+    words: tuple[str, ...] = ()
 
     @property
     def acts(self) -> bool:
         """It does: modes are chosen anew."""
         return True
 
-    def said(self, par: Any) -> str:
-        """What it came to, by the parameters (npar) afterwards."""
-        return f"{self.name} {'sticks' if par[self.mode] == HELD else 'slides'}"
+    def said(self, before: Any, after: Any, *, impulse: bool = True) -> str:
+        """What it came to, by the parameters (npar) before and afterwards, and by whether speeds have changed."""
+        ended, begun = (self.words[round(abs(par[self.mode]))] for par in (before, after))
+        unchanged = (
+            {"opens": "strikes" if impulse else "grazes", "slides": "turns"} if self.words == CONTACT_WORDS else {}
+        )
+        return f"{self.name} {unchanged.get(begun, begun) if begun == ended else begun}"
 
 
 def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
@@ -139,13 +148,15 @@ def unresolved_note(name: str, t: float) -> str:
 
 
 def events_of(model: Model, given: Mapping[str, Any] | None) -> tuple[Event, ...]:
-    """The events of a run: a user's by name, then the ends of modes of a model's friction that sticks."""
+    """The events of a run: a user's by name, then the ends of modes of a model's friction and rigid contacts."""
     return (*named_events(given), *mode_events(model.record))
 
 
 def mode_events(record: ModelRecord) -> tuple[ModeEvent, ...]:
-    """The ends of modes of a model's friction that sticks."""
-    return tuple(ModeEvent(one.watch, "falling", name=one.name, mode=one.mode) for one in record.sticking)
+    """The ends of modes of a model's friction that sticks, and of its rigid contacts, two a ball."""
+    stated = [(one.watch, one.name, one.mode, FRICTION_WORDS) for one in record.sticking]
+    stated += [(watch, one.name, one.mode, CONTACT_WORDS) for one in record.rigid_contacts for watch in one.watched]
+    return tuple(ModeEvent(watch, "falling", name=name, mode=mode, words=words) for watch, name, mode, words in stated)
 
 
 def named_events(given: Mapping[str, Any] | None) -> tuple[Event, ...]:

@@ -177,6 +177,7 @@ class Settings:
         run.t_end, run.h, run.rtol, run.atol = self.t_end, self.dt, self.rtol, self.atol
         run.max_step, run.record_every, run.project = self.max_step, self.every, int(self.project)
         run.beam_limit = self.beam_limit
+        stepper.system.longest_step = 0.0 if self.adaptive else max(stepper.system.longest_step, self.dt)
         # Prescribed speeds may jump, and then take energy that nothing else gives.
         run.loss_limit = math.inf if stepper.model.record.driven else LOSS_LIMIT
         run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)

@@ -143,6 +143,8 @@ class ConstrainedEngine:
             return by_formula.condition_on_speeds(item, parameters, self._assembly, states)
         if isinstance(item, sf.Coupling):
             return by_formula.coupling(item, parameters, self._assembly, states)
+        if not isinstance(item, sf.Closure | sf.Rod | sf.KnifeEdge | sf.Rolling):
+            raise TypeError(f"no equations of our own for {type(item).__name__}")
         anchors = [item.first, item.second] if isinstance(item, sf.Closure | sf.Rod) else [item.anchor]
         bodies = [frames[anchor_name(self._assembly, anchor)] for anchor in anchors]
         if isinstance(item, sf.Closure):
@@ -169,7 +171,7 @@ def joined_frames(assembly: Assembly, system: sf.System) -> tuple[str, ...]:
     for item in system.constraints:
         if isinstance(item, sf.Closure | sf.Rod):
             anchors += [item.first, item.second]
-        elif not isinstance(item, sf.Coupling | sf.Nonholonomic):
+        elif isinstance(item, sf.KnifeEdge | sf.Rolling):
             anchors.append(item.anchor)
     return tuple(dict.fromkeys(name for anchor in anchors if (name := anchor_name(assembly, anchor))))
 

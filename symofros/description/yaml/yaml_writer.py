@@ -13,7 +13,6 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import (
     AXES,
-    BETWEEN_FRAMES,
     Closure,
     Constraint,
     Coupling,
@@ -21,6 +20,7 @@ from symofros.description.constraints import (
     Nonholonomic,
     Rod,
     Rolling,
+    Touching,
 )
 from symofros.description.forces import WITH_STATE, Anchor
 from symofros.description.frames import Frame
@@ -215,10 +215,11 @@ def _anchor(anchor: Anchor) -> Plain:
 
 def _constraint(item: Constraint) -> tuple[str, Any]:
     """Section and entry of a constraint."""
-    if isinstance(item, BETWEEN_FRAMES):
+    if isinstance(item, Closure | Rod):
         return "closures", _closure(item)
     if isinstance(item, Coupling):
         return "couplings", _number(item.residual)
+    assert not isinstance(item, Touching), "the generator states it, of a contact"
     return "nonholonomic", _condition(item)
 
 

@@ -61,6 +61,11 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     """
     model = block.mechanism()
     record = models.carried(model) if model else None
+    try:
+        if record is not None:
+            record.refuse_rigid_contacts("diagram")
+    except SymofrosError as error:
+        raise DescriptionError(_of_block(block, error)) from None
     if record is None or not (block.mechanism_events() or record.sticking):
         return None
     if block.lock_inputs():

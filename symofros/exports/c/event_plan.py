@@ -47,6 +47,7 @@ def event_plan(
         ExportError: The target has no steps of its own, or can't end where an event does.
         SymofrosError: An action can't be done.
     """
+    model.record.refuse_rigid_contacts(f"export: '{target}'")
     if target not in _TARGETS:
         model.record.refuse_sticking(f"export: '{target}'")
     events = events_of(model, given)

@@ -288,34 +288,35 @@ class EquationsOfMotion:
         return prescribed_efforts(self.kinematics, self.rotors, self._motions, self.v_rate, self._transmitted)
 
     @cached_property
-    def _balls(self) -> list[TouchingBall]:
+    def touching_balls(self) -> list[TouchingBall]:
+        """The balls of all contacts, in order."""
         contacts = self.tree.system.contacts
         return [ball for contact in contacts for ball in touching_balls(self.kinematics, self.frames, contact)]
 
     @property
     def contact_gaps(self) -> list[Edge]:
         """Distance of each ball from the surface that it may touch (nk)."""
-        return [ball.gap for ball in self._balls]
+        return [ball.gap for ball in self.touching_balls]
 
     @property
     def contact_pushes(self) -> list[Edge]:
         """Normal force on each ball (nk)."""
-        return [ball.push for ball in self._balls]
+        return [ball.push for ball in self.touching_balls]
 
     @property
     def contact_forces(self) -> Matrix:
         """Force on each ball, in world axes (nk x 3)."""
-        return [list(ball.force) for ball in self._balls]
+        return [list(ball.force) for ball in self.touching_balls]
 
     @property
     def contact_points(self) -> Matrix:
         """Point where it acts, in the world (nk x 3)."""
-        return [list(ball.point) for ball in self._balls]
+        return [list(ball.point) for ball in self.touching_balls]
 
     @property
     def contact_shares(self) -> list[Edge]:
         """Penetration over the radius of the ball, or of the surface (nk)."""
-        return [ball.share for ball in self._balls]
+        return [ball.share for ball in self.touching_balls]
 
     def inertia_forces(self, a: Sequence[Edge]) -> list[Edge]:
         """Inertia forces and weight M a + h (nv)."""

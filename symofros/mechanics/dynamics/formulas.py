@@ -16,7 +16,7 @@ from symofros.expr.expression import Expression
 from symofros.expr.program import Function, Output, Program
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.reactions import bind_reactions, reaction_symbols
+from symofros.mechanics.dynamics.reactions import bind_contacts, bind_reactions, contact_symbols, reaction_symbols
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.topology.formulas import meaning_problems
 from symofros.mechanics.topology.tree import SpanningTree
@@ -35,9 +35,9 @@ def stated_formulas(tree: SpanningTree, formulas: Sequence[Any], reactions: bool
         DescriptionError: A text is no formula, or can be read in two ways.
     """
     names = tree.coordinates
-    what, known = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.keys, *names.constants})
+    what, own = f"system '{tree.system.name}'", frozenset({*names.symbols, *names.keys, *names.constants})
     both = frozenset(map(symbol_of, names.q)) & frozenset(names.speed_symbols)
-    forces = reaction_symbols(tree) - known
+    forces, known = reaction_symbols(tree) - own, own | contact_symbols(tree)
     stated = [_stated(what, formula, known | forces, both) for formula in formulas]
     for value in () if reactions else stated:
         for name in sorted(symbols(value) & forces):
@@ -93,7 +93,9 @@ def formula_program(equations: Equations, values: Sequence[tuple[Value, int]], d
     kinematics = equations.kinematics
     tree, names = kinematics.tree, kinematics.tree.coordinates
     g, nv, n = kinematics.g, len(names.v), len(values)
-    reactions = bind_reactions(equations, {name for value, _ in values for name in symbols(value)})
+    used = {name for value, _ in values for name in symbols(value)}
+    bind_contacts(equations, used)
+    reactions = bind_reactions(equations, used)
     edges = [_rate(kinematics, value, order) for value, order in values]
     outputs = [Output("value", (n,), tuple(edges))]
     if derivatives:

@@ -2,8 +2,10 @@
 
 `lam.CONDITION` is a multiplier; `wrench.CONSTRAINT.fx` to `.mz` the wrench of a constraint on its second frame, about
 that frame's origin in world axes; `reaction.JOINT.fx` to `.mz` the wrench that a joint transmits to its body, about the
-joint's point in body axes (docs/theory/constraints.md, section 13, (33)). A coordinate, parameter or input of such a
-name is meant first.
+joint's point in body axes (docs/theory/constraints.md, section 13, (33)). `contact.BALL.gap` is the distance of a ball
+of a contact from its surface, `contact.BALL.vx` to `.vz` the velocity of its material point there against the
+surface's, in the axes of the surface; these follow from coordinates and speeds alone. A coordinate, parameter or input
+of such a name is meant first.
 """
 
 from __future__ import annotations
@@ -13,7 +15,8 @@ from collections.abc import Iterable, Iterator
 from symofros.expr.edges import Edge
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.topology.tree import SpanningTree, joint_names
+from symofros.mechanics.topology.rigid_contacts import QUANTITIES
+from symofros.mechanics.topology.tree import SpanningTree, ball_names, joint_names
 
 COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
 
@@ -24,6 +27,21 @@ def reaction_symbols(tree: SpanningTree) -> frozenset[str]:
     multipliers = (f"lam.{condition}" for constraint in constraints for condition in constraint.conditions)
     names = (*_six("wrench", acts_on_bodies(constraints)), *_six("reaction", joint_names(tree)))
     return frozenset((*multipliers, *names))
+
+
+def contact_symbols(tree: SpanningTree) -> frozenset[str]:
+    """All names of distances and velocities of the balls of contacts."""
+    return frozenset(f"contact.{ball}.{quantity}" for ball in ball_names(tree) for quantity in QUANTITIES)
+
+
+def bind_contacts(equations: Equations, used: Iterable[str]) -> None:
+    """Give formulas of a mechanism the edges of the distances and velocities of contacts that they use."""
+    tree, lowering = equations.tree, equations.kinematics.lowering
+    own, balls = tree.coordinates, ball_names(tree)
+    for name in sorted(contact_symbols(tree).intersection(used) - {*own.symbols, *own.keys, *own.constants}):
+        ball, quantity = name.removeprefix("contact.").rsplit(".", 1)
+        touching = equations.touching_balls[balls.index(ball)]
+        lowering.bind(name, dict(zip(QUANTITIES, (touching.gap, *touching.slip), strict=True))[quantity])
 
 
 def bind_reactions(equations: Equations, used: Iterable[str]) -> bool:

@@ -1,4 +1,4 @@
-"""Checks of compliant contacts: two bodies, and numbers that a ball and a surface can have."""
+"""Checks of contacts: two bodies, and numbers that a ball and a surface can have."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ _SIGNS: dict[str, tuple[Sign, str, str]] = {
     "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
     "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),
     "friction": ("not negative", "friction is against the slip", "give zero or more"),
+    "restitution": ("not negative", "an impact takes energy, and never gives any", "give a number from 0 to 1"),
     "bristle_stiffness": ("positive", "bristles are springs", "give a stiffness above zero"),
     "bristle_damping": ("positive", "bristles that are bent too far relax by their damping", "give one above zero"),
     "minimum_velocity": ("positive", "friction is smoothed over a speed above zero", "give a small one, such as 0.001"),
@@ -48,6 +49,10 @@ def contact_conditions(system: System) -> Iterator[Condition]:
         for value in contact.size or ():
             rule, remedy = "edges of a box are above zero", "give its three edges"
             yield Condition((value,), "positive", partial(_wrong, contact.name, "size", value, rule, remedy, where))
+        if contact.restitution is not None:
+            left, rule = (Term(1.0) - Term(contact.restitution)).value, "an impact takes energy, and never gives any"
+            wrong = partial(_wrong, contact.name, "1 less restitution", left, rule, "give a number from 0 to 1", where)
+            yield Condition((left,), "not negative", wrong)
         if contact.inside:
             room = (Term(contact.surface_radius or 0.0) - Term(contact.radius)).value
             rule, remedy = "a ball fits into what encloses it", "give a smaller ball, or a wider surface"

@@ -27,6 +27,7 @@ from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
+from symofros.mechanics.topology.rigid_contacts import rigid_contact_problems
 from symofros.mechanics.topology.run_time import rotations_of, value_conditions
 from symofros.mechanics.topology.switches import switch_conditions, switch_problems
 
@@ -318,6 +319,7 @@ class _Checker:
             for anchor in (connection.first, connection.second):
                 yield from anchor_problems(what, anchor, self.bodies, self.base, self.broken, where)
         yield from contact_problems(self.system)
+        yield from rigid_contact_problems(self.system)
         yield from self._unique("constraint", [item.name for item in self.system.constraints])
         yield from constraint_problems(self.system, self.bodies, self.base, self.broken)
         yield from switch_problems(self.system)

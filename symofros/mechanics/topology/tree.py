@@ -13,6 +13,7 @@ from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.numbers import Numbers
+from symofros.mechanics.topology.rigid_contacts import with_rigid_contacts
 from symofros.mechanics.topology.sticking import with_modes
 from symofros.mechanics.topology.switches import with_held_poses
 
@@ -98,7 +99,7 @@ class SpanningTree:
 
     Attributes:
         system: The system as described, with the parameters of poses that constraints hold, and with the modes of
-            friction that sticks.
+            friction that sticks and of rigid contacts.
         links: Moving bodies, depth first in the order of description; parents precede children.
         frames: Every named frame.
         coordinates: Index map: names to indices of q, v, u, par.
@@ -183,7 +184,7 @@ def build_tree(system: System) -> SpanningTree:
         DescriptionError: With every problem found.
     """
     check(system)
-    system = with_modes(with_held_poses(system))
+    system = with_rigid_contacts(with_modes(with_held_poses(system)))
     numbers, children = Numbers(system), dict[str, list[Body]]()
     base_names = {WORLD} | {body.name for body in system.bodies if body.joint is None}
     for body in system.bodies:

@@ -3,7 +3,7 @@ SYM_EXPORT void sym_run_set_parameters(sym_run *r, const double *par) {
     const sym_system *s = r->system;
     const sym_call *calls[] = {&s->forward_dynamics, &s->law,      &s->events,      &s->project,
                                &s->implicit_terms,   &s->residual, &s->momentum,    &s->mass_matrix,
-                               &s->constraint_jacobian};
+                               &s->constraint_jacobian, &s->contact_state};
     size_t i;
     memcpy(r->par, par, (size_t)r->actions->npar * sizeof *par);
     sym_hold_by_modes(r->system, par);
@@ -95,7 +95,7 @@ static int32_t sym_parts_again(sym_run *r, const sym_done *done) {
     if (status != 0) return status;
     memcpy(held, s->a, (size_t)nv * sizeof *held);
     sym_run_set_parameters(r, done->par);
-    sym_let_go(s, r->par), sym_hold_by_modes(s, r->par); /* modes are chosen later */
+    sym_let_go(s, r->par), sym_open_contacts(s, r->par), sym_hold_by_modes(s, r->par); /* modes are chosen later */
     sym_load_state(r);
     status = sym_evaluate_modes(r, r->par);
     if (status != 0) return status;
@@ -106,8 +106,7 @@ static int32_t sym_parts_again(sym_run *r, const sym_done *done) {
     return along < -SYM_ACCELERATION_ROUNDING * size ? 0 : SYM_ACTS_WITHOUT_END;
 }
 
-/* Times what counts as an instant within which strikes follow each other where they accumulate; what has become of the last. */
-#define SYM_ACCUMULATION 1e3
+/* What has become of the last of strikes that accumulate. */
 #define SYM_RESTS 2.0
 
 /* A contact that presses stays: parameters are those that its action has set. The force by which it will open has to
@@ -168,7 +167,7 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
         sym_run_set_parameters(r, done->par); /* functions may share the part that poses were prepared in */
         return SYM_ACTION_REFUSED;
     }
-    sym_let_go(s, done->par_set);
+    sym_let_go(s, done->par_set), sym_open_contacts(s, done->par_set);
     return sym_impact(r, e, opens, done);
 }
 
@@ -208,23 +207,59 @@ static void sym_note_modes(const sym_run *r, const sym_done *done, int32_t statu
     *done->acted = status == 0 ? 1.0 : status;
 }
 
-/* Choose the modes of friction that sticks anew after the events at which the run has been cut. Returns 0 or a status. */
+/* Modes of rigid contacts where a motion begins; balls that strike there do so at an event of the first of them. Returns 0 or a
+ * status. */
+static int32_t sym_begin_contacts(sym_run *r) {
+    const sym_system *s = r->system;
+    const int64_t row = r->n_event_records;
+    const sym_done done = sym_run_done(r, row);
+    int32_t i, status;
+    if (s->settled) return 0; /* a run that goes on from events, or after records */
+    memcpy(done.par, r->par, (size_t)s->npar * sizeof *r->par);
+    memcpy(done.v_set, r->v, (size_t)s->nv * sizeof *r->v);
+    status = sym_settle_contacts(r, NULL);
+    for (i = 0; i < s->n_contacts && status == 0 && row < r->event_capacity; ++i) {
+        if (s->struck_at[i] != r->t) continue;
+        r->event_t[row] = r->t, r->event_index[row] = r->actions->first_mode + 2 * i;
+        memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
+        memcpy(r->event_v + row * s->nv, done.v_set, (size_t)s->nv * sizeof *r->v);
+        *done.gap = 0.0;
+        sym_note_modes(r, &done, 0);
+        if (done.par_set[s->contacts[i].mode] != SYM_OPEN) *done.acted = SYM_RESTS;
+        r->n_event_records = row + 1;
+        break;
+    }
+    return status;
+}
+
+/* Choose the modes of friction that sticks, or of rigid contacts, anew after the events at which the run has been cut. Returns
+ * 0 or a status. */
 static int32_t sym_end_modes(sym_run *r) {
-    const int32_t first = r->actions->first_mode;
-    int32_t status = 0;
+    const sym_actions *a = r->actions;
+    const sym_system *s = r->system;
+    const int32_t first = a->first_mode;
+    double *met = a->modes + a->npar + 2 * s->n_sticking;
+    int32_t i, status = 0;
     int64_t row;
+    for (i = 0; i < s->n_contacts; ++i) met[i] = 0.0;
     for (row = r->first_met; row < r->met_end; ++row) {
         const int32_t which = r->event_index[row];
         const sym_done done = sym_run_done(r, row);
         if (which < first) continue;
+        if (s->n_contacts > 0 && met[(which - first) / 2] <= 0.0) met[(which - first) / 2] = (which - first) % 2 ? -1.0 : 1.0;
         memcpy(done.par, r->par, (size_t)r->actions->npar * sizeof *r->par);
         memcpy(done.v_set, r->v, (size_t)r->system->nv * sizeof *r->v);
         if (status == 0) status = sym_count_repeats(r, which);
     }
-    if (status == 0) status = sym_choose_modes(r);
+    if (status == 0) status = s->n_contacts > 0 ? sym_settle_contacts(r, met) : sym_choose_modes(r);
     for (row = r->first_met; row < r->met_end; ++row) {
         const sym_done done = sym_run_done(r, row);
-        if (status != 0 ? row + 1 == r->met_end : r->event_index[row] >= first) sym_note_modes(r, &done, status);
+        const int32_t ball = s->n_contacts > 0 ? (r->event_index[row] - first) / 2 : 0;
+        if (status != 0 ? row + 1 < r->met_end : r->event_index[row] < first) continue;
+        sym_note_modes(r, &done, status);
+        if (status == 0 && s->n_contacts > 0 && done.par[s->contacts[ball].mode] == SYM_OPEN &&
+            done.par_set[s->contacts[ball].mode] != SYM_OPEN)
+            *done.acted = SYM_RESTS;
     }
     return status;
 }
@@ -246,7 +281,7 @@ SYM_EXPORT int32_t sym_run_act(sym_run *r) {
         if (status == 0 && r->actions->once[which]) s->event_terminal[which] = -1;
         if (status != 0) *done.acted = status;
     }
-    if (status == 0 && s->n_sticking > 0) status = sym_end_modes(r);
+    if (status == 0 && s->n_sticking + s->n_contacts > 0) status = sym_end_modes(r);
     if (status != 0) return status;
     sym_move_marks(r);
     return ended ? SYM_TERMINAL_EVENT : 0;

@@ -1,5 +1,7 @@
 /* Events of a run: zeros of formulas along the dense output, found by event_search.c. */
 
+static int32_t sym_watch_shared_load(sym_run *r, double *values);
+
 /* Values of all events at the evaluation point. Returns 0 or a status. */
 static int32_t sym_event_values(sym_run *r, double *values) {
     const sym_system *s = r->system;
@@ -12,7 +14,7 @@ static int32_t sym_event_values(sym_run *r, double *values) {
     }
     sym_evaluate(&s->events);
     for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] == -1 ? 1.0 : s->events.out[0][i];
-    return 0;
+    return s->shares_load && r->actions != NULL ? sym_watch_shared_load(r, values) : 0;
 }
 
 typedef struct sym_event_step { /* the step just made */
@@ -111,18 +113,24 @@ static int32_t sym_event_is_at_zero(sym_event_step *step, int32_t i, double x, d
     return 0;
 }
 
-/* Whether event i is met at x by rounding alone: a strike without rebound has left the bodies at rest on each other where the
- * step begins, and half way to x they have not moved apart by more. Returns 0 or a status. */
+/* Whether event i is of a rigid contact that has been settled where the step begins. */
+static int sym_settled_now(const sym_run *r, int32_t i) {
+    return r->system->n_contacts > 0 && i >= r->actions->first_mode && r->acted_at[i] >= r->t;
+}
+
+/* Whether event i is met at x by rounding alone: a strike has left the bodies on each other, or a little apart, where the step
+ * begins, and half way to x they have not moved apart by more. Returns 0 or a status. */
 static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, int32_t *is) {
     const sym_run *r = step->run;
     *is = 0;
-    if (r->actions == NULL || r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t) return 0;
+    if (r->actions == NULL || (!sym_settled_now(r, i) && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
     return sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
 }
 
 /* Whether the step begins as bodies leave a contact that can come to rest, near to which they turn then. */
 static int sym_leaves_contact(const sym_run *r, int32_t i) {
     const int32_t opens = r->actions == NULL ? -1 : r->actions->opens[i];
+    if (r->actions != NULL && sym_settled_now(r, i)) return 1;
     return opens >= 0 && (r->acted_at[i] == r->t || r->acted_at[opens] == r->t);
 }
 

@@ -104,6 +104,10 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
         const int32_t status = sym_choose_modes(r);
         if (status != 0) return status;
     }
+    if (s->n_contacts > 0 && r->actions != NULL) {
+        const int32_t status = sym_begin_contacts(r);
+        if (status != 0) return status;
+    }
     sym_load_state(r);
     {
         const int32_t status = r->record_every > 0 ? sym_record(r) : sym_record_grid_at_end(r, r->h);
@@ -141,6 +145,7 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
     memcpy(r->q, w->end_state, (size_t)s->nq * sizeof *r->q);
     memcpy(r->v, w->end_state + s->nq, (size_t)s->nv * sizeof *r->v);
     r->t = t1;
+    if (s->n_contacts > 0) sym_keep_directions(r);
     r->system->in_step = r->system->held_anew = 0;
 }
 

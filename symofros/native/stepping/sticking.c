@@ -23,6 +23,14 @@ static void sym_let_go(const sym_system *s, double *par) {
         if (par[s->sticking[i].mode] == SYM_HELD) par[s->sticking[i].mode] = 0.0;
 }
 
+/* Let contacts go for an instant in which events act: what touches is found again by where it is. */
+static void sym_open_contacts(const sym_system *s, double *par) {
+    int32_t i;
+    for (i = 0; i < s->n_contacts; ++i) par[s->contacts[i].mode] = 0.0;
+}
+
+/* Times what counts as an instant within which strikes follow each other where they accumulate. */
+#define SYM_ACCUMULATION 1e3
 /* Speed, beside one and beside the fastest, that is rounding of rest [rad/s or m/s]. */
 #define SYM_STILL 1e-12
 /* Share of the most that friction takes at rest at which it lets go: the rounding of a multiplier. Share of accelerations

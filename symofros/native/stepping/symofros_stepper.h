@@ -31,7 +31,9 @@ typedef enum sym_status {
     SYM_ACTS_WITHOUT_END = -13,  /* an event's action brings the event about again at the same instant, or bodies to rest */
     SYM_MODES_UNDECIDED = -14,   /* no modes of friction that sticks agree with what they bring about */
     SYM_HELD_TWICE = -15,        /* friction holds what it or constraints hold already: what it takes is not determined */
-    SYM_WRONG_CONTACT = -16      /* a contact that rests is penetrated, or holds by a force that draws */
+    SYM_WRONG_CONTACT = -16,     /* a contact that rests is penetrated, or holds by a force that draws */
+    SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction agree with the motion that they bring about */
+    SYM_CONTACTS_AMBIGUOUS = -18 /* several motions agree with Coulomb's law at rigid contacts */
 } sym_status;
 
 typedef enum sym_method {
@@ -99,6 +101,17 @@ typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/th
     int32_t row;   /* of G, which holds it */
 } sym_sticking;
 
+/* Entries a ball of a rigid contact: of its state, and of what is known of its slip. */
+typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_SLIP_ENTRIES = 3 } sym_contact_sizes;
+
+typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/constraints.md, section 15) */
+    int32_t mode;    /* parameter: SYM_OPEN, SYM_SLIDES, SYM_STICKS */
+    int32_t push[3]; /* parameters: a further force on the ball, along the axes of the plane */
+    int32_t way[3];  /* parameters: x, y of the direction in which it has begun to slide, and its speed then */
+    int32_t apart;   /* parameter: how far it may pass the plane, open, by rounding */
+    int32_t row[3];  /* of G, which hold it along the axes of the plane */
+} sym_rigid_contact;
+
 typedef struct sym_assignment { /* what one action sets */
     int32_t event;
     int32_t is_speed, index; /* of a speed, else of a parameter */
@@ -128,7 +141,7 @@ typedef struct sym_actions {
     sym_call values, constraint;     /* formulas: of switches, assignments, the most that friction takes at rest; phi */
     sym_call *poses;                 /* p, R of frames */
     double *engaged;                 /* (n_switches) scratch */
-    double *modes;                   /* (npar + 2 n_sticking) scratch */
+    double *modes;                   /* (npar + 2 n_sticking + n_contacts) scratch */
 } sym_actions;
 
 /* What the action at a row of events has done. */
@@ -189,6 +202,20 @@ typedef struct sym_system {
     int32_t n_sticking;
     const sym_sticking *sticking; /* (n_sticking) coordinates with friction that sticks, and whether one is held now: */
     int32_t *held;                /* it stays as it is, and at rest, exactly */
+    int32_t n_contacts;
+    const sym_rigid_contact *contacts; /* (n_contacts) balls of rigid contacts */
+    /* One output, SYM_CONTACT_ENTRIES of each: its distance, its velocity against the plane (3), its coefficients of friction
+     * and of restitution. */
+    sym_call contact_state;
+    int32_t npar;
+    int32_t shares_load;               /* whether balls that stick share their load in more than one way */
+    double longest_step;               /* of fixed steps [s] */
+    int32_t settled;                   /* whether modes have been chosen in this run */
+    double *struck_at;                 /* (n_contacts) instant of the last strike [s] */
+    /* (n_contacts, SYM_SLIP_ENTRIES) of balls that slide: the direction at the last end of a step with a slip (2), and the slip up
+     * to which it stays so [m/s]. */
+    double *slip;
+    double *contact_work;              /* sym_contact_work_size entries of scratch */
     int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
 
@@ -328,6 +355,8 @@ int32_t sym_run_act(sym_run *run);
 void sym_run_set_parameters(sym_run *run, const double *par);
 /* Doubles of a row of run->event_done, and where one's numbers are. */
 size_t sym_done_size(const sym_run *run);
+/* Doubles of sym_system's contact_work. */
+size_t sym_contact_work_size(const sym_system *system);
 sym_done sym_run_done(const sym_run *run, int64_t row);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);

@@ -246,12 +246,16 @@ static int32_t sym_check_acceleration(sym_run *r) {
     return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
 }
 
+static int32_t sym_add_sliding(sym_run *r, const double *par);
+
 /* Accelerations and multipliers at the evaluation point, inputs included. Returns 0 or a status. */
 static int32_t sym_evaluate_acceleration(sym_run *r) {
     sym_system *s = r->system;
+    int32_t status;
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->forward_dynamics);
-    return sym_check_acceleration(r);
+    status = sym_check_acceleration(r);
+    return status != 0 || s->n_contacts == 0 ? status : sym_add_sliding(r, r->par);
 }
 
 /* Evaluation point <- the present state. */

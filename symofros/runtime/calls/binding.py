@@ -24,6 +24,7 @@ _ENUMS = (
     "sym_method",
     "sym_segment_kind",
     "sym_event_sizes",
+    "sym_contact_sizes",
     "sym_instant_kind",
     "sym_instant_sizes",
     "sym_posture_sizes",

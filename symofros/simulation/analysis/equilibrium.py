@@ -106,6 +106,7 @@ def equilibrium(
         UnknownNameError: `held` names something that is not a speed.
     """
     model.record.refuse_states("equilibrium")
+    model.record.refuse_rigid_contacts("equilibrium")
     model = model.with_precision("double")
     free = free_speeds(model, held)
     q = model.neutral() if q is None else given_configuration(model, q)

@@ -73,6 +73,7 @@ def modes(
         BeamTheoryError: A beam is bent beyond the limit.
     """
     model.record.refuse_states("modes")
+    model.record.refuse_rigid_contacts("modes")
     state = (
         given_configuration(model, q),
         np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),

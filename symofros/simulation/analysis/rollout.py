@@ -257,6 +257,7 @@ def rollout(
             or the motion leaves the finite numbers.
         ShapeError: An array does not fit.
     """
+    model.record.refuse_rigid_contacts("rollout")
     if model.carried is not model:
         model.record.refuse_states("rollout, which is of `model.carried`")
     model = model.with_precision("double")

@@ -67,6 +67,7 @@ def state_space(
         SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
     model.record.refuse_states("state_space")
+    model.record.refuse_rigid_contacts("state_space")
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
     u = given_inputs(model, u)

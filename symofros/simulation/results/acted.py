@@ -8,7 +8,9 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError
+from symofros.native import native_number
 from symofros.runtime.model import Model
+from symofros.runtime.record import STICKS
 from symofros.simulation.events import Event, ModeEvent
 from symofros.simulation.results.ends import ENDS, INTERRUPTED
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
@@ -21,6 +23,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Combinations of rows of G of a smaller share of the largest one are rounding: their impulse is none.
 _RANK = 1e-12
+# Distance of a ball from a plane that it touches [m].
+_TOUCHES = native_number("stepping/rigid_contacts.c", "SYM_TOUCHES")
 
 
 def found_of(run: BoundRun, met: Met) -> Found:
@@ -35,7 +39,9 @@ def found_event(event: Event, model: Model, met: Met) -> Found:
     if done is None or done.status <= 0:
         return found
     if isinstance(event, ModeEvent):
-        found = found._replace(name=event.said(done.par_set))
+        found = found._replace(
+            name=event.said(done.par, done.par_set, impulse=bool(np.any(done.v_after != done.v_set)))
+        )
     return found._replace(v_after=done.v_after, **_effects(model, met, done))
 
 
@@ -105,6 +111,17 @@ def _engages(run: BoundRun, met: Met, done: Done) -> bool:
     return run.actions is not None and bool(run.actions.engaging(done.par, done.par_set, (met.t, met.q, met.v, done.u)))
 
 
+def _touching(model: Model, met: Met, done: Done) -> Array:
+    """The parameters that an action has set, with rows of the rigid contacts that took part in its impact."""
+    par, balls = done.par_set.copy(), model.record.rigid_contacts
+    gaps = model.contact_forces(met.q, met.v, u=done.u, par=done.par).gap if balls else ()
+    for ball in balls:
+        near = abs(gaps[model.names.contacts.index(ball.name)]) < _TOUCHES
+        if near or done.par[ball.mode] or done.par_set[ball.mode]:
+            par[ball.mode] = STICKS
+    return par
+
+
 def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:
     """Impulse and energies of speeds as they were, as they were set, and as the impact left them."""
     u, before, set_to, after = done.u, met.v, done.v_set, done.v_after
@@ -119,7 +136,7 @@ def _effects(model: Model, met: Met, done: Done) -> dict[str, Any]:
         added = energy(set_to, done.par_set) - energy(before, done.par)
         M, G = model.mass_matrix(done.q_after, **given), np.zeros((0, model.nv))
         if model.nc:
-            G = model.constraint_jacobian(done.q_after, t=met.t, **given)
+            G = model.constraint_jacobian(done.q_after, t=met.t, u=u, par=_touching(model, met, done))
         impulse = np.linalg.lstsq(G.T, M @ (after - set_to), rcond=_RANK)[0]
     except SymofrosError:  # Options.functions left them out.
         return {}

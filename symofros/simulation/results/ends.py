@@ -96,8 +96,22 @@ ENDS: dict[int, End] = {
     ),
     Status.WRONG_CONTACT: End(
         "input failed",
-        "a contact that can come to rest is penetrated here, or is held though its force draws",
-        "a start on the free side of the gap; engaged only where it presses; `rests` above zero where bodies press",
+        "a contact that can come to rest is penetrated here, is held though its force draws, or is one of nine rigid"
+        " ones",
+        "a start on the free side of the gap; engaged only where it presses; `rests` above zero where bodies press; at"
+        " most eight rigid contacts at once",
+    ),
+    Status.NO_CONTACT_FORCE: End(
+        "not converged",
+        "no forces of rigid contacts agree with Coulomb's law and the motion that they bring about (Painleve's"
+        " paradox)",
+        "less friction, or a compliant contact there: stiffness in place of restitution",
+    ),
+    Status.CONTACTS_AMBIGUOUS: End(
+        "not converged",
+        "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox): which one follows is not"
+        " determined",
+        "less friction, or a compliant contact there: stiffness in place of restitution",
     ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."

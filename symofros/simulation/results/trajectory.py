@@ -18,6 +18,7 @@ from symofros.base.names import TIME, coordinate_of, speed_column, speed_of, sym
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import Model
+from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import Panel, draw
 from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
@@ -179,8 +180,7 @@ class Trajectory:
 
     @cached_property
     def _dynamics(self) -> tuple[Array, Array]:
-        a, lam, _ = self.model.constrained_dynamics(self.q, self.v, self.u, par=self._par, t=self.t, **self._states)
-        return a, lam
+        return contact_dynamics(self.model, (self.t, self.q, self.v, self.u), self._par, **self._states)
 
     @property
     def a(self) -> Array:

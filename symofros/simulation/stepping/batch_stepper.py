@@ -127,6 +127,7 @@ class BatchStepper:
         first: int,
         stride: int,
     ) -> None:
+        model.record.refuse_rigid_contacts("a batch of motions")
         self.single = Stepper(model, settings.method, initial.inputs.plan, initial.events, initial.par[0])
         settings.apply(self.single)
         self.single.set_span(settings.span)

@@ -20,6 +20,8 @@ from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.tableaus import fill_tableau
 from symofros.simulation.user_functions import named_function
 
+# Kinds of methods whose steps choose the modes of rigid contacts.
+_BY_MODES = ("explicit", "semi_implicit")
 _INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
 
 
@@ -83,6 +85,7 @@ class BoundRun:
         self._fill_method()
         self.run.system = self.system
         self._fill_actions(plan(model, events))
+        self._fill_contacts()
 
     def _fill_system(self) -> None:
         """Sizes, segments, and the evaluation point."""
@@ -106,6 +109,32 @@ class BoundRun:
         system.n_sticking, system.held = len(sticking), memory.own("int32_t[]", len(sticking))
         system.sticking = memory.own("sym_sticking[]", [(one.q, one.v, one.mode, one.row) for one in sticking])
         self._hold()
+
+    def _fill_contacts(self) -> None:
+        """Balls of rigid contacts (docs/theory/constraints.md, section 15)."""
+        system, memory, balls = self.system, self.memory, self.model.record.rigid_contacts
+        system.n_contacts, system.npar = len(balls), self.model.npar
+        rows = [(ball.mode, list(ball.pushes), list(ball.way), ball.apart, list(ball.rows)) for ball in balls]
+        system.contacts = memory.own("sym_rigid_contact[]", rows)
+        if not balls:
+            return
+        if self.method.kind not in _BY_MODES:
+            self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'")
+        formulas: list[str] = []
+        for ball in balls:
+            formulas += [f"`contact.{ball.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz")]
+            formulas += [ball.friction, ball.restitution]
+        self._bind("contact_state", self.model.formulas(formulas, derivatives=False))
+        system.struck_at = memory.doubles([-math.inf] * len(balls))
+        system.slip = memory.doubles([x for ball in balls for x in (*self.par[list(ball.way[:2])], 0.0)])
+        system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))
+        if self.actions is None:
+            self.run.par = memory.doubles(self.par)
+
+    def slide_as(self, other: BoundRun) -> None:
+        """Take the directions of balls that slide from another run of the model."""
+        size = len(self.model.record.rigid_contacts) * constants()["SYM_SLIP_ENTRIES"]
+        self.memory.view(self.system.slip, size)[:] = other.memory.view(other.system.slip, size)
 
     def _hold(self) -> None:
         """Tell which coordinates friction holds, by their modes."""
@@ -195,7 +224,10 @@ class BoundRun:
         plan.opens = memory.own("int32_t[]", opens_of(events))
         plan.refuses = memory.callback("int32_t(void *, const double *)", self._refuses)
         plan.engaged, sticking = memory.zeros(len(switches)), len(model.record.sticking)
-        plan.first_mode, plan.modes = actions.stated.first_mode, memory.zeros(model.npar + 2 * sticking)
+        plan.first_mode, plan.modes = (
+            actions.stated.first_mode,
+            memory.zeros(model.npar + 2 * sticking + len(model.record.rigid_contacts)),
+        )
         self._bind_call(plan, "values", actions.kernel)
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))

@@ -21,7 +21,7 @@ _EVENT_ROWS = 64
 # An event that acts twice within this share of a run acts without end: smaller spans are not resolved within steps.
 _AT_ONCE = 1e-9
 # Times that, strikes follow each other where they accumulate.
-_ACCUMULATION = native_number("stepping/actions.c", "SYM_ACCUMULATION")
+_ACCUMULATION = native_number("stepping/sticking.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
 

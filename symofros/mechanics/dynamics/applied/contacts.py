@@ -1,4 +1,4 @@
-"""Compliant contacts: distances of surfaces, and the forces of penetrations (docs/theory/rigid.md, section 10.2)."""
+"""Contacts: distances of surfaces, and the forces of penetrations (docs/theory/rigid.md, section 10.2)."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from symofros.mechanics.dynamics.applied.elements import smoothed_sign
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
 from symofros.mechanics.kinematics.lowering import Lowering
+from symofros.mechanics.topology.rigid_contacts import RigidBall
 from symofros.mechanics.topology.tree import frame_of
 
 # What roots are taken of is at least this, a number of single precision too: the derivative of a root of zero does not
@@ -36,6 +37,7 @@ class TouchingBall:
         point: Point of the surface next to the ball's centre, where the force acts [m].
         energy: Energy that the penetration and bristles store [J].
         share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
+        slip: Velocity of the ball's material point there against the surface's, in the axes of the surface [m/s].
         rates: Rates of the deflections of its bristles, in the axes of the surface; none without bristles [m/s].
     """
 
@@ -46,6 +48,7 @@ class TouchingBall:
     point: Vec3
     energy: Edge
     share: Edge
+    slip: Vec3
     rates: tuple[Edge, ...]
 
 
@@ -53,8 +56,8 @@ def touching_balls(kinematics: TreeKinematics, frames: FrameKinematics, contact:
     """The balls of a contact, in order."""
     lowering = kinematics.lowering
     return [
-        _touching(kinematics, frames, contact, lowering.vector(point), names)
-        for point, names in zip(contact.points, contact.state_names, strict=True)
+        _touching(kinematics, frames, contact, number, lowering.vector(point))
+        for number, point in enumerate(contact.points)
     ]
 
 
@@ -67,7 +70,7 @@ def bristle_rates(kinematics: TreeKinematics, frames: FrameKinematics) -> Iterat
 
 
 def _touching(
-    kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact, point: Vec3, states: tuple[str, ...]
+    kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact, number: int, point: Vec3
 ) -> TouchingBall:
     g, lowering = kinematics.g, kinematics.lowering
     ends = [frame_of(kinematics.tree, *anchor) for anchor in (contact.first, contact.second)]
@@ -78,17 +81,23 @@ def _touching(
     normal = second.R_WF.times(gradient)
     p_WP = p_WC - normal.scaled(distance)
     gap = g.sub(distance, radius)
-    depth = g.call("max", -gap, ZERO)
     # Of points fixed to the two bodies at the point of contact.
     at_first, at_second = (_velocity_at(g, frames.velocity(end), p_WP - frames.pose(end).p_WF) for end in ends)
     slip = at_first - at_second
+    slip_S = second.R_WF.T.times(slip)
+    if contact.rigid:
+        names = RigidBall(contact, number, contact.ball_names[number]).pushes
+        force = Vec3(g, *(lowering.symbol(name) for name in names))
+        return TouchingBall(gap, ZERO, force.z, second.R_WF.times(force), p_WP, ZERO, ZERO, slip_S, ())
+    depth = g.call("max", -gap, ZERO)
     approach = -slip.dot(normal)
-    elastic = g.mul(lowering.value(contact.stiffness), _power(g, depth, contact.exponent))
+    elastic = g.mul(lowering.value(contact.stiffness or 0.0), _power(g, depth, contact.exponent))
     damping = g.call("max", g.add(ONE, g.mul(lowering.value(contact.dissipation), approach)), ZERO)
     push = g.mul(elastic, damping)
     across = slip + normal.scaled(approach)
     energy = g.div(g.mul(elastic, depth), g.constant(contact.exponent + 1.0))
     rates: tuple[Edge, ...] = ()
+    states = contact.state_names[number]
     if states:
         z = Vec3(g, *(lowering.symbol(symbol_of(name)) for name in states))
         bristles = _Bristles(lowering, contact, gradient, push, second.R_WF.T.times(across), z)
@@ -99,7 +108,7 @@ def _touching(
         drag = _friction(lowering, contact, push, across)
     size = _size(lowering, contact)
     share = ZERO if size is None else g.div(depth, size)
-    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share, rates)
+    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share, slip_S, rates)
 
 
 def _velocity_at(g: Graph, velocity: list[Edge], offset: Vec3) -> Vec3:

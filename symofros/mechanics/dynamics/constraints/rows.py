@@ -21,6 +21,7 @@ from symofros.description.constraints import (
     Nonholonomic,
     Rod,
     Rolling,
+    Touching,
 )
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import along, directional
@@ -119,6 +120,7 @@ class Constraints:
             KnifeEdge: self._edge,
             Rolling: self._rolling,
             Nonholonomic: self._stated,
+            Touching: self._touching,
         }
         return [
             row
@@ -254,6 +256,25 @@ class Constraints:
         for k, e in enumerate((Vec3.unit(g, 0), Vec3.unit(g, 1), up)):
             phi = g.sub(g.sub(B.p.z, height), drop) if k == 2 else ZERO
             yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
+
+    def _touching(self, touching: Touching) -> Iterator[Row]:
+        """A ball on a plane: its distance and the velocity of its point of contact vanish (eq. 38a)."""
+        g, contact = self.g, touching.contact
+        S, B = self._state(touching.first), self._state(touching.second)
+        n, radius = S.R.column(2), self.kinematics.lowering.value(contact.radius)
+        arm = B.R.times(self.kinematics.lowering.vector(contact.points[touching.ball]))
+        rho = arm - n.scaled(radius)  # From the origins of the two frames to the point of contact.
+        sigma = B.p + rho - S.p
+        rho_rate = B.w.cross(arm) - S.w.cross(n).scaled(radius)
+        sigma_rate = B.v + rho_rate - S.v
+        slip = B.v + B.w.cross(rho) - S.v - S.w.cross(sigma)
+        drift = B.a + B.alpha.cross(rho) + B.w.cross(rho_rate) - S.a - S.alpha.cross(sigma) - S.w.cross(sigma_rate)
+        for axis in touching.axes:
+            t = S.R.column(axis)
+            phi = sigma.dot(n) if axis == 2 else ZERO
+            turned = g.add(drift.dot(t), slip.dot(S.w.cross(t)))
+            parts = [(B, t, rho.cross(t), 1), (S, t, sigma.cross(t), -1)]
+            yield self._row(phi, slip.dot(t), -turned, parts)
 
     def _stated(self, constraint: Nonholonomic) -> Iterator[Row]:
         """A(q, t) v = b(q, t), differentiated along the motion (eq. 10)."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.runtime.manifold import retract
+from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.examination.finer_steps import States
 from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.results.examination.run import ExaminedRun
@@ -154,7 +155,7 @@ def _power(run: ExaminedRun, step: float, states: States) -> Array:
     Without what the forces of constraints have taken or supplied where G v = b is violated: that is an error, no work.
     """
     model, par, (t, q, v, u) = run.model, run.stepper.par, states
-    a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
+    a, lam = contact_dynamics(model, (t, q, v, u), par)
     # A fast motion changes its speeds within less than a step that does not follow it.
     pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
     moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
@@ -165,7 +166,8 @@ def _power(run: ExaminedRun, step: float, states: States) -> Array:
         ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s, z=model.states_of(v_s)))
     rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
     if model.nc:
-        rate = rate - np.einsum("ij,ij->i", lam, model.constraint_rate(q, v, u=u, par=par, t=t))
+        violated = model.constraint_rate(q, v, u=u, par=par, t=t)  # Zero of what is released, as of balls that slide.
+        rate = rate - np.einsum("ij,ij->i", lam, violated)
     return rate
 
 

@@ -206,6 +206,8 @@ class ExaminedRun(HeldRun):
         part = replace(self.settings, t0=float(t), t_end=t_end, dt=dt, every=every, method=method, **once)
         part = replace(part, project=part.project or (method != stepper.method and self.model.nc > 0))
         again = Stepper(self.model, method, stepper.inputs, (), stepper.par)
+        if self.model.record.rigid_contacts:
+            again.slide_as(stepper)
         part.apply(again)
         return again, run_own(again, q, v, part, lambda _: None)
 

@@ -58,7 +58,7 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
     if not ended_well:
         return mode, tuple(notes)
     # No mode of a free flight shows the impact after it.
-    unseen = bool(run.model.record.contact_names) or _samples_within_steps(run.stepper.inputs, run.settings)
+    unseen = run.model.record.has_compliant_contacts or _samples_within_steps(run.stepper.inputs, run.settings)
     evident = resolution.evident and not unseen
     if mode is None:
         notes.append(halved_step_note(run, evident=evident))
@@ -79,6 +79,8 @@ def examine_steps(run: ExaminedRun) -> Resolution:
     stepper, settings, (t, q, v, u) = run.stepper, run.settings, run.states
     if not settings.judged or not run.model.nv or run.steps < 1:
         return Resolution()
+    if run.model.record.rigid_contacts:
+        return Resolution()  # Across a slip that begins friction has no bounded rate, nor does the motion need one.
     if settings.realtime and stepper.system.callback != stepper.ffi.NULL:
         return Resolution()  # What the function serves may be hardware: it is not called beside the run.
     good = _finite_rows(q, v)

@@ -1,0 +1,379 @@
+/* Rigid contacts with friction: forces while balls slide, impacts, and which mode each takes (docs/theory/constraints.md,
+ * section 15). */
+
+enum { SYM_MOST_STRIKES = 10000 };
+/* Slip up to which adaptive steps do not follow how its direction turns [m/s]. */
+#define SYM_SLOW 1e-5
+/* Share of the speed with which a ball began to slide that is left by the turning of its path where it comes to rest. */
+#define SYM_SLIP_LEFT 1e-6
+/* Distance of a ball from a plane that it touches [m]; by which one that grazes it may pass it, at first. */
+#define SYM_TOUCHES 1e-9
+#define SYM_GRAZES 1e-13
+
+/* Where parts of the scratch begin. */
+typedef struct sym_contact_room {
+    double *par;          /* (npar) */
+    double *a, *lam;      /* (nv), (nc) without what is added */
+    double *change_a, *change_lam; /* (n, nv), (n, nc) by unit normal forces on balls that slide */
+    double *free_a;       /* (nv) acceleration without the forces of an instant's balls */
+    double *effect;       /* (3 n, nv) what unit forces on them add */
+    double *v;            /* (nv) speeds */
+    double *kept_a, *kept_lam; /* (nv), (nc) */
+} sym_contact_room;
+
+static sym_contact_room sym_room_of_contacts(const sym_run *r) {
+    const sym_system *s = r->system;
+    const size_t n = (size_t)s->n_contacts, nv = (size_t)s->nv, nc = (size_t)s->nc;
+    sym_contact_room room;
+    room.par = s->contact_work, room.a = room.par + s->npar, room.lam = room.a + nv;
+    room.change_a = room.lam + nc, room.change_lam = room.change_a + n * nv;
+    room.free_a = room.change_lam + n * nc, room.effect = room.free_a + nv, room.v = room.effect + 3 * n * nv;
+    room.kept_a = room.v + nv, room.kept_lam = room.kept_a + nv;
+    return room;
+}
+
+SYM_EXPORT size_t sym_contact_work_size(const sym_system *s) {
+    const size_t n = (size_t)s->n_contacts, nv = (size_t)s->nv, nc = (size_t)s->nc;
+    return n == 0 ? 0 : (size_t)s->npar + nv + nc + n * nv + n * nc + nv + 3 * n * nv + 2 * nv + nc;
+}
+
+/* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
+static double sym_friction_of(const sym_system *s, int32_t ball) {
+    return s->contact_state.out[0][SYM_CONTACT_ENTRIES * ball + 4];
+}
+
+/* Direction (2) in which a ball slides by its slip u: the last known one where the slip is so small that a step of this length
+ * can't follow how it turns, and opposite to the slip where it has just passed rest, so that a step beyond the end of a mode is
+ * as smooth as the one before, (41b). */
+static void sym_slip_direction(const double *u, const double *known, double *d) {
+    const double slip = hypot(u[0], u[1]);
+    memcpy(d, known, 2 * sizeof *d);
+    if (slip <= SYM_STILL || slip <= known[2]) return;
+    d[0] = u[0] / slip, d[1] = u[1] / slip;
+    if (d[0] * known[0] + d[1] * known[1] < 0.0) d[0] = -d[0], d[1] = -d[1];
+}
+
+/* At the end of a step: the directions of balls that slide. */
+static void sym_keep_directions(sym_run *r) {
+    const sym_system *s = r->system;
+    int32_t i, sliding = 0;
+    for (i = 0; i < s->n_contacts; ++i) sliding |= r->par[s->contacts[i].mode] == SYM_SLIDES;
+    if (!sliding) return;
+    sym_load_state(r);
+    sym_evaluate(&s->contact_state);
+    for (i = 0; i < s->n_contacts; ++i) {
+        const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
+        double *known = s->slip + SYM_SLIP_ENTRIES * i;
+        if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
+        if (slip > SYM_STILL && slip > known[2] && state[1] * known[0] + state[2] * known[1] > 0.0)
+            known[0] = state[1] / slip, known[1] = state[2] / slip;
+    }
+}
+
+/* x with A x = b (n x n, n <= SYM_MOST_CONTACTS), in place of b, without changes of rows: whether all leading minors are
+ * positive. */
+static int32_t sym_solve_sliding(int32_t n, double *A, double *b) {
+    int32_t i, j, k;
+    for (k = 0; k < n; ++k) {
+        if (!(A[n * k + k] > SYM_FORCE_ROUNDING)) return 0;
+        for (i = k + 1; i < n; ++i) {
+            const double factor = A[n * i + k] / A[n * k + k];
+            for (j = k; j < n; ++j) A[n * i + j] -= factor * A[n * k + j];
+            b[i] -= factor * b[k];
+        }
+    }
+    for (k = n - 1; k >= 0; --k) {
+        for (j = k + 1; j < n; ++j) b[k] -= A[n * k + j] * b[j];
+        b[k] /= A[n * k + k];
+    }
+    return 1;
+}
+
+/* Accelerations and multipliers at the evaluation point, those without sliding friction, become those with it, (41); the
+ * multipliers across the normals of balls that slide become their friction. The inputs are known. Returns 0 or a status. */
+static int32_t sym_add_sliding(sym_run *r, const double *par) {
+    const sym_system *s = r->system;
+    const size_t nv = (size_t)s->nv, nc = (size_t)s->nc;
+    const sym_contact_room room = sym_room_of_contacts(r);
+    double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], f[SYM_MOST_CONTACTS], d[SYM_MOST_CONTACTS][2];
+    int32_t which[SYM_MOST_CONTACTS], n = 0, i, j, status = 0;
+    size_t l;
+    for (i = 0; i < s->n_contacts; ++i)
+        if (par[s->contacts[i].mode] == SYM_SLIDES) which[n++] = i;
+    if (n == 0) return 0;
+    sym_evaluate(&s->contact_state);
+    for (j = 0; j < n; ++j) sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, s->slip + SYM_SLIP_ENTRIES * which[j], d[j]);
+    memcpy(room.par, par, (size_t)s->npar * sizeof *par);
+    memcpy(room.a, s->a, nv * sizeof *s->a), memcpy(room.lam, s->lam, nc * sizeof *s->lam);
+    for (j = 0; j < n && status == 0; ++j) {
+        const sym_rigid_contact *of = s->contacts + which[j];
+        double *a = room.change_a + (size_t)j * nv, *lam = room.change_lam + (size_t)j * nc;
+        for (i = 0; i < 2; ++i) room.par[of->push[i]] = -sym_friction_of(s, which[j]) * d[j][i];
+        sym_prepare_call(&s->forward_dynamics, room.par);
+        sym_evaluate(&s->forward_dynamics);
+        for (i = 0; i < 2; ++i) room.par[of->push[i]] = par[of->push[i]];
+        if (*s->rank < 0.0) status = SYM_SINGULAR;
+        for (l = 0; l < nv; ++l) a[l] = s->a[l] - room.a[l];
+        for (l = 0; l < nc; ++l) lam[l] = s->lam[l] - room.lam[l];
+    }
+    sym_prepare_call(&s->forward_dynamics, par);
+    if (status != 0) return status;
+    for (i = 0; i < n; ++i) {
+        const int32_t row = s->contacts[which[i]].row[2];
+        f[i] = room.lam[row];
+        for (j = 0; j < n; ++j) A[n * i + j] = (i == j) - room.change_lam[(size_t)j * nc + (size_t)row];
+    }
+    if (!sym_solve_sliding(n, A, f)) return SYM_NO_CONTACT_FORCE;
+    memcpy(s->a, room.a, nv * sizeof *s->a), memcpy(s->lam, room.lam, nc * sizeof *s->lam);
+    for (j = 0; j < n; ++j) {
+        for (l = 0; l < nv; ++l) s->a[l] += room.change_a[(size_t)j * nv + l] * f[j];
+        for (l = 0; l < nc; ++l) s->lam[l] += room.change_lam[(size_t)j * nc + l] * f[j];
+    }
+    for (j = 0; j < n; ++j)
+        for (i = 0; i < 2; ++i) s->lam[s->contacts[which[j]].row[i]] = -sym_friction_of(s, which[j]) * d[j][i] * f[j];
+    return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
+}
+
+/* Balls that touch, at one instant. */
+typedef struct sym_touching {
+    int32_t of[SYM_MOST_CONTACTS]; /* their numbers */
+    double u[SYM_MOST_FORCES];     /* velocities */
+    double apart[SYM_MOST_CONTACTS]; /* how far one may pass the plane by rounding, if it is open */
+    sym_contact_problem problem;
+} sym_touching;
+
+/* Accelerations and multipliers at the evaluation point by other parameters, the inputs being known. Returns 0 or a status. */
+static int32_t sym_try_contacts(sym_run *r, const double *par) {
+    int32_t status;
+    sym_prepare_call(&r->system->forward_dynamics, par);
+    sym_evaluate(&r->system->forward_dynamics);
+    status = sym_check_acceleration(r);
+    return status != 0 ? status : sym_add_sliding(r, par);
+}
+
+/* u (3 n): what the velocities of the balls would be with the speeds v; the evaluation point stays. */
+static void sym_velocities_of_balls(const sym_run *r, const sym_touching *at, const double *v, double *u) {
+    const sym_system *s = r->system;
+    double *kept = sym_room_of_contacts(r).v;
+    int32_t i, k;
+    memcpy(kept, s->v, (size_t)s->nv * sizeof *v), memcpy(s->v, v, (size_t)s->nv * sizeof *v);
+    sym_evaluate(&s->contact_state);
+    for (i = 0; i < at->problem.n; ++i)
+        for (k = 0; k < 3; ++k) u[3 * i + k] = s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 1 + k];
+    memcpy(s->v, kept, (size_t)s->nv * sizeof *v);
+}
+
+/* W of the balls that touch at the evaluation point, and what unit forces on them add to the accelerations, (42), from par, in
+ * which their modes are open. Returns 0 or a status. */
+static int32_t sym_inertia_of_balls(sym_run *r, sym_touching *at, double *par) {
+    const sym_system *s = r->system;
+    const sym_contact_room room = sym_room_of_contacts(r);
+    const int32_t n = 3 * at->problem.n, nv = s->nv;
+    double first[SYM_MOST_FORCES], u[SYM_MOST_FORCES];
+    int32_t i, j, l, status = sym_try_contacts(r, par);
+    if (status != 0) return status;
+    memcpy(room.free_a, s->a, (size_t)nv * sizeof *s->a);
+    sym_velocities_of_balls(r, at, room.free_a, first);
+    for (j = 0; j < n; ++j) {
+        double *effect = room.effect + (size_t)j * (size_t)nv, *push = par + s->contacts[at->of[j / 3]].push[j % 3];
+        *push = 1.0;
+        status = sym_try_contacts(r, par);
+        *push = 0.0;
+        if (status != 0) return status;
+        sym_velocities_of_balls(r, at, s->a, u);
+        for (l = 0; l < nv; ++l) effect[l] = s->a[l] - room.free_a[l];
+        for (i = 0; i < n; ++i) at->problem.W[n * i + j] = u[i] - first[i];
+    }
+    return 0;
+}
+
+/* Impulses P (3 n) on the balls change velocities and speeds. */
+static void sym_add_impulses(sym_run *r, sym_touching *at, int32_t first, int32_t end, const double *P) {
+    const sym_contact_room room = sym_room_of_contacts(r);
+    const int32_t n = 3 * at->problem.n, nv = r->system->nv;
+    int32_t i, j, l;
+    for (j = first; j < end; ++j) {
+        for (i = 0; i < n; ++i) at->u[i] += at->problem.W[n * i + j] * P[j - first];
+        for (l = 0; l < nv; ++l) r->v[l] += room.effect[(size_t)j * (size_t)nv + (size_t)l] * P[j - first];
+    }
+}
+
+/* Balls that strike without restitution do so at once, others one after the other, the fastest first, until none approaches.
+ * Returns 0 or a status. */
+static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const double *e) {
+    sym_contact_problem *p = &at->problem;
+    const int32_t n = 3 * p->n;
+    int32_t round, i, j, k, elastic = 0, alone = p->n == 1;
+    for (i = 0; i < p->n; ++i) elastic |= e[i] > 0.0, p->parts[i] = p->slides[i] = 0;
+    memcpy(p->b, at->u, (size_t)n * sizeof *at->u);
+    if (!elastic && !alone && sym_solve_contacts(p, 0) == 0) {
+        sym_add_impulses(r, at, 0, n, p->f);
+        return 0;
+    }
+    for (round = 0; round < SYM_MOST_STRIKES; ++round) {
+        double W[9], P[3];
+        int32_t status, most = 0;
+        for (i = 1; i < p->n; ++i)
+            if (at->u[3 * i + 2] < at->u[3 * most + 2]) most = i;
+        if (!(at->u[3 * most + 2] < -still)) return 0;
+        for (j = 0; j < 3; ++j)
+            for (k = 0; k < 3; ++k) W[3 * j + k] = p->W[n * (3 * most + j) + 3 * most + k];
+        status = sym_impact_of_ball(W, at->u + 3 * most, p->mu[most], e[most], P);
+        if (status != 0) return status;
+        sym_add_impulses(r, at, 3 * most, 3 * most + 3, P);
+    }
+    return SYM_NO_CONTACT_FORCE;
+}
+
+/* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
+ * they are. Returns 0 or a status: one has penetrated where a motion begins, or too many touch. */
+static int32_t sym_find_touching(sym_run *r, const double *par, const double *met, sym_touching *at) {
+    const sym_system *s = r->system;
+    int32_t i, k, n = 0;
+    sym_load_state(r);
+    if (sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
+    sym_evaluate(&s->contact_state);
+    for (i = 0; i < s->n_contacts; ++i) {
+        const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i;
+        if (met == NULL && state[0] < -SYM_TOUCHES) return SYM_WRONG_CONTACT;
+        if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHES && !(met != NULL && met[i] > 0.0)) continue;
+        if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
+        at->of[n] = i, at->problem.mu[n] = state[4];
+        at->apart[n] = met != NULL && met[i] > 0.0 ? fmin(fmax(SYM_GRAZES, 2.0 * par[s->contacts[i].apart]), SYM_TOUCHES) : 0.0;
+        for (k = 0; k < 3; ++k) at->u[3 * n + k] = state[1 + k];
+        ++n;
+    }
+    at->problem.n = n;
+    return 0;
+}
+
+/* How the balls that touch move: which slide, and in which direction; which move away. */
+static void sym_sort_touching(const sym_run *r, sym_touching *at, double still, const double *met, const double *par) {
+    sym_contact_problem *p = &at->problem;
+    int32_t i;
+    for (i = 0; i < p->n; ++i) {
+        const sym_rigid_contact *of = r->system->contacts + at->of[i];
+        const double x = at->u[3 * i], y = at->u[3 * i + 1], slip = hypot(x, y);
+        const int32_t turned = met != NULL && met[at->of[i]] < 0.0 && par[of->mode] == SYM_SLIDES;
+        p->parts[i] = at->u[3 * i + 2] > still;
+        p->slides[i] = slip > still && !(turned && slip <= SYM_SLIP_LEFT * par[of->way[2]]);
+        if (p->slides[i]) p->d[2 * i] = x / slip, p->d[2 * i + 1] = y / slip;
+    }
+}
+
+/* b of the problem: accelerations of the points of contact without contact, against those where what rests sticks and the rest
+ * stays on its plane. par: modes of the balls are open before and after. Returns 0 or a status. */
+static int32_t sym_accelerations_of_balls(sym_run *r, sym_touching *at, double *par) {
+    const sym_system *s = r->system;
+    sym_contact_problem *p = &at->problem;
+    double reference[SYM_MOST_FORCES];
+    int32_t i, status = sym_try_contacts(r, par);
+    if (status != 0) return status;
+    sym_velocities_of_balls(r, at, s->a, p->b);
+    for (i = 0; i < p->n; ++i)
+        par[s->contacts[at->of[i]].mode] = p->parts[i] ? SYM_OPEN : !p->slides[i] && p->mu[i] > 0.0 ? SYM_STICKS : SYM_SLIDES;
+    sym_prepare_call(&s->forward_dynamics, par); /* without friction */
+    sym_evaluate(&s->forward_dynamics);
+    status = sym_check_acceleration(r);
+    if (status == 0) sym_velocities_of_balls(r, at, s->a, reference);
+    for (i = 0; i < 3 * p->n && status == 0; ++i) p->b[i] = p->parts[i / 3] ? 0.0 : p->b[i] - reference[i];
+    for (i = 0; i < p->n; ++i) par[s->contacts[at->of[i]].mode] = SYM_OPEN;
+    return status;
+}
+
+/* Impacts of the balls that touch, then the modes in which they go on, in par, where they are open. Returns 0 or a status. */
+static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *was, const double *met, double *par) {
+    const sym_system *s = r->system;
+    sym_contact_problem *p = &at->problem;
+    double still, fastest = 1.0, e[SYM_MOST_CONTACTS];
+    int32_t i, strikes = 0, status = sym_inertia_of_balls(r, at, par);
+    for (i = 0; i < s->nv; ++i) fastest = fmax(fastest, fabs(r->v[i]));
+    still = SYM_STILL * fastest;
+    for (i = 0; i < p->n && status == 0; ++i) {
+        const double since = r->t - s->struck_at[at->of[i]];
+        const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
+        e[i] = opened && since > SYM_ACCUMULATION * r->actions->at_once ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
+        if (!opened || approaches) at->apart[i] = 0.0;
+        if (opened && approaches) s->struck_at[at->of[i]] = r->t;
+        strikes |= approaches;
+    }
+    if (status == 0 && strikes) {
+        status = sym_strike(r, at, still, e);
+        sym_load_state(r);
+        sym_velocities_of_balls(r, at, r->v, at->u);
+    }
+    if (status != 0) return status;
+    sym_sort_touching(r, at, still, met, was);
+    status = sym_accelerations_of_balls(r, at, par);
+    return status != 0 ? status : sym_solve_contacts(p, 1);
+}
+
+/* Impacts and modes of rigid contacts at the present state. met (n_contacts): 1 where a ball has reached its plane or its force
+ * has fallen to zero, -1 where another mode has ended, else 0; NULL: the motion begins. Returns 0 or a status, with the modes
+ * as they were. */
+static int32_t sym_settle_contacts(sym_run *r, const double *met) {
+    sym_system *s = r->system;
+    double *par = r->actions->modes, gap;
+    sym_touching at;
+    int32_t i, k, status;
+    memcpy(par, r->par, (size_t)s->npar * sizeof *par);
+    status = sym_find_touching(r, par, met, &at);
+    if (status == 0) s->settled = 1;
+    if (status != 0 || at.problem.n == 0) return status;
+    for (i = 0; i < at.problem.n; ++i) {
+        const sym_rigid_contact *of = s->contacts + at.of[i];
+        par[of->mode] = SYM_OPEN;
+        for (k = 0; k < 3; ++k) par[of->push[k]] = 0.0;
+    }
+    status = sym_decide_contacts(r, &at, r->par, met, par);
+    if (status != 0) {
+        sym_prepare_call(&s->forward_dynamics, r->par);
+        return status;
+    }
+    for (i = 0; i < at.problem.n; ++i) {
+        const sym_rigid_contact *of = s->contacts + at.of[i];
+        const double *W = at.problem.W + 9 * i * at.problem.n + 3 * i;
+        double *known = s->slip + SYM_SLIP_ENTRIES * at.of[i];
+        known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
+        if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
+        par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
+        par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
+        par[of->way[2]] = at.problem.slides[i] ? hypot(at.u[3 * i], at.u[3 * i + 1]) : 0.0;
+    }
+    s->shares_load = at.problem.shared;
+    sym_run_set_parameters(r, par);
+    return sym_run_engage(r, &gap);
+}
+
+/* Where balls that stick share their load in more than one way, what all of them together have left takes the place of what
+ * each has, in the values of events at the evaluation point. Returns 0 or a status. */
+static int32_t sym_watch_shared_load(sym_run *r, double *values) {
+    const sym_system *s = r->system;
+    const sym_contact_room room = sym_room_of_contacts(r);
+    double *par = r->actions->modes, f[SYM_MOST_FORCES], rank;
+    sym_touching at;
+    sym_contact_problem *p = &at.problem;
+    int32_t i, k, shared, status;
+    memcpy(par, r->par, (size_t)s->npar * sizeof *par);
+    memcpy(room.kept_a, s->a, (size_t)s->nv * sizeof *s->a), memcpy(room.kept_lam, s->lam, (size_t)s->nc * sizeof *s->lam);
+    rank = *s->rank;
+    for (i = 0, p->n = 0; i < s->n_contacts; ++i) {
+        const sym_rigid_contact *of = s->contacts + i;
+        if (par[of->mode] != SYM_STICKS) continue;
+        for (k = 0; k < 3; ++k) f[3 * p->n + k] = s->lam[of->row[k]];
+        par[of->mode] = SYM_OPEN;
+        p->mode[p->n] = SYM_STICKS, p->mu[p->n] = sym_friction_of(s, i), at.of[p->n++] = i;
+    }
+    if (p->n == 0) return 0;
+    status = sym_inertia_of_balls(r, &at, par);
+    memcpy(s->a, room.kept_a, (size_t)s->nv * sizeof *s->a), memcpy(s->lam, room.kept_lam, (size_t)s->nc * sizeof *s->lam);
+    *s->rank = rank;
+    sym_prepare_call(&s->forward_dynamics, r->par);
+    if (status != 0) return status;
+    for (i = 0; i < p->n; ++i) {
+        double *value = values + r->actions->first_mode + 2 * at.of[i];
+        value[0] = value[1] = 1.0;
+        if (i == 0) value[1] = sym_sticking_margin(p, p->mode, f, &shared) + 2.0 * SYM_MARGIN_ROUNDING; /* beyond doubt */
+    }
+    return 0;
+}

@@ -1,0 +1,69 @@
+"""Accelerations and multipliers where balls of rigid contacts slide (docs/theory/constraints.md, (41))."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from symofros.base.arrays import Array
+from symofros.native import native_number
+from symofros.runtime.model import Model
+from symofros.runtime.record import SLIDES, STICKS, RigidContactRecord
+
+_STILL = native_number("stepping/sticking.c", "SYM_STILL")
+
+
+def contact_dynamics(
+    model: Model, states: tuple[Array, Array, Array, Array], par: Array, **given: Any
+) -> tuple[Array, Array]:
+    """Accelerations (n, nv) and multipliers (n, nc) by the modes of rigid contacts, friction of sliding balls included.
+
+    Args:
+        model: The model.
+        states: t (n), q (n, nq), v (n, nv), u (n, nu).
+        par: Run-time parameters (npar) or (n, npar).
+        given: States of forces, as z.
+    """
+    t, q, v, u = states
+    a, lam, _ = model.constrained_dynamics(q, v, u, par=par, t=t, **given)
+    balls, rows = model.record.rigid_contacts, np.broadcast_to(par, (len(t), model.npar))
+    sliding = np.stack([rows[:, ball.mode] == SLIDES for ball in balls], axis=1) if balls else np.zeros((0, 0))
+    if not sliding.any():
+        return a, lam
+    stuck = rows.copy()
+    stuck[:, [ball.mode for ball in balls]] = STICKS
+    slips = model.constraint_rate(q, v, u=u, par=stuck, t=t)
+    n, normal = len(balls), [ball.rows[2] for ball in balls]
+    change_a, change_lam = np.zeros((len(t), n, model.nv)), np.zeros((len(t), n, model.nc))
+    drags, friction = np.zeros((len(t), n, 2)), _friction(model, states, rows)
+    for j, ball in enumerate(balls):
+        drags[:, j] = -(sliding * friction)[:, j, np.newaxis] * _direction(ball, slips, rows)
+        pushed = rows.copy()
+        pushed[:, list(ball.pushes[:2])] = drags[:, j]
+        a_j, lam_j, _ = model.constrained_dynamics(q, v, u, par=pushed, t=t, **given)
+        change_a[:, j], change_lam[:, j] = a_j - a, lam_j - lam
+    matrix = np.eye(n) - np.swapaxes(change_lam[:, :, normal], 1, 2)
+    force = np.linalg.solve(matrix, lam[:, normal][..., np.newaxis])[..., 0]
+    a, lam = (x + np.einsum("nj,njk->nk", force, change) for x, change in ((a, change_a), (lam, change_lam)))
+    for j, ball in enumerate(balls):
+        lam[:, list(ball.rows[:2])] += drags[:, j] * force[:, j, np.newaxis]
+    return a, lam
+
+
+def _friction(model: Model, states: tuple[Array, Array, Array, Array], rows: Array) -> Array:
+    """Coefficients of friction (n, number of balls)."""
+    kernel = model.formulas([ball.friction for ball in model.record.rigid_contacts], derivatives=False)
+    given = dict(zip("tqvu", (states[0][:, np.newaxis], *states[1:]), strict=True))
+    inputs = [given[group] for group, _ in kernel.signature.inputs]
+    found: Array = np.asarray(kernel.run(len(rows), kernel.prepare(rows), inputs)[0]).reshape(len(rows), -1)
+    return found
+
+
+def _direction(ball: RigidContactRecord, slips: Array, rows: Array) -> Array:
+    """Direction in which a ball slides (n, 2): that of its slip or, without one, that in which it began."""
+    slip, way = slips[:, list(ball.rows[:2])], rows[:, list(ball.way[:2])]
+    size = np.linalg.norm(slip, axis=1, keepdims=True)
+    along = np.where((slip * way).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+    direction: Array = np.where(size > _STILL, along * slip / np.maximum(size, _STILL), way)
+    return direction

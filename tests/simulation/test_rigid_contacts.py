@@ -1,0 +1,370 @@
+"""Rigid contacts with friction: closed forms, laws of impact, modes (docs/theory/constraints.md, section 15)."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import cos, sin, sqrt, tan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import ForwardDynamics
+
+G = 9.81
+GROUND = ("world", None)
+FINE: dict[str, Any] = {"method": "dopri5", "rtol": 1e-11, "atol": 1e-13}
+
+
+def point(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), e: float = 0.0) -> sf.Model:
+    """A mass of 2 kg that does not turn, on a plane."""
+    x, y = (sf.RigidBody(n, sf.Joint(n, "prismatic", axis=a, parent=p)) for n, a, p in _SLIDES)
+    axis = sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="y")
+    foot = sf.Contact("foot", ("z", None), GROUND, restitution=e, friction=friction)
+    bodies = (x, y, sf.RigidBody("z", axis, sf.Inertia(2.0)))
+    return sf.compile(sf.System("point", bodies, connections=(foot,), gravity=gravity))
+
+
+_SLIDES = (("x", (1, 0, 0), "world"), ("y", (0, 1, 0), "x"))
+
+
+def ball_system(e: float = 0.5, friction: float = 0.5) -> sf.System:
+    """A homogeneous ball above the ground."""
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    floor = sf.Contact("floor", ("ball", None), GROUND, restitution=e, friction=friction, radius=0.1)
+    return sf.System("ball", (body,), connections=(floor,))
+
+
+@cache
+def ball(e: float = 0.5, friction: float = 0.5) -> sf.Model:
+    """The same, compiled."""
+    return sf.compile(ball_system(e, friction))
+
+
+@cache
+def rod(friction: float, e: float = 0.0) -> sf.Model:
+    """A rod of 1 kg and 2 m in a plane, whose lower tip touches the ground: Painleve's."""
+    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
+    z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"))
+    turning = sf.Joint("angle", "revolute", axis=(0, 1, 0), parent="z")
+    body = sf.RigidBody("rod", turning, sf.Inertia(1.0, moments=(1 / 3, 1 / 3, 1e-3)))
+    tip = sf.Contact("tip", ("rod", None), GROUND, restitution=e, friction=friction, points=[(0, 0, -1)])
+    return sf.compile(sf.System("rod", (x, z, body), connections=(tip,)))
+
+
+def box(
+    friction: float, gravity: tuple[float, float, float] = (0, 0, -G), height: float = 0.1, e: float = 0.0
+) -> sf.Model:
+    """A box of 2 kg on four feet, at whose centre a force draws."""
+    pull = sf.Load(force=(sf.formula("pull"), 0, 0), axes="world")
+    inertia = sf.Inertia(2.0, moments=(0.02, 0.03, 0.04))
+    body = sf.RigidBody("box", sf.Joint("free", "free"), inertia, loads=(pull,))
+    feet = [(x, y, -height) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
+    sole = sf.Contact("sole", ("box", None), GROUND, restitution=e, friction=friction, points=feet)
+    system = sf.System("box", (body,), inputs=(sf.Input("pull"),), connections=(sole,), gravity=gravity)
+    return sf.compile(system)
+
+
+def rested(model: sf.Model, height: float) -> Any:
+    """The configuration in which a box stands."""
+    q = model.neutral()
+    q[2] = height
+    return q
+
+
+@pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
+def test_a_mass_on_an_incline_stays_or_slides_as_coulomb_says(share: float) -> None:
+    """No creep, not by a bit, in 5000 steps; above its level the acceleration of the closed form to 1e-12 g."""
+    angle = 0.4
+    model = point(tan(angle) * share, (G * sin(angle), 0, -G * cos(angle)))
+    run = sf.simulate(model, t_end=0.5, dt=1e-4, method="rk4")
+    assert run.outcome.ok and not run.events
+    expected = G * (sin(angle) - tan(angle) * share * cos(angle)) if share < 1 else 0.0
+    if share > 1:
+        assert not run.q.any() and not run.v.any()
+    assert abs(run.v[-1, 0] / 0.5 - expected) < 1e-12 * G and not run.v[:, 1:].any()
+    # Force along x: what holds it, or the share that friction has of the weight.
+    assert run.lam[-1, 1] == pytest.approx(-2.0 * G * sin(angle) * min(1.0, share), rel=1e-12)
+
+
+def test_a_mass_slides_to_its_stop_and_back() -> None:
+    """Pushed up an incline that does not hold it: instant and place of the turn, and the way back."""
+    angle, mu = 0.4, 0.2
+    model = point(mu, (G * sin(angle), 0, -G * cos(angle)))
+    run = sf.simulate(model, v0=[-1.0, 0, 0], t_end=1.0, **FINE)
+    up, down = G * (sin(angle) + mu * cos(angle)), G * (sin(angle) - mu * cos(angle))
+    (turn,) = run.events
+    assert turn.name == "foot turns" and turn.t == pytest.approx(1 / up, abs=1e-12)
+    assert run.q[-1, 0] == pytest.approx(-0.5 / up + 0.5 * down * (1 - 1 / up) ** 2, abs=1e-11)
+
+
+def test_a_mass_slides_along_a_curve() -> None:
+    """At the angle of friction the speed and its part down the slope add up to what they were: |v| + v_x stays."""
+    angle = 0.3
+    model = point(tan(angle), (G * sin(angle), 0, -G * cos(angle)))
+    run = sf.simulate(model, v0=[0, 2.0, 0], t_end=1.5, output=np.linspace(0, 1.5, 200), **FINE)
+    speed = np.hypot(run.v[:, 0], run.v[:, 1])
+    # d|v|/dt = g sin(a) (v_x/|v| - 1) and dv_x/dt = g sin(a) (1 - v_x/|v|).
+    assert speed + run.v[:, 0] == pytest.approx(2.0, abs=1e-8) and run.v[-1, 0] > 0.9
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_a_bouncing_ball_comes_to_rest(method: str) -> None:
+    """By the closed form to 1e-12 until the strikes accumulate, which is noted; then at rest."""
+    model, e, h = ball(), 0.5, 0.2
+    q = rested(model, 0.1 + h)
+    run = sf.simulate(model, q, t_end=2.0, method=method, dt=1e-2, rtol=1e-10, atol=1e-13)
+    strikes = np.array([found.t for found in run.events])
+    first, n = sqrt(2 * h / G), np.arange(len(strikes))
+    known = first * (1 + 2 * e * (1 - e**n) / (1 - e))
+    assert len(strikes) > 15 and strikes[:-3] == pytest.approx(known[:-3], abs=1e-12)
+    assert strikes == pytest.approx(known, abs=1e-11)  # A speed of 1e-5 m/s: 1e-17 m, the rounding of 0.1, is 1e-12 s.
+    assert [found.name for found in run.events[:2]] == ["floor strikes"] * 2 and run.events[-1].name == "floor sticks"
+    assert run.events[0].energy_lost == pytest.approx((1 - e**2) * 0.4 * G * h, rel=1e-12)
+    assert run.events[0].impulse[0] == pytest.approx((1 + e) * 0.4 * sqrt(2 * G * h), rel=1e-12)
+    assert run.outcome.notes == (f"event 'floor': the contact persists from t = {strikes[-1]:.12g} s on",)
+    assert run.q[-1, 2] == pytest.approx(0.1, abs=1e-15) and np.abs(run.v[-1]).max() < 1e-12
+    assert run.lam[-1, 0] == pytest.approx(0.4 * G, rel=1e-12)
+
+
+def test_a_ball_with_backspin_slides_until_it_rolls() -> None:
+    """Friction mu m g acts until v = R w: at (v0 - R w0) 2/(7 mu g), with (5 v0 + 2 R w0)/7."""
+    v0, spin, mu, r = 2.0, -30.0, 0.5, 0.1
+    run = sf.simulate(ball(), rested(ball(), r), {"free.vx": v0, "free.wy": spin}, t_end=1.5, **FINE)
+    (rolls,) = run.events
+    assert rolls.name == "floor sticks" and rolls.t == pytest.approx(2 * (v0 - r * spin) / (7 * mu * G), abs=1e-12)
+    assert run.v[-1, 4] * r == pytest.approx((5 * v0 + 2 * r * spin) / 7, rel=1e-10)
+    before = run.t < rolls.t
+    assert run.lam[before, 1] == pytest.approx(-mu * 0.4 * G, rel=1e-11)
+
+
+@pytest.mark.parametrize(("vx", "spin"), [(0.5, 0.0), (4.0, 0.0), (1.0, -25.0)])
+def test_a_ball_strikes_at_an_angle(vx: float, spin: float) -> None:
+    """Friction takes mu (1 + e) v_n, or what makes a ball roll; the normal velocity comes back e times."""
+    model, h, e, mu, r = ball(0.7, 0.3), 0.3, 0.7, 0.3, 0.1
+    run = sf.simulate(model, rested(model, r + h), {"free.vx": vx, "free.wy": spin}, t_end=0.3, **FINE)
+    strike, vn = run.events[0], sqrt(2 * G * h)
+    slip = vx - spin * r
+    taken = min(mu * (1 + e) * vn, 2 / 7 * slip)
+    turned = sf.simulate(model, rested(model, r + h), {"free.vx": vx, "free.wy": spin}, t_end=strike.t, **FINE)
+    velocity = model.frame_velocity("ball", turned.q[-1], strike.v_after)
+    assert velocity[0] == pytest.approx(vx - taken, rel=1e-9, abs=1e-10) and velocity[2] == pytest.approx(
+        e * vn, rel=1e-11
+    )
+    assert velocity[4] * r == pytest.approx(spin * r + 2.5 * taken, rel=1e-9, abs=1e-10)
+
+
+def impact(W: Any, u: Any, mu: float, e: float, n: int) -> Any:
+    """Stronge's impact in steps of the normal impulse, by its definition alone."""
+    u, dp = np.array(u, dtype=float), -u[1] / W[1, 1] / n
+    work, target = 0.0, np.inf
+    P = np.zeros(2)
+    while work < target:
+        stick = -W[0, 1] / W[0, 0]
+        if abs(u[0]) > 2 * abs(W[0, 1]) * dp + 2 * mu * W[0, 0] * dp:
+            h = -mu * np.sign(u[0])
+        else:
+            h = stick if abs(stick) <= mu else -mu * np.sign(W[0, 1])
+        step = np.array([h, 1.0]) * dp
+        if u[1] < 0 <= (u + W @ step)[1]:
+            target, work = e**2 * -work, 0.0
+        u, work, P = u + W @ step, work + (u[1] + 0.5 * (W @ step)[1]) * dp, P + step
+    return P
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_rod_strikes_by_stronges_coefficient(seed: int) -> None:
+    """Impulses against a fine sum by the definition; the energy falls, and friction stays within its cone."""
+    rng = np.random.default_rng(seed)
+    mu, e, angle = rng.uniform(0.1, 0.6), rng.uniform(0.2, 0.9), rng.uniform(-1.2, 1.2)
+    model = rod(round(mu, 2), round(e, 2))
+    v = np.array([rng.uniform(-3, 3), 0.0, rng.uniform(-2, 2)])
+    v[1] = -1.0 - abs(v[2])
+    q = np.array([0.0, cos(angle), angle])
+    run = sf.simulate(model, q, v, t_end=1e-6, **FINE)
+    strike = run.events[0]
+    J = np.array([[1, 0, -cos(angle)], [0, 1, sin(angle)]])
+    Minv = np.diag([1.0, 1.0, 3.0])
+    P = impact(J @ Minv @ J.T, J @ strike.v, round(mu, 2), round(e, 2), 100_000)
+    assert Minv @ J.T @ P == pytest.approx(strike.v_after - strike.v, abs=3e-4)
+    assert strike.energy_lost >= 0.0
+    assert abs(strike.impulse[1]) <= round(mu, 2) * strike.impulse[0] * (1 + 1e-9)
+    assert strike.impulse[[1, 0]] == pytest.approx(P, abs=3e-4)
+
+
+def test_painleves_rod_is_said() -> None:
+    """Below mu = 4/3 each slide has one motion; above, where the rod leans against its slide, none or several."""
+    for angle in (0.3, 0.5, 0.7):
+        q = [0.0, cos(angle), angle]
+        coupling = 1 + 3 * sin(angle) ** 2 - 3 * 1.6 * sin(angle) * cos(angle)
+        for friction, v in ((1.2, -2.0), (1.2, 2.0), (1.6, 2.0), (1.6, -2.0)):
+            run = sf.simulate(rod(friction), q, [v, 0, 0], t_end=0.02, **FINE)
+            paradox = friction > 4 / 3 and v < 0 and coupling < 0
+            assert run.outcome.ok != paradox, (angle, friction, v)
+            if paradox:
+                assert "Painleve" in run.outcome.reason and run.outcome.t == 0.0
+
+
+@pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
+def test_a_box_on_four_feet_holds_or_slides(share: float) -> None:
+    """Its feet share the load in many ways: they hold as long as one is within the cones, and slide together."""
+    angle = 0.3
+    model = box(tan(angle) * share, (G * sin(angle), 0, -G * cos(angle)))
+    run = sf.simulate(model, rested(model, 0.1), t_end=0.2, dt=1e-3, method="rk4")
+    assert run.outcome.kind == "finished" and not run.outcome.notes and not run.events
+    expected = G * sin(angle) * (1 - share) if share < 1 else 0.0
+    assert abs(run.v[-1, 0] - 0.2 * expected) < 1e-12 * G
+    assert np.abs(run.v[-1, 1:]).max() < 1e-12
+    if share > 1:
+        assert np.abs(run.q[-1] - run.q[0]).max() < 1e-15
+
+
+@pytest.mark.parametrize(("height", "friction"), [(0.1, 0.5), (0.5, 0.9)])
+def test_a_box_that_is_drawn_slides_or_tips(height: float, friction: float) -> None:
+    """A force that grows lets it slide at mu m g, or a tall one tip about its front edge at m g b/h."""
+    model = box(friction, height=height)
+    run = sf.simulate(
+        model, rested(model, height), u={"pull": "20*t"}, t_end=0.6, method="dopri5", rtol=1e-8, atol=1e-11
+    )
+    limit = 2 * G * min(friction, 0.2 / height)
+    assert run.events[0].name.split()[-1] == ("slides" if friction < 0.2 / height else "opens")
+    assert run.events[0].t == pytest.approx(limit / 20, abs=1e-7)
+    assert run.v[-1, 0] > 0.0 and (abs(run.v[-1, 4]) > 0.1) == (friction > 0.2 / height)
+
+
+def test_a_thrown_box_tumbles_to_rest() -> None:
+    """Energy never rises, not by an impact and not between; no foot is below the ground, none is drawn to it."""
+    model = box(0.5, e=0.3)
+    q = rested(model, 0.5)
+    q[3:7] = np.array([0.1, 0.2, 0.05, 0.97]) / np.linalg.norm([0.1, 0.2, 0.05, 0.97])
+    run = sf.simulate(
+        model,
+        q,
+        [0.3, 0.1, 0, 1, 2, 3],
+        t_end=3.0,
+        output=np.linspace(0, 3, 600),
+        method="dopri5",
+        rtol=1e-9,
+        atol=1e-12,
+    )
+    assert run.outcome.kind == "finished" and len(run.events) > 30
+    assert min(found.energy_lost for found in run.events) > -1e-12
+    assert np.diff(run.energy).max() < 1e-8 and np.abs(run.v[-1]).max() < 1e-12
+    gaps = model.contact_forces(run.q, run.v).gap
+    normal = run.lam[:, [model.names.constraints.index(f"sole.{k}.normal") for k in range(4)]]
+    assert gaps.min() > -1e-11 and normal.min() > -1e-8
+
+
+def test_multipliers_are_the_forces_of_the_motion() -> None:
+    """M a + h = Q + G^T f with normal forces and friction, of a rod whose friction presses it to the ground."""
+    model = rod(0.4)
+    run = sf.simulate(
+        model,
+        [0, cos(0.5), 0.5],
+        [2.0, 0, 0],
+        t_end=0.05,
+        output=np.linspace(0, 0.05, 400),
+        method="dopri5",
+        rtol=1e-12,
+        atol=1e-14,
+    )
+    assert not run.events and (run.par_over_time[:, model.names.par.index("tip.mode")] == 1).all()
+    rates = np.gradient(run.v, run.t, axis=0, edge_order=2)
+    assert run.a[5:-5] == pytest.approx(rates[5:-5], abs=2e-4)
+    par = np.array(run.par_over_time[1])
+    par[model.names.par.index("tip.mode")] = 2.0
+    G_rows = model.constraint_jacobian(run.q, par=par)
+    M = model.mass_matrix(run.q)
+    h = -model.forward_dynamics(run.q, run.v, run.u, par=model.parameter_values)
+    force = np.einsum("nij,nj->ni", M, run.a + h)  # Of all but contact.
+    assert np.einsum("nci,nc->ni", G_rows, run.lam) == pytest.approx(force, abs=1e-9)
+    assert run.lam[:, 1] == pytest.approx(-0.4 * run.lam[:, 0], rel=1e-12)
+
+
+def test_a_stepper_makes_the_same_bits_and_can_be_set_back() -> None:
+    """Steps by hand are those of `simulate`; a saved state goes on as before, directions of sliding included."""
+    model = box(0.3)
+    q, v = rested(model, 0.15), [1.0, 0.5, 0, 0.2, 0.1, 2.0]
+    run = sf.simulate(model, q, v, t_end=0.4, dt=1e-3, method="rk4")
+    assert len(run.events) > 4
+    stepper = sf.Stepper(model, dt=1e-3, method="rk4")
+    stepper.reset(q, v)
+    stepper.step(steps=250)
+    kept = stepper.save()
+    stepper.step(steps=150)
+    assert np.array_equal(stepper.q, run.q[-1]) and np.array_equal(stepper.v, run.v[-1])
+    stepper.restore(kept)
+    stepper.step(steps=150)
+    assert np.array_equal(stepper.q, run.q[-1])
+
+
+def test_events_read_distances_and_slips() -> None:
+    """`contact.floor.gap` and the velocities of the point of contact, in formulas of users."""
+    event = sf.Event("contact.floor.gap - 0.05", "falling", terminal=True)
+    run = sf.simulate(ball(), rested(ball(), 0.3), t_end=1.0, events={"near": event}, **FINE)
+    assert run.t[-1] == pytest.approx(sqrt(0.3 / G), abs=1e-12)
+    slip = sf.Event("contact.floor.vx - 1", "falling")
+    run = sf.simulate(ball(), rested(ball(), 0.1), {"free.vx": 2.0}, t_end=0.3, events={"slow": slip}, **FINE)
+    assert run.events[0].t == pytest.approx(1 / (3.5 * 0.5 * G), abs=1e-12)
+
+
+def test_what_is_refused(tmp_path: Path) -> None:
+    """Starts and numbers that mean nothing, and whatever does not choose modes, in words."""
+    inside = rested(ball(), 0.09)
+    assert sf.simulate(ball(), inside, t_end=0.1).outcome.kind == "input failed"
+    model, system = ball(), ball_system()
+    diagram = sf.Diagram("falls")
+    diagram.add_model("m", system)
+    diagram.add(ForwardDynamics(name="plant", model="m"))
+    refused = {
+        "batch": lambda: sf.simulate_batch(model, [model.neutral()], t_end=0.1),
+        "rodas4": lambda: sf.simulate(model, rested(model, 0.3), t_end=0.1, method="rodas4"),
+        "equilibrium": lambda: sf.equilibrium(model),
+        "export": lambda: sf.export(system, "c", tmp_path / "c"),
+        "diagram": lambda: sf.Simulation(diagram).run(0.1),
+    }
+    for call in refused.values():
+        with pytest.raises(sf.SymofrosError, match="is rigid"):
+            call()
+    with pytest.raises(sf.SymofrosError, match="restitution"):
+        sf.Contact("c", ("ball", None), GROUND)
+    with pytest.raises(sf.SymofrosError, match="planes"):
+        sf.Contact("c", ("ball", None), GROUND, restitution=0.5, surface="sphere", surface_radius=1.0)
+    with pytest.raises(sf.SymofrosError, match="exponent"):
+        sf.Contact("c", ("ball", None), GROUND, restitution=0.5, exponent=2.0)
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    for numbers in ({"restitution": 1.1}, {"restitution": -0.1}, {"restitution": 0.5, "friction": -0.1}):
+        with pytest.raises(sf.DescriptionError, match="restitution|friction"):
+            sf.compile(sf.System("s", (body,), connections=(sf.Contact("c", ("ball", None), GROUND, **numbers),)))
+    many = sf.Contact("c", ("ball", None), GROUND, restitution=0.0, points=[(0.1 * k, 0, 0) for k in range(9)])
+    model = sf.compile(sf.System("s", (body,), connections=(many,)))
+    assert sf.simulate(model, t_end=0.1).outcome.kind == "input failed"
+
+
+def test_a_file_holds_a_rigid_contact(tmp_path: Path) -> None:
+    """Written and read again it is the same; without a stiffness or a restitution it is refused with its line."""
+    path = tmp_path / "ball.yaml"
+    sf.save(ball_system(), path)
+    text = path.read_text()
+    assert "restitution: 0.5" in text and "stiffness" not in text and "mode" not in text
+    assert sf.load(path).contacts == ball_system().contacts
+    path.write_text(text.replace(", restitution: 0.5", ""))
+    with pytest.raises(sf.DescriptionError, match="compliant or rigid"):
+        sf.load(path)
+
+
+def test_a_body_that_moves_carries_the_plane() -> None:
+    """A mass on a belt that is driven at a speed slides until it goes with it, by friction that works on both."""
+    belt = sf.RigidBody("belt", sf.Joint("belt", "prismatic", axis=(1, 0, 0)), sf.Inertia(3.0))
+    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
+    mass = sf.RigidBody("mass", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"), sf.Inertia(1.0))
+    foot = sf.Contact("foot", ("mass", None), ("belt", None), restitution=0.0, friction=0.4)
+    model = sf.compile(sf.System("belt", (belt, x, mass), connections=(foot,)))
+    run = sf.simulate(model, v0=[2.0, 0.0, 0.0], t_end=1.0, **FINE)
+    (caught,) = run.events
+    assert caught.name == "foot sticks" and caught.t == pytest.approx(2.0 / (0.4 * G * (1 + 1 / 3)), abs=1e-12)
+    assert run.v[-1] == pytest.approx([1.5, 1.5, 0.0], abs=1e-11)
+    momentum = run.v[:, 0] * 3.0 + run.v[:, 1]
+    assert momentum == pytest.approx(6.0, abs=1e-11)
