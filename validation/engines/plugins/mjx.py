@@ -122,8 +122,8 @@ def write(tree: Tree) -> Source | Unsupported:
         return source
     setup = _SETUP.replace("STEP", repr(STEP)).replace("LINKS", repr([link.name for link in tree.links]))
     optional = {"sensed": tuple(line.format(count=len(tree.sensors)) for line in _SENSED)} if tree.sensors else {}
-    # Steps are compiled one by one: they are asked of trees that forces act on.
-    lacks = () if tree.forces else tuple(_STEPS)
+    # What is compiled by itself takes seconds: it is asked of trees that forces act on, or that have sensors.
+    lacks = () if tree.forces else tuple(_STEPS) if tree.sensors else (*_STEPS, "inverse_dynamics_acted")
     return replace(source, lines=(*source.lines, *setup.split("\n")), optional=optional, lacks=lacks)
 
 

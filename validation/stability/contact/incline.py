@@ -19,7 +19,8 @@ FRICTION, GRAVITY, STIFFNESS, RADIUS = 0.5, 9.81, 1e5, 0.1
 SLOW = 1e-3
 SETTLED, END = 1.0, 11.0
 BOUND = 1e-6
-SMOOTH, BRISTLES, HELD = "smooth contact, 1 mm/s", "contact with bristles", "joint that sticks"
+SMOOTH, BRISTLES = "smooth contact, 1 mm/s", "contact with bristles"
+RIGID, HELD = "rigid contact", "joint that sticks"
 ENGINES = {
     "MuJoCo, pyramids": 'cone="pyramidal"',
     "MuJoCo, cones": 'cone="elliptic"',
@@ -28,7 +29,7 @@ ENGINES = {
 }
 SHARES = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5)
 LOAD = Grid.of("load over what friction carries, tan α/μ [-]", tuple(map(str, SHARES)), ("0.5", "0.999", "1.001"))
-WHO = Grid.of("friction [-]", (SMOOTH, BRISTLES, HELD, *ENGINES), (SMOOTH, BRISTLES, HELD, "MuJoCo, cones"))
+WHO = Grid.of("friction [-]", (SMOOTH, BRISTLES, RIGID, HELD, *ENGINES), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
 STEPS = (1e-3, 4e-3)
 MJCF = (
     '<mujoco><option timestep="{h!r}" integrator="implicitfast" gravity="{gx!r} 0 {gz!r}" {cone}/><worldbody>'
@@ -44,20 +45,13 @@ def block(form: str) -> sf.Model:
     gravity = (sf.formula("gx", "acceleration"), 0.0, sf.formula("gz", "acceleration"))
     parameters = (sf.Parameter("gx", 0.0), sf.Parameter("gz", -GRAVITY), sf.Parameter("carried", 1.0))
     bristles = {"bristle_stiffness": STIFFNESS, "bristle_damping": 2 * math.sqrt(STIFFNESS)}
+    yields = {"stiffness": STIFFNESS, "exponent": 1.0, "dissipation": 5.0}
     more: dict[str, dict[str, Any]] = {
-        SMOOTH: {"friction": FRICTION, "minimum_velocity": SLOW},
-        BRISTLES: {"friction": FRICTION} | bristles,
+        SMOOTH: {"friction": FRICTION, "minimum_velocity": SLOW} | yields,
+        BRISTLES: {"friction": FRICTION} | bristles | yields,
+        RIGID: {"friction": FRICTION, "restitution": 0.0},
     }
-    floor = sf.Contact(
-        "floor",
-        ("block", None),
-        ("world", None),
-        STIFFNESS,
-        exponent=1.0,
-        radius=RADIUS,
-        dissipation=5.0,
-        **more.get(form, {}),
-    )
+    floor = sf.Contact("floor", ("block", None), ("world", None), radius=RADIUS, **more.get(form, yields))
     dry = (sf.Friction(sf.formula("carried", "force"), sticks=True),) if form == HELD else ()
     along = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=dry)
     upright = sf.Joint("z", "prismatic", "along", axis=(0, 0, 1))
@@ -103,10 +97,10 @@ def slid(form: str, share: float, h: float) -> sf.Trajectory:
     """Motion of the block from rest, at 0, SETTLED and END."""
     gx, gz = gravity(share)
     model = block(form).with_parameters(gx=gx, gz=gz, carried=-FRICTION * gz)
-    start = [0.0, RADIUS + gz / STIFFNESS]
+    start = [0.0, RADIUS + (gz / STIFFNESS if form != RIGID else 0.0)]
     # Bristles bent as the load asks: at 0.999 of the limit a block that has been let go stops after millimetres.
     bent = [min(gx, -FRICTION * gz) / STIFFNESS, 0.0] if form == BRISTLES else None
-    given = {"method": "rk4" if form == HELD else "rodas4", "adaptive": False, "output": [0.0, SETTLED, END]}
+    given = {"method": "rk4" if form in (HELD, RIGID) else "rodas4", "adaptive": False, "output": [0.0, SETTLED, END]}
     return simulate(model, start, t_end=END, dt=h, z0=bent, **given)
 
 
@@ -146,6 +140,7 @@ def judge(maps: Maps) -> Verdict:
     ]
     slides = (END - SETTLED) ** 2 / 2 * GRAVITY
     findings = (
+        Finding("rigid contact: creep in 10 s [m]", held[RIGID], 0.0, reason="a mode: the slip is bound to zero"),
         Finding("joint that sticks: creep in 10 s [m]", held[HELD], 0.0, reason="a mode: the rate is bound to zero"),
         Finding(
             "bristles: creep in 10 s, loads up to 0.999 of what friction carries [m]",
@@ -161,16 +156,17 @@ def judge(maps: Maps) -> Verdict:
         ),
         Finding(
             "ours, sliding: distance from the closed form in 10 s over g t²/2",
-            max(worst(name, ~stuck) for name in (SMOOTH, BRISTLES, HELD)) / slides,
+            max(worst(name, ~stuck) for name in (SMOOTH, BRISTLES, RIGID, HELD)) / slides,
             1e-4,
             reason="friction lags while bristles bend, by micrometres of speed times 10 s",
         ),
     )
     others = ", ".join(f"{name} {held[name]:.1g} m" for name in rows if name in ENGINES)
     statement = (
-        f"Below the limit of friction Coulomb's block stays. In 10 s a joint that sticks creeps by {held[HELD]:.1g} m, "
-        f"a contact with bristles by {held[BRISTLES]:.1g} m, smooth friction by {held[SMOOTH]:.1g} m, at the speed of "
-        f"its closed form. At most over the loads: {others}: constraints are soft there, "
+        f"Below the limit of friction Coulomb's block stays. In 10 s a rigid contact creeps by {held[RIGID]:.1g} m, "
+        f"a joint that sticks by {held[HELD]:.1g} m, a contact with bristles by {held[BRISTLES]:.1g} m, smooth "
+        f"friction by {held[SMOOTH]:.1g} m, at the speed of its closed form. At most "
+        f"over the loads: {others}: constraints are soft there, "
         "and friction is regularised, by `impratio`. Above the limit ours slide at the closed form's acceleration."
     )
     see = (
@@ -191,7 +187,8 @@ STUDY = ParameterStudy(
     BOUND,
     tuple(Subject(f"steps of {1e3 * h:g} ms", measure(h)) for h in STEPS),
     judge,
-    "bristles for contacts, `sticks=True` for joints; smooth friction only where what matters moves much faster than "
+    "rigid contacts, or bristles for compliant ones, `sticks=True` for joints; smooth friction only where what matters "
+    "moves much faster than "
     "its `minimum_velocity`. In MuJoCo elliptic cones with a large impratio, or noslip iterations.",
     ("Coulomb's law; polynomial of smooth friction in docs/theory/rigid.md, 10.2",),
 )
