@@ -43,7 +43,7 @@ class Port(metaclass=CheckedCalls):
     name: str
     shape: Shape | None = ()
     unit: str = ""
-    default: Any = None
+    default: Any = field(default=None, compare=False)  # Arrays have no single answer to whether they are equal.
     units: tuple[str, ...] = ()
     signals: tuple[Port, ...] = ()
 

@@ -68,13 +68,18 @@ _FILES = {name: one for name, one in formats().items() if one.form in _BEST and 
 _REFUSED = re.compile("sdf: (placement frame|inertia computed of .*)$")
 
 
+# What MuJoCo reads wrong, with a cause.
+_WRONG = re.compile("mjcf: actuator: at a site of two, by the reference site$")
+
+
 @pytest.mark.parametrize("name", _FILES)
 def test_our_reader_and_the_best_of_a_format_read_what_its_files_state(name: str) -> None:
     reading = _FILES[name]
     for plugin in (OWN["symofros"], OWN[_BEST[reading.form]]):
         if reading.form in plugin.formats:
             refused = {"refuses"} if _REFUSED.match(name) and plugin.name == "symofros" else set()
-            assert _verdicts(plugin, reading) <= {"right", "not offered"} | refused, plugin.name
+            stated = {"wrong"} if _WRONG.match(name) and plugin.name == "mujoco" else set()
+            assert _verdicts(plugin, reading) <= {"right", "not offered"} | refused | stated, plugin.name
 
 
 _STAGES = {name: one for name, one in formats().items() if one.form == "usd"}
@@ -83,7 +88,10 @@ _STAGES = {name: one for name, one in formats().items() if one.form == "usd"}
 @pytest.mark.parametrize("name", _STAGES)
 def test_our_reader_reads_what_stages_state(name: str) -> None:
     require("pxr", "usd")
-    assert _verdicts(OWN["symofros"], _STAGES[name]) == {"right"}
+    # Drives of stages are none of ours.
+    assert _verdicts(OWN["symofros"], _STAGES[name]) == (
+        {"not offered"} if name.startswith("usd: drive") else {"right"}
+    )
 
 
 @pytest.mark.parametrize(
