@@ -15,8 +15,8 @@ import numpy as np
 import symofros as sf
 
 from ..mechanics.assembly import Assembly, assemble
-from ..mechanics.friction import with_smooth_friction
 from ..mechanics.geometry import Array
+from ..mechanics.modes import without_modes
 from .conventions import times
 
 # Of files that engines read themselves; "" for none.
@@ -203,8 +203,8 @@ class Subject:
     mjcf: MjcfSource | None = None
 
     def __post_init__(self) -> None:
-        """Friction that sticks is compared as the smooth friction that functions have: its modes are of runs."""
-        object.__setattr__(self, "system", with_smooth_friction(self.system))
+        """Friction that sticks is compared as smooth, rigid contacts as open: modes are of runs."""
+        object.__setattr__(self, "system", without_modes(self.system))
 
     @property
     def format(self) -> Format:

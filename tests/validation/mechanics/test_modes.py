@@ -1,4 +1,4 @@
-"""Friction that sticks is compared as the smooth friction that functions have, and the subject says so."""
+"""What has modes in runs is compared as functions have it, and the subject says so."""
 
 from __future__ import annotations
 
@@ -16,3 +16,16 @@ def test_friction_that_sticks_is_smooth_to_the_harness() -> None:
     assert joint_of is not None and joint_of.elements == (sf.Damper(0.3), sf.Friction(1.0), sf.Friction(0.2))
     assert "friction that sticks is compared" in smooth.notes[-1]
     assert Subject("smooth", smooth).system is smooth
+
+
+def test_rigid_contacts_are_open_to_the_harness() -> None:
+    """Compliant ones stay, in their order."""
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1e-3,) * 3))
+    soft, hard = (
+        sf.Contact(name, ("ball", None), ("world", None), radius=0.1, **numbers)
+        for name, numbers in (("soft", {"stiffness": 1e4}), ("hard", {"restitution": 0.5}))
+    )
+    system = sf.System("ball", (body,), connections=(hard, soft))
+    compared = Subject("ball", system).system
+    assert compared.connections == (soft,) and "rigid contacts are compared as open" in compared.notes[-1]
+    assert Subject("soft", compared).system is compared
