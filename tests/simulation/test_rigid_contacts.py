@@ -257,30 +257,52 @@ def test_a_thrown_box_tumbles_to_rest() -> None:
     assert gaps.min() > -1e-11 and normal.min() > -1e-8
 
 
-def test_multipliers_are_the_forces_of_the_motion() -> None:
-    """M a + h = Q + G^T f with normal forces and friction, of a rod whose friction presses it to the ground."""
-    model = rod(0.4)
-    run = sf.simulate(
-        model,
-        [0, cos(0.5), 0.5],
-        [2.0, 0, 0],
-        t_end=0.05,
-        output=np.linspace(0, 0.05, 400),
-        method="dopri5",
-        rtol=1e-12,
-        atol=1e-14,
-    )
-    assert not run.events and (run.par_over_time[:, model.names.par.index("tip.mode")] == 1).all()
+@pytest.mark.parametrize("name", ["rod", "box"])
+def test_multipliers_are_the_forces_of_the_motion(name: str) -> None:
+    """M a + h = Q + G^T f with normal forces and friction: of a rod, and of a box that turns."""
+    model, start = (rod(0.4), [0, cos(0.5), 0.5]) if name == "rod" else (box(0.3, height=0.2), None)
+    q = start or rested(model, 0.2)
+    v = [2.0, 0, 0] if name == "rod" else [1.0, 0.5, 0, 0, 0, 3.0]
+    output = np.linspace(0, 0.05, 400)
+    run = sf.simulate(model, q, v, t_end=0.05, output=output, method="dopri5", rtol=1e-12, atol=1e-14)
+    modes = [ball.mode for ball in model.record.rigid_contacts]
+    assert not run.events and (run.par_over_time[:, modes] == 1).all()
     rates = np.gradient(run.v, run.t, axis=0, edge_order=2)
     assert run.a[5:-5] == pytest.approx(rates[5:-5], abs=2e-4)
     par = np.array(run.par_over_time[1])
-    par[model.names.par.index("tip.mode")] = 2.0
-    G_rows = model.constraint_jacobian(run.q, par=par)
-    M = model.mass_matrix(run.q)
+    par[modes] = 2.0
+    G_rows = model.constraint_jacobian(run.q, u=run.u, par=par)
+    M = model.mass_matrix(run.q, u=run.u)
     h = -model.forward_dynamics(run.q, run.v, run.u, par=model.parameter_values)
     force = np.einsum("nij,nj->ni", M, run.a + h)  # Of all but contact.
     assert np.einsum("nci,nc->ni", G_rows, run.lam) == pytest.approx(force, abs=1e-9)
-    assert run.lam[:, 1] == pytest.approx(-0.4 * run.lam[:, 0], rel=1e-12)
+    mu = 0.4 if name == "rod" else 0.3
+    for ball in model.record.rigid_contacts:
+        x, y, normal = (run.lam[:, row] for row in ball.rows)
+        assert np.hypot(x, y) == pytest.approx(mu * normal, rel=1e-12) and normal.min() > 0.0
+
+
+def test_a_ball_on_a_turntable_goes_in_circles() -> None:
+    """Rolling on a table that turns at W its centre goes round at 2/7 W, wherever it begins and however fast."""
+    spin, r = 1.5, 0.1
+    table = sf.RigidBody("table", sf.Joint("turn", "revolute", axis=(0, 0, 1)), sf.Inertia(1.0, moments=(1e9,) * 3))
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    floor = sf.Contact("floor", ("ball", None), ("table", None), restitution=0.0, friction=2.0, radius=r)
+    model = sf.compile(sf.System("turntable", (table, body), connections=(floor,)))
+    q, v = model.neutral(), np.zeros(7)
+    q[1:4], v[0] = [0.5, 0.2, r], spin
+    # Rolling: v = W x c - w x (-r n), at a velocity of its own.
+    v[1:3] = [0.3, -0.1]
+    wx, wy = (-(v[2] - spin * 0.5) / r, (v[1] + spin * 0.2) / r)
+    v[4:6] = [wx, wy]
+    run = sf.simulate(model, q, v, t_end=4.0, output=np.linspace(0, 4, 81), **FINE)
+    assert not run.events
+    rate = 2 / 7 * spin
+    centre = np.array([0.5, 0.2]) + np.array([-v[2], v[1]]) / rate  # v = rate z x (c - centre)
+    away = np.array([0.5, 0.2]) - centre
+    c, s = np.cos(rate * run.t), np.sin(rate * run.t)
+    known = centre + np.stack([c * away[0] - s * away[1], s * away[0] + c * away[1]], axis=1)
+    assert run.q[:, 1:3] == pytest.approx(known, abs=1e-7)
 
 
 def test_a_stepper_makes_the_same_bits_and_can_be_set_back() -> None:
