@@ -89,11 +89,12 @@ def test_a_mass_on_an_incline_stays_or_slides_as_coulomb_says(share: float) -> N
     assert run.lam[-1, 1] == pytest.approx(-2.0 * G * sin(angle) * min(1.0, share), rel=1e-12)
 
 
-def test_a_mass_slides_to_its_stop_and_back() -> None:
-    """Pushed up an incline that does not hold it: instant and place of the turn, and the way back."""
+@pytest.mark.parametrize("steps", [FINE, {"method": "rk4", "dt": 1e-2}])
+def test_a_mass_slides_to_its_stop_and_back(steps: dict[str, Any]) -> None:
+    """Pushed up an incline that does not hold it: instant and place of the turn, exact by fixed steps, too."""
     angle, mu = 0.4, 0.2
     model = point(mu, (G * sin(angle), 0, -G * cos(angle)))
-    run = sf.simulate(model, v0=[-1.0, 0, 0], t_end=1.0, **FINE)
+    run = sf.simulate(model, v0=[-1.0, 0, 0], t_end=1.0, **steps)
     up, down = G * (sin(angle) + mu * cos(angle)), G * (sin(angle) - mu * cos(angle))
     (turn,) = run.events
     assert turn.name == "foot turns" and turn.t == pytest.approx(1 / up, abs=1e-12)
@@ -205,6 +206,17 @@ def test_painleves_rod_is_said() -> None:
             assert run.outcome.ok != paradox, (angle, friction, v)
             if paradox:
                 assert "Painleve" in run.outcome.reason and run.outcome.t == 0.0
+
+
+def test_two_motions_of_painleves_rod_are_said() -> None:
+    """Where it turns so fast that its tip leaves by itself, and friction could press it down."""
+    angle, slip = 0.5, -2.0
+    w = sqrt(1.5 * G / cos(angle))
+    for friction, paradox in ((1.2, False), (1.8, True)):
+        run = sf.simulate(
+            rod(friction), [0, cos(angle), angle], [slip + w * cos(angle), -w * sin(angle), w], t_end=0.01, **FINE
+        )
+        assert run.outcome.ok != paradox and ("several motions" in run.outcome.reason) == paradox
 
 
 @pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
