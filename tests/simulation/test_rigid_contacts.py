@@ -317,6 +317,23 @@ def test_a_ball_on_a_turntable_goes_in_circles() -> None:
     assert run.q[:, 1:3] == pytest.approx(known, abs=1e-7)
 
 
+def test_a_ball_slides_on_a_plane_that_tilts() -> None:
+    """Without friction, on a plane that turns about its y axis at W: x'' = W^2 x + g sin(W t) along it."""
+    spin, r = 0.8, 0.1
+    plane = sf.RigidBody("plane", sf.Joint("tilt", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, moments=(1e9,) * 3))
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    floor = sf.Contact("floor", ("ball", None), ("plane", None), restitution=0.0, radius=r)
+    model = sf.compile(sf.System("tilts", (plane, body), connections=(floor,)))
+    q, v = model.neutral(), np.zeros(7)
+    q[3], v[0], v[1] = r, spin, spin * r  # At rest on the plane, which moves it along at its height.
+    run = sf.simulate(model, q, v, t_end=0.7, output=np.linspace(0, 0.7, 15), **FINE)
+    assert not run.events
+    c, s = np.cos(spin * run.t), np.sin(spin * run.t)
+    x = run.q[:, 1] * c - run.q[:, 3] * s
+    assert x == pytest.approx(G / (2 * spin**2) * (np.sinh(spin * run.t) - s), abs=1e-8)
+    assert run.q[:, 1] * s + run.q[:, 3] * c == pytest.approx(r, abs=1e-9)
+
+
 def test_a_stepper_makes_the_same_bits_and_can_be_set_back() -> None:
     """Steps by hand are those of `simulate`; a saved state goes on as before, directions of sliding included."""
     model = box(0.3)
