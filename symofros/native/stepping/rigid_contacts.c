@@ -48,7 +48,7 @@ static double sym_friction_of(const sym_system *s, int32_t ball) {
 static void sym_slip_direction(const double *u, const double *known, double *d) {
     const double slip = hypot(u[0], u[1]);
     memcpy(d, known, 2 * sizeof *d);
-    if (slip <= SYM_STILL || slip <= known[2]) return;
+    if (slip <= SYM_RESTS_AT || slip <= known[2]) return;
     d[0] = u[0] / slip, d[1] = u[1] / slip;
     if (d[0] * known[0] + d[1] * known[1] < 0.0) d[0] = -d[0], d[1] = -d[1];
 }
@@ -65,7 +65,7 @@ static void sym_keep_directions(sym_run *r) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
         double *known = s->slip + SYM_SLIP_ENTRIES * i;
         if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
-        if (slip > SYM_STILL && slip > known[2] && state[1] * known[0] + state[2] * known[1] > 0.0)
+        if (slip > SYM_RESTS_AT && slip > known[2] && state[1] * known[0] + state[2] * known[1] > 0.0)
             known[0] = state[1] / slip, known[1] = state[2] / slip;
     }
 }
@@ -288,7 +288,7 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     double still, fastest = 1.0, e[SYM_MOST_CONTACTS];
     int32_t i, strikes = 0, status = sym_inertia_of_balls(r, at, par);
     for (i = 0; i < s->nv; ++i) fastest = fmax(fastest, fabs(r->v[i]));
-    still = SYM_STILL * fastest;
+    still = SYM_RESTS_AT * fastest;
     for (i = 0; i < p->n && status == 0; ++i) {
         const double since = r->t - s->struck_at[at->of[i]];
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;

@@ -32,7 +32,7 @@ static void sym_open_contacts(const sym_system *s, double *par) {
 /* Times what counts as an instant within which strikes follow each other where they accumulate. */
 #define SYM_ACCUMULATION 1e3
 /* Speed, beside one and beside the fastest, that is rounding of rest [rad/s or m/s]. */
-#define SYM_STILL 1e-12
+#define SYM_RESTS_AT 1e-12
 /* Share of the most that friction takes at rest at which it lets go: the rounding of a multiplier. Share of accelerations
  * that is their rounding. */
 #define SYM_BREAKAWAY_ROUNDING 1e-12
@@ -110,7 +110,7 @@ static int32_t sym_choose_modes(sym_run *r) {
         if (fabs(r->v[i]) > fastest) fastest = fabs(r->v[i]);
     for (i = 0; i < n; ++i) { /* as they are without friction at rest */
         double *v = r->v + s->sticking[i].v;
-        const int32_t rests = fabs(*v) <= SYM_STILL * fastest;
+        const int32_t rests = fabs(*v) <= SYM_RESTS_AT * fastest;
         if (rests) *v = 0.0;
         par[s->sticking[i].mode] = rests ? 0.0 : *v > 0.0 ? 1.0 : -1.0, size[i] = rests ? 0.0 : -1.0;
     }

@@ -11,7 +11,7 @@ from symofros.native import native_number
 from symofros.runtime.model import Model
 from symofros.runtime.record import SLIDES, STICKS, RigidContactRecord
 
-_STILL = native_number("stepping/sticking.c", "SYM_STILL")
+_STILL = native_number("stepping/sticking.c", "SYM_RESTS_AT")
 
 
 def contact_dynamics(
