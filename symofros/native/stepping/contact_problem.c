@@ -219,7 +219,7 @@ static double sym_sticking_margin(const sym_contact_problem *p, const double *mo
 /* Forces and c where the balls have modes, directions of those that begin to slide included: the balls that stick do not move,
  * those that slide stay on their planes, (47). */
 static void sym_forces_of_modes(sym_contact_problem *p) {
-    double A[SYM_MOST_FORCES * SYM_MOST_FORCES], y[SYM_MOST_FORCES], x[SYM_MOST_FORCES];
+    double A[SYM_MOST_FORCES * SYM_MOST_FORCES], y[SYM_MOST_FORCES] = {0.0}, x[SYM_MOST_FORCES];
     int32_t ball[SYM_MOST_FORCES], axis[SYM_MOST_FORCES], m = 0, i, j, k;
     const int32_t n = 3 * p->n;
     for (i = 0; i < p->n; ++i) {
@@ -273,7 +273,7 @@ static int32_t sym_modes_agree(sym_contact_problem *p) {
 
 /* Turn the direction of a ball that begins to slide until friction opposes what it leaves, the others staying. */
 static void sym_turn_to_motion(sym_contact_problem *p, int32_t ball) {
-    const double turn = 2.0 * 3.14159265358979323846 / SYM_ANGLES, from = atan2(p->d[2 * ball + 1], p->d[2 * ball]) - 0.5 * turn;
+    const double turn = SYM_FULL_TURN / (double)SYM_ANGLES, from = atan2(p->d[2 * ball + 1], p->d[2 * ball]) - 0.5 * turn;
     double *d = p->d + 2 * ball, before, after = 0.0, kept[2];
     int32_t i, k;
     memcpy(kept, d, sizeof kept);

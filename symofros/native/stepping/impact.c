@@ -2,6 +2,7 @@
  * restitution (docs/theory/constraints.md, section 15, (43) to (45)). */
 
 enum { SYM_IMPACT_PARTS = 256, SYM_IMPACT_HALVINGS = 60, SYM_MOST_SEGMENTS = 64, SYM_ANGLES = 64 };
+#define SYM_FULL_TURN 6.28318530717958647693
 /* Slip, over the speeds before the impact, and change of its direction that are rounding. */
 #define SYM_IMPACT_STILL 1e-13
 #define SYM_STRAIGHT 1e-12
@@ -35,7 +36,7 @@ static double sym_gain_at_angle(const double *W, double mu, double angle, double
 /* Direction (2) in which a ball begins to slide from rest, so that friction opposes the slip that it leaves. Returns whether there
  * is one. */
 static int32_t sym_direction_from_rest(const double *W, double mu, double *d) {
-    const double turn = 2.0 * 3.14159265358979323846 / SYM_ANGLES, from = atan2(d[1], d[0]) - 0.5 * turn;
+    const double turn = SYM_FULL_TURN / (double)SYM_ANGLES, from = atan2(d[1], d[0]) - 0.5 * turn;
     double before, along, after = sym_gain_at_angle(W, mu, from, &along);
     int32_t i, k;
     for (i = 1; i <= SYM_ANGLES; ++i) {
@@ -150,7 +151,7 @@ static int32_t sym_impact_phase(const double *W, double mu, double still, double
             int32_t i, ended = 0;
             for (i = 0; i < 64 * SYM_IMPACT_PARTS && !ended; ++i) {
                 const double now = hypot(s->u[0], s->u[1]);
-                double dp = part / SYM_IMPACT_PARTS, low = 0.0;
+                double dp = part / (double)SYM_IMPACT_PARTS, low = 0.0;
                 sym_impact_state next;
                 int32_t k;
                 if (now < 0.25 * slip || now > 4.0 * slip) break; /* a new length of the parts */
