@@ -224,8 +224,8 @@ class Diagram(metaclass=CheckedCalls):
         for signal, by in condition.signals().items():
             for block in blocks.values():
                 if isinstance(block, OnCondition):
-                    told = LEVEL if isinstance(block, Enabled) else ON
-                    self.wires[f"{part}{INSIDE}{block.name}", block.inputs[signal]] = f"{part}{INSIDE}{signal}.{told}"
+                    output = LEVEL if isinstance(block, Enabled) else ON
+                    self.wires[f"{part}{INSIDE}{block.name}", block.inputs[signal]] = f"{part}{INSIDE}{signal}.{output}"
             if isinstance(by, str):
                 self.connect(by, f"{part}{INSIDE}{signal}.{SIGNAL}")
 

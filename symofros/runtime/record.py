@@ -300,9 +300,9 @@ class ModelRecord:
         """
         if self.sticking:
             found = f"friction of '{self.sticking[0].name}' sticks"
-            rule = "it has modes: `simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them"
+            choose = "`simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them"
             remedy = "sticks=False: friction that is smooth, and creeps"
-            raise SymofrosError(Problem(f"{what}: friction that sticks", found, rule, remedy))
+            raise _no_modes(f"{what}: friction that sticks", found, choose, remedy)
 
     def refuse_rigid_contacts(self, what: str) -> None:
         """Refuse rigid contacts where nothing chooses their modes.
@@ -312,9 +312,9 @@ class ModelRecord:
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            rule = "it has modes: `simulate` and `Stepper` choose them, by explicit Runge-Kutta methods"
+            choose = "`simulate` and `Stepper` choose them, by explicit Runge-Kutta methods"
             remedy = "a compliant contact: stiffness in place of restitution"
-            raise SymofrosError(Problem(f"{what}: rigid contact", found, rule, remedy))
+            raise _no_modes(f"{what}: rigid contact", found, choose, remedy)
 
     def refuse_states(self, what: str) -> None:
         """Refuse states of forces where nothing takes them.
@@ -342,3 +342,8 @@ class ModelRecord:
                 high = low + 2 * reach
             bounds.append((low, high))
         return bounds
+
+
+def _no_modes(what: str, found: str, choose: str, remedy: str) -> SymofrosError:
+    """What has modes, where nothing chooses them."""
+    return SymofrosError(Problem(what, found, f"it has modes: {choose}", remedy))

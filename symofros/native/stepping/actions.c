@@ -207,6 +207,13 @@ static void sym_note_modes(const sym_run *r, const sym_done *done, int32_t statu
     *done->acted = status == 0 ? 1.0 : status;
 }
 
+/* What has become of the modes at a row of events that one of a rigid contact's ball is. */
+static void sym_note_contact(const sym_run *r, const sym_done *done, int32_t ball) {
+    const int32_t mode = r->system->contacts[ball].mode;
+    sym_note_modes(r, done, 0);
+    if (done->par[mode] == SYM_OPEN && done->par_set[mode] != SYM_OPEN) *done->acted = SYM_RESTS;
+}
+
 /* Modes of rigid contacts where a motion begins; balls that strike there do so at an event of the first of them. Returns 0 or a
  * status. */
 static int32_t sym_begin_contacts(sym_run *r) {
@@ -224,8 +231,7 @@ static int32_t sym_begin_contacts(sym_run *r) {
         memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
         memcpy(r->event_v + row * s->nv, done.v_set, (size_t)s->nv * sizeof *r->v);
         *done.gap = 0.0;
-        sym_note_modes(r, &done, 0);
-        if (done.par_set[s->contacts[i].mode] != SYM_OPEN) *done.acted = SYM_RESTS;
+        sym_note_contact(r, &done, i);
         r->n_event_records = row + 1;
         break;
     }
@@ -254,12 +260,9 @@ static int32_t sym_end_modes(sym_run *r) {
     if (status == 0) status = s->n_contacts > 0 ? sym_settle_contacts(r, met) : sym_choose_modes(r);
     for (row = r->first_met; row < r->met_end; ++row) {
         const sym_done done = sym_run_done(r, row);
-        const int32_t ball = s->n_contacts > 0 ? (r->event_index[row] - first) / 2 : 0;
         if (status != 0 ? row + 1 < r->met_end : r->event_index[row] < first) continue;
-        sym_note_modes(r, &done, status);
-        if (status == 0 && s->n_contacts > 0 && done.par[s->contacts[ball].mode] == SYM_OPEN &&
-            done.par_set[s->contacts[ball].mode] != SYM_OPEN)
-            *done.acted = SYM_RESTS;
+        if (status == 0 && s->n_contacts > 0) sym_note_contact(r, &done, (r->event_index[row] - first) / 2);
+        else sym_note_modes(r, &done, status);
     }
     return status;
 }

@@ -1,9 +1,6 @@
 /* Forces of several balls on planes by Coulomb's law: a small problem with cones, at the level of accelerations or of speeds
  * (docs/theory/constraints.md, section 15, (46) to (48)). */
 
-#define SYM_OPEN 0.0 /* as sym_open_contacts has it */
-#define SYM_SLIDES 1.0
-#define SYM_STICKS 2.0
 enum { SYM_MOST_CONTACTS = 8, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS, SYM_MOST_SWEEPS = 60, SYM_UNIQUE_UP_TO = 4, SYM_DIRECT_TURNS = 25, SYM_MOST_TURNS = 50 };
 /* Shares that are rounding: of singular values, of a normal force, of what a ball's point does; by which two motions differ;
  * of what cones have left where several balls share a load. */
@@ -89,15 +86,15 @@ static int32_t sym_least_norm(int32_t n, double *A, const double *y, double *x, 
 /* The barrier of sym_shared_margin at x = (y, s): its value, HUGE_VAL outside, and gradient and Hessian where they are wanted. */
 static double sym_margin_barrier(int32_t n, int32_t k, const double *mu, const double *f, const double *null, double load, double weight,
                                  const double *x, double *gradient, double *hessian) {
-    const double s = x[k], room = load - s;
+    const double s = x[k], left = load - s;
     double value = -weight * s;
     int32_t i, j, l, m = k + 1;
-    if (!(room > 0.0)) return HUGE_VAL;
-    value -= log(room);
+    if (!(left > 0.0)) return HUGE_VAL;
+    value -= log(left);
     if (gradient != NULL) {
         for (j = 0; j < m * m; ++j) hessian[j] = 0.0;
         for (j = 0; j < k; ++j) gradient[j] = 0.0;
-        gradient[k] = -weight + 1.0 / room, hessian[m * m - 1] = 1.0 / (room * room);
+        gradient[k] = -weight + 1.0 / left, hessian[m * m - 1] = 1.0 / (left * left);
     }
     for (i = 0; i < n; ++i) {
         double z[3], rows[3][SYM_MOST_FORCES + 1], g[SYM_MOST_FORCES + 1], square;
@@ -271,28 +268,19 @@ static int32_t sym_modes_agree(sym_contact_problem *p) {
     return margin > (p->shared ? SYM_MARGIN_ROUNDING : SYM_FORCE_ROUNDING);
 }
 
-/* Turn the direction of a ball that begins to slide until friction opposes what it leaves, the others staying. */
-static void sym_turn_to_motion(sym_contact_problem *p, int32_t ball) {
-    const double turn = SYM_FULL_TURN / (double)SYM_ANGLES, from = atan2(p->d[2 * ball + 1], p->d[2 * ball]) - 0.5 * turn;
-    double *d = p->d + 2 * ball, before, after = 0.0, kept[2];
-    int32_t i, k;
-    memcpy(kept, d, sizeof kept);
-    for (i = 0; i <= SYM_ANGLES; ++i) {
-        double low = from + (i - 1) * turn, high = from + i * turn;
-        before = after, d[0] = cos(high), d[1] = sin(high);
-        sym_forces_of_modes(p);
-        after = p->c[3 * ball] * d[1] - p->c[3 * ball + 1] * d[0];
-        if (i == 0 || (before > 0.0) == (after > 0.0)) continue;
-        for (k = 0; k < SYM_IMPACT_HALVINGS; ++k) {
-            const double middle = 0.5 * (low + high);
-            d[0] = cos(middle), d[1] = sin(middle);
-            sym_forces_of_modes(p);
-            if ((p->c[3 * ball] * d[1] - p->c[3 * ball + 1] * d[0] > 0.0) == (before > 0.0)) low = middle;
-            else high = middle;
-        }
-        if (p->c[3 * ball] * d[0] + p->c[3 * ball + 1] * d[1] > 0.0) return;
-    }
-    memcpy(d, kept, sizeof kept);
+typedef struct sym_ball_in_problem { /* a ball that begins to slide, the others staying */
+    sym_contact_problem *problem;
+    int32_t ball;
+} sym_ball_in_problem;
+
+/* Its c, where it slides in the direction d. */
+static double sym_c_of_direction(void *data, const double *d, double *along) {
+    const sym_ball_in_problem *of = (const sym_ball_in_problem *)data;
+    const double *c = of->problem->c + 3 * of->ball;
+    memcpy(of->problem->d + 2 * of->ball, d, 2 * sizeof *d);
+    sym_forces_of_modes(of->problem);
+    *along = c[0] * d[0] + c[1] * d[1];
+    return c[0] * d[1] - c[1] * d[0];
 }
 
 /* Whether modes agree once balls that begin to slide do so against their friction, found by iteration. */
@@ -303,10 +291,12 @@ static int32_t sym_try_modes(sym_contact_problem *p) {
         sym_forces_of_modes(p);
         if (sym_modes_agree(p)) return 1;
         for (i = 0; i < p->n; ++i) {
-            double *d = p->d + 2 * i, size = hypot(p->c[3 * i], p->c[3 * i + 1]), was[2] = {d[0], d[1]};
+            double *d = p->d + 2 * i, size = hypot(p->c[3 * i], p->c[3 * i + 1]), was[2] = {d[0], d[1]}, next[2] = {d[0], d[1]};
+            sym_ball_in_problem ball = {p, i};
             if (p->mode[i] != SYM_SLIDES || p->slides[i] || p->mu[i] == 0.0 || !(size > SYM_CONTACT_ROUNDING * p->size)) continue;
-            if (round >= SYM_DIRECT_TURNS) sym_turn_to_motion(p, i);
-            else d[0] = p->c[3 * i] / size, d[1] = p->c[3 * i + 1] / size;
+            if (round >= SYM_DIRECT_TURNS) (void)sym_find_direction(sym_c_of_direction, &ball, next);
+            else next[0] = p->c[3 * i] / size, next[1] = p->c[3 * i + 1] / size;
+            memcpy(d, next, sizeof next);
             turns |= hypot(d[0] - was[0], d[1] - was[1]) > SYM_CONTACT_ROUNDING;
         }
         if (!turns && round != SYM_DIRECT_TURNS - 1) return 0;

@@ -25,48 +25,57 @@ static void sym_sticking_ratio(const double *W, double *h) {
     h[0] = c * x - s * y, h[1] = s * x + c * y;
 }
 
-/* What a ball's slip gains of the normal impulse where it begins to slide at an angle, across that and along it. */
-static double sym_gain_at_angle(const double *W, double mu, double angle, double *along) {
-    const double c = cos(angle), s = sin(angle);
-    const double x = W[2] - mu * (W[0] * c + W[1] * s), y = W[5] - mu * (W[3] * c + W[4] * s);
-    *along = x * c + y * s;
-    return x * s - y * c;
-}
-
-/* Direction (2) in which a ball begins to slide from rest, so that friction opposes the slip that it leaves. Returns whether there
- * is one. */
-static int32_t sym_direction_from_rest(const double *W, double mu, double *d) {
+/* Direction d (2), from a first guess, in which a ball begins to slide, so that friction opposes what it leaves: that has no part
+ * across d, which the function returns, and one along it. Returns whether there is one; else d stays. */
+static int32_t sym_find_direction(double (*leaves)(void *data, const double *d, double *along), void *data, double *d) {
     const double turn = SYM_FULL_TURN / (double)SYM_ANGLES, from = atan2(d[1], d[0]) - 0.5 * turn;
-    double before, along, after = sym_gain_at_angle(W, mu, from, &along);
+    double before, after = 0.0, along, at[2];
     int32_t i, k;
-    for (i = 1; i <= SYM_ANGLES; ++i) {
+    for (i = 0; i <= SYM_ANGLES; ++i) {
         double low = from + (i - 1) * turn, high = from + i * turn;
-        before = after, after = sym_gain_at_angle(W, mu, high, &along);
-        if (before != 0.0 && (before > 0.0) == (after > 0.0)) continue;
+        before = after, at[0] = cos(high), at[1] = sin(high);
+        after = leaves(data, at, &along);
+        if (i == 0 || (before != 0.0 && (before > 0.0) == (after > 0.0))) continue;
         for (k = 0; k < SYM_IMPACT_HALVINGS; ++k) {
             const double middle = 0.5 * (low + high);
-            if ((sym_gain_at_angle(W, mu, middle, &along) > 0.0) == (before > 0.0)) low = middle;
+            at[0] = cos(middle), at[1] = sin(middle);
+            if ((leaves(data, at, &along) > 0.0) == (before > 0.0)) low = middle;
             else high = middle;
         }
-        (void)sym_gain_at_angle(W, mu, high, &along);
+        at[0] = cos(high), at[1] = sin(high);
+        (void)leaves(data, at, &along);
         if (!(along > 0.0)) continue;
-        d[0] = cos(high), d[1] = sin(high);
+        memcpy(d, at, sizeof at);
         return 1;
     }
     return 0;
+}
+
+typedef struct sym_ball_in_impact { /* a ball whose slip begins */
+    const double *W;
+    double mu;
+} sym_ball_in_impact;
+
+/* What its slip gains of the normal impulse. */
+static double sym_gain_of_slip(void *data, const double *d, double *along) {
+    const sym_ball_in_impact *of = (const sym_ball_in_impact *)data;
+    const double x = of->W[2] - of->mu * (of->W[0] * d[0] + of->W[1] * d[1]), y = of->W[5] - of->mu * (of->W[3] * d[0] + of->W[4] * d[1]);
+    *along = x * d[0] + y * d[1];
+    return x * d[1] - y * d[0];
 }
 
 /* Friction over the normal impulse at a slip: against it, or where there is none, what keeps it so. Returns whether friction
  * is constant from here on, as far as the slip's direction is, or -1 where it is not determined. */
 static int32_t sym_friction_ratio(const double *W, double mu, double still, const double *u, double *h) {
     const double slip = hypot(u[0], u[1]);
+    sym_ball_in_impact ball = {W, mu};
     double d[2], size, x, y;
     if (slip <= still) {
         sym_sticking_ratio(W, h);
         size = hypot(h[0], h[1]);
         if (size <= mu) return 1;
         d[0] = -h[0] / size, d[1] = -h[1] / size;
-        if (!sym_direction_from_rest(W, mu, d)) return -1;
+        if (!sym_find_direction(sym_gain_of_slip, &ball, d)) return -1;
         h[0] = -mu * d[0], h[1] = -mu * d[1];
         return 1;
     }

@@ -6,12 +6,11 @@ enum { SYM_MOST_STRIKES = 10000 };
 #define SYM_SLOW 1e-5
 /* Share of the speed with which a ball began to slide that is left by the turning of its path where it comes to rest. */
 #define SYM_SLIP_LEFT 1e-6
-/* Distance of a ball from a plane that it touches [m]; by which one that grazes it may pass it, at first. */
-#define SYM_TOUCHES 1e-9
+/* Distance by which a ball that grazes a plane may pass it, at first [m]. */
 #define SYM_GRAZES 1e-13
 
-/* Where parts of the scratch begin. */
-typedef struct sym_contact_room {
+/* Parts of the scratch. */
+typedef struct sym_contact_scratch {
     double *par;          /* (npar) */
     double *a, *lam;      /* (nv), (nc) without what is added */
     double *change_a, *change_lam; /* (n, nv), (n, nc) by unit normal forces on balls that slide */
@@ -19,22 +18,28 @@ typedef struct sym_contact_room {
     double *effect;       /* (3 n, nv) what unit forces on them add */
     double *v;            /* (nv) speeds */
     double *kept_a, *kept_lam; /* (nv), (nc) */
-} sym_contact_room;
+} sym_contact_scratch;
 
-static sym_contact_room sym_room_of_contacts(const sym_run *r) {
-    const sym_system *s = r->system;
+/* Where the parts begin from a base on. Returns how many entries all of them have. */
+static size_t sym_lay_out_contacts(const sym_system *s, double *base, sym_contact_scratch *at) {
     const size_t n = (size_t)s->n_contacts, nv = (size_t)s->nv, nc = (size_t)s->nc;
-    sym_contact_room room;
-    room.par = s->contact_work, room.a = room.par + s->npar, room.lam = room.a + nv;
-    room.change_a = room.lam + nc, room.change_lam = room.change_a + n * nv;
-    room.free_a = room.change_lam + n * nc, room.effect = room.free_a + nv, room.v = room.effect + 3 * n * nv;
-    room.kept_a = room.v + nv, room.kept_lam = room.kept_a + nv;
-    return room;
+    const size_t sizes[] = {(size_t)s->npar, nv, nc, n * nv, n * nc, nv, 3 * n * nv, nv, nv, nc};
+    double **const parts[] = {&at->par, &at->a, &at->lam, &at->change_a, &at->change_lam, &at->free_a, &at->effect, &at->v, &at->kept_a, &at->kept_lam};
+    size_t i, end = 0;
+    for (i = 0; i < sizeof sizes / sizeof *sizes; end += sizes[i++])
+        if (base != NULL) *parts[i] = base + end;
+    return end;
+}
+
+static sym_contact_scratch sym_scratch_of_contacts(const sym_run *r) {
+    sym_contact_scratch scratch;
+    (void)sym_lay_out_contacts(r->system, r->system->contact_work, &scratch);
+    return scratch;
 }
 
 SYM_EXPORT size_t sym_contact_work_size(const sym_system *s) {
-    const size_t n = (size_t)s->n_contacts, nv = (size_t)s->nv, nc = (size_t)s->nc;
-    return n == 0 ? 0 : (size_t)s->npar + nv + nc + n * nv + n * nc + nv + 3 * n * nv + 2 * nv + nc;
+    sym_contact_scratch scratch;
+    return s->n_contacts == 0 ? 0 : sym_lay_out_contacts(s, NULL, &scratch);
 }
 
 /* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
@@ -94,7 +99,7 @@ static int32_t sym_solve_sliding(int32_t n, double *A, double *b) {
 static int32_t sym_add_sliding(sym_run *r, const double *par) {
     const sym_system *s = r->system;
     const size_t nv = (size_t)s->nv, nc = (size_t)s->nc;
-    const sym_contact_room room = sym_room_of_contacts(r);
+    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
     double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], f[SYM_MOST_CONTACTS], d[SYM_MOST_CONTACTS][2];
     int32_t which[SYM_MOST_CONTACTS], n = 0, i, j, status = 0;
     size_t l;
@@ -103,31 +108,31 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
     if (n == 0) return 0;
     sym_evaluate(&s->contact_state);
     for (j = 0; j < n; ++j) sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, s->slip + SYM_SLIP_ENTRIES * which[j], d[j]);
-    memcpy(room.par, par, (size_t)s->npar * sizeof *par);
-    memcpy(room.a, s->a, nv * sizeof *s->a), memcpy(room.lam, s->lam, nc * sizeof *s->lam);
+    memcpy(scratch.par, par, (size_t)s->npar * sizeof *par);
+    memcpy(scratch.a, s->a, nv * sizeof *s->a), memcpy(scratch.lam, s->lam, nc * sizeof *s->lam);
     for (j = 0; j < n && status == 0; ++j) {
         const sym_rigid_contact *of = s->contacts + which[j];
-        double *a = room.change_a + (size_t)j * nv, *lam = room.change_lam + (size_t)j * nc;
-        for (i = 0; i < 2; ++i) room.par[of->push[i]] = -sym_friction_of(s, which[j]) * d[j][i];
-        sym_prepare_call(&s->forward_dynamics, room.par);
+        double *a = scratch.change_a + (size_t)j * nv, *lam = scratch.change_lam + (size_t)j * nc;
+        for (i = 0; i < 2; ++i) scratch.par[of->push[i]] = -sym_friction_of(s, which[j]) * d[j][i];
+        sym_prepare_call(&s->forward_dynamics, scratch.par);
         sym_evaluate(&s->forward_dynamics);
-        for (i = 0; i < 2; ++i) room.par[of->push[i]] = par[of->push[i]];
+        for (i = 0; i < 2; ++i) scratch.par[of->push[i]] = par[of->push[i]];
         if (*s->rank < 0.0) status = SYM_SINGULAR;
-        for (l = 0; l < nv; ++l) a[l] = s->a[l] - room.a[l];
-        for (l = 0; l < nc; ++l) lam[l] = s->lam[l] - room.lam[l];
+        for (l = 0; l < nv; ++l) a[l] = s->a[l] - scratch.a[l];
+        for (l = 0; l < nc; ++l) lam[l] = s->lam[l] - scratch.lam[l];
     }
     sym_prepare_call(&s->forward_dynamics, par);
     if (status != 0) return status;
     for (i = 0; i < n; ++i) {
         const int32_t row = s->contacts[which[i]].row[2];
-        f[i] = room.lam[row];
-        for (j = 0; j < n; ++j) A[n * i + j] = (i == j) - room.change_lam[(size_t)j * nc + (size_t)row];
+        f[i] = scratch.lam[row];
+        for (j = 0; j < n; ++j) A[n * i + j] = (i == j) - scratch.change_lam[(size_t)j * nc + (size_t)row];
     }
     if (!sym_solve_sliding(n, A, f)) return SYM_NO_CONTACT_FORCE;
-    memcpy(s->a, room.a, nv * sizeof *s->a), memcpy(s->lam, room.lam, nc * sizeof *s->lam);
+    memcpy(s->a, scratch.a, nv * sizeof *s->a), memcpy(s->lam, scratch.lam, nc * sizeof *s->lam);
     for (j = 0; j < n; ++j) {
-        for (l = 0; l < nv; ++l) s->a[l] += room.change_a[(size_t)j * nv + l] * f[j];
-        for (l = 0; l < nc; ++l) s->lam[l] += room.change_lam[(size_t)j * nc + l] * f[j];
+        for (l = 0; l < nv; ++l) s->a[l] += scratch.change_a[(size_t)j * nv + l] * f[j];
+        for (l = 0; l < nc; ++l) s->lam[l] += scratch.change_lam[(size_t)j * nc + l] * f[j];
     }
     for (j = 0; j < n; ++j)
         for (i = 0; i < 2; ++i) s->lam[s->contacts[which[j]].row[i]] = -sym_friction_of(s, which[j]) * d[j][i] * f[j];
@@ -154,7 +159,7 @@ static int32_t sym_try_contacts(sym_run *r, const double *par) {
 /* u (3 n): what the velocities of the balls would be with the speeds v; the evaluation point stays. */
 static void sym_velocities_of_balls(const sym_run *r, const sym_touching *at, const double *v, double *u) {
     const sym_system *s = r->system;
-    double *kept = sym_room_of_contacts(r).v;
+    double *kept = sym_scratch_of_contacts(r).v;
     int32_t i, k;
     memcpy(kept, s->v, (size_t)s->nv * sizeof *v), memcpy(s->v, v, (size_t)s->nv * sizeof *v);
     sym_evaluate(&s->contact_state);
@@ -167,21 +172,21 @@ static void sym_velocities_of_balls(const sym_run *r, const sym_touching *at, co
  * which their modes are open. Returns 0 or a status. */
 static int32_t sym_inertia_of_balls(sym_run *r, sym_touching *at, double *par) {
     const sym_system *s = r->system;
-    const sym_contact_room room = sym_room_of_contacts(r);
+    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
     const int32_t n = 3 * at->problem.n, nv = s->nv;
     double first[SYM_MOST_FORCES], u[SYM_MOST_FORCES];
     int32_t i, j, l, status = sym_try_contacts(r, par);
     if (status != 0) return status;
-    memcpy(room.free_a, s->a, (size_t)nv * sizeof *s->a);
-    sym_velocities_of_balls(r, at, room.free_a, first);
+    memcpy(scratch.free_a, s->a, (size_t)nv * sizeof *s->a);
+    sym_velocities_of_balls(r, at, scratch.free_a, first);
     for (j = 0; j < n; ++j) {
-        double *effect = room.effect + (size_t)j * (size_t)nv, *push = par + s->contacts[at->of[j / 3]].push[j % 3];
+        double *effect = scratch.effect + (size_t)j * (size_t)nv, *push = par + s->contacts[at->of[j / 3]].push[j % 3];
         *push = 1.0;
         status = sym_try_contacts(r, par);
         *push = 0.0;
         if (status != 0) return status;
         sym_velocities_of_balls(r, at, s->a, u);
-        for (l = 0; l < nv; ++l) effect[l] = s->a[l] - room.free_a[l];
+        for (l = 0; l < nv; ++l) effect[l] = s->a[l] - scratch.free_a[l];
         for (i = 0; i < n; ++i) at->problem.W[n * i + j] = u[i] - first[i];
     }
     return 0;
@@ -189,12 +194,12 @@ static int32_t sym_inertia_of_balls(sym_run *r, sym_touching *at, double *par) {
 
 /* Impulses P (3 n) on the balls change velocities and speeds. */
 static void sym_add_impulses(sym_run *r, sym_touching *at, int32_t first, int32_t end, const double *P) {
-    const sym_contact_room room = sym_room_of_contacts(r);
+    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
     const int32_t n = 3 * at->problem.n, nv = r->system->nv;
     int32_t i, j, l;
     for (j = first; j < end; ++j) {
         for (i = 0; i < n; ++i) at->u[i] += at->problem.W[n * i + j] * P[j - first];
-        for (l = 0; l < nv; ++l) r->v[l] += room.effect[(size_t)j * (size_t)nv + (size_t)l] * P[j - first];
+        for (l = 0; l < nv; ++l) r->v[l] += scratch.effect[(size_t)j * (size_t)nv + (size_t)l] * P[j - first];
     }
 }
 
@@ -235,11 +240,11 @@ static int32_t sym_find_touching(sym_run *r, const double *par, const double *me
     sym_evaluate(&s->contact_state);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i;
-        if (met == NULL && state[0] < -SYM_TOUCHES) return SYM_WRONG_CONTACT;
-        if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHES && !(met != NULL && met[i] > 0.0)) continue;
+        if (met == NULL && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
+        if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
         at->of[n] = i, at->problem.mu[n] = state[4];
-        at->apart[n] = met != NULL && met[i] > 0.0 ? fmin(fmax(SYM_GRAZES, 2.0 * par[s->contacts[i].apart]), SYM_TOUCHES) : 0.0;
+        at->apart[n] = met != NULL && met[i] > 0.0 ? fmin(fmax(SYM_GRAZES, 2.0 * par[s->contacts[i].apart]), SYM_TOUCHING) : 0.0;
         for (k = 0; k < 3; ++k) at->u[3 * n + k] = state[1 + k];
         ++n;
     }
@@ -349,13 +354,13 @@ static int32_t sym_settle_contacts(sym_run *r, const double *met) {
  * each has, in the values of events at the evaluation point. Returns 0 or a status. */
 static int32_t sym_watch_shared_load(sym_run *r, double *values) {
     const sym_system *s = r->system;
-    const sym_contact_room room = sym_room_of_contacts(r);
+    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
     double *par = r->actions->modes, f[SYM_MOST_FORCES], rank;
     sym_touching at;
     sym_contact_problem *p = &at.problem;
     int32_t i, k, shared, status;
     memcpy(par, r->par, (size_t)s->npar * sizeof *par);
-    memcpy(room.kept_a, s->a, (size_t)s->nv * sizeof *s->a), memcpy(room.kept_lam, s->lam, (size_t)s->nc * sizeof *s->lam);
+    memcpy(scratch.kept_a, s->a, (size_t)s->nv * sizeof *s->a), memcpy(scratch.kept_lam, s->lam, (size_t)s->nc * sizeof *s->lam);
     rank = *s->rank;
     for (i = 0, p->n = 0; i < s->n_contacts; ++i) {
         const sym_rigid_contact *of = s->contacts + i;
@@ -366,7 +371,7 @@ static int32_t sym_watch_shared_load(sym_run *r, double *values) {
     }
     if (p->n == 0) return 0;
     status = sym_inertia_of_balls(r, &at, par);
-    memcpy(s->a, room.kept_a, (size_t)s->nv * sizeof *s->a), memcpy(s->lam, room.kept_lam, (size_t)s->nc * sizeof *s->lam);
+    memcpy(s->a, scratch.kept_a, (size_t)s->nv * sizeof *s->a), memcpy(s->lam, scratch.kept_lam, (size_t)s->nc * sizeof *s->lam);
     *s->rank = rank;
     sym_prepare_call(&s->forward_dynamics, r->par);
     if (status != 0) return status;

@@ -1,6 +1,10 @@
 /* Friction that sticks: which coordinates it holds, and how the others slide (docs/theory/constraints.md, section 14). */
 
 #define SYM_HELD 2.0
+/* Modes of a ball of a rigid contact. */
+#define SYM_OPEN 0.0
+#define SYM_SLIDES 1.0
+#define SYM_STICKS 2.0
 
 /* Values of all formulas at the evaluation point: what says whether constraints hold, then what is assigned, then
  * the most that friction takes at rest. */
@@ -26,7 +30,7 @@ static void sym_let_go(const sym_system *s, double *par) {
 /* Let contacts go for an instant in which events act: what touches is found again by where it is. */
 static void sym_open_contacts(const sym_system *s, double *par) {
     int32_t i;
-    for (i = 0; i < s->n_contacts; ++i) par[s->contacts[i].mode] = 0.0;
+    for (i = 0; i < s->n_contacts; ++i) par[s->contacts[i].mode] = SYM_OPEN;
 }
 
 /* Times what counts as an instant within which strikes follow each other where they accumulate. */

@@ -204,7 +204,8 @@ class HandRun:
         self._looked_for[:] = [event.cut for event in self.run.events]
         if self.run.actions is not None:
             self.run.memory.view(self.run.run.acted_at, len(self.run.events))[:] = -np.inf
-            balls, self.run.system.settled = len(self.run.model.record.rigid_contacts), 0
+            balls = len(self.run.model.record.rigid_contacts)
+            self.run.system.settled = 0
             self.run.memory.view(self.run.system.struck_at, balls)[:] = -np.inf
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)

@@ -11,7 +11,7 @@ from ..truth import activations, derived
 from ..truth.arithmetic import Exact
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
-from .function import Function
+from .function import Function, functions_of
 
 
 def _acting() -> dict[str, Function]:
@@ -98,7 +98,7 @@ def _measured() -> dict[str, Function]:
             derived.wrench_sensors,
         ),
     }
-    return {name: Function(text, truth, ("sensors",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "sensors")
 
 
 MEASURED = _measured()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..truth import arms
-from .function import Function
+from .function import Function, functions_of
 
 
 def _arms() -> dict[str, Function]:
@@ -33,7 +33,7 @@ def _arms() -> dict[str, Function]:
             arms.burdened,
         ),
     }
-    return {name: Function(text, truth, ("arms",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "arms")
 
 
 ARMS = _arms()

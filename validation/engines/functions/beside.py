@@ -7,7 +7,7 @@ from decimal import Decimal
 import numpy as np
 
 from ..truth import constraints, derived, steps, turns
-from .function import Function
+from .function import Function, functions_of
 
 
 def _of_turns() -> dict[str, Function]:
@@ -49,7 +49,7 @@ def _of_turns() -> dict[str, Function]:
             turns.adjoint,
         ),
     }
-    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "turns")
 
 
 TURNS = _of_turns()

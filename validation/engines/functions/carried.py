@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..truth import carried
-from .function import Function
+from .function import Function, functions_of
 
 
 def _wholes() -> dict[str, Function]:
@@ -32,7 +32,7 @@ def _wholes() -> dict[str, Function]:
         "speeds_of_rates": ("v, of N v (nv)", lambda t, s: s.v),
         "squared_distance": ("the square of v2, of q and where v2 leads (1)", carried.squared_distance),
     }
-    return {name: Function(text, truth) for name, (text, truth) in rows.items()}
+    return functions_of(rows)
 
 
 def _relative() -> dict[str, Function]:
@@ -43,7 +43,7 @@ def _relative() -> dict[str, Function]:
         "relative_accelerations": ("rates of the rates, angular accelerations (L, 6)", carried.relative_accelerations),
         "relative_jacobians": ("Jacobians of these velocities (L, 6, nv)", carried.relative_jacobians),
     }
-    return {name: Function(text, truth) for name, (text, truth) in rows.items()}
+    return functions_of(rows)
 
 
 CARRIED = _wholes() | _relative()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..truth.derived import TruthOf
@@ -20,3 +21,8 @@ class Function:
     text: str
     truth: TruthOf
     needs: tuple[str, ...] = ()
+
+
+def functions_of(rows: Mapping[str, tuple[str, TruthOf]], *needs: str) -> dict[str, Function]:
+    """Functions by name, of rows of text and truth, that show in the same trees."""
+    return {name: Function(text, truth, needs) for name, (text, truth) in rows.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..truth import poses
-from .function import Function
+from .function import Function, functions_of
 
 
 def _placements() -> dict[str, Function]:
@@ -37,7 +37,7 @@ def _placements() -> dict[str, Function]:
         "twist_transform_back": ("(6, 6): twists of the frame that X is in, in X", poses.twist_transform_back),
         "twist_cross": ("(6, 6): product of the twist (v; v2) with twists", poses.twist_cross),
     }
-    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "turns")
 
 
 def _parameters() -> dict[str, Function]:
@@ -63,7 +63,7 @@ def _parameters() -> dict[str, Function]:
             poses.of_two_axes,
         ),
     }
-    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "turns")
 
 
 def _lines() -> dict[str, Function]:
@@ -97,7 +97,7 @@ def _lines() -> dict[str, Function]:
         "screw_pole": ("the point of that line nearest to the origin (3)", poses.screw_pole),
         "screw_of_line": ("twist of unit angular part about the first line, of pitch 3/8 (6)", poses.screw_of_line),
     }
-    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "turns")
 
 
 def _inertias() -> dict[str, Function]:
@@ -113,7 +113,7 @@ def _inertias() -> dict[str, Function]:
         "spatial_momentum_cross": ("the twist's product with it (6)", poses.momentum_cross),
         "spatial_inertia_rate": ("rate of its matrix as it moves with the twist (6, 6)", poses.inertia_rate),
     }
-    return {name: Function(text, truth, ("turns",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "turns")
 
 
 POSES = _placements() | _parameters() | _lines() | _inertias()

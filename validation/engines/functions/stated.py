@@ -11,7 +11,7 @@ from ..truth import carried
 from ..truth.arithmetic import Exact, exact
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
-from .function import Function
+from .function import Function, functions_of
 
 
 def _of_joints() -> dict[str, Function]:
@@ -29,7 +29,7 @@ def _of_joints() -> dict[str, Function]:
         "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
         "joint_drives": ("stiffness, damping, coordinate of drives (nv, 3)", lambda t, s: t.own.drives),
     }
-    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "files")
 
 
 def _each(of: Callable[[Tendon], object]) -> TruthOf:
@@ -70,7 +70,7 @@ def _of_lines() -> dict[str, Function]:
         ),
         "weight_shares": ("part of their weights that links have borne (L)", _shares),
     }
-    return {name: Function(text, truth, ("files",)) for name, (text, truth) in rows.items()}
+    return functions_of(rows, "files")
 
 
 STATED = _of_joints() | _of_lines()

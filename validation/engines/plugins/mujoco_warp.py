@@ -256,7 +256,7 @@ def _place(name: str) -> tuple[str, str, int | None]:
     return holder, own, int(columns.rstrip("]")) if columns else None
 
 
-# Warp's models are changed once they are made of MuJoCo's first: numbers of `last` in place of theirs.
+# Warp's models are changed once they are made of MuJoCo's first: numbers of `last` replace those of the first.
 _CHANGE = """plain = made
 def made(model, **room):
     model, data = plain(model, **room)

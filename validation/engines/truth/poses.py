@@ -256,7 +256,7 @@ def lines_apart(t: Truth, s: Point) -> Exact:
 
 
 def common_perpendicular(t: Truth, s: Point) -> Exact:
-    """Moment and direction, that of the product of theirs, of the line that meets both at right angles (6)."""
+    """Moment and direction, that of the product of both directions, of the line that meets both at right angles (6)."""
     (x, d), e = _line(s), _unit(s.v2 + exact(ASIDE))
     n = cross(d, e)
     # Where the nearest point of the first line is: (y - x) x e . n = k n . n.

@@ -77,7 +77,7 @@ class GhostScene:
         self._layered[layer].append(node)
 
     def show(self, layer: str, visible: bool) -> None:
-        """Show or hide a layer of all ghosts; other layers than theirs are passed over."""
+        """Show or hide a layer of all ghosts; layers that ghosts have not are passed over."""
         for node in self._layered.get(layer, ()):
             node.visible = visible
 

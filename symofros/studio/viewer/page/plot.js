@@ -12,7 +12,7 @@ window.plotOverTime = (root, { t, name, curves }, time, seek) => {
   for (const [key, text] of Object.entries({ role: "slider", "aria-label": `Time [s], in the plot of ${name}`,
     "aria-valuemin": first, "aria-valuemax": t.at(-1) })) canvas.setAttribute(key, text);
   legend.className = "over-time";
-  const told = curves.map((curve, k) => {
+  const readings = curves.map((curve, k) => {
     const item = document.createElement("li"), mark = document.createElement("span"), value = document.createElement("span");
     mark.style.color = colors[k % colors.length];
     mark.textContent = "— ";
@@ -59,7 +59,7 @@ window.plotOverTime = (root, { t, name, curves }, time, seek) => {
     const share = t.length < 2 || !(gap > 0) ? 0 : Math.min(1, Math.max(0, (now - t[i - 1]) / gap));
     curves.forEach(({ values }, k) => {
       const value = t.length < 2 ? values[0] : values[i - 1] + share * (values[i] - values[i - 1]);
-      told[k].textContent = value.toPrecision(4);
+      readings[k].textContent = value.toPrecision(4);
     });
   };
   const at = (event) => first + (span * (event.offsetX - 1)) / (canvas.clientWidth - 2);

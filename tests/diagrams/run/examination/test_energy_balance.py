@@ -80,7 +80,7 @@ def test_small_changes_of_many_intervals_add_up(change: float, numerical: bool, 
     assert judged(gained, np.full(101, size), lambda *_: change * size)[0] == numerical
 
 
-class Told:
+class Recorded:
     """A run of one mechanism whose energy is its coordinate and whose power is its speed; 1 J of it moves.
 
     Args:
@@ -124,17 +124,19 @@ def test_energy_that_actions_add_is_not_that_of_steps() -> None:
     t = np.repeat(np.arange(7.0), 2)[1:-1]
     energy = np.cumsum([0.0, *([0.0, 10.0] * 5), 0.2])
     actions = [(2 * i + 1, 2 * i + 2) for i in range(5)]
-    run: Any = Told(t, energy, 0.0 * t, actions, finer=([5.0, 6.0], [50.0, 50.0]))
+    run: Any = Recorded(t, energy, 0.0 * t, actions, finer=([5.0, 6.0], [50.0, 50.0]))
     note = energy_note(run)
     assert "changes by 0.2 J" in note and set(run.repeated) == {10}
 
 
 def test_an_interval_that_ends_at_an_action_ends_before_it() -> None:
-    """Finer steps meet the action a little sooner: what it adds is not theirs."""
-    run: Any = Told([0, 1, 1, 2], [0.0, 0.5, 9.0, 9.0], [0.0] * 4, [(1, 2)], finer=([0.0, 0.99, 0.99], [0.0, 0.5, 9.0]))
+    """Finer steps meet the action a little sooner: what it adds is not their error."""
+    run: Any = Recorded(
+        [0, 1, 1, 2], [0.0, 0.5, 9.0, 9.0], [0.0] * 4, [(1, 2)], finer=([0.0, 0.99, 0.99], [0.0, 0.5, 9.0])
+    )
     assert energy_note(run) == "" and 0 in run.repeated
 
 
 def test_a_power_that_begins_with_an_action_has_no_bend() -> None:
-    run: Any = Told([0, 1, 2, 2, 3, 4], [0.0, 0.0, 0.0, 7.0, 17.0, 27.0], [0.0] * 3 + [10.0] * 3, [(2, 3)])
+    run: Any = Recorded([0, 1, 2, 2, 3, 4], [0.0, 0.0, 0.0, 7.0, 17.0, 27.0], [0.0] * 3 + [10.0] * 3, [(2, 3)])
     assert energy_note(run) == "" and not run.repeated
