@@ -137,9 +137,12 @@ for k in sensed:
     "actuator_lengths": Way("actuator_length", f"{QV}value = d.actuator_length"),
     "actuator_arms": Way(
         "actuator_moment",
+        # Rows of entries that are not zero since 3.2.5, which hands them out as a rectangle.
         f"{QV}value = np.array(d.actuator_moment)\n"
-        "if value.ndim == 1:\n    value = np.zeros((m.nu, m.nv))\n"
-        "    mj.mju_sparse2dense(value, d.actuator_moment, d.moment_rownnz, d.moment_rowadr, d.moment_colind)",
+        "if hasattr(d, 'moment_rownnz'):\n"
+        "    entries, columns = value.ravel(), np.ravel(d.moment_colind)\n"
+        "    value = np.zeros((m.nu, m.nv))\n"
+        "    mj.mju_sparse2dense(value, entries, d.moment_rownnz, d.moment_rowadr, columns)",
     ),
     "actuator_forces": Way("actuator_force", f"{QV}value = d.actuator_force"),
     "activation_rates": Way("act_dot", f"{QV}value = d.act_dot"),
