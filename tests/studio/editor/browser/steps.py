@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Response, expect
 
 from tests.studio.pictures import MANY, settled, shot
 from tests.studio.waiting import PATIENCE, until
@@ -124,12 +126,39 @@ def open_file(page: Page, name: str) -> None:
     expect(window(page)).to_have_count(0)
 
 
+@contextmanager
+def ended(page: Page) -> Iterator[None]:
+    """Wait until the job that is started inside has ended; the server must start it at the first request.
+
+    Until its request is answered, the page shows what an earlier one returned, so no words say that this one ended.
+    """
+    answers: list[Response] = []
+
+    def keep(answer: Response) -> None:
+        answers.append(answer)
+
+    page.on("response", keep)
+    try:
+        with page.expect_response(lambda answer: answer.url.endswith("/api/jobs")) as started:
+            yield
+        assert started.value.ok, started.value.text()
+        address = f"{started.value.url}/{started.value.json()['id']}"
+
+        def has_ended() -> bool:
+            return any(answer.url == address and answer.json()["state"] != "running" for answer in answers)
+
+        until(page, has_ended, "the job does not end")
+    finally:
+        page.remove_listener("response", keep)
+
+
 def job(page: Page, command: str, **typed: str) -> None:
     """A job from its command's window to its end; `Start_of_q1="1"` fills the field *Start of q1*."""
     run(page, f"{command}…")
     for label, text in typed.items():
         fill(page, label.replace("_", " "), text)
-    window(page).get_by_role("button", name=command, exact=True).click()
+    with ended(page):
+        window(page).get_by_role("button", name=command, exact=True).click()
     expect(page.get_by_role("dialog")).to_have_count(0)
     expect(results(page).get_by_text("s of computing")).to_be_visible(timeout=JOB)
 

@@ -37,14 +37,14 @@ def simulated(page: Page, **typed: str) -> None:
 
 def test_laws_and_starts_are_of_one_document_and_of_its_names(opened: Serve, page: Page) -> None:
     opened("driven.yaml", content=DRIVEN)
-    simulated(page, Formula_of_t_of_tau="sin(t)", Start_of_q="0.3")
+    simulated(page, Formula_of_tau="sin(t)", Start_of_q="0.3")
     # A new name: the law follows.
     name = page.get_by_label("Name of tau", exact=True)
     name.fill("torque")
     name.press("Enter")
     steps.problems(page, 0)
     steps.run(page, "Simulate…")
-    expect(steps.window(page).get_by_label("Formula of t of torque")).to_have_value("sin(t)")
+    expect(steps.window(page).get_by_label("Formula of torque")).to_have_value("sin(t)")
     page.keyboard.press("Escape")
     # An input that is gone: its law is left out, and said.
     page.locator("body").press("Control+z")

@@ -143,9 +143,7 @@ def a_second_run_is_compared(page: Page, picture: Picture) -> None:
     results = steps.results(page)
     results.get_by_label("Name of run 1").fill("from 1.2")
     steps.job(page, "Simulate", Start_of_q1="0.7", Duration="0.8")
-    expect(results.get_by_label("Name of run 2")).to_be_visible(
-        timeout=steps.JOB
-    )  # Results of the first stood until then.
+    expect(results.get_by_label("Name of run 2")).to_be_visible()
     curves = results.get_by_role("img", name="q1, q2 over time").locator("path.series")
     expect(curves).to_have_count(2)
     results.get_by_label("Draw from 1.2").check()
