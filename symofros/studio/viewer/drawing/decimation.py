@@ -13,6 +13,7 @@ from symofros.studio.viewer.drawing.meshes import Faces, Mesh
 _ROUNDS = 40
 _WORTH = 0.02  # Of the corners left, that a round must remove for the next one to be made.
 _TURN = np.cos(np.radians(25.0))  # A triangle's normal turns by no more than this in one collapse.
+_CHOICES = 3  # Of collapses for one round, each among those that the earlier ones leave.
 _LEVELS = 4.0  # Of the tolerance: collapses of one level of error are made in any order, many at once.
 
 
@@ -86,23 +87,33 @@ def decimated(mesh: Mesh, tolerance: float) -> Mesh:
 def _collapses(
     vertices: Array, faces: Faces, used: Array, is_open: npt.NDArray[np.bool_], tolerance: float
 ) -> _Collapses:
-    """The collapse with the smallest error of each open corner that has one."""
+    """The collapse with the smallest error of each open corner that has one.
+
+    Places are relative to the corner that goes: a triangle about it has the other corners a and b, and is (t, a, b)
+    once the corner has gone to t. The normals, as long as twice the areas, are n = a x b and m = n + t x (a - b).
+    """
     fans = _fans(faces, len(vertices), is_open)
-    each = np.arange(len(fans.hub))
+    corners = np.ascontiguousarray(vertices.T)
+    corner = corners.take(fans.hub, axis=1)
+    a, b = corners.take(fans.ahead, axis=1) - corner, corners.take(fans.behind, axis=1) - corner
+    n, apart = _cross(a, b), a - b
+    n_length = _length(n)
     spoke, face = fans.around(fans.hub)  # Collapse of each spoke's corner to its other end; triangles about the corner.
-    starts = np.flatnonzero(np.diff(spoke, prepend=-1))
-    corner, target, ahead, behind = (vertices[of] for of in (fans.hub, fans.ahead, fans.ahead, fans.behind))
-    normal = _unit(_cross(ahead - corner, behind - corner))
-    here, there = corner[spoke], target[spoke]
-    ahead, behind = ahead[face], behind[face]
-    vanishes = (fans.ahead[face] == fans.ahead[spoke]) | (fans.behind[face] == fans.ahead[spoke])
-    left = _unit(_cross(ahead - there, behind - there))
-    is_refused = ~vanishes & (_dot(left, normal[face]) < _TURN)
-    covers = ~vanishes
-    for start, end in ((there, ahead), (ahead, behind), (behind, there)):
-        covers &= _dot(left, _cross(end - start, here - start)) >= 0.0
-    distance = np.where(is_refused, np.inf, np.where(covers, np.abs(_dot(left, here - there)), -1.0))
-    error = np.maximum.reduceat(distance, starts) if len(each) else np.zeros(0)
+    target = fans.ahead.take(spoke)
+    lasting = np.flatnonzero((fans.ahead.take(face) != target) & (fans.behind.take(face) != target))
+    spoke, face = spoke.take(lasting), face.take(lasting)
+    m = n.take(face, axis=1) + _cross(a.take(spoke, axis=1), apart.take(face, axis=1))
+    m_length, length = _length(m), n_length.take(face)
+    stays = _dot(m, n.take(face, axis=1)) >= _TURN * m_length * length
+    is_refused = np.zeros(len(fans.hub), dtype=bool)
+    is_refused[spoke[~stays | (m_length == 0.0) | (length == 0.0)]] = True
+    allowed = np.flatnonzero(~is_refused[spoke])
+    spoke, face, m, m_length = spoke.take(allowed), face.take(allowed), m.take(allowed, axis=1), m_length.take(allowed)
+    t = a.take(spoke, axis=1)
+    # The corner, which is the origin, lies over the triangle: of the edge from a to b, m n > 0 says so.
+    covers = (_dot(m, _cross(t, a.take(face, axis=1))) >= 0.0) & (_dot(m, _cross(b.take(face, axis=1), t)) >= 0.0)
+    error = np.full(len(fans.hub), -1.0)
+    np.maximum.at(error, spoke[covers], np.abs(_dot(n.take(face, axis=1), t) / m_length)[covers])
     error = np.where(error < 0.0, np.inf, error) + used[fans.hub]
     by_error = np.lexsort((error, fans.hub))
     best = by_error[np.diff(fans.hub[by_error], prepend=-1) > 0]
@@ -134,27 +145,40 @@ def _among(keys: Faces, asked: Faces) -> npt.NDArray[np.bool_]:
 
 
 def _are_apart(faces: Faces, found: _Collapses, count: int, tolerance: float) -> npt.NDArray[np.bool_]:
-    """Which collapses come first of all that change one of their triangles."""
+    """Which collapses come first of all that change one of their triangles; then of those that are left, and so on."""
     shuffled = np.random.default_rng(0).permutation(len(found.corner))
     rank = np.full(count, count)
     rank[found.corner[np.lexsort((shuffled, np.ceil(_LEVELS * found.error / tolerance)))]] = np.arange(len(shuffled))
-    least = rank.copy()
-    np.minimum.at(least, faces.ravel(), np.repeat(rank[faces].min(axis=1), 3))
-    first: npt.NDArray[np.bool_] = least[found.corner] == rank[found.corner]
-    return first
+    is_chosen = np.zeros(count, dtype=bool)
+    for _ in range(_CHOICES):
+        faces = faces[(rank[faces] < count).any(axis=1)]
+        ranks = rank[faces]
+        least = rank.copy()
+        np.minimum.at(least, faces.ravel(), np.repeat(ranks.min(axis=1), 3))
+        comes_first = (least == rank) & (rank < count)
+        is_chosen |= comes_first
+        rank[faces[comes_first[faces].any(axis=1)]] = count
+    chosen: npt.NDArray[np.bool_] = is_chosen[found.corner]
+    return chosen
 
 
 def _cross(first: Array, second: Array) -> Array:
-    (a, b, c), (x, y, z) = first.T, second.T
-    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=1)
-
-
-def _dot(first: Array, second: Array) -> Array:
-    product: Array = np.einsum("ij,ij->i", first, second)
+    """Cross products of vectors (3, n)."""
+    (a, b, c), (x, y, z) = first, second
+    product = np.empty_like(first)
+    product[0] = b * z - c * y
+    product[1] = c * x - a * z
+    product[2] = a * y - b * x
     return product
 
 
-def _unit(vectors: Array) -> Array:
-    length = np.sqrt(_dot(vectors, vectors))
-    unit: Array = vectors / np.where(length > 0.0, length, 1.0)[:, None]
-    return unit
+def _dot(first: Array, second: Array) -> Array:
+    """Scalar products of vectors (3, n)."""
+    product: Array = first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
+    return product
+
+
+def _length(vectors: Array) -> Array:
+    """Lengths of vectors (3, n)."""
+    length: Array = np.sqrt(_dot(vectors, vectors))
+    return length
