@@ -89,6 +89,40 @@ def test_a_ball_at_rest_is_carried_by_its_contact_and_a_cantilever_by_a_moment()
     np.testing.assert_allclose(moment, [0.0, -9.81, 0.0], atol=1e-9)
 
 
+def rigid(spin: float, plate: bool) -> tuple[sf.Trajectory, np.ndarray, np.ndarray]:
+    """A ball on the ground that its spin makes slide, or on a plate that swings down: run, and forces on both bodies."""
+    ball = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    surface = ("plate", "top") if plate else ("world", None)
+    floor = sf.Contact("floor", ("ball", None), surface, restitution=0.0, radius=0.1, friction=0.3)
+    hinge = sf.Joint("hinge", "revolute", axis=(0, 1, 0))
+    top = sf.Frame("top", (0.2, 0.0, 0.0), sf.Rotation.rpy(0, 0, 0.4))
+    swing = sf.RigidBody("plate", hinge, sf.Inertia(3.0, (0.5, 0, 0), (0.5,) * 3), frames=[top])
+    system = sf.System("rigid", [swing, ball] if plate else [ball], connections=[floor])
+    model = sf.compile(system)
+    start, speeds = model.neutral(), np.zeros(model.nv)
+    x, z = (model.names.q.index(f"free.p{axis}") for axis in "xz")
+    start[x], start[z] = 0.15, 0.1
+    speeds[model.names.v.index("free.wy")] = spin
+    run = sf.simulate(model, start, speeds, t_end=0.05, dt=1e-3)
+    mechanism = Mechanism(system)
+    forces = RunForces(run, mechanism.tree, mechanism.drawing())
+    found = [of(mechanism, run, forces, k) for k in (10, 20, 30)]
+    carried = [{"ball": f for tail, f in each if tail[2] < 0.09 and tail[0] > 0.05} for each in found]
+    return run, np.array([each["ball"] for each in carried]), np.array([len(each) for each in found])
+
+
+@pytest.mark.parametrize(("spin", "plate", "arrows"), [(40.0, False, 1), (0.0, False, 1), (40.0, True, 2)])
+def test_rigid_contacts_carry_a_ball_by_newtons_law(spin: float, plate: bool, arrows: int) -> None:
+    """Sliding, at rest, and on a surface that turns; the joint of a free ball transmits nothing."""
+    run, held, count = rigid(spin, plate)
+    p = run.frames["ball"][0]
+    for force, k in zip(held, (10, 20, 30), strict=True):
+        acceleration = (p[k + 1] - 2 * p[k] + p[k - 1]) / 1e-6
+        np.testing.assert_allclose(force / 0.4 + GRAVITY, acceleration, atol=2e-2)
+        assert spin == 0.0 or np.linalg.norm(force[:2]) > 0.1
+    assert (count == arrows).all()
+
+
 @pytest.mark.parametrize(("largest", "length", "value"), [(37.0, 0.2, 20.0), (0.0099, 0.2, 0.005), (1000.0, 0.2, 1e3)])
 def test_the_scale_is_of_round_numbers(largest: float, length: float, value: float) -> None:
     scale = ArrowScale.of("forces", largest, 1.5)
