@@ -276,12 +276,17 @@ def deviation(G: Array, measures: Measures, phi: Array) -> float:
 
 
 def motion(
-    terms: Callable[[Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, measures: Measures
+    at: list[Array],
+    terms: Callable[[Array], list[Array]],
+    move: Callable[[Array, Array], Array],
+    q: Array,
+    measures: Measures,
 ) -> tuple[Array, Array, int]:
     """Motion of one state that may be beside the constraints, by the rank that G has on them (sym_motion in C).
 
     Args:
-        terms: q -> M, r, G, c, binds, phi.
+        at: M, r, G, c, binds, phi of the state.
+        terms: q -> the same at another q.
         move: (q, step) -> q.
         q: (nq,).
         measures: Measures of the rows and columns of G.
@@ -289,24 +294,28 @@ def motion(
     Returns:
         a, lam, and the rank of G.
     """
-    M, r, G, c, _, phi = terms(q)
+    M, r, G, c, _, phi = at
     solution = solve(M, r, G, c, measures)
     off = deviation(G, measures, phi)
     if not (solution[2] > 0 and off > BESIDE):
         return solution
     if not eliminate(G, measures, np.diag(M)).weakest < min(DOUBT * off, DOUBT_MOST):
         return solution
-    rank = _rank_on_constraints(terms, move, q, measures)
+    rank = _rank_on_constraints(at, terms, move, q, measures)
     return solution if rank is None or rank >= solution[2] else solve(M, r, G, c, measures, Ranking(most=rank))
 
 
 def _rank_on_constraints(
-    terms: Callable[[Array], list[Array]], move: Callable[[Array, Array], Array], q: Array, measures: Measures
+    at: list[Array],
+    terms: Callable[[Array], list[Array]],
+    move: Callable[[Array, Array], Array],
+    q: Array,
+    measures: Measures,
 ) -> int | None:
     """The rank of G on the constraints beside q, where Newton's steps lead there."""
     before, doubt = np.inf, DOUBT
     for _ in range(APPROACH):
-        M, _, G, _, binds, phi = terms(q)
+        M, _, G, _, binds, phi = at
         off = deviation(G, measures, phi)
         if off <= BESIDE:
             return eliminate(G, measures, np.diag(M)).rank
@@ -318,6 +327,7 @@ def _rank_on_constraints(
         if rank < 0:
             return None
         q = move(q, step)
+        at = terms(q)
     return None
 
 

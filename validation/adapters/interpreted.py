@@ -16,18 +16,20 @@ NAME = "interpreted"
 class InterpretedEngine(SymofrosEngine):
     """The model on the interpreter, which solves with constraints in Python, state by state: once for each states."""
 
-    _accelerations: LatestResults[Array] = field(default_factory=LatestResults)
-    _multipliers: LatestResults[Array] = field(default_factory=LatestResults)
+    _motions: LatestResults[tuple[Array, Array]] = field(default_factory=LatestResults)
 
     def forward_dynamics(self, states: States) -> Array:
         """M^-1 (Q - h), with the model's own Q."""
-        arguments = states.q, states.v, states.u
-        return self._accelerations.get(arguments, lambda: super(InterpretedEngine, self).forward_dynamics(states))
+        return self._motion(states)[0]
 
     def multipliers(self, states: States) -> Array:
         """Multipliers of the constraints."""
+        return self._motion(states)[1]
+
+    def _motion(self, states: States) -> tuple[Array, Array]:
+        """Accelerations and multipliers: the interpreter finds both in one call."""
         arguments = states.q, states.v, states.u
-        return self._multipliers.get(arguments, lambda: super(InterpretedEngine, self).multipliers(states))
+        return self._motions.get(arguments, lambda: self.model.constrained_dynamics(*arguments)[:2])
 
 
 def build(subject: Subject) -> InterpretedEngine:

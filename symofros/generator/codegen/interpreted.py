@@ -111,7 +111,8 @@ class InterpretedKernel:
         for k in range(len(outputs[0])):
             state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
             terms, move = self._at(solver, state)
-            moved.append(motion(terms, move, state["q"][0], Measures(*solver.tables)))
+            at = [output[k] for output in outputs]
+            moved.append(motion(at, terms, move, state["q"][0], Measures(*solver.tables)))
         return [np.array(values, dtype=np.float64) for values in zip(*moved, strict=True)]
 
     def _at(
