@@ -312,7 +312,7 @@ class ModelRecord:
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            choose = "`simulate` and `Stepper` choose them, by explicit Runge-Kutta methods"
+            choose = "`simulate`, batches and steppers choose them, by explicit methods"
             remedy = "a compliant contact: stiffness in place of restitution"
             raise _no_modes(f"{what}: rigid contact", found, choose, remedy)
 

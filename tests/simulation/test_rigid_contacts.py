@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from math import cos, sin, sqrt, tan
 from pathlib import Path
 from typing import Any
@@ -12,66 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import ForwardDynamics
-
-G = 9.81
-GROUND = ("world", None)
-FINE: dict[str, Any] = {"method": "dopri5", "rtol": 1e-11, "atol": 1e-13}
-
-
-def point(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), e: float = 0.0) -> sf.Model:
-    """A mass of 2 kg that does not turn, on a plane."""
-    x, y = (sf.RigidBody(n, sf.Joint(n, "prismatic", axis=a, parent=p)) for n, a, p in _SLIDES)
-    axis = sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="y")
-    foot = sf.Contact("foot", ("z", None), GROUND, restitution=e, friction=friction)
-    bodies = (x, y, sf.RigidBody("z", axis, sf.Inertia(2.0)))
-    return sf.compile(sf.System("point", bodies, connections=(foot,), gravity=gravity))
-
-
-_SLIDES = (("x", (1, 0, 0), "world"), ("y", (0, 1, 0), "x"))
-
-
-def ball_system(e: float = 0.5, friction: float = 0.5) -> sf.System:
-    """A homogeneous ball above the ground."""
-    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
-    floor = sf.Contact("floor", ("ball", None), GROUND, restitution=e, friction=friction, radius=0.1)
-    return sf.System("ball", (body,), connections=(floor,))
-
-
-@cache
-def ball(e: float = 0.5, friction: float = 0.5) -> sf.Model:
-    """The same, compiled."""
-    return sf.compile(ball_system(e, friction))
-
-
-@cache
-def rod(friction: float, e: float = 0.0) -> sf.Model:
-    """A rod of 1 kg and 2 m in a plane, whose lower tip touches the ground: Painleve's."""
-    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
-    z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"))
-    turning = sf.Joint("angle", "revolute", axis=(0, 1, 0), parent="z")
-    body = sf.RigidBody("rod", turning, sf.Inertia(1.0, moments=(1 / 3, 1 / 3, 1e-3)))
-    tip = sf.Contact("tip", ("rod", None), GROUND, restitution=e, friction=friction, points=[(0, 0, -1)])
-    return sf.compile(sf.System("rod", (x, z, body), connections=(tip,)))
-
-
-def box(
-    friction: float, gravity: tuple[float, float, float] = (0, 0, -G), height: float = 0.1, e: float = 0.0
-) -> sf.Model:
-    """A box of 2 kg on four feet, at whose centre a force draws."""
-    pull = sf.Load(force=(sf.formula("pull"), 0, 0), axes="world")
-    inertia = sf.Inertia(2.0, moments=(0.02, 0.03, 0.04))
-    body = sf.RigidBody("box", sf.Joint("free", "free"), inertia, loads=(pull,))
-    feet = [(x, y, -height) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
-    sole = sf.Contact("sole", ("box", None), GROUND, restitution=e, friction=friction, points=feet)
-    system = sf.System("box", (body,), inputs=(sf.Input("pull"),), connections=(sole,), gravity=gravity)
-    return sf.compile(system)
-
-
-def rested(model: sf.Model, height: float) -> Any:
-    """The configuration in which a box stands."""
-    q = model.neutral()
-    q[2] = height
-    return q
+from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, box, point, rested, rod
 
 
 @pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
@@ -277,7 +217,7 @@ def test_multipliers_are_the_forces_of_the_motion(name: str) -> None:
     v = [2.0, 0, 0] if name == "rod" else [1.0, 0.5, 0, 0, 0, 3.0]
     output = np.linspace(0, 0.05, 400)
     run = sf.simulate(model, q, v, t_end=0.05, output=output, method="dopri5", rtol=1e-12, atol=1e-14)
-    modes = [ball.mode for ball in model.record.rigid_contacts]
+    modes = [one.mode for one in model.record.rigid_contacts]
     assert not run.events and (run.par_over_time[:, modes] == 1).all()
     rates = np.gradient(run.v, run.t, axis=0, edge_order=2)
     assert run.a[5:-5] == pytest.approx(rates[5:-5], abs=2e-4)
@@ -289,8 +229,8 @@ def test_multipliers_are_the_forces_of_the_motion(name: str) -> None:
     force = np.einsum("nij,nj->ni", M, run.a + h)  # Of all but contact.
     assert np.einsum("nci,nc->ni", G_rows, run.lam) == pytest.approx(force, abs=1e-9)
     mu = 0.4 if name == "rod" else 0.3
-    for ball in model.record.rigid_contacts:
-        x, y, normal = (run.lam[:, row] for row in ball.rows)
+    for one in model.record.rigid_contacts:
+        x, y, normal = (run.lam[:, row] for row in one.rows)
         assert np.hypot(x, y) == pytest.approx(mu * normal, rel=1e-12) and normal.min() > 0.0
 
 
@@ -370,7 +310,6 @@ def test_what_is_refused(tmp_path: Path) -> None:
     diagram.add_model("m", system)
     diagram.add(ForwardDynamics(name="plant", model="m"))
     refused = {
-        "batch": lambda: sf.simulate_batch(model, [model.neutral()], t_end=0.1),
         "rodas4": lambda: sf.simulate(model, rested(model, 0.3), t_end=0.1, method="rodas4"),
         "equilibrium": lambda: sf.equilibrium(model),
         "export": lambda: sf.export(system, "c", tmp_path / "c"),

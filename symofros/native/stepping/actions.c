@@ -221,12 +221,12 @@ static int32_t sym_begin_contacts(sym_run *r) {
     const int64_t row = r->n_event_records;
     const sym_done done = sym_run_done(r, row);
     int32_t i, status;
-    if (s->settled) return 0; /* a run that goes on from events, or after records */
+    if (*sym_modes_chosen(s) != 0.0) return 0; /* a run that goes on from events, or after records */
     memcpy(done.par, r->par, (size_t)s->npar * sizeof *r->par);
     memcpy(done.v_set, r->v, (size_t)s->nv * sizeof *r->v);
     status = sym_settle_contacts(r, NULL);
     for (i = 0; i < s->n_contacts && status == 0 && row < r->event_capacity; ++i) {
-        if (s->struck_at[i] != r->t) continue;
+        if (sym_ball_memory(s, i)[3] != r->t) continue;
         r->event_t[row] = r->t, r->event_index[row] = r->actions->first_mode + 2 * i;
         memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
         memcpy(r->event_v + row * s->nv, done.v_set, (size_t)s->nv * sizeof *r->v);

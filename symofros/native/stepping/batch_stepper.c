@@ -82,6 +82,7 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         if (s->law.function != NULL) sym_system_bind(s, &s->law);
         if (s->project.function != NULL) sym_system_bind(s, &s->project);
         if (s->events.function != NULL) sym_system_bind(s, &s->events);
+        if (s->contact_state.function != NULL) sym_system_bind(s, &s->contact_state);
         r->event_values = b->event_values + SYM_INDEX(i, SYM_EVENT_ROWS, 0) * (size_t)s->n_events;
         s->held = b->held + (size_t)i * (size_t)s->n_sticking;
         sym_system_bind(s, &s->forward_dynamics);
@@ -136,6 +137,7 @@ static void sym_batch_place(const sym_batch *b, sym_run *r, int64_t trajectory) 
     r->beam_guard = b->beam_guard + trajectory * n, r->beam_weight = b->beam_weight + trajectory * s->nv;
     if (r->actions == NULL) return;
     r->par = b->par + trajectory * r->actions->npar, r->acted_at = b->acted_at + trajectory * s->n_events;
+    r->system->contact_memory = b->contact_memory + trajectory * (int64_t)sym_contact_memory_size(s);
 }
 
 /* All functions of a slot take the parameters of a trajectory. */
@@ -144,6 +146,7 @@ static void sym_batch_set_all_parameters(sym_batch *b, sym_system *s, int32_t sl
     sym_batch_set_parameters(&b->law, &s->law, slot, trajectory);
     sym_batch_set_parameters(&b->project, &s->project, slot, trajectory);
     sym_batch_set_parameters(&b->events, &s->events, slot, trajectory);
+    sym_batch_set_parameters(&b->contact_state, &s->contact_state, slot, trajectory);
 }
 
 /* A slot takes the inputs, parameters and memory of a trajectory. */
@@ -213,6 +216,22 @@ static void sym_batch_forget_beams(const sym_batch *b, sym_run *r) {
     memset(r->beam_guard, 0, n * sizeof *r->beam_guard), memset(r->beam_weight, 0, nv * sizeof *r->beam_weight);
 }
 
+/* Rows of events that one slot may fill in a step. */
+static int64_t sym_batch_share(const sym_batch *b) { return 4 * (int64_t)b->prototype->system->n_events; }
+
+/* Whether there is room for the events of a step of all slots, and for one at the start of a trajectory in each. */
+static int32_t sym_batch_has_room(const sym_batch *b) {
+    const sym_run *p = b->prototype;
+    const int64_t share = sym_batch_share(b);
+    return share == 0 || p->event_capacity - p->n_event_records >= b->slots * (share + 1);
+}
+
+/* The events that a run has met behind those that are known are of that trajectory. */
+static void sym_batch_count_events(sym_batch *b, const sym_run *r, int64_t trajectory) {
+    sym_run *p = b->prototype;
+    while (p->n_event_records < r->n_event_records) b->event_trajectory[p->n_event_records++] = trajectory;
+}
+
 /* Activate the next trajectory; its first slope and step size are evaluated alone, in the prototype's memory. */
 static void sym_batch_activate_next(sym_batch *b) {
     const int32_t slot = b->n_active++;
@@ -227,9 +246,12 @@ static void sym_batch_activate_next(sym_batch *b) {
     r->t = r->t0 = b->t0 != NULL ? b->t0[trajectory] : b->prototype->t0;
     r->steps = r->rejected = 0;
     sym_batch_forget_beams(b, r);
+    if (s->n_contacts > 0) sym_run_forget_contacts(r);
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
+    r->n_event_records = b->prototype->n_event_records, r->event_capacity = b->prototype->event_capacity;
     if (status == 0) status = sym_run_start(r);
-    if (s->n_sticking > 0) sym_batch_set_all_parameters(b, b->systems + slot, slot, trajectory); /* modes have been chosen */
+    sym_batch_count_events(b, r, trajectory);
+    if (s->n_sticking + s->n_contacts > 0) sym_batch_set_all_parameters(b, b->systems + slot, slot, trajectory); /* modes have been chosen */
     if (status == 0 && r->t >= r->t_end) status = SYM_FINISHED;
     memcpy(sym_batch_workspace(b, slot).k, sym_workspace_of(r).k, 2 * (size_t)s->nv * sizeof(double));
     if (status != 0) sym_batch_retire(b, slot, status);
@@ -271,7 +293,7 @@ static void sym_batch_first_slopes(sym_batch *b) {
         double *k = sym_batch_row(b, b->k, i);
         int32_t status = 0;
         if (!r->slope_valid) {
-            status = sym_check_acceleration(r);
+            status = sym_complete_acceleration(r);
             sym_store_first_slope(r, k);
         }
         b->status[i] = status != 0 ? status : sym_first_slope(r, k);
@@ -311,14 +333,11 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     sym_batch_evaluate_acceleration(b);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        const int32_t status = sym_check_acceleration(r);
+        const int32_t status = sym_complete_acceleration(r);
         if (b->status[i] == 0) b->status[i] = status;
         sym_slope_of_acceleration(r->system, sym_batch_row(b, b->stage, i), sym_batch_row(b, k, i));
     }
 }
-
-/* Rows of events that one slot may fill in a step. */
-static int64_t sym_batch_share(const sym_batch *b) { return 4 * (int64_t)b->prototype->system->n_events; }
 
 /* Do the actions of the events at which a slot's step has been cut, in the place of the prototype, whose functions are bound to
  * its own memory. Returns 0 or a status. */
@@ -334,7 +353,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     p->t_from = r->t_from, p->n_from = r->n_from;
     p->first_met = r->first_met, p->met_end = r->met_end, p->event_values = r->event_values;
     memcpy(p->q, r->q, (size_t)s->nq * sizeof *p->q), memcpy(p->v, r->v, (size_t)s->nv * sizeof *p->v);
-    p->system->u_constant = s->u_constant, p->system->signals = s->signals, p->system->event_terminal = s->event_terminal;
+    p->system->contact_memory = s->contact_memory, p->system->u_constant = s->u_constant, p->system->signals = s->signals, p->system->event_terminal = s->event_terminal;
     sym_run_set_parameters(p, r->par);
     status = sym_run_act(p);
     memcpy(r->q, p->q, (size_t)s->nq * sizeof *p->q), memcpy(r->v, p->v, (size_t)s->nv * sizeof *p->v);
@@ -346,7 +365,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     *p->system = own_system;
     if (status < 0) return status;
     sym_prepare_call(&s->forward_dynamics, r->par), sym_prepare_call(&s->law, r->par);
-    sym_prepare_call(&s->project, r->par), sym_prepare_call(&s->events, r->par);
+    sym_prepare_call(&s->project, r->par), sym_prepare_call(&s->events, r->par), sym_prepare_call(&s->contact_state, r->par);
     sym_hold_by_modes(s, r->par);
     sym_batch_set_all_parameters(b, s, slot, trajectory);
     return status;
@@ -373,14 +392,12 @@ static int32_t sym_batch_finish_step(sym_batch *b, int32_t slot, int32_t status,
 static int32_t sym_batch_accept_or_reject(sym_batch *b, int32_t slot, sym_workspace *w, int32_t status, double error) {
     sym_run *r = b->runs + slot, *p = b->prototype;
     const int64_t steps = r->steps + 1;
-    int64_t row = p->n_event_records;
-    r->n_event_records = row, r->event_capacity = p->event_capacity - slot * sym_batch_share(b);
+    r->n_event_records = p->n_event_records, r->event_capacity = p->event_capacity - slot * sym_batch_share(b);
     status = sym_accept_or_reject(r, w, b->h[slot], b->t1[slot], status, error);
     if (r->system->n_events == 0) return status;
     if (status == SYM_TERMINAL_EVENT || (status == 0 && !r->adaptive && r->steps < steps))
         status = sym_batch_finish_step(b, slot, status, steps);
-    for (; row < r->n_event_records; ++row) b->event_trajectory[row] = b->trajectory_of_slot[slot];
-    p->n_event_records = row;
+    sym_batch_count_events(b, r, b->trajectory_of_slot[slot]);
     return status;
 }
 
@@ -414,11 +431,13 @@ static void sym_batch_step(sym_batch *b) {
 }
 
 SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
-    const sym_run *p = b->prototype;
     for (b->left = max_steps; b->left > 0; --b->left) {
-        if (p->event_capacity - p->n_event_records < b->slots * sym_batch_share(b)) return SYM_RECORDS_FULL;
+        if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
         if (b->n_active < b->slots && b->next < b->n) sym_columns_leave(b);
-        while (b->n_active < b->slots && b->next < b->n) sym_batch_activate_next(b);
+        while (b->n_active < b->slots && b->next < b->n) {
+            if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
+            sym_batch_activate_next(b);
+        }
         if (b->n_active == 0) return 0;
         if (b->forward_dynamics.lanes != NULL) {
             if (!b->in_columns) sym_columns_enter(b);

@@ -129,20 +129,19 @@ static void sym_hand_begin_group(const sym_hand_batch *hand, sym_batch *b, int64
 SYM_EXPORT int32_t sym_hand_batch_go_on(sym_hand_batch *hand, const double *u) {
     while (hand->group < hand->n_groups) {
         sym_batch *b = hand->groups + hand->group;
+        if (!hand->begun) {
+            if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
+            sym_hand_begin_group(hand, b, hand->first_of_group, u);
+            b->left = hand->steps, hand->begun = 1;
+        }
         if (sym_batch_advance(b, b->left) == SYM_RECORDS_FULL) return SYM_RECORDS_FULL;
         sym_hand_batch_store(b);
-        hand->first_of_group = b->n;
-        if (++hand->group == hand->n_groups) break;
-        b = hand->groups + hand->group;
-        sym_hand_begin_group(hand, b, hand->first_of_group, u);
-        b->left = hand->steps;
+        hand->first_of_group = b->n, hand->begun = 0, ++hand->group;
     }
     return 0;
 }
 
 SYM_EXPORT int32_t sym_hand_batch_step(sym_hand_batch *hand, const double *u, int64_t steps) {
-    hand->group = 0, hand->first_of_group = hand->first, hand->steps = steps;
-    sym_hand_begin_group(hand, hand->groups, hand->first, u);
-    hand->groups->left = steps;
+    hand->group = 0, hand->begun = 0, hand->first_of_group = hand->first, hand->steps = steps;
     return sym_hand_batch_go_on(hand, u);
 }

@@ -1,6 +1,7 @@
 /* Events of a run: zeros of formulas along the dense output, found by event_search.c. */
 
 static int32_t sym_watch_shared_load(sym_run *r, double *values);
+static double *sym_load_shared(const sym_system *s);
 
 /* Values of all events at the evaluation point. Returns 0 or a status. */
 static int32_t sym_event_values(sym_run *r, double *values) {
@@ -14,7 +15,7 @@ static int32_t sym_event_values(sym_run *r, double *values) {
     }
     sym_evaluate(&s->events);
     for (i = 0; i < s->n_events; ++i) values[i] = s->event_terminal[i] == -1 ? 1.0 : s->events.out[0][i];
-    return s->shares_load && r->actions != NULL ? sym_watch_shared_load(r, values) : 0;
+    return s->n_contacts > 0 && r->actions != NULL && *sym_load_shared(s) != 0.0 ? sym_watch_shared_load(r, values) : 0;
 }
 
 typedef struct sym_event_step { /* the step just made */

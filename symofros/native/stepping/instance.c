@@ -397,7 +397,6 @@ static int32_t sym_instance_advance_between(sym_instance *instance, double t_end
     sym_run *r = &instance->run;
     const double span = t_end - instance->t, longest = h > 0.0 ? h : instance->plant->h;
     double count = 1.0;
-    int64_t met;
     int32_t status;
     r->t0 = r->t = instance->t, r->t_end = t_end, r->project = instance->project && instance->model->nc > 0;
     if (r->adaptive) {
@@ -406,9 +405,9 @@ static int32_t sym_instance_advance_between(sym_instance *instance, double t_end
         if (longest > 0.0) count = ceil(span / longest * (1.0 - 1e-9));
         r->h = span / (count > 1.0 ? count : 1.0);
     }
-    met = r->n_event_records;
+    sym_instance_make_room(r);
     status = sym_run_start(r);
-    for (r->n_event_records = met; status == SYM_RUNNING || status == SYM_RECORDS_FULL;) {
+    while (status == SYM_RUNNING || status == SYM_RECORDS_FULL) {
         sym_instance_make_room(r);
         status = sym_run_advance(r, INT32_MAX);
     }

@@ -42,6 +42,25 @@ SYM_EXPORT size_t sym_contact_work_size(const sym_system *s) {
     return s->n_contacts == 0 ? 0 : sym_lay_out_contacts(s, NULL, &scratch);
 }
 
+SYM_EXPORT size_t sym_contact_memory_size(const sym_system *s) {
+    return s->n_contacts == 0 ? 0 : SYM_BALL_ENTRIES * (size_t)s->n_contacts + 2;
+}
+
+/* What is remembered of a ball; of all of them: whether modes have been chosen, and whether a load is shared. */
+static double *sym_ball_memory(const sym_system *s, int32_t ball) { return s->contact_memory + SYM_INDEX(ball, SYM_BALL_ENTRIES, 0); }
+static double *sym_modes_chosen(const sym_system *s) { return sym_ball_memory(s, s->n_contacts); }
+static double *sym_load_shared(const sym_system *s) { return sym_ball_memory(s, s->n_contacts) + 1; }
+
+SYM_EXPORT void sym_run_forget_contacts(sym_run *r) {
+    const sym_system *s = r->system;
+    int32_t i;
+    for (i = 0; i < s->n_contacts; ++i) {
+        double *known = sym_ball_memory(s, i);
+        known[0] = r->par[s->contacts[i].way[0]], known[1] = r->par[s->contacts[i].way[1]], known[2] = 0.0, known[3] = -HUGE_VAL;
+    }
+    if (s->n_contacts > 0) *sym_modes_chosen(s) = *sym_load_shared(s) = 0.0;
+}
+
 /* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
 static double sym_friction_of(const sym_system *s, int32_t ball) {
     return s->contact_state.out[0][SYM_CONTACT_ENTRIES * ball + 4];
@@ -68,7 +87,7 @@ static void sym_keep_directions(sym_run *r) {
     sym_evaluate(&s->contact_state);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
-        double *known = s->slip + SYM_SLIP_ENTRIES * i;
+        double *known = sym_ball_memory(s, i);
         if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
         if (slip > SYM_RESTS_AT && slip > known[2] && state[1] * known[0] + state[2] * known[1] > 0.0)
             known[0] = state[1] / slip, known[1] = state[2] / slip;
@@ -107,7 +126,7 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
         if (par[s->contacts[i].mode] == SYM_SLIDES) which[n++] = i;
     if (n == 0) return 0;
     sym_evaluate(&s->contact_state);
-    for (j = 0; j < n; ++j) sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, s->slip + SYM_SLIP_ENTRIES * which[j], d[j]);
+    for (j = 0; j < n; ++j) sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, sym_ball_memory(s, which[j]), d[j]);
     memcpy(scratch.par, par, (size_t)s->npar * sizeof *par);
     memcpy(scratch.a, s->a, nv * sizeof *s->a), memcpy(scratch.lam, s->lam, nc * sizeof *s->lam);
     for (j = 0; j < n && status == 0; ++j) {
@@ -295,11 +314,11 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     for (i = 0; i < s->nv; ++i) fastest = fmax(fastest, fabs(r->v[i]));
     still = SYM_RESTS_AT * fastest;
     for (i = 0; i < p->n && status == 0; ++i) {
-        const double since = r->t - s->struck_at[at->of[i]];
+        const double since = r->t - sym_ball_memory(s, at->of[i])[3];
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
         e[i] = opened && since > SYM_ACCUMULATION * r->actions->at_once ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
         if (!opened || approaches) at->apart[i] = 0.0;
-        if (opened && approaches) s->struck_at[at->of[i]] = r->t;
+        if (opened && approaches) sym_ball_memory(s, at->of[i])[3] = r->t;
         strikes |= approaches;
     }
     if (status == 0 && strikes) {
@@ -323,7 +342,7 @@ static int32_t sym_settle_contacts(sym_run *r, const double *met) {
     int32_t i, k, status;
     memcpy(par, r->par, (size_t)s->npar * sizeof *par);
     status = sym_find_touching(r, par, met, &at);
-    if (status == 0) s->settled = 1;
+    if (status == 0) *sym_modes_chosen(s) = 1.0;
     if (status != 0 || at.problem.n == 0) return status;
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
@@ -338,14 +357,14 @@ static int32_t sym_settle_contacts(sym_run *r, const double *met) {
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
         const double *W = at.problem.W + 9 * i * at.problem.n + 3 * i;
-        double *known = s->slip + SYM_SLIP_ENTRIES * at.of[i];
+        double *known = sym_ball_memory(s, at.of[i]);
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
         par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
         par[of->way[2]] = at.problem.slides[i] ? hypot(at.u[3 * i], at.u[3 * i + 1]) : 0.0;
     }
-    s->shares_load = at.problem.shared;
+    *sym_load_shared(s) = at.problem.shared;
     sym_run_set_parameters(r, par);
     return sym_run_engage(r, &gap);
 }

@@ -94,7 +94,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     sym_system *s = r->system;
     r->slope_valid = 0;
     r->steps = r->rejected = r->evaluations = r->jacobians = 0;
-    r->n_records = r->n_event_records = r->next_grid = 0;
+    r->n_records = r->next_grid = 0;
     r->n_diagnostic = 0, r->diagnostic_stride = 1, r->diagnostic_between = 0;
     r->rank = 0, r->rank_max = -1, r->rank_min = s->nc + 1;
     r->terminal_event = r->touched_event = r->unresolved_event = -1;

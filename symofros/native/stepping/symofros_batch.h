@@ -35,10 +35,11 @@ typedef struct sym_batch {
     /* By the caller. */
     /* Settings, and the system of a single run, which only this batch uses; its table of events holds those that were met. */
     sym_run *prototype;
-    sym_batch_function forward_dynamics, law, project, events;
+    sym_batch_function forward_dynamics, law, project, events, contact_state;
     int64_t *event_trajectory; /* (event_capacity of the prototype) whose event each row is */
     double *par, *acted_at;    /* (n, npar), (n, n_events) of trajectories whose events have actions */
     int32_t *event_terminal;   /* (n, n_events) */
+    double *contact_memory;    /* (n, sym_contact_memory_size) */
     int32_t slots;            /* most trajectories active at once; 2 at least */
     sym_batch_rows q0, v0, u_constant; /* initial states and constant inputs of all trajectories */
     const double *t0;         /* (n) first times; NULL: that of the prototype for all */

@@ -38,6 +38,7 @@ typedef struct sym_hand_batch { /* trajectories that go on together, one thread'
     double *u;             /* (all trajectories, nu) u_constant of the groups */
     int32_t *begins;       /* (all trajectories) whether it begins at the next step, at q0, v0, t0 of the groups */
     int32_t group;         /* the one that steps; n_groups: none */
+    int32_t begun;         /* whether it has taken inputs, and its trajectories have begun */
     int64_t first_of_group, steps;
 } sym_hand_batch;
 

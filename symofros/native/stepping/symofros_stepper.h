@@ -101,8 +101,8 @@ typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/th
     int32_t row;   /* of G, which holds it */
 } sym_sticking;
 
-/* Entries a ball of a rigid contact: of its state, and of what is known of its slip. */
-typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_SLIP_ENTRIES = 3 } sym_contact_sizes;
+/* Entries a ball of a rigid contact: of its state, and of its memory. */
+typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_BALL_ENTRIES = 4 } sym_contact_sizes;
 
 typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/constraints.md, section 15) */
     int32_t mode;    /* parameter: SYM_OPEN, SYM_SLIDES, SYM_STICKS */
@@ -208,13 +208,11 @@ typedef struct sym_system {
      * and of restitution. */
     sym_call contact_state;
     int32_t npar;
-    int32_t shares_load;               /* whether balls that stick share their load in more than one way */
     double longest_step;               /* of fixed steps [s] */
-    int32_t settled;                   /* whether modes have been chosen in this run */
-    double *struck_at;                 /* (n_contacts) instant of the last strike [s] */
-    /* (n_contacts, SYM_SLIP_ENTRIES) of balls that slide: the direction at the last end of a step with a slip (2), and the slip up
-     * to which it stays so [m/s]. */
-    double *slip;
+    /* (sym_contact_memory_size) of each ball its direction at the last end of a step with a slip (2), the slip up to which it
+     * stays so [m/s], the instant of the last strike [s]; then whether modes have been chosen in this motion, and whether balls
+     * that stick share their load in more than one way. */
+    double *contact_memory;
     double *contact_work;              /* sym_contact_work_size entries of scratch */
     int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
@@ -355,8 +353,11 @@ int32_t sym_run_act(sym_run *run);
 void sym_run_set_parameters(sym_run *run, const double *par);
 /* Doubles of a row of run->event_done, and where one's numbers are. */
 size_t sym_done_size(const sym_run *run);
-/* Doubles of sym_system's contact_work. */
+/* Doubles of sym_system's contact_work and contact_memory. */
 size_t sym_contact_work_size(const sym_system *system);
+size_t sym_contact_memory_size(const sym_system *system);
+/* A motion begins in which balls of rigid contacts have neither struck nor slid: modes will be chosen. */
+void sym_run_forget_contacts(sym_run *run);
 sym_done sym_run_done(const sym_run *run, int64_t row);
 /* Compare the present state's beams with the limit, and keep the largest error of each. Returns 0 or SYM_BEYOND_THEORY. */
 int32_t sym_run_judge_beams(sym_run *run);

@@ -136,7 +136,7 @@ class _Part(BatchStepper):
         """What events change besides the states, of its motions."""
         if self.single.actions is None:
             return [self._event_terminal[self.rows]] if self.single.events else []
-        return [array[self.rows] for array in (self._event_terminal, self._acted_at)]
+        return [array[self.rows] for array in (self._event_terminal, self._acted_at, self._contact_memory)]
 
     @property
     def par(self) -> Array:

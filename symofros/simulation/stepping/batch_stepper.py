@@ -25,6 +25,8 @@ from symofros.simulation.stepping.stepper import Stepper
 SLOTS = 64
 # Events of one trajectory within a step that there is room for beyond a few.
 _EVENT_ROWS = 1024
+# Functions that trajectories call one by one.
+_ONE_BY_ONE = ("project", "events", "contact_state")
 # Doubles of a line of cache.
 _LINE = 8
 # Steps of each trajectory in one call of C, between looks at Ctrl-C.
@@ -127,7 +129,6 @@ class BatchStepper:
         first: int,
         stride: int,
     ) -> None:
-        model.record.refuse_rigid_contacts("a batch of motions")
         self.single = Stepper(model, settings.method, initial.inputs.plan, initial.events, initial.par[0])
         settings.apply(self.single)
         self.single.set_span(settings.span)
@@ -180,6 +181,8 @@ class BatchStepper:
         batch.event_trajectory = memory.shared(self._event_trajectory)
         self._par, self._acted_at = par, np.full((n, count), -np.inf)
         self._event_terminal = np.zeros((n, count), dtype=np.int32)
+        self._contact_memory = np.zeros((n, len(single.contact_memory)))
+        batch.contact_memory = memory.shared(self._contact_memory)
         self.forget_events(np.arange(n))
         batch.event_terminal = memory.shared(self._event_terminal)
         batch.par, batch.acted_at = memory.shared(par), memory.shared(self._acted_at)
@@ -196,15 +199,15 @@ class BatchStepper:
         self.met += zip(numbers, self.single.take_events() if n else (), strict=True)
 
     def _fill_functions(self, par: Array) -> None:
-        """Functions that all active trajectories call at once; `project` and `events` are called one by one."""
-        for name in ("forward_dynamics", "law", "project", "events"):
+        """Functions that all active trajectories call at once, and those that are called one by one."""
+        for name in ("forward_dynamics", "law", *_ONE_BY_ONE):
             kernel = self.single.kernels.get(name)
             if kernel is None:
                 continue
             function, prepared = getattr(self._batch, name), kernel.prepare(par)
             self._prepared.append((kernel, prepared))
             self._fill_shared_rows(function.pre, prepared)
-            if name in ("project", "events"):
+            if name in _ONE_BY_ONE:
                 continue
             # Laws are few operations on what users gave: in double precision.
             precision = self.single.model.precision if name == "forward_dynamics" else "double"

@@ -125,16 +125,17 @@ class BoundRun:
             formulas += [f"`contact.{ball.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz")]
             formulas += [ball.friction, ball.restitution]
         self._bind("contact_state", self.model.formulas(formulas, derivatives=False))
-        system.struck_at = memory.doubles([-math.inf] * len(balls))
-        system.slip = memory.doubles([x for ball in balls for x in (*self.par[list(ball.way[:2])], 0.0)])
         system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))
+        system.contact_memory = memory.zeros(int(self.native.sym_contact_memory_size(system)))
         if self.actions is None:
             self.run.par = memory.doubles(self.par)
+        self.native.sym_run_forget_contacts(self.run)
 
-    def slide_as(self, other: BoundRun) -> None:
-        """Take the directions of balls that slide from another run of the model."""
-        size = len(self.model.record.rigid_contacts) * constants()["SYM_SLIP_ENTRIES"]
-        self.memory.view(self.system.slip, size)[:] = other.memory.view(other.system.slip, size)
+    @property
+    def contact_memory(self) -> Array:
+        """What steps remember of the balls of rigid contacts, a view; empty without any."""
+        size = int(self.native.sym_contact_memory_size(self.system))
+        return self.memory.view(self.system.contact_memory, size)
 
     def _hold(self) -> None:
         """Tell which coordinates friction holds, by their modes."""

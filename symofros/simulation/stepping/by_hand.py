@@ -167,11 +167,7 @@ class HandRun:
             yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events))
             sticking = len(model.record.sticking)
             yield memory.raw(system.held, "int32_t", sticking)
-            balls = len(model.record.rigid_contacts)
-            yield from (
-                memory.view(system.struck_at, balls),
-                memory.view(system.slip, balls * constants()["SYM_SLIP_ENTRIES"]),
-            )
+            yield self.run.contact_memory
         for name, size in {"u": model.nu, "u_constant": model.nu, "a": model.nv, "lam": model.nc, "rank": 1}.items():
             yield memory.view(getattr(system, name), size)
 
@@ -204,12 +200,11 @@ class HandRun:
         self._looked_for[:] = [event.cut for event in self.run.events]
         if self.run.actions is not None:
             self.run.memory.view(self.run.run.acted_at, len(self.run.events))[:] = -np.inf
-            balls = len(self.run.model.record.rigid_contacts)
-            self.run.system.settled = 0
-            self.run.memory.view(self.run.system.struck_at, balls)[:] = -np.inf
+            self.run.native.sym_run_forget_contacts(self.run.run)
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
         run.run.t = run.run.t0 = t
+        run.run.n_event_records = 0
         run.run.h = 0.0 if self.settings.adaptive else self.settings.dt
         self._forget_bendings()
         memory.view(hand.u, len(self._constant))[:] = self._constant

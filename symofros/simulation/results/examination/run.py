@@ -207,7 +207,7 @@ class ExaminedRun(HeldRun):
         part = replace(part, project=part.project or (method != stepper.method and self.model.nc > 0))
         again = Stepper(self.model, method, stepper.inputs, (), stepper.par)
         if self.model.record.rigid_contacts:
-            again.slide_as(stepper)
+            again.contact_memory[:] = stepper.contact_memory
         part.apply(again)
         return again, run_own(again, q, v, part, lambda _: None)
 

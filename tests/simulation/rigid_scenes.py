@@ -1,0 +1,68 @@
+"""Scenes of rigid contacts: a mass, a ball, a rod, a box on a plane."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import symofros as sf
+
+G = 9.81
+GROUND = ("world", None)
+FINE: dict[str, Any] = {"method": "dopri5", "rtol": 1e-11, "atol": 1e-13}
+
+
+def point(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), e: float = 0.0) -> sf.Model:
+    """A mass of 2 kg that does not turn, on a plane."""
+    x, y = (sf.RigidBody(n, sf.Joint(n, "prismatic", axis=a, parent=p)) for n, a, p in _SLIDES)
+    axis = sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="y")
+    foot = sf.Contact("foot", ("z", None), GROUND, restitution=e, friction=friction)
+    bodies = (x, y, sf.RigidBody("z", axis, sf.Inertia(2.0)))
+    return sf.compile(sf.System("point", bodies, connections=(foot,), gravity=gravity))
+
+
+_SLIDES = (("x", (1, 0, 0), "world"), ("y", (0, 1, 0), "x"))
+
+
+def ball_system(e: float = 0.5, friction: float = 0.5) -> sf.System:
+    """A homogeneous ball above the ground."""
+    body = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    floor = sf.Contact("floor", ("ball", None), GROUND, restitution=e, friction=friction, radius=0.1)
+    return sf.System("ball", (body,), connections=(floor,))
+
+
+@cache
+def ball(e: float = 0.5, friction: float = 0.5) -> sf.Model:
+    """The same, compiled."""
+    return sf.compile(ball_system(e, friction))
+
+
+@cache
+def rod(friction: float, e: float = 0.0) -> sf.Model:
+    """A rod of 1 kg and 2 m in a plane, whose lower tip touches the ground: Painleve's."""
+    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
+    z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"))
+    turning = sf.Joint("angle", "revolute", axis=(0, 1, 0), parent="z")
+    body = sf.RigidBody("rod", turning, sf.Inertia(1.0, moments=(1 / 3, 1 / 3, 1e-3)))
+    tip = sf.Contact("tip", ("rod", None), GROUND, restitution=e, friction=friction, points=[(0, 0, -1)])
+    return sf.compile(sf.System("rod", (x, z, body), connections=(tip,)))
+
+
+def box(
+    friction: float, gravity: tuple[float, float, float] = (0, 0, -G), height: float = 0.1, e: float = 0.0
+) -> sf.Model:
+    """A box of 2 kg on four feet, at whose centre a force draws."""
+    pull = sf.Load(force=(sf.formula("pull"), 0, 0), axes="world")
+    inertia = sf.Inertia(2.0, moments=(0.02, 0.03, 0.04))
+    body = sf.RigidBody("box", sf.Joint("free", "free"), inertia, loads=(pull,))
+    feet = [(x, y, -height) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
+    sole = sf.Contact("sole", ("box", None), GROUND, restitution=e, friction=friction, points=feet)
+    system = sf.System("box", (body,), inputs=(sf.Input("pull"),), connections=(sole,), gravity=gravity)
+    return sf.compile(system)
+
+
+def rested(model: sf.Model, height: float) -> Any:
+    """The configuration in which a box stands."""
+    q = model.neutral()
+    q[2] = height
+    return q
