@@ -12,6 +12,7 @@ from symofros.diagrams.block import Block, Environment, EvaluationContext, Port,
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.expr import ZERO
 from symofros.simulation.events import Event
 
 
@@ -155,7 +156,10 @@ class ForwardDynamics(Block):
 
 @dataclass(frozen=True, kw_only=True)
 class InverseDynamics(Block):
-    """The efforts that a motion takes, tau = M a + h - Q(q, v, 0), for a tree of joints that all have one.
+    """The efforts that a motion takes, tau = M a + h - Q(q, v, z, 0), for a tree of joints that all have one.
+
+    States of forces z are an input, from the mechanism or from an observer; it may stay open where no effort depends
+    on them.
 
     Attributes:
         model: Model of the mechanism; a rigid one makes a controller of the paper's kind.
@@ -166,16 +170,19 @@ class InverseDynamics(Block):
     with_friction: bool = True
 
     def ports(self, environment: Environment) -> Ports:
-        """Motion in: q (nq), v and a (nv). Efforts out: tau (nv)."""
+        """Motion in: q (nq), v and a (nv), z (nz) where there are some. Efforts out: tau (nv)."""
         record = environment.model(self.model)
-        motion = (motion_port(name, record, name) for name in ("q", "v", "a"))
-        return Ports(tuple(motion), (motion_port("tau", record, "effort"),))
+        motion = tuple(motion_port(name, record, name) for name in ("q", "v", "a"))
+        states = (Port("z", (len(record.state_names),), "", 0.0),) if record.state_names else ()
+        return Ports(motion + states, (motion_port("tau", record, "effort"),))
 
     def compute(self, context: EvaluationContext) -> Values:
         """Efforts tau by inverse dynamics of the model, without those against friction if `with_friction` is False."""
         q, v, a = (context.inputs[name] for name in ("q", "v", "a"))
-        tau = context.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=context.t)["tau"]
-        return {"tau": tau if self.with_friction else tau + friction(context, self.model, q, v)}
+        # An open input is zeros: it is left out, so that efforts that depend on it are refused.
+        states = {name: z for name, z in context.inputs.items() if name == "z" and any(edge != ZERO for edge in z.flat)}
+        tau = context.call(self.model, "inverse_dynamics", q=q, v=v, a=a, t=context.t, **states)["tau"]
+        return {"tau": tau if self.with_friction else tau + friction(context, self.model, q, v, **states)}
 
 
 def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor, **states: Tensor) -> Tensor:

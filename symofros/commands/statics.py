@@ -53,6 +53,7 @@ def equilibrium(
     result: dict[str, Any] = {
         "coordinates": dict(zip(compiled.names.q, rest.q.tolist(), strict=True)),
         "speeds": dict(zip(compiled.names.v, rest.v.tolist(), strict=True)),
+        "states": dict(zip(compiled.names.z, rest.z.tolist(), strict=True)),
         "inputs": None if rest.inputs is None else dict(rest.inputs),
         "efforts": dict(rest.efforts),
         "multipliers": dict(zip(compiled.names.constraints, rest.lam.tolist(), strict=True)),
@@ -67,7 +68,13 @@ def equilibrium(
 def _tell(result: dict[str, Any], rest: Equilibrium) -> None:
     """A table, and the notes."""
     table = Table("what", "name", "value", title=f"Equilibrium, {rest.iterations} steps, residual {rest.residual:.1g}")
-    kinds = {"coordinates": "coordinate", "efforts": "effort held by", "inputs": "input", "multipliers": "multiplier"}
+    kinds = {
+        "coordinates": "coordinate",
+        "states": "state of a force",
+        "efforts": "effort held by",
+        "inputs": "input",
+        "multipliers": "multiplier",
+    }
     for key, kind in kinds.items():
         for name, value in (result[key] or {}).items():
             table.add_row(kind, name, shown(value))

@@ -13,7 +13,7 @@ from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, Kernel, Numbers, Precision
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.functions import ArrayLike, Key
-from symofros.runtime.methods.linear import Output, StateMatrices, state_matrices
+from symofros.runtime.methods.linear import Output, StateMatrices
 from symofros.runtime.methods.routes import Routes
 from symofros.runtime.model import Model
 
@@ -162,18 +162,25 @@ class StatefulModel(Model):
     ) -> tuple[Array, Array] | StateMatrices:
         """A (..., 2 nv + nz, 2 nv + nz) and B (..., 2 nv + nz, nu) of small changes of (q, v, z); as of `Model`.
 
-        Raises:
-            SymofrosError: With outputs.
+        Among outputs "z" are the states (nz rows).
         """
-        if outputs is not None:
-            raise self._refusal("outputs of a linearisation are of models without them")
-        speeds = self._joined("v", v) if z is None else self._with_states(v, z)
-        given = {"q": self._joined("q", q), "v": speeds, "u": u, "t": t}
-        slopes = self._carried._call("forward_dynamics_derivatives", "", given, par)
-        A, B = state_matrices(self._carried.record.segments, slopes, np.asarray(speeds, dtype=np.float64))
-        n = self._carried.nv
+        carried, n = self._carried, self._carried.nv
+        coordinates, speeds = self._joined("q", q), self._joined("v", v) if z is None else self._with_states(v, z)
+        assert coordinates is not None and speeds is not None
         kept = np.r_[0 : self.nv, n : 2 * n]
-        return A[..., kept, :][..., kept], B[..., kept, :]
+        stated = ["v" if output == "z" else output for output in outputs or ()]
+        A, B, C, D = carried.linearize(coordinates, speeds, u, outputs=stated, par=par, t=t)
+        A, B = A[..., kept, :][..., kept], B[..., kept, :]
+        if outputs is None:
+            return A, B
+        rows, first = list[int](), 0
+        for output in outputs:
+            own = {"z": range(self.nv, n), "lam": range(self.nc)}.get(
+                str(output), range(6 if isinstance(output, tuple) else self.nv)
+            )
+            rows += [first + row for row in own]
+            first += len(own) if isinstance(output, tuple) or output == "lam" else n
+        return StateMatrices(A, B, C[..., rows, :][..., kept], D[..., rows, :])
 
 
 def stated(model: Model) -> Model:

@@ -269,10 +269,6 @@ int main(void) {
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda m: sf.equilibrium(m),
-        lambda m: sf.modes(m, m.neutral()),
-        lambda m: sf.state_space(m, m.neutral()),
-        lambda m: sf.actuator_efforts(m, [0.0], [0.0], [0.0]),
         lambda m: sf.rollout(m, None, None, np.zeros((3, 1)), dt=1e-3),
         lambda m: m.kernel("bias"),
         lambda m: m.bind("bias"),
@@ -281,7 +277,6 @@ int main(void) {
         lambda m: m.formulas(("x",)),
         lambda m: m.cuda(),
         lambda m: m.inverse_dynamics_second_derivatives([0.0], [0.0], [0.0]),
-        lambda m: m.linearize([0.0], [0.0], [0.0], outputs=("q",)),
     ],
 )
 def test_what_has_no_states_says_so(ask: Any) -> None:

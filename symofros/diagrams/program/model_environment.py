@@ -268,8 +268,9 @@ class Models:
         slots = (g.slot[node] for node in nodes if node in g.slot)
         found = [record.v_names[slot.index] for slot in slots if slot.group == "v" and slot.index >= first]
         if found:
-            rule = "a block without an input of these states is of models whose forces have none"
-            remedy = "add the model once more without these elements for this block, or use ModelFunction with z"
+            rule = "a block that is given no z is of models whose forces have none"
+            remedy = "connect its input z; where it has none, add the model once more without these elements, or use"
+            remedy += " ModelFunction with z"
             what = f"diagram '{self._diagram}': {function} of model '{model}' depends on states of forces"
             raise DescriptionError(Problem(what, ", ".join(sorted(found)[:8]), rule, remedy))
 

@@ -149,7 +149,7 @@ class DerivativeFunctions(FrameFunctions, StateFunctions):
                 of a pose the change of the origin and the small rotation.
             par: Run-time parameters.
             t: Time.
-            z: States of forces (..., nz); with some, x = (difference of q, of v, of z), and there are no outputs.
+            z: States of forces (..., nz); with some, x = (difference of q, of v, of z), and "z" (nz rows) is an output.
 
         Raises:
             UnknownNameError: No such output or frame.

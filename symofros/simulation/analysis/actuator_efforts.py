@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -76,6 +76,7 @@ def actuator_efforts(
     par: ArrayLike | None = None,
     t: ArrayLike = 0.0,
     beam_limit: float = BEAM_LIMIT,
+    z: ArrayLike | None = None,
 ) -> ActuatorEfforts:
     """The efforts of chosen actuators that make a mechanism move as given, loops closed.
 
@@ -97,6 +98,7 @@ def actuator_efforts(
         t: Time (...,).
         beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which there is
             no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
+        z: States of forces (..., nz); the neutral ones, zeros, if not given.
 
     Raises:
         BeamTheoryError: A beam is bent beyond the limit.
@@ -106,7 +108,6 @@ def actuator_efforts(
         ActuationError: The motion violates the constraints, or these actuators can't produce it; says where, and by
             how much.
     """
-    model.record.refuse_states("actuator_efforts")
     model = model.with_precision("double")
     names = _names(model, actuators)
     accelerations = _vector("a", model.by_name("a", a), model.nv)
@@ -114,8 +115,9 @@ def actuator_efforts(
     stated = [model.names.u.index(name) for name in names if name in model.names.u]
     others = np.array(_vector("u", given_inputs(model, u), model.nu))
     others[..., stated] = 0.0
-    M, h, Q = model.dynamics(q, v, others, par=par, t=t)
-    B = _columns(model, names, (q, v, others), Q, par, t)
+    given: dict[str, Any] = {"par": par, "t": t} | ({} if z is None else {"z": z})
+    M, h, Q = model.dynamics(q, v, others, **given)
+    B = _columns(model, names, (q, v, others), Q, given)
     G = consistent_jacobian(model, (q, v, accelerations, others), par, t)
     batch = np.broadcast_shapes(h.shape[:-1], accelerations.shape[:-1])
     terms = _State(
@@ -133,15 +135,19 @@ def actuator_efforts(
     for k, name in enumerate(names):
         if name in model.names.u:
             inputs[..., model.names.u.index(name)] = efforts[..., k]
-    _check_linear(model, terms, efforts, model.generalized_force(q, v, inputs, par=par, t=t), names)
+    _check_linear(model, terms, efforts, model.generalized_force(q, v, inputs, **given), names)
     bendings: tuple[BeamBending, ...] = ()
     if model.beams():
         values = model.parameter_values if par is None else model.by_name("par", par)
-        motion = [model.by_name("q", q), model.by_name("v", v), accelerations, inputs, lam, values]
-        widths = model.nq, model.nv, model.nv, model.nu, model.nc, model.npar
+        moving = model.carried  # Rates of states of forces have no part in the balance of forces.
+        rates = np.zeros((*accelerations.shape[:-1], model.nz))
+        states = np.zeros(model.nz) if z is None else z
+        carried = [np.asarray(x) for x in model.carry(model.by_name("q", q), v, states)]
+        motion = [*carried, np.concatenate([accelerations, rates], axis=-1), inputs, lam, values]
+        widths = moving.nq, moving.nv, moving.nv, model.nu, model.nc, model.npar
         rows = [np.array(np.broadcast_to(x, (*batch, n))) for x, n in zip(motion, widths, strict=True)]
         flat = Motion(*(x.reshape(math.prod(batch), n) for x, n in zip(rows, widths, strict=True)))
-        bendings = bendings_under_efforts(model, flat, np.broadcast_to(np.asarray(t, dtype=np.float64), batch).ravel())
+        bendings = bendings_under_efforts(moving, flat, np.broadcast_to(np.asarray(t, dtype=np.float64), batch).ravel())
     refuse_beyond(model, bendings, beam_limit, "the motion")
     return ActuatorEfforts(names, efforts, lam, inputs, redundancy, bendings, bending_notes(bendings))
 
@@ -179,8 +185,7 @@ def _columns(
     names: tuple[str, ...],
     state: tuple[ArrayLike, ArrayLike, Array],
     Q: Array,
-    par: ArrayLike | None,
-    t: ArrayLike,
+    given: Mapping[str, Any],
 ) -> Array:
     """B (..., nv, actuators), dQ/du of forces linear in u: a difference, at inputs large enough to cancel no digits."""
     q, v, others = state
@@ -189,7 +194,7 @@ def _columns(
     for column, name in zip(columns, names, strict=True):
         if name in model.names.u:
             unit = np.eye(model.nu)[model.names.u.index(name)]
-            column[...] = (model.generalized_force(q, v, others + large * unit, par=par, t=t) - Q) / large
+            column[...] = (model.generalized_force(q, v, others + large * unit, **given) - Q) / large
         else:
             column[..., model.names.v.index(name)] = 1.0
     return np.stack(columns, axis=-1) if columns else np.zeros((*Q.shape, 0))

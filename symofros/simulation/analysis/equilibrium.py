@@ -20,10 +20,11 @@ from symofros.simulation.analysis.beam_theory import (
     beyond_critical_load,
     refuse_beyond,
 )
+from symofros.simulation.analysis.force_states import rest_with_states
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
-from symofros.simulation.analysis.rest_search import Balance, Search, search_rest
+from symofros.simulation.analysis.rest_search import Balance, Search
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
@@ -50,6 +51,7 @@ class Equilibrium:
         efforts: Effort on each held coordinate by the name of its speed [N m or N].
         inputs: Inputs by name under which the state stays by itself, no coordinate held, those that are no prescribed
             motions of least norm; None where no inputs do. With nothing held, those that were given.
+        z: States of forces (nz).
     """
 
     q: Array
@@ -63,6 +65,7 @@ class Equilibrium:
     notes: tuple[str, ...] = ()
     efforts: Mapping[str, float] = field(default_factory=dict)
     inputs: Mapping[str, float] | None = None
+    z: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @checked
@@ -78,10 +81,13 @@ def equilibrium(
     tolerance: float = 1e-11,
     iterations: int = 100,
     beam_limit: float = BEAM_LIMIT,
+    z: ArrayLike | None = None,
 ) -> Equilibrium:
     """Solve M 0 + h - Q - G^T lam = 0, phi = 0 for the configuration, by Newton's method with exact derivatives.
 
     Where that stalls, a relaxation from the same guess leads towards a stable rest, from where Newton's method goes on.
+    States of forces are solved for with it: z' = 0. Where they rest whatever they are, as bristles do, the equilibrium
+    is one of many, that of the least change of the guess; a note says so.
     Its matrices are decomposed by NumPy's LAPACK, whose last digits depend on the processor: so do those of the result,
     other than those of runs and of the functions of models.
 
@@ -98,6 +104,7 @@ def equilibrium(
         iterations: Most steps of Newton's method, and of the relaxation.
         beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which there is
             no result (docs/theory/beams.md, section 6); `math.inf` for no limit.
+        z: Guess of the states of forces (nz); the neutral ones, zeros, if not given.
 
     Raises:
         AssemblyError: A closure is closed the wrong way round.
@@ -105,33 +112,35 @@ def equilibrium(
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
     """
-    model.record.refuse_states("equilibrium")
     model.record.refuse_rigid_contacts("equilibrium")
     model = model.with_precision("double")
     free = free_speeds(model, held)
     q = model.neutral() if q is None else given_configuration(model, q)
     v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
     u = vector("u", given_inputs(model, u), model.nu)
-    balance = Balance(model, free, v, u, par, t)
-    end = search_rest(balance, q, tolerance, iterations)
-    q, lam = end.q, end.lam
-    bendings, unstable = _bendings(balance, q, lam)
-    left = balance.size(end.R, end.scale)
+    moving = model.carried
+    q, v = (np.asarray(x) for x in model.carry(q, v, np.zeros(model.nz) if z is None else z))
+    balance = Balance(moving, free, np.arange(model.nv, moving.nv), v, u, par, t)
+    balance, end, remarks = rest_with_states(balance, q, tolerance, iterations)
+    q, v, lam = end.q, end.v, end.lam
+    bendings, unstable = _bendings(balance, end)
+    left = balance.size(end.R, end.sizes)
     if not left <= max(tolerance, 1e-9):
         _refuse_without_rest(model, bendings, end.count)
-        raise EquilibriumError(_no_balance(balance, end, tolerance))
-    refuse_opposite(model, q, u, par)
+        raise EquilibriumError(_no_balance(balance, end, tolerance, remarks))
+    refuse_opposite(moving, q, u, par)
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(model.nv)
     held_rows = np.setdiff1d(np.arange(model.nv), free)
     effort[held_rows] = end.R[held_rows]
     efforts = {model.names.v[i]: float(effort[i]) for i in held_rows}
-    inputs = _holding_inputs(model, (q, v, u, lam), effort, par, t)
-    notes = unstable + bending_notes(bendings)
-    return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs)
+    q, v, z = q[: model.nq], v[: model.nv], model.states_of(v)
+    inputs = _holding_inputs(model, (q, v, u, lam, z), effort, par, t)
+    notes = unstable + bending_notes(bendings) + remarks
+    return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs, z)
 
 
-def _no_balance(balance: Balance, end: Search, tolerance: float) -> Problem:
+def _no_balance(balance: Balance, end: Search, tolerance: float, remarks: tuple[str, ...]) -> Problem:
     """The problem of a failed search for equilibrium: the largest imbalance, and what friction would have to hold."""
     model = balance.model
     worst = int(balance.rows[np.argmax(np.abs(end.R[balance.rows]))])
@@ -142,6 +151,7 @@ def _no_balance(balance: Balance, end: Search, tolerance: float) -> Problem:
         "start nearer, give the inputs that hold it, allow more iterations, or hold coordinates that have no place of"
         " rest"
     )
+    found = "; ".join((found, *remarks))
     creeping = _creeping(balance, end, tolerance)
     if creeping:
         loads = "; ".join(
@@ -158,10 +168,10 @@ def _creeping(balance: Balance, end: Search, tolerance: float) -> list[tuple[str
     model, creeping = balance.model, list[tuple[str, float, float]]()
     for i in np.intersect1d(balance.free, model.record.friction_speeds).tolist():
         load = abs(float(end.R[i]))
-        if not np.isfinite(load) or load <= tolerance * end.scale or len(creeping) == _SHOWN:
+        if not np.isfinite(load) or load <= tolerance * end.sizes[i] or len(creeping) == _SHOWN:
             continue
-        state = (end.q, balance.v, np.asarray(balance.u))
-        driven = balance.v[i] - np.sign(end.R[i]) * _FRICTION_SPEEDS  # As the imbalance accelerates it.
+        state = (end.q, end.v, np.asarray(balance.u))
+        driven = end.v[i] - np.sign(end.R[i]) * _FRICTION_SPEEDS  # As the imbalance accelerates it.
         curve = friction_curve(model, i, driven, state, balance.par, balance.t)
         if curve is not None and load < curve.reached:
             creeping.append((model.names.v[i], load, curve.reached))
@@ -169,29 +179,30 @@ def _creeping(balance: Balance, end: Search, tolerance: float) -> list[tuple[str
 
 
 def _holding_inputs(
-    model: Model, state: tuple[Array, Array, Array, Array], effort: Array, par: ArrayLike | None, t: float
+    model: Model, state: tuple[Array, Array, Array, Array, Array], effort: Array, par: ArrayLike | None, t: float
 ) -> dict[str, float] | None:
     """Inputs by name that replace the effort on held coordinates; None where none do, or forces are not linear in them.
 
     As efforts of chosen actuators (docs/theory/constraints.md, (25)): B u = B u_given + effort + G^T mu.
     """
-    q, v, u, lam = state
+    q, v, u, lam, z = state
     if np.any(effort):
+        given = {"z": z} if model.nz else {}
         try:
-            u = actuator_efforts(model, q, v, np.zeros(model.nv), u=u, par=par, t=t, beam_limit=math.inf).u
+            u = actuator_efforts(model, q, v, np.zeros(model.nv), u=u, par=par, t=t, beam_limit=math.inf, **given).u
         except (ActuationError, UnknownNameError):
             return None
     return dict(zip(model.names.u, u.tolist(), strict=True))
 
 
-def _bendings(balance: Balance, q: Array, lam: Array) -> tuple[tuple[BeamBending, ...], tuple[str, ...]]:
+def _bendings(balance: Balance, end: Search) -> tuple[tuple[BeamBending, ...], tuple[str, ...]]:
     """Bending of each beam, and notes on those beyond their critical load."""
-    beams = balance.model.beams(balance.par)
+    beams, q = balance.model.beams(balance.par), end.q
     if not beams or not np.all(np.isfinite(q)):
         return (), ()
-    if np.any(balance.v):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
-        return bendings_in_motion(balance.model, q, balance.v, balance.u, balance.par, balance.t), ()
-    K = balance.stiffness(q, lam)
+    if np.any(end.v[: balance.n]):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
+        return bendings_in_motion(balance.model, q, end.v, balance.u, balance.par, balance.t), ()
+    K = balance.stiffness(q, end.v, end.lam)
     notes = tuple(
         f"beam '{name}' is loaded past its critical load: this rest is unstable"
         for name in beyond_critical_load(beams, q, K)

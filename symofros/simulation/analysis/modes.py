@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ from symofros.base.arrays import Array, vector
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
+from symofros.simulation.analysis.force_states import kink_notes
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import rigid_motions
@@ -19,22 +20,27 @@ from symofros.simulation.analysis.state_space import state_space
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 Complex = npt.NDArray[np.complex128]
+# Share of its states of forces below which a mode's coordinates are rounding.
+_STILL = 1e-12
 
 
 @dataclass(frozen=True)
 class Modes:
     """Modes in the order of their frequencies; conjugate eigenvalues count once, as the two of a rigid motion do.
 
-    A motion that is damped more than critically has two real eigenvalues, and two entries here; without such there are
-    at most nv.
+    A motion that is damped more than critically has two real eigenvalues, and two entries here; without such, and
+    without states of forces, there are at most nv.
 
     Attributes:
         eigenvalues: s of each mode, with Im(s) >= 0 [1/s] (k); exactly 0 of rigid motions, which come first.
         frequencies: |s| [rad/s] (k).
         damping: -Re(s)/|s|: positive decays, negative grows; a rigid motion (s = 0) counts 0 (k).
-        shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k).
+        shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
+            change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: beams whose theory errs by more than a per cent.
+        notes: Remarks: beams whose theory errs by more than a per cent, rates of states of forces that have a kink.
+        z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
+            where they alone change.
     """
 
     eigenvalues: Complex
@@ -43,6 +49,7 @@ class Modes:
     shapes: Complex
     bendings: tuple[BeamBending, ...] = ()
     notes: tuple[str, ...] = ()
+    z_shapes: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
 
 
 @checked
@@ -55,6 +62,7 @@ def modes(
     par: ArrayLike | None = None,
     t: float = 0.0,
     beam_limit: float = BEAM_LIMIT,
+    z: ArrayLike | None = None,
 ) -> Modes:
     """Modes of small motions about a state, which should be an equilibrium or a steady motion (`equilibrium`).
 
@@ -67,12 +75,12 @@ def modes(
         t: Time.
         beam_limit: Estimated error of the beams' second-order theory in the state beyond which there is no result
             (docs/theory/beams.md, section 6); `math.inf` for no limit.
+        z: States of forces (nz); the neutral ones, zeros, if not given.
 
     Raises:
         AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
     """
-    model.record.refuse_states("modes")
     model.record.refuse_rigid_contacts("modes")
     state = (
         given_configuration(model, q),
@@ -80,23 +88,36 @@ def modes(
         vector("u", given_inputs(model, u), model.nu),
     )
     refuse_opposite(model, state[0], state[2], par)
-    A, basis = _linearised(model, *state, par, t)
+    states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
+    A, basis = _linearised(model, *state, states, par, t)
     # Without constraints A holds the derivatives of the accelerations.
     slopes = None if model.nc else A[model.nv :, : model.nv]
-    bendings = bendings_in_motion(model, *state, par, t, slopes)
+    moving = model.carried
+    q, v = (np.asarray(x) for x in model.carry(*state[:2], states))
+    bendings = bendings_in_motion(moving, q, v, state[2], par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     s, vectors = np.linalg.eig(A)
-    states = basis @ vectors
-    zeros, rigid = rigid_motions(A, basis, s, states, _inertia(model, state[0], state[2], par))
+    changes = basis @ vectors
+    zeros, rigid = rigid_motions(A, basis, s, changes, _inertia(model, state[0], state[2], par))
     s = np.where(zeros, 0.0, s)
     others = np.flatnonzero(~zeros & (s.imag >= 0.0))
     order = [*rigid, *others[np.argsort(np.abs(s[others]), kind="stable")]]
-    s, X = s[order], states[: model.nv, order]
+    s = s[order]
     size = np.abs(s)
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
-    largest = np.take_along_axis(X, np.abs(X).argmax(axis=0)[None], axis=0)
-    shapes = X / np.where(largest == 0.0, 1.0, largest)
-    return Modes(s, size, damping, shapes, bendings, bending_notes(bendings))
+    shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
+    notes = bending_notes(bendings) + (kink_notes(moving, q, v, state[2], par, t) if model.nz else ())
+    return Modes(s, size, damping, shapes, bendings, notes, z_shapes)
+
+
+def _shapes(X: Complex, Z: Complex) -> tuple[Complex, Complex]:
+    """Coordinates (nv, k) and states (nz, k) of modes, scaled by the largest coordinate, or state where none moves."""
+    moves = np.abs(X).max(axis=0, initial=0.0) > _STILL * np.abs(Z).max(axis=0, initial=0.0)
+    X = np.where(moves, X, 0.0)
+    both = np.concatenate([X, np.where(moves, 0.0, Z)])
+    largest = np.take_along_axis(both, np.abs(both).argmax(axis=0)[None], axis=0)
+    scale = np.where(largest == 0.0, 1.0, largest)
+    return X / scale, Z / scale
 
 
 def _inertia(model: Model, q: Array, u: Array, par: ArrayLike | None) -> Array:
@@ -107,11 +128,13 @@ def _inertia(model: Model, q: Array, u: Array, par: ArrayLike | None) -> Array:
     return np.where(diagonal > 0.0, diagonal, 1.0)
 
 
-def _linearised(model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float) -> tuple[Array, Array]:
+def _linearised(
+    model: Model, q: Array, v: Array, u: Array, z: Array, par: ArrayLike | None, t: float
+) -> tuple[Array, Array]:
     """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions."""
-    if not np.any(v):
+    if not np.any(v) and not model.nz:
         A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
         if A is not None:
             return A, np.eye(2 * model.nv)
-    linear_model = state_space(model, q, v, u, par=par, t=t)
+    linear_model = state_space(model, q, v, u, par=par, t=t, z=z if model.nz else None)
     return linear_model.A, linear_model.basis

@@ -1,11 +1,12 @@
 """The search for a configuration in which all forces balance: Newton's method, and a relaxation where it stalls.
 
-docs/theory/linear.md, section 3.
+docs/theory/linear.md, section 3; with states of forces docs/theory/states.md, section 6.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +16,7 @@ from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 
+Indices = npt.NDArray[np.intp]
 # Rounding of a force at a configuration, relative to the forces that moving by the reach brings.
 _ROUNDING = 8 * float(np.finfo(float).eps)
 # Imbalance, relative to the largest force, at which a relaxation leaves the rest of the way to Newton's method.
@@ -31,26 +33,41 @@ _SLOWEST, _FASTEST = 4.0, 0.1
 class Balance:
     """Forces h - Q - G^T lam of a model whose speeds stay, and what binds its coordinates.
 
+    States of forces are among the speeds (`Model.carried`): the last ones, whose rates have to vanish as forces have
+    to balance. They are searched for beside the coordinates.
+
     Attributes:
-        model: Model in double precision.
+        model: Model in double precision, its states of forces among its speeds.
         free: Indices of the speeds whose forces have to balance.
-        v: Speeds that stay (nv).
+        searched: Indices of the states, among the speeds, that are searched for; others stay.
+        v: Speeds that stay, and the guess of states (nv).
         u: Inputs (nu).
         par: Run-time parameters.
         t: Time [s].
     """
 
     model: Model
-    free: npt.NDArray[np.intp]
+    free: Indices
+    searched: Indices
     v: Array
     u: Array
     par: ArrayLike | None
     t: float
 
     @property
-    def rows(self) -> npt.NDArray[np.intp]:
-        """Indices of the conditions: balances of free speeds, then constraints."""
-        return np.concatenate([self.free, np.arange(self.model.nv, self.model.nv + self.model.nc)])
+    def n(self) -> int:
+        """Number of speeds of the mechanism, without states of forces."""
+        return self.model.nv - len(self.model.record.state_names)
+
+    @property
+    def rows(self) -> Indices:
+        """Indices of the conditions: balances of free speeds, rates of states, constraints."""
+        return np.concatenate([self.free, np.arange(self.n, self.model.nv + self.model.nc)])
+
+    @property
+    def unknowns(self) -> Indices:
+        """Indices of what is searched for: changes along free speeds, of states, multipliers."""
+        return np.concatenate([self.free, self.searched, np.arange(self.model.nv, self.model.nv + self.model.nc)])
 
     def jacobian(self, q: Array) -> Array:
         """Constraint Jacobian G (nc, nv)."""
@@ -58,23 +75,33 @@ class Balance:
             return np.zeros((0, self.model.nv))
         return self.model.constraint_jacobian(q, u=self.u, par=self.par, t=self.t)
 
-    def forces(self, q: Array) -> tuple[Array, float]:
-        """Forces h - Q (nv), and the largest of h and Q; at rest by a function that knows no speeds."""
-        if np.any(self.v) or not self.model.has("rest_forces"):
-            _, h, Q = self.model.dynamics(q, self.v, self.u, par=self.par, t=self.t)
+    def forces(self, q: Array, v: Array) -> tuple[Array, Array]:
+        """Forces h - Q (nv), those of states their rates turned round, and the size of each condition (nv + nc).
+
+        That of a force is the largest of h and Q, that of a rate its own, that of a constraint one. At rest by a
+        function that knows no speeds, and no states.
+        """
+        n = self.n
+        if np.any(v) or n < self.model.nv or not self.model.has("rest_forces"):
+            _, h, Q = self.model.dynamics(q, v, self.u, par=self.par, t=self.t)
         else:
             h, Q = self.model.evaluate("rest_forces", q=q, u=self.u, par=self.par, t=self.t)
-        return h - Q, max(float(np.abs(h).max(initial=0.0)), float(np.abs(Q).max(initial=0.0)))
+        sizes = np.ones(self.model.nv + self.model.nc)
+        sizes[:n] = max(float(np.abs(h[:n]).max(initial=0.0)), float(np.abs(Q[:n]).max(initial=0.0)))
+        sizes[n : self.model.nv] = np.where(Q[n:] == 0.0, 1.0, np.abs(Q[n:]))
+        return h - Q, sizes
 
     def mass(self, q: Array) -> Array:
         """Mass matrix M (nv, nv)."""
         return mass_matrix(self.model, q, self.v, self.u, self.par, self.t)
 
-    def residual(self, q: Array, lam: Array) -> tuple[Array, float]:
-        """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the largest force."""
-        forces, scale = self.forces(q)
+    def residual(self, q: Array, v: Array, lam: Array) -> tuple[Array, Array]:
+        """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the size of each condition (nv + nc)."""
+        forces, sizes = self.forces(q, v)
         reaction = self.jacobian(q).T @ lam
-        return self.imbalance(q, forces, reaction), max(scale, float(np.abs(reaction).max(initial=0.0))) or 1.0
+        sizes[: self.n] = np.maximum(sizes[: self.n], np.abs(reaction).max(initial=0.0))
+        sizes[: self.n][sizes[: self.n] == 0.0] = 1.0
+        return self.imbalance(q, forces, reaction), sizes
 
     def imbalance(self, q: Array, forces: Array, reaction: Array) -> Array:
         """Forces less reaction, and phi (nv + nc)."""
@@ -82,19 +109,34 @@ class Balance:
             return forces - reaction
         return np.concatenate([forces - reaction, self.model.constraint(q, u=self.u, par=self.par, t=self.t)])
 
-    def size(self, R: Array, scale: float) -> float:
+    def size(self, R: Array, sizes: Array) -> float:
         """The largest imbalance relative to the largest force; residuals of constraints as they are."""
-        phi = R[self.model.nv :]
-        return max(float(np.abs(R[self.free]).max(initial=0.0)) / scale, float(np.abs(phi).max(initial=0.0)))
+        return float((np.abs(R) / sizes)[self.rows].max(initial=0.0))
 
-    def stiffness(self, q: Array, lam: Array) -> Array:
-        """Derivative of h - Q - G^T lam by q at v' = 0 (nv, nv); at rest by a function that knows no speeds."""
-        model = self.model
-        if np.any(self.v):
-            arguments = (q, self.v, np.zeros(model.nv), self.u, lam)
-            return model.residual_derivatives(*arguments, par=self.par, t=self.t)[0][: model.nv]
+    def stiffness(self, q: Array, v: Array, lam: Array) -> Array:
+        """Derivative of h - Q - G^T lam by q, of states by themselves, at v' = 0 (nv, nv).
+
+        At rest by a function that knows no speeds.
+        """
+        model, n = self.model, self.n
+        if np.any(v) or n < model.nv:
+            arguments = (q, v, np.zeros(model.nv), self.u, lam)
+            by_q, by_v, *_ = model.residual_derivatives(*arguments, par=self.par, t=self.t)
+            return np.concatenate([by_q[: model.nv, :n], by_v[: model.nv, n:]], axis=1)
         (K,) = model.evaluate("rest_stiffness", q=q, u=self.u, lam=lam, par=self.par, t=self.t)
         return np.asarray(K)
+
+    def brought_rates(self, K: Array, v: Array, reach: Array) -> Array:
+        """Rates (nz) that motions of the reach and states of the present size bring, by their derivatives (nz, nv)."""
+        return np.asarray(np.abs(K) @ np.append(reach[: self.n], np.abs(v[self.n :])))
+
+    def moved(self, q: Array, v: Array, step: Array) -> tuple[Array, Array]:
+        """Configuration and speeds after a step (nv) along the coordinates, and of the states."""
+        if self.n == self.model.nv:
+            return self.model.integrate(q, step), v
+        along, change = step.copy(), np.zeros(self.model.nv)
+        along[self.n :], change[self.n :] = 0.0, step[self.n :]
+        return self.model.integrate(q, along), v + change
 
 
 @dataclass(frozen=True)
@@ -103,16 +145,18 @@ class Search:
 
     Attributes:
         q: Configuration (nq).
+        v: Speeds that stay, and states of forces (nv).
         lam: Multipliers (nc).
         R: Residual (nv + nc).
-        scale: Largest force on the way.
+        sizes: Largest size of each condition on the way (nv + nc).
         count: Steps taken.
     """
 
     q: Array
+    v: Array
     lam: Array
     R: Array
-    scale: float
+    sizes: Array
     count: int
 
 
@@ -128,73 +172,93 @@ def search_rest(balance: Balance, q: Array, tolerance: float, iterations: int) -
     Returns:
         Where the search ends, whether or not there is balance: of two failures the one of Newton's method alone.
     """
-    R, scale = balance.residual(q, np.zeros(balance.model.nc))
-    start = Search(q, np.zeros(balance.model.nc), R, scale, 0)
+    lam = np.zeros(balance.model.nc)
+    start = Search(q, balance.v, lam, *balance.residual(q, balance.v, lam), 0)
     reach = _reach(balance.model, balance.par)
     newton = _newton(balance, start, reach, tolerance, iterations)
-    if balance.size(newton.R, newton.scale) <= tolerance:
+    if balance.size(newton.R, newton.sizes) <= tolerance:
         return newton
     relaxed = _relax(balance, start, reach, iterations)
     again = None if relaxed is None else _newton(balance, relaxed, reach, tolerance, relaxed.count + iterations)
-    if again is None or not balance.size(again.R, again.scale) <= tolerance:
+    if again is None or not balance.size(again.R, again.sizes) <= tolerance:
         return newton
     return again
 
 
 def _newton(balance: Balance, start: Search, reach: Array, tolerance: float, most: int) -> Search:
     """Newton's method with exact derivatives; the norm of the residual falls from the second step on."""
-    model, rows = balance.model, balance.rows
+    model, rows, unknowns, n = balance.model, balance.rows, balance.unknowns, balance.n
     nv, nc = model.nv, model.nc
-    q, lam, R, scale, count = start.q, start.lam, start.R, start.scale, start.count
-    while balance.size(R, scale) > tolerance and count < most:
+    q, v, lam, R, sizes, count = start.q, start.v, start.lam, start.R, start.sizes, start.count
+    while balance.size(R, sizes) > tolerance and count < most:
         G = balance.jacobian(q)
         K = np.zeros((nv + nc, nv + nc))
-        K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = balance.stiffness(q, lam), -G.T, G
-        brought = (np.abs(K[:nv, :nv]) @ reach)[balance.free]  # Forces that a motion of the reach brings.
+        K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = balance.stiffness(q, v, lam), -G.T, G
+        if nv > n:
+            sizes[n:nv] = np.fmax(sizes[n:nv], balance.brought_rates(K[n:nv, :nv], v, reach))
+        brought = (np.abs(K[:n, :n]) @ reach[:n])[balance.free]  # Forces that a motion of the reach brings.
         if np.all(np.abs(R[balance.free]) <= _ROUNDING * brought):
             # A guess at rest but for rounding, where all forces vanish: nothing on the way says what small is.
-            scale = max(scale, float(brought.max(initial=0.0)))
-            if balance.size(R, scale) <= tolerance:
-                break
+            sizes[:n] = np.maximum(sizes[:n], brought.max(initial=0.0))
+        if balance.size(R, sizes) <= tolerance:
+            break
         step = np.zeros(nv + nc)
-        step[rows] = -np.linalg.lstsq(K[np.ix_(rows, rows)], R[rows], rcond=1e-13)[0]
-        step[:nv] *= _bounded(step[:nv], reach)
+        step[unknowns] = -_least_change(
+            K[np.ix_(rows, unknowns)], R[rows], slice(len(balance.free), len(balance.free) + nv - n)
+        )
+        step[:nv] *= _bounded(step[:n], reach[:n])
         for _ in range(HALVINGS):
-            tried, lam_tried = model.integrate(q, step[:nv]), lam + step[nv:]
-            R_tried, scale_tried = balance.residual(tried, lam_tried)
+            (tried, v_tried), lam_tried = balance.moved(q, v, step[:nv]), lam + step[nv:]
+            R_tried, sizes_tried = balance.residual(tried, v_tried, lam_tried)
             if np.linalg.norm(R_tried[rows]) < np.linalg.norm(R[rows]) or count == 0:
                 break
             step *= 0.5
         # Forces may vanish one and all at rest: the largest on the way there is what small is measured by.
-        q, lam, R, scale, count = tried, lam_tried, R_tried, max(scale, scale_tried), count + 1
-    return Search(q, lam, R, scale, count)
+        sizes, count = np.fmax(sizes, sizes_tried), count + 1
+        q, v, lam, R = tried, v_tried, lam_tried, R_tried
+    return Search(q, v, lam, R, sizes, count)
+
+
+def _least_change(K: Array, R: Array, rates: slice) -> Array:
+    """The least x with K x = R; rows of rates, in units of their own, are brought to the size of the others."""
+    largest = np.abs(K).max(axis=1, initial=0.0)
+    for row in range(len(R))[rates]:
+        factor = largest.max() / largest[row] if largest[row] > 0.0 else 1.0
+        K[row], R[row] = factor * K[row], factor * R[row]
+    return np.asarray(np.linalg.lstsq(K, R, rcond=1e-13)[0])
 
 
 def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Search | None:
     """A heavily damped motion towards a stable rest: steps (7b) of the implicit Euler method, the longer the nearer.
+
+    States of forces follow: their rates vanish all the way.
 
     Returns:
         None where it does not come near balance.
     """
     model, free = balance.model, balance.free
     measures = model.record.measures.of_speeds(free)
-    q, scale, damping, before = start.q, start.scale, 0.0, np.inf
+    q, v, sizes, damping, before = start.q, start.v, start.sizes, 0.0, np.inf
     for count in range(iterations):
-        forces, largest = balance.forces(q)
+        forces, largest = balance.forces(q, v)
         jacobian = balance.jacobian(q)
         G = jacobian[:, free]
         inverse, Z = pseudo_inverse(G, measures), null_space(G, measures)
         lam = inverse.T @ forces[free]
         R = balance.imbalance(q, forces, jacobian.T @ lam)
-        scale = max(scale, largest)
-        K = balance.stiffness(q, lam)
+        sizes = np.fmax(sizes, largest)
+        K = balance.stiffness(q, v, lam)
         if not (np.all(np.isfinite(R)) and np.all(np.isfinite(K))):
             return None
+        following = _following(K, R, balance)
+        by_states = K[np.ix_(free, balance.searched)]
+        changed = by_states @ following.change
+        K = K[np.ix_(free, free)] + by_states @ following.by_q
         Y = Z @ _unit_mass(Z.T @ balance.mass(q)[np.ix_(free, free)] @ Z)
-        pull = Y.T @ R[free]
-        K, stable = _downhill(Y.T @ K[np.ix_(free, free)] @ Y)
-        if stable and balance.size(R, scale) <= _NEAR:
-            return Search(q, lam, R, scale, count)
+        pull = Y.T @ (R[free] + changed)
+        K, stable = _downhill(Y.T @ K @ Y)
+        if stable and balance.size(R, sizes) <= _NEAR:
+            return Search(q, v, lam, R, sizes, count)
         size = float(np.abs(pull).max(initial=0.0))
         if not count:
             damping = size / LARGEST_STEP
@@ -205,13 +269,33 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         step[free] = -Y @ np.linalg.lstsq(K + damping * np.eye(len(K)), pull)[0]
         step *= _bounded(step, reach)
         for _ in range(HALVINGS):  # The forces at its end push back by half of what they push at its begin at most.
-            ahead, _ = balance.forces(model.integrate(q, step))
-            if ahead[free] @ step[free] <= 0.5 * abs(forces[free] @ step[free]):
+            step[balance.searched] = following.change + following.by_q @ step[free]
+            ahead, _ = balance.forces(*balance.moved(q, v, step))
+            if ahead[free] @ step[free] <= 0.5 * abs((forces[free] + changed) @ step[free]):
                 break
             step *= 0.5
         step[free] -= inverse @ R[model.nv :]
-        q = model.integrate(q, step)
+        q, v = balance.moved(q, v, step)
     return None
+
+
+class _Following(NamedTuple):
+    """States of forces as they follow the coordinates, so that their rates vanish.
+
+    Attributes:
+        change: Their change where the coordinates stay (nz).
+        by_q: Their change by the free coordinates (nz, n).
+    """
+
+    change: Array
+    by_q: Array
+
+
+def _following(K: Array, R: Array, balance: Balance) -> _Following:
+    """How the searched states follow, to first order; those that rest at any value stay (states.md, (22a))."""
+    own, free = balance.searched, balance.free
+    inverse = np.linalg.pinv(K[np.ix_(own, own)], rcond=_NEUTRAL)
+    return _Following(-inverse @ R[own], -inverse @ K[np.ix_(own, free)])
 
 
 def _unit_mass(M: Array) -> Array:

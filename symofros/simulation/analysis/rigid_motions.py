@@ -32,7 +32,7 @@ class RigidMotions(NamedTuple):
 
 
 def rigid_motions(A: Array, basis: Array, s: Complex, states: Complex, inertia: Array) -> RigidMotions:
-    """Rigid motions of x = basis y, y' = A y.
+    """Rigid motions of x = basis y, y' = A y, and states of forces that rest wherever they are.
 
     The s of a motion that nothing drives back is zero, and twice so if nothing damps it; rounding makes a pair of it
     that is real, imaginary or zero. s^2 is an eigenvalue of A^2, whose entries err by rounding of the terms they are
@@ -40,30 +40,31 @@ def rigid_motions(A: Array, basis: Array, s: Complex, states: Complex, inertia: 
 
     Args:
         A: Matrix of the independent changes (k x k).
-        basis: Changes of the state of each of them (2 nv x k).
+        basis: Changes of the state of each of them (2 nv + nz x k): along q, of v, of states of forces.
         s: Its eigenvalues [1/s] (k).
-        states: Changes of the state by the eigenvectors (2 nv x k).
+        states: Changes of the state by the eigenvectors (2 nv + nz x k).
         inertia: Diagonal of the mass matrix (nv), in which coordinates of different units are compared.
     """
     nv = len(inertia)
     fastest = np.abs(s).max(initial=0.0)
+    of_states = np.ones(len(basis) - 2 * nv)  # Carried as speeds of unit inertia (states.md, (2)).
+    scale = np.sqrt(np.concatenate([inertia, inertia, of_states]))[:, None]
+    still = np.r_[0:nv, 2 * nv : len(basis)]
     if fastest == 0.0:
-        return RigidMotions(np.ones(len(s), bool), _independent(_weighted(states[:nv], inertia)))
-    scale = np.sqrt(np.concatenate([inertia, inertia]))[:, None]
+        return RigidMotions(np.ones(len(s), bool), _independent(_unit(scale[still] * states[still])))
     scale[nv:] /= fastest
     size = np.abs(basis.T) @ np.abs(basis @ A @ basis.T) @ np.abs(basis)
     terms = np.abs(basis) @ (size @ (size @ np.abs(basis.T @ states)))
     error = _ROUNDING * np.linalg.norm(scale * terms, axis=0) / np.linalg.norm(scale * states, axis=0)
     zeros = np.abs(s) ** 2 <= error
     of_zeros = np.flatnonzero(zeros)
-    return RigidMotions(zeros, [int(of_zeros[i]) for i in _independent(_weighted(states[:nv, zeros], inertia))])
+    return RigidMotions(zeros, [int(of_zeros[i]) for i in _independent(_unit((scale * states)[still][:, zeros]))])
 
 
-def _weighted(directions: Complex, inertia: Array) -> Complex:
-    """Directions of unit length, coordinates weighted by their inertia."""
-    weighted = np.sqrt(inertia)[:, None] * directions
-    lengths = np.linalg.norm(weighted, axis=0)
-    unit: Complex = weighted / np.where(lengths > 0.0, lengths, 1.0)
+def _unit(directions: Complex) -> Complex:
+    """Directions of unit length."""
+    lengths = np.linalg.norm(directions, axis=0)
+    unit: Complex = directions / np.where(lengths > 0.0, lengths, 1.0)
     return unit
 
 

@@ -26,7 +26,7 @@ class StateSpace:
         B: (n, nu).
         C: (p, n).
         D: (p, nu).
-        basis: S, whose orthonormal columns lead to the state's changes: (along q, of v) = S xi (2 nv, n).
+        basis: S, whose orthonormal columns lead to the state's changes: (along q, of v, of z) = S xi (2 nv + nz, n).
     """
 
     A: Array
@@ -46,6 +46,7 @@ def state_space(
     outputs: Sequence[Output] = (),
     par: ArrayLike | None = None,
     t: float = 0.0,
+    z: ArrayLike | None = None,
 ) -> StateSpace:
     """Linearise about a state, on the constraints.
 
@@ -60,19 +61,19 @@ def state_space(
         outputs: Outputs that y stacks, as in `Model.linearize`.
         par: Run-time parameters.
         t: Time.
+        z: States of forces (nz); the neutral ones, zeros, if not given.
 
     Raises:
         AssemblyError: A closure is closed the wrong way round.
         UnknownNameError: No such output or frame.
         SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
-    model.record.refuse_states("state_space")
     model.record.refuse_rigid_contacts("state_space")
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
     u = given_inputs(model, u)
     refuse_opposite(model, q, u, par)
-    A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t)
+    A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t, z=z)
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))
         raise SymofrosError(
@@ -83,7 +84,12 @@ def state_space(
                 ADVICE,
             )
         )
-    S = _allowed(model, q, v, u, par, t) if model.nc else np.eye(2 * model.nv)
+    S = np.eye(len(A))
+    if model.nc:  # Constraints do not bind states of forces.
+        allowed = _allowed(model, q, v, u, par, t)
+        S = np.block(
+            [[allowed, np.zeros((len(allowed), model.nz))], [np.zeros((model.nz, allowed.shape[1])), np.eye(model.nz)]]
+        )
     return StateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S)
 
 

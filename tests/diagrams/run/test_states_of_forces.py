@@ -128,7 +128,7 @@ def test_functions_of_the_block_know_them(kind: str) -> None:
     [
         (
             blocks.InverseDynamics(name="b", model="m"),
-            r"inverse_dynamics of model 'm'.*found:  x\.bristle.*without these",
+            r"inverse_dynamics of model 'm'.*found:  x\.bristle.*connect its input z.*without these",
         ),
         (blocks.LQR(name="b", model="m", state_weights=1.0, input_weights=1.0), r"has states of forces.*linear"),
     ],
@@ -139,6 +139,33 @@ def test_blocks_that_have_no_states_refuse_them(block: Any, words: str) -> None:
     diagram.add(block, **{name: f"plant.{name}" for name in wires})
     with pytest.raises(sf.SymofrosError, match=f"(?s){words}"):
         sf.Simulation(diagram)
+
+
+@pytest.mark.parametrize("kind", STARTS)
+def test_inverse_dynamics_takes_them(kind: str) -> None:
+    """Efforts of the plant's own motion are what drives it; without friction that has no states, more by that."""
+    diagram = driven(kind)
+    wires = {name: f"plant.{name}" for name in "qvaz"}
+    for name, friction in (("efforts", True), ("rest", False)):
+        diagram.add(blocks.InverseDynamics(name=name, model="m", with_friction=friction), **wires)
+    run = sf.Simulation(diagram).run(0.02, dt=5e-4, realtime=False)
+    given = zip(*(run[f"plant.{name}"] for name in "qvaz"), strict=True)
+    model = sf.compile(system(kind))
+    wanted = [model.inverse_dynamics(q, v, a, z=z) for q, v, a, z in given]
+    same(run["efforts.tau"], np.array(wanted))
+    assert run["efforts.tau"][1:, 0] == pytest.approx(run["push.y"][1:, 0], abs=1e-9)
+    assert run["rest.tau"] == pytest.approx(run["efforts.tau"] + run["plant.friction"], abs=1e-12)
+
+
+def test_inverse_dynamics_that_no_state_changes_needs_none() -> None:
+    """A counter of the way, which no force reads."""
+    diagram = sf.Diagram("d")
+    diagram.add_model("m", slide(states=(sf.ForceState("way", "abs(dx)"),)), {"dx": 0.3})
+    diagram.add(blocks.Formula(name="push", formulas=[_PUSH]))
+    diagram.add(blocks.ForwardDynamics(name="plant", model="m"), u="push.y")
+    diagram.add(blocks.InverseDynamics(name="b", model="m"), **{name: f"plant.{name}" for name in "qva"})
+    run = sf.Simulation(diagram).run(0.02, dt=1e-3, realtime=False)
+    assert run["b.tau"] == pytest.approx(1.5 * run["plant.a"], rel=1e-12)
 
 
 def test_idle_coordinates_are_not_stated() -> None:

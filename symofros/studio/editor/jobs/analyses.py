@@ -77,12 +77,12 @@ class Analysed:
         start = self.start
         return sf.equilibrium(self.model, start.q, start.v, self.u, held=self.held, par=start.par)
 
-    def about(self) -> tuple[Array, Array, tuple[str, ...]]:
-        """The state to linearise about: the equilibrium, or the stated one, q (nq) and v (nv), and notes."""
+    def about(self) -> tuple[Array, Array, Array, tuple[str, ...]]:
+        """The state to linearise about: the equilibrium, or the stated one, q (nq), v (nv) and z (nz), and notes."""
         if self.options.get("about") == "pose":
-            return self.start.q, self.start.v, self.start.notes
+            return self.start.q, self.start.v, np.zeros(self.model.nz), self.start.notes
         rest = self.rest()
-        return rest.q, rest.v, rest.notes
+        return rest.q, rest.v, rest.z, rest.notes
 
     def starts(self, q: Array) -> dict[str, float]:
         """Coordinates by name."""
@@ -100,6 +100,10 @@ def equilibrium(asked: Analysed, tell: Tell) -> Json:
             [[f"{name}{asked.unit(name)}", x] for name, x in zip(names.q, q.tolist(), strict=True)],
         )
     ]
+    if len(rest.z):
+        tables.append(
+            table("States of forces", ["State", "At rest"], [*map(list, zip(names.z, rest.z.tolist(), strict=True))])
+        )
     if rest.efforts:
         tables.append(
             table("Efforts on what is held [N m or N]", ["Speed", "Effort"], [*map(list, rest.efforts.items())])
@@ -122,8 +126,8 @@ def equilibrium(asked: Analysed, tell: Tell) -> Json:
 
 def modes(asked: Analysed, tell: Tell) -> Json:
     """Small vibrations about the equilibrium, or about the stated state, each as a motion."""
-    q, v, notes = asked.about()
-    found = sf.modes(asked.model, q, v, asked.u, par=asked.start.par)
+    q, v, z, notes = asked.about()
+    found = sf.modes(asked.model, q, v, asked.u, par=asked.start.par, z=z)
     s = found.eigenvalues
     rows = [[str(i + 1), *_eigenvalue(x), _largest(asked, found.shapes[:, i])] for i, x in enumerate(s)]
     head = ["Mode", *EIGENVALUE, "Largest in"]
@@ -148,11 +152,11 @@ def modes(asked: Analysed, tell: Tell) -> Json:
 
 def linear(asked: Analysed, tell: Tell) -> Json:
     """A and B of the linearised equations, and the eigenvalues of A."""
-    q, v, notes = asked.about()
+    q, v, z, notes = asked.about()
     model = asked.model
-    found = sf.state_space(model, q, v, asked.u, par=asked.start.par)
+    found = sf.state_space(model, q, v, asked.u, par=asked.start.par, z=z)
     n, names = len(found.A), model.names
-    free = [*names.v, *(speed_column(name, names.q) for name in names.v)]
+    free = [*names.v, *(speed_column(name, names.q) for name in names.v), *names.z]
     states = free if n == len(free) else [f"xi{i + 1}" for i in range(n)]
     s = sorted(np.linalg.eigvals(found.A), key=lambda x: (abs(x), x.imag))
     eigenvalues = [[f"s{i + 1}", *_eigenvalue(x)] for i, x in enumerate(s)]

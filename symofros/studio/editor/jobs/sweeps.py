@@ -65,8 +65,9 @@ def _frequencies(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
         tell(i, len(values), f"{name} = {value:.4g}")
         try:
             _at(asked, name, value)
-            q, v, said = asked.about()
-            found.append(sf.modes(asked.model, q, v, asked.u, par=asked.start.par).frequencies / (2 * np.pi))
+            q, v, z, said = asked.about()
+            vibrations = sf.modes(asked.model, q, v, asked.u, par=asked.start.par, z=z)
+            found.append(vibrations.frequencies / (2 * np.pi))
             notes += said
         except (EquilibriumError, sf.BeamTheoryError) as error:
             found.append(np.zeros(0))
