@@ -168,6 +168,21 @@ NOTES: Mapping[str, NoteKind] = {
         "axial loads leave a beam no stiffness, so that a rest is unstable or a run has no bent rest",
         "less load, or theory: strain",
     ),
+    "many rests": NoteKind(
+        "… may rest at other values, too: of many equilibria this is the one of the least change of the guess",
+        "states of forces rest whatever they are, as bristles that stick",
+        "a guess of q and z near the rest that is meant, or a run that leads to it",
+    ),
+    "yields": NoteKind(
+        "… would yield under the forces of the guess: kept as in the guess",
+        "bristles or elements that slip would carry more than they can; the coordinates move to a rest instead",
+        "a guess nearer to where it rests, or less load",
+    ),
+    "kink of rates": NoteKind(
+        "rates of … have a kink here (slopes …): modes are those of the mean slope",
+        "rates of states of forces differ with the direction of motion, as of bristles that are bent",
+        "modes about unbent bristles (z = 0), or a run of the motion at hand",
+    ),
     "loops not closed": NoteKind(
         "no start closes the loops: constraints are missed by …",
         "inverse kinematics finds no posture on the constraints",

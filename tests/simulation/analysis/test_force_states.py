@@ -173,7 +173,7 @@ def test_a_kink_of_rates_is_noted_where_bristles_are_bent() -> None:
     """Slopes 1 -+ s0 z/F_s by the speed, (24)."""
     found = sf.modes(block(_BRISTLES), [0.0], u=[1.5], z=[0.5 * _F_S / _S0])
     (note,) = found.notes
-    assert "'x.bristle'" in note and "slopes 1.5 and 0.5 by 'x'" in note
+    assert "rates of states of forces 'x.bristle' have a kink here (slopes 1.5 and 0.5 by 'x')" in note
 
 
 def test_modes_of_states_alone_have_shapes_of_their_own() -> None:
