@@ -9,9 +9,13 @@
 #define SYM_DAMPING_MOST 1e8
 /* Relative gain of a step that is rounding. */
 #define SYM_SMALLEST_GAIN 1e-16
-/* A start is given up where so many steps do not take this share of its error. */
+/* A start is given up where so many steps do not take this share of its error: the guess, whose branch is wanted, and
+ * drawn starts, of which the first are many and quick. */
 #define SYM_STALLED 20
 #define SYM_MIN_SHARE 0.1
+#define SYM_STALLED_QUICK 8
+#define SYM_MIN_SHARE_QUICK 0.3
+#define SYM_QUICK_STARTS 48
 /* Largest entry of a step [rad, m]. */
 #define SYM_LARGEST_STEP 0.5
 /* Share of a diagonal entry of J J^T that is added to it, so that rows that repeat each other leave a pivot. */
@@ -170,8 +174,7 @@ SYM_EXPORT void sym_posture_residual(sym_posture *p, const double *q, double *e,
     if (J != NULL) sym_posture_jacobian(p, e, J);
 }
 
-/* The configuration with free coordinates moved to their limits where they are beyond them. */
-static void sym_posture_limit(const sym_posture *p, double *q) {
+SYM_EXPORT void sym_posture_limit(const sym_posture *p, double *q) {
     const sym_system *s = p->system;
     int32_t k, i;
     for (k = 0; k < s->n_segments; ++k) {
@@ -311,7 +314,8 @@ static void sym_posture_try(sym_posture *p) {
     sym_posture_limit(p, p->tried);
 }
 
-SYM_EXPORT int32_t sym_posture_descend(sym_posture *p, int32_t most) {
+/* Steps from p->q, given up where `stalled` of them do not take this share of the error. Returns whether they meet. */
+static int32_t sym_posture_follow(sym_posture *p, int32_t most, int32_t stalled, double share) {
     const int32_t nq = p->system->nq;
     double damping = SYM_DAMPING, square, judged, gain;
     int32_t count = 0, fresh = 0;
@@ -340,8 +344,8 @@ SYM_EXPORT int32_t sym_posture_descend(sym_posture *p, int32_t most) {
             damping *= SYM_DAMPING_TIGHTEN;
             if (damping > SYM_DAMPING_MOST || gain == 0.0) break;
         }
-        if (count % SYM_STALLED == 0) {
-            if (square > (1.0 - SYM_MIN_SHARE) * (1.0 - SYM_MIN_SHARE) * judged) {
+        if (count % stalled == 0) {
+            if (square > (1.0 - share) * (1.0 - share) * judged) {
                 sym_posture_judge(p, p->e);
                 break;
             }
@@ -350,4 +354,8 @@ SYM_EXPORT int32_t sym_posture_descend(sym_posture *p, int32_t most) {
     }
     p->steps += count;
     return p->met;
+}
+
+SYM_EXPORT int32_t sym_posture_descend(sym_posture *p, int32_t most) {
+    return sym_posture_follow(p, most, SYM_STALLED, SYM_MIN_SHARE);
 }

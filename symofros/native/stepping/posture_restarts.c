@@ -102,7 +102,9 @@ SYM_EXPORT void sym_posture_round(sym_posture *p, const double *guess, int32_t f
         const double *draws = p->draws + SYM_INDEX(first + i, nv, 0), share = (i + 1.0) / SYM_POSTURE_ROUND;
         for (k = 0; k < nv; ++k) p->step[k] = share * (p->low[k] + (p->high[k] - p->low[k]) * draws[k]);
         sym_retract(p->system, guess, p->step, p->q);
-        p->round_met[i] = sym_posture_descend(p, most);
+        p->round_met[i] = first + i < SYM_QUICK_STARTS
+                              ? sym_posture_follow(p, most, SYM_STALLED_QUICK, SYM_MIN_SHARE_QUICK)
+                              : sym_posture_descend(p, most);
         memcpy(p->round + SYM_INDEX(i, nq, 0), p->q, (size_t)nq * sizeof *p->q);
         if (p->round_met[i] == 0.0) sym_posture_keep(p);
     }

@@ -75,6 +75,8 @@ void sym_posture_start(sym_posture *p, double *memory);
 void sym_posture_residual(sym_posture *p, const double *q, double *e, double *J);
 /* Damped least squares from q, at most so many steps: p->q, met, error, gap. */
 int32_t sym_posture_descend(sym_posture *p, int32_t most);
+/* q (nq) with free coordinates moved to their limits where they are beyond them. */
+void sym_posture_limit(const sym_posture *p, double *q);
 /* Windows about a guess within the limits, for the drawn starts that follow. Returns 0 where no speed is of use. */
 int32_t sym_posture_windows(sym_posture *p, const double *guess);
 /* A round of n starts from number `first` on: p->round, p->round_met. */

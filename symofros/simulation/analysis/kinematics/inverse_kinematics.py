@@ -116,19 +116,16 @@ def inverse_kinematics(
     else:
         guess = default_start(model) if resting is None else resting
     search = PostureSearch(task, guess, resting, free, tuple(held), tolerance, iterations)
-    if rest is None and not solver.facing and not solver.elastic:  # What is left is what C knows.
-        end = search.from_guess()
-        if end.met:
-            return Reached(end.q, float(solver.posture.error), True, end.steps, gap=float(solver.posture.gap))
+    end = search.from_guess()
+    if end.met and rest is None and not solver.facing and not solver.elastic:  # C knows all that counts.
+        return Reached(end.q, float(solver.posture.error), True, end.steps, gap=float(solver.posture.gap))
     _refuse_nan(task, task.error(guess))
-    return _judged(task, search.best(starts), tolerance, beam_limit)
+    return _judged(task, search.best(end, starts), tolerance, beam_limit)
 
 
 def _judged(task: Task, found: Posture, tolerance: float, beam_limit: float) -> Reached:
     """The posture with its beams as they are when released there; not converged where one is bent beyond the limit."""
-    model, given = task.model, task.inputs["u"]
-    u = given_inputs(model, given)
-    bendings = bendings_in_motion(model, found.q, np.zeros(model.nv), u, task.inputs["par"])
+    bendings = _bendings(task, found.q) if task.solver.elastic else ()
     within = all(bending.error <= beam_limit for bending in bendings)
     missing = np.abs(task.error(found.q))
     error, gap = (float(part.max(initial=0.0)) for part in np.split(missing, [task.wishes]))
@@ -149,6 +146,13 @@ def _judged(task: Task, found: Posture, tolerance: float, beam_limit: float) -> 
         gap,
         found.starts,
     )
+
+
+def _bendings(task: Task, q: Array) -> tuple[BeamBending, ...]:
+    """Bending of each beam where the mechanism is released at a configuration."""
+    model = task.model
+    u = given_inputs(model, task.inputs["u"])
+    return bendings_in_motion(model, q, np.zeros(model.nv), u, task.inputs["par"])
 
 
 @checked

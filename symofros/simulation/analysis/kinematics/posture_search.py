@@ -11,7 +11,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.simulation.analysis.kinematics.assembly import Indices
 from symofros.simulation.analysis.kinematics.facing import facings
-from symofros.simulation.analysis.kinematics.least_squares import End, FreeLimits, damped_least_squares, polished
+from symofros.simulation.analysis.kinematics.least_squares import End, damped_least_squares, polished
 from symofros.simulation.analysis.kinematics.nearest_posture import FromRest, FromTargets, NearestPosture, Restore, pull
 from symofros.simulation.analysis.kinematics.restarts import start_again
 from symofros.simulation.analysis.kinematics.targets import Task
@@ -93,13 +93,14 @@ class PostureSearch:
         """Where the steps from the guess alone end."""
         return self._least_squares(self.guess, self.iterations)
 
-    def best(self, starts: int) -> Posture:
+    def best(self, of_guess: End, starts: int) -> Posture:
         """The posture that the guess leads to, or else the best of what other starts lead to.
 
         Args:
+            of_guess: Where the steps from the guess alone end.
             starts: Most starts.
         """
-        ends = [self.from_guess()]
+        ends = [of_guess]
         if self.rest is not None and not self.held and not np.array_equal(self.rest, self.guess):
             ends.append(self._least_squares(self.rest, self.iterations))
         solutions, given = self._solutions(ends), len(ends)
@@ -122,8 +123,8 @@ class PostureSearch:
             self._wrong_way_round if any(closure.parallel for closure in self.task.model.record.closures) else None
         )
         near = self.guess if self.rest is None else self.rest
-        within, steps = FreeLimits(self.task.model, self.free).within(self.guess), min(self.iterations, DRAWN_STEPS)
-        found = start_again(solver, within, near, most, steps, refused)
+        steps = min(self.iterations, DRAWN_STEPS)
+        found = start_again(solver, solver.within(self.guess), near, most, steps, refused)
         kept = [np.array(q[: solver.nq]) for q in solver.kept[: solver.posture.n_kept]]
         posture = solver.posture
         return _Again([solver.end()] if found else [], kept, solver.used(), int(posture.steps), int(posture.starts))

@@ -193,6 +193,12 @@ class PostureSolver:
         """Searches `first` to `end` of a sym_posture_batch."""
         self.native.sym_posture_batch_run(self.posture, batch, first, end)
 
+    def within(self, q: Array) -> Array:
+        """A configuration (nq), free coordinates moved to their limits where they are beyond them (carried.nq)."""
+        at = self.joined(q)
+        self.native.sym_posture_limit(self.posture, self._read(at))
+        return at
+
     def windows(self, guess: Array) -> bool:
         """Begin further starts about a guess (carried.nq) within the limits; whether any speed is of use."""
         self.posture.steps = self.posture.starts = 0

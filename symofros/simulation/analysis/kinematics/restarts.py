@@ -40,7 +40,7 @@ def start_again(
 
     Args:
         solver: Search, with the speeds that may be used.
-        guess: Configuration (nq) within its limits, about which starts are drawn.
+        guess: Configuration (carried.nq) within its limits, about which starts are drawn.
         near: Configuration (nq) that a solution is to be nearest to.
         starts: Most starts.
         steps: Most steps from each.
@@ -50,7 +50,7 @@ def start_again(
         Whether there is a solution.
     """
     solver.reserve_starts(max(ROUND, starts))
-    guess, near = solver.joined(guess), solver.joined(near)
+    near = solver.joined(near)
     if not solver.windows(guess):
         return False
     if refused is None:
