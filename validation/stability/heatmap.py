@@ -107,7 +107,8 @@ def cell(one: Cell, bound: float) -> tuple[str, float, str]:
     over = decades - math.log10(bound)
     kind = "bad" if over > 0.0 else "good"
     depth = 0.12 + 0.78 * round(min(abs(over) / _DEEP[kind], 1.0) * _LEVELS) / _LEVELS
-    return kind, depth, f"{min(max(round(decades), -99), 99)}".replace("-", "−")
+    text = f"{min(max(round(decades), -99), 99)}" if one.value else "-∞"
+    return kind, depth, text.replace("-", "−")
 
 
 def edge(good: Any, columns: Array, rows: Array) -> list[list[tuple[float, float]]]:
