@@ -287,7 +287,9 @@ def _process(plugin: EnginePlugin, release: Release, folder: Path, ours: Path, l
     python = kept(folder, release.requirements)
     variables = own_variables() | {"PYTHONPATH": str(ours)}
     # A checkout's package is known by both of its names once it is loaded.
-    process = _Process(limit, python=python, path=(), environment=variables, preload=(folder_of("validation").name,))
+    process = _Process(
+        limit, shared=False, python=python, path=(), environment=variables, preload=(folder_of("validation").name,)
+    )
     try:
         list(process.call(Job, plugin.name, None, ()))
     except WorkerError as error:

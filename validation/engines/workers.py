@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -26,6 +27,9 @@ from .truth.dynamics import random_state
 # Time for one answer; the first includes the import of the engine, and Warp and JAX compile then: minutes on a busy
 # machine.
 LIMIT = 300.0
+# The most that is kept of what JAX compiles [bytes], and what has it keep small programs.
+_COMPILED = 1_000_000_000
+_ALL_COMPILED = {"JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0", "JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES": "-1"}
 T = TypeVar("T")
 Ask = Callable[[State], Array | Unsupported | Raised]
 
@@ -130,11 +134,13 @@ def _answer(job: Job, model: EngineModel, layout: Layout, function: str, visit: 
     """An answer with its script, of a model whose last call was of another function, or those that are to be before."""
     before = [(name, at) for name, pieces in job.before if isinstance(at := assembled(layout, pieces), State)]
     value: Array | Unsupported | Raised = Unsupported("not called")
-    if job.called:
+    if job.called and before:
         kept = {name: _asker(job, model, name) for name in dict.fromkeys((*(name for name, _ in before), function))}
         for name, at in before:
             _called(job, kept[name], at)
-        value = _called(job, kept[function] if before else lambda state: model.call(function, state), visit.state)
+        value = _called(job, kept[function], visit.state)
+    elif job.called:
+        value = _called(job, lambda state: model.call(function, state), visit.state)
     is_told = isinstance(value, np.ndarray) or (isinstance(value, Raised) and value.kind == "raises")
     script: str | Raised = ""
     if is_told or not job.called:
@@ -232,17 +238,38 @@ def _require(tree: Tree, layout: Layout) -> None:
                     raise ValueError(f"slot of link '{link.name}': places {place} of {size}")
 
 
+def compiled() -> dict[str, str]:
+    """Variables by which JAX keeps what it compiles, of engines' functions of one structure, for all processes."""
+    from symofros import SymofrosError  # Where a release answers there is NumPy alone.
+    from symofros.tools import cache_folder, create_cache_folder
+
+    folder = cache_folder() / "compiled"
+    try:
+        create_cache_folder(folder)
+        if sum(path.stat().st_size for path in folder.iterdir() if path.is_file()) > _COMPILED:
+            shutil.rmtree(folder)
+    except (OSError, SymofrosError):  # All is then compiled by each process.
+        return {}
+    return {"JAX_COMPILATION_CACHE_DIR": str(folder), **_ALL_COMPILED}
+
+
 class Worker(WorkerProcess):
-    """A process that engines run in, started anew after a crash.
+    """A process that engines run in, started anew after a crash; an engine that crashed has one of its own from then.
+
+    So the others need not be imported, nor their functions compiled, once more for each crash.
 
     Args:
         limit: Seconds for one answer.
+        shared: Whether several engines run in it.
         options: Of `WorkerProcess`.
     """
 
-    def __init__(self, limit: float = LIMIT, **options: Any) -> None:
+    def __init__(self, limit: float = LIMIT, shared: bool = True, **options: Any) -> None:
+        if shared:
+            options = {"environment": compiled(), **options}
         super().__init__(**options)
-        self._limit = limit
+        self._limit, self._shared, self._options = limit, shared, options
+        self._apart: dict[str, WorkerProcess] = {}
 
     def python(self, engine: str) -> str:
         """The interpreter that an engine runs in."""
@@ -254,9 +281,18 @@ class Worker(WorkerProcess):
         while remaining:
             answers: list[Answer] = []
             try:
-                for answer in self.call(answered, replace(job, functions=remaining), limit=self._limit):
+                process = self._apart.get(job.engine, self)
+                for answer in process.call(answered, replace(job, functions=remaining), limit=self._limit):
                     answers.append(answer)
             except WorkerError as error:
+                if self._shared and job.engine not in self._apart:
+                    self._apart[job.engine] = WorkerProcess(**self._options)
                 answers += [Answer(function, Crashed(str(error))) for function in remaining[len(answers) :][:1]]
             yield from answers
             remaining = remaining[len(answers) :]
+
+    def close(self) -> None:
+        """End all processes."""
+        for process in self._apart.values():
+            process.close()
+        super().close()

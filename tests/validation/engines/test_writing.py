@@ -7,6 +7,8 @@ from itertools import product
 import numpy as np
 import pytest
 
+from validation.engines.interface import State
+from validation.engines.plugins.writing.source import Source, SourceModel, Way
 from validation.engines.plugins.writing.urdf import rpy
 from validation.mechanics.geometry import rotation_matrix
 
@@ -17,3 +19,14 @@ def test_angles_near_right_angles_give_the_written_rotation(noise: float) -> Non
     for quarters in product(range(4), repeat=3):
         R = rotation_matrix("rpy", np.array(quarters) * np.pi / 2 + noise * rng.standard_normal(3))
         np.testing.assert_allclose(rotation_matrix("rpy", np.array(rpy(R.tolist()))), R, rtol=0, atol=1e-14)
+
+
+def test_ways_that_build_the_same_share_it_and_what_closes_runs_for_each() -> None:
+    built = (("made.append('tree')", "made.append('own')"), ("'closed'", "'closed own'"))
+    ways = {name: Way(name, f"value = {k}.0", built=built * (k > 1)) for k, name in enumerate("pqrs")}
+    source = Source(("made.append('tree')",), (), 0, 0, closing=("made.append('closed')",))
+    made: list[str] = []
+    model, nothing = SourceModel(source, ways, {"made": made}), State(*[np.zeros(0)] * 6)
+    assert [float(np.asarray(model.call(name, nothing))) for name in "pqrs"] == [0.0, 1.0, 2.0, 3.0]
+    assert made == ["tree", *["closed"] * 3, "own", *["closed own"] * 2]
+    assert source.built(ways["s"]) == ("made.append('own')", "made.append('closed own')")

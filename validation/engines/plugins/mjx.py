@@ -8,37 +8,31 @@ from ..interface import STEP, Convention, Tree, Unsupported
 from . import mujoco
 from .writing.source import Source, SourcePlugin, Way
 
-# What is compiled is asked a few times: the time is that of compiling.
+# What is compiled is asked a few times: the time is that of compiling. MJX's own functions are compiled, with the model
+# as an argument: trees of one structure share what is compiled.
 _SETUP = """import os
 os.environ['XLA_FLAGS'] = os.environ.get('XLA_FLAGS', '') + ' --xla_backend_optimization_level=0'
 import jax
 jax.config.update("jax_enable_x64", True)
 from mujoco import mjx
 mx, empty = mjx.put_model(m), mjx.make_data(m)
-def at(q, v, **more):
-    if m.nu: more['ctrl'] = jax.numpy.array(d.ctrl)
-    if m.na: more['act'] = jax.numpy.array(states)
-    return empty.replace(qpos=q, qvel=v, **more)
-# Each is compiled once a tree.
+if m.nu: empty = empty.replace(ctrl=jax.numpy.array(d.ctrl))
+if m.na: empty = empty.replace(act=jax.numpy.array(states))
 def forward(q, v, tau):
-    e = mjx.forward(mx, at(q, v, qfrc_applied=tau))
-    return e, mjx.full_m(mx, e)
-forward = jax.jit(forward)
+    e = jax.jit(mjx.forward)(mx, empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
+    return e, jax.jit(mjx.full_m)(mx, e)
 def inverse(q, v, a):
-    e = mjx.fwd_velocity(mx, mjx.fwd_position(mx, at(q, v, qacc=a)))
-    e = mjx.sensor_vel(mx, mjx.sensor_pos(mx, e))
-    return mjx.sensor_acc(mx, e), mjx.inverse(mx, e).qfrc_inverse
-inverse = jax.jit(inverse)
+    e = empty.replace(qpos=q, qvel=v, qacc=a)
+    for one in (mjx.fwd_position, mjx.fwd_velocity, mjx.sensor_pos, mjx.sensor_vel): e = jax.jit(one)(mx, e)
+    return jax.jit(mjx.sensor_acc)(mx, e), jax.jit(mjx.inverse)(mx, e).qfrc_inverse
 def got(e, name): return np.array(getattr(e, name) if hasattr(e, name) else getattr(e._impl, name))
 def stepped(q, v, tau, **options):
     from copy import copy
     n = copy(m)
     n.opt.timestep = STEP
     for name, value in options.items(): setattr(n.opt, name, value)
-    if (name := str(options)) not in steps:
-        my = mjx.put_model(n)
-        steps[name] = jax.jit(lambda q, v, tau: mjx.step(my, at(q, v, qfrc_applied=tau)))
-    return steps[name](q, v, tau)
+    if (name := str(options)) not in steps: steps[name] = mjx.put_model(n)
+    return jax.jit(mjx.step)(steps[name], empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
 steps = {}
 links = [m.body(name).id for name in LINKS]"""
 _SENSED = (

@@ -20,11 +20,12 @@ def put(data, **fields):
     for name, value in fields.items():
         getattr(data, name).assign(np.asarray(value, np.float32)[None])
 def got(data, name): return getattr(data, name).numpy()[0]
-def made(model, **room):
+def fresh(model, **room):
     data = mjw.make_data(model, **room)
     if model.nu: put(data, ctrl=d.ctrl)
     if model.na: put(data, act=states)
-    return mjw.put_model(model), data
+    return data
+def made(model, **room): return mjw.put_model(model), fresh(model, **room)
 def sense(kind, b=None):
     one = m.sensor(f'{{kind}}:{{m.body(b).name}}' if b else kind)
     return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]
@@ -60,12 +61,21 @@ for k, b in enumerate(bs):
 
 def _step(integrator: str, settings: str = "", room: str = "") -> Way:
     """A step with options of a model of its own."""
-    made = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}\n{settings}"
-    made += f"nw, dn = made(n{room})\n"
+    stated = f"n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}\n{settings}"
     code = (
-        "put(dn, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.step(nw, dn)\nvalue = np.r_[got(dn, 'qpos'), got(dn, 'qvel')]"
+        f"dn = fresh(n{room})\nput(dn, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.step(nw, dn)\n"
+        "value = np.r_[got(dn, 'qpos'), got(dn, 'qvel')]"
     )
-    return Way(f"step, {integrator}{room}", f"{made}{code}")
+    return Way(f"step, {integrator}{room}", f"{_kept(stated, room)}{code}")
+
+
+def _kept(stated: str, room: str = "") -> str:
+    """A model with options of its own, made once: data are new for each call."""
+    made = f"{COPY}{stated}nw = made(n{room})[0]".replace("\n", "\n    ")
+    return f"if 'nw' not in globals():\n    {made}\n"
+
+
+_ACTED = _kept(f"n.opt.timestep = {STEP}\n")
 
 
 def _reading(field: str, before: str = _QV) -> Way:
@@ -225,8 +235,7 @@ for b in bs:
     "activation_rates": _reading("act_dot", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
     "activations_after_step": Way(
         "step",
-        f"{COPY}n.opt.timestep = {STEP}\nnw, dn = made(n)\nput(dn, qpos=q, qvel=v)\nmjw.step(nw, dn)\n"
-        "value = got(dn, 'act')",
+        f"{_ACTED}dn = fresh(n)\nput(dn, qpos=q, qvel=v)\nmjw.step(nw, dn)\nvalue = got(dn, 'act')",
     ),
     "actuated_forces": _reading("qfrc_actuator", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
     **_CONSTRAINED,

@@ -93,14 +93,19 @@ class Source:
 
     def built(self, way: Way) -> tuple[str, ...]:
         """The statements that build the tree as a way needs it."""
-        lines = self.text()
+        return (*self.own(way, self.text(closed=False)), *self.own(way, self.closing))
+
+    @staticmethod
+    def own(way: Way, lines: tuple[str, ...]) -> tuple[str, ...]:
+        """Statements as they are for a model that a way has of its own."""
         for general, own in way.built:
             lines = tuple(line.replace(general, own) for line in lines)
         return lines
 
-    def text(self) -> tuple[str, ...]:
-        """The statements that build the tree, with all that functions need."""
-        return (*self.lines, *(line for lines in self.optional.values() for line in lines), *self.closing)
+    def text(self, closed: bool = True) -> tuple[str, ...]:
+        """The statements that build the tree, with all that functions need; `closed`: with those after all of these."""
+        optional = (line for lines in self.optional.values() for line in lines)
+        return (*self.lines, *optional, *(self.closing if closed else ()))
 
 
 class SourceModel:
@@ -125,6 +130,8 @@ class SourceModel:
         # What the text defines: the engine's own objects.
         self.names: dict[str, Any] = dict(given or {})
         _run("\n".join(source.text()), self.names)  # Our own text, of numbers and the engine's names.
+        # Models that ways have of their own: those that build the same share it, as others share the tree's.
+        self._built: dict[tuple[tuple[str, str], ...], dict[str, Any]] = {(): self.names}
 
     def call(self, function: str, state: State) -> Array | Unsupported:
         """A function in the engine's conventions (`EngineModel`)."""
@@ -146,9 +153,8 @@ class SourceModel:
         text = self._source.spelled(self._ways[function].code)
         for name in (OPTIONAL.keys() & identifiers(text)) - set(self._source.optional):
             return Unsupported(OPTIONAL[name], offered=False)
-        code, names = compile(text, TEXT, "exec"), dict(self.names)
-        way = self._ways[function]
-        _run("\n".join(self._source.built(way) if way.built else self._source.closing), names)
+        code, names = compile(text, TEXT, "exec"), dict(self._names_of(self._ways[function]))
+        _run("\n".join(self._source.own(self._ways[function], self._source.closing)), names)
 
         def ask(state: State) -> Array:
             names.update({name: getattr(state, name).copy() for name in _INPUTS})
@@ -156,6 +162,14 @@ class SourceModel:
             return np.array(names["value"], dtype=float)
 
         return ask
+
+    def _names_of(self, way: Way) -> dict[str, Any]:
+        """What the text defines for a way."""
+        if way.built not in self._built:
+            names = dict(self.names)
+            _run("\n".join(self._source.own(way, self._source.text(closed=False))), names)
+            self._built[way.built] = names
+        return self._built[way.built]
 
     def script(self, function: str, state: State, before: Sequence[tuple[str, State]] = ()) -> str:
         """The text that a call runs, with the state that it needs (`EngineModel`), after other calls."""
