@@ -1,4 +1,4 @@
-"""A block on an incline: what friction holds, by each of our forms of it and by MuJoCo's cones."""
+"""A block on an incline: what friction holds, by each of our forms of it, by MuJoCo's cones and by Drake."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import symofros as sf
 from ...adapters.mujoco import motion as mujoco_motion
 from ...reporting.findings import Finding
 from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, longest, simulate
+from . import drake_block
 
 FRICTION, GRAVITY, STIFFNESS, RADIUS = 0.5, 9.81, 1e5, 0.1
 SLOW = 1e-3
@@ -27,9 +28,12 @@ ENGINES = {
     "MuJoCo, cones, impratio 100": 'cone="elliptic" impratio="100"',
     "MuJoCo, pyramids, noslip": 'cone="pyramidal" noslip_iterations="10"',
 }
+# Name of the contact model: Drake's own name of its approximation. The first one is its default.
+DRAKE = {"Drake, lagged": "kLagged", "Drake, SAP": "kSap", "Drake, TAMSI": "kTamsi"}
 SHARES = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5)
 LOAD = Grid.of("load over what friction carries, tan α/μ [-]", tuple(map(str, SHARES)), ("0.5", "0.999", "1.001"))
-WHO = Grid.of("friction [-]", (SMOOTH, BRISTLES, RIGID, HELD, *ENGINES), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
+FORMS = SMOOTH, BRISTLES, RIGID, HELD
+WHO = Grid.of("friction [-]", (*FORMS, *ENGINES, *DRAKE), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
 STEPS = (1e-3, 4e-3)
 MJCF = (
     '<mujoco><option timestep="{h!r}" integrator="implicitfast" gravity="{gx!r} 0 {gz!r}" {cone}/><worldbody>'
@@ -87,6 +91,8 @@ def measure(h: float) -> Callable[[float, float], Cell]:
         share, name = float(LOAD.label(load)), WHO.label(who)
         if name in ENGINES:
             return by_mujoco(name, share, h)
+        if name in DRAKE:
+            return by_drake(name, share, h)
         run = slid(name, share, h)
         return cell(run, lambda run: beyond(share, (float(run.q[1, 0]), float(run.v[1, 0])), float(run.q[2, 0])))
 
@@ -113,6 +119,15 @@ def by_mujoco(name: str, share: float, h: float) -> Cell:
     if middle.warning or last.warning:
         return Cell(math.nan, "diverged", middle.warning or last.warning)
     return Cell(beyond(share, (float(middle.q[0]), float(middle.v[0])), float(last.q[0])))
+
+
+def by_drake(name: str, share: float, h: float) -> Cell:
+    """The same block as Drake holds it, by the properties that it has by default."""
+    if not drake_block.INSTALLED:
+        return Cell(math.nan, "refused", drake_block.MISSING)
+    gravities = gravity(share)
+    middle, last = drake_block.slid(DRAKE[name], FRICTION, RADIUS, gravities, h, (SETTLED, END))
+    return Cell(beyond(share, middle, last[0]))
 
 
 def creep(share: float) -> float:
@@ -156,22 +171,24 @@ def judge(maps: Maps) -> Verdict:
         ),
         Finding(
             "ours, sliding: distance from the closed form in 10 s over g t²/2",
-            max(worst(name, ~stuck) for name in (SMOOTH, BRISTLES, RIGID, HELD)) / slides,
+            max(worst(name, ~stuck) for name in FORMS) / slides,
             1e-4,
             reason="friction lags while bristles bend, by micrometres of speed times 10 s",
         ),
     )
-    others = ", ".join(f"{name} {held[name]:.1g} m" for name in rows if name in ENGINES)
+    asked = (name for name in rows if name in ENGINES or (name in DRAKE and drake_block.INSTALLED))
+    others = ", ".join(f"{name} {held[name]:.1g} m" for name in asked)
     statement = (
         f"Below the limit of friction Coulomb's block stays. In 10 s a rigid contact creeps by {held[RIGID]:.1g} m, "
         f"a joint that sticks by {held[HELD]:.1g} m, a contact with bristles by {held[BRISTLES]:.1g} m, smooth "
         f"friction by {held[SMOOTH]:.1g} m, at the speed of its closed form. At most "
         f"over the loads: {others}: constraints are soft there, "
-        "and friction is regularised, by `impratio`. Above the limit ours slide at the closed form's acceleration."
+        "and friction is regularised: by `impratio`, or over a speed. Above the limit ours slide at the closed form's "
+        "acceleration."
     )
     see = (
-        "Columns left of 1 should be blue: the block stays there. Rows of smooth friction and of MuJoCo's soft cones "
-        "are orange: the block creeps, at a speed in proportion to the load."
+        "Columns left of 1 should be blue: the block stays there. Rows of smooth friction, of MuJoCo's soft cones "
+        "and of Drake are orange: the block creeps, the faster the nearer to the limit."
     )
     return Verdict(statement, see, findings)
 
@@ -180,7 +197,7 @@ STUDY = ParameterStudy(
     "Does friction hold on an incline?",
     f"A block of 1 kg rests on an incline, μ = {FRICTION:g}; after {SETTLED:g} s for settling its motion over "
     f"{END - SETTLED:g} s is compared with Coulomb's: none up to tan α = μ, the closed form beyond. MuJoCo by its "
-    "default softness, implicitfast.",
+    "default softness, implicitfast; Drake by its default contact, lagged, and two others that it offers.",
     LOAD,
     WHO,
     "distance from Coulomb's motion after 10 s [m]",
