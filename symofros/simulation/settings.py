@@ -183,9 +183,11 @@ class Settings:
         run.grid, run.n_grid = stepper.memory.doubles(self.grid), len(self.grid)
         run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
-        if self.adaptive:
-            if math.isfinite(self.t_end):  # Steps by hand have no end, and are looked ahead of as they are made.
+        if math.isfinite(self.t_end):  # Steps by hand have no end, and are looked ahead of as they are made.
+            stepper.set_event_instants(self.t0, self.t_end)
+            if self.adaptive:
                 stepper.set_stops(self.t0, self.t_end)
+        if self.adaptive:
             run.look_every = (self.t_end - self.t0) / LOOKS
 
 

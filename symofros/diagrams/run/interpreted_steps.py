@@ -135,7 +135,7 @@ class Crossings:
         way = step.h * float(np.abs(np.concatenate([step.v, step.end[len(step.v) :]])).max(initial=0.0))
         met, first = list[int](), 2.0
         blocks.step_end = step.t + step.h
-        for which, x in search.arrivals(step.h, way, self._number):
+        for which, x in search.arrivals(step.t, step.h, way, self._number):
             if x > first:
                 break
             met, first = [*met, which], x

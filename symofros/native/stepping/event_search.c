@@ -8,10 +8,11 @@ static const double sym_event_nodes[SYM_EVENT_NODES] = {0.0, 0.2319, 0.4876, 0.7
 #define SYM_EVENT_FINE 0.02
 /* Share of the values at four neighbouring nodes that their third difference has at most where an event is smooth. */
 #define SYM_EVENT_SMOOTH 0.05
-/* Where the rate of events is looked at beside a node: share of a step. Change between two points, as a share of the largest
+/* Where the rate of events is looked at beside a node, and farther from it: shares of a step. Change between two points, as a share of the largest
  * value in the step, of an event that turns often; the shortest such interval. An event is no cubic where its rate at the
  * middle is off by more than the last share. */
 #define SYM_EVENT_BESIDE 1e-7
+#define SYM_EVENT_FARTHER 0.0137
 #define SYM_EVENT_PACE 0.5
 #define SYM_EVENT_SHORTEST_PACE 1e-7
 #define SYM_EVENT_SMOOTH_RATE 0.5
@@ -19,7 +20,7 @@ static const double sym_event_nodes[SYM_EVENT_NODES] = {0.0, 0.2319, 0.4876, 0.7
 #define SYM_EVENT_ROUNDING 1e-14
 #define SYM_EVENT_NEAR 1e-3
 /* Evaluations by which one event is followed between two of its zeros in one step, beyond those at the nodes. */
-enum { SYM_EVENT_BUDGET = 1000, SYM_EVENT_POINTS = 40 };
+enum { SYM_EVENT_BUDGET = 1000, SYM_EVENT_POINTS = 60, SYM_EVENT_AHEAD = 20 };
 
 typedef struct sym_event_rows { /* (n) each, in sym_event_search.memory */
     double *node[SYM_EVENT_NODES]; /* values at the nodes */
@@ -216,6 +217,35 @@ static int32_t sym_turns_seldom(const sym_event_rows *rows, int32_t i) {
     return sym_is_smooth(rows, i, 0) && sym_is_smooth(rows, i, 1);
 }
 
+/* Share of the step at which instant k is; beyond 1: there is none. */
+static double sym_instant_x(const sym_event_search *s, int32_t k) {
+    return k < s->n_instants ? (s->instants[k] - s->t) / s->h : 2.0;
+}
+
+/* Whether an instant lies in the step. */
+static int32_t sym_has_instant(const sym_event_search *s) {
+    return sym_instant_x(s, sym_instants_begun(s->instants, s->n_instants, s->t)) <= 1.0;
+}
+
+/* A rate that is too fast to be followed may be that of a jump or, where instants show these, of a narrow part at node k alone:
+ * rates <- those farther from it where they are less. Returns 0 or a status. */
+static int32_t sym_look_farther(const sym_event_search *s, const sym_event_rows *rows, int32_t k) {
+    const int32_t narrow = sym_has_instant(s);
+    const double followed = narrow ? SYM_EVENT_FINE : SYM_EVENT_SHORTEST_PACE, side = k + 1 < SYM_EVENT_NODES ? 1.0 : -1.0;
+    const double x = sym_event_nodes[k] + side * (narrow ? SYM_EVENT_FARTHER : 2.0 * SYM_EVENT_BESIDE);
+    int32_t i, fast = 0, status;
+    for (i = 0; i < s->n; ++i) fast = fast || fabs(rows->rate[k][i]) * followed > SYM_EVENT_PACE * rows->size[i];
+    if (!fast) return 0;
+    status = s->evaluate(s->data, x, rows->past_value);
+    if (status == 0) status = s->evaluate(s->data, x + side * SYM_EVENT_BESIDE, rows->work);
+    for (i = 0; i < s->n; ++i) {
+        const double rate = (rows->work[i] - rows->past_value[i]) / (side * SYM_EVENT_BESIDE), seen = fabs(rows->rate[k][i]);
+        if (seen * followed > SYM_EVENT_PACE * rows->size[i] && fabs(rate) < seen) rows->rate[k][i] = rate;
+        rows->past_value[i] = 0.0;
+    }
+    return status;
+}
+
 /* How fast each event changes about the nodes, which are evaluated; of those that turn seldom in the step one look beside
  * the middle node is enough. Returns 0 or a status. */
 static int32_t sym_look_at_rates(sym_event_search *s) {
@@ -224,6 +254,8 @@ static int32_t sym_look_at_rates(sym_event_search *s) {
     for (i = 0; i < s->n; ++i) often = often || !sym_turns_seldom(&rows, i);
     for (k = 0; k < SYM_EVENT_NODES && often && status == 0; ++k)
         if (k != 2) status = sym_look_beside(s, &rows, k);
+    for (k = 0; k < SYM_EVENT_NODES && status == 0; ++k)
+        if (often || k == 2) status = sym_look_farther(s, &rows, k);
     for (i = 0; i < s->n; ++i) {
         const int32_t seldom = sym_turns_seldom(&rows, i);
         rows.pace[i] = fabs(rows.rate[2][i]) / s->h;
@@ -249,22 +281,46 @@ static void sym_set_longest_intervals(sym_event_search *s, sym_event_walk *w) {
     }
 }
 
+/* Points behind a <- the next nodes and instants, of one kind or the other. Returns 0 or a status. */
+static int32_t sym_look_ahead(const sym_event_search *s, sym_event_walk *w) {
+    const sym_event_rows rows = sym_rows_of_search(s);
+    sym_event_point next[SYM_EVENT_AHEAD];
+    int32_t node = 1, n = 0, k = sym_instants_begun(s->instants, s->n_instants, s->t + w->a.x * s->h), i;
+    while (node < SYM_EVENT_NODES && sym_event_nodes[node] <= w->a.x) ++node;
+    while (k < s->n_instants && sym_instant_x(s, k) <= w->a.x) ++k;
+    while (node < SYM_EVENT_NODES && n < SYM_EVENT_AHEAD) {
+        const double at_node = sym_event_nodes[node], at_instant = sym_instant_x(s, k);
+        sym_event_point *point = &next[n++];
+        point->x = at_instant < at_node ? at_instant : at_node;
+        if (at_instant < at_node) {
+            const int32_t status = sym_event_at(s, w->event, at_instant, &point->f);
+            if (status != 0) return status;
+        } else {
+            point->f = rows.node[node++][w->event];
+        }
+        while (k < s->n_instants && sym_instant_x(s, k) <= point->x) ++k;
+    }
+    for (i = 0; i < n; ++i) w->behind[i] = next[n - 1 - i];
+    w->n = n;
+    return 0;
+}
+
 /* The next arrival of event i <- the one after it. Where it has arrived its value is zero, whatever rounding made of it.
  * Returns 0 or a status. */
 static int32_t sym_seek_arrival(sym_event_search *s, int32_t i, double value) {
     const sym_event_rows rows = sym_rows_of_search(s);
     const double size = rows.size[i];
     sym_event_walk w;
-    int32_t k, status;
+    int32_t status;
     w.event = i, w.left = SYM_EVENT_BUDGET;
     sym_set_longest_intervals(s, &w);
     w.a.x = rows.next_x[i], w.a.f = value;
     w.n_before = w.a.x > rows.past[i], w.before[0].x = rows.past[i], w.before[0].f = rows.past_value[i];
-    for (k = SYM_EVENT_NODES - 1, w.n = 0; k > 0 && sym_event_nodes[k] > w.a.x; --k, ++w.n)
-        w.behind[w.n].x = sym_event_nodes[k], w.behind[w.n].f = rows.node[k][i];
     rows.next_x[i] = 2.0;
-    while (w.n > 0) {
+    for (w.n = 0;;) {
         sym_event_point to;
+        status = w.n > 0 ? 0 : sym_look_ahead(s, &w);
+        if (status != 0 || w.n == 0) return status;
         status = sym_shorten_interval(s, &w, size);
         if (status != 0) return status;
         sym_note_touch(s, &w, size);
@@ -283,7 +339,6 @@ static int32_t sym_seek_arrival(sym_event_search *s, int32_t i, double value) {
         }
         sym_walk_to(&w, to);
     }
-    return 0;
 }
 
 SYM_EXPORT int32_t sym_event_search_next(sym_event_search *s, int32_t *which, double *x) {
@@ -318,17 +373,18 @@ SYM_EXPORT int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double
 /* Of steps whose events are far, one in so many has their rates looked at. */
 #define SYM_EVENT_LOOKS 8
 
-SYM_EXPORT void sym_event_search_set_step(sym_event_search *s, double h, double way, int64_t step) {
+SYM_EXPORT void sym_event_search_set_step(sym_event_search *s, double t, double h, double way, int64_t step) {
     const double longest = way > SYM_EVENT_TURN ? SYM_EVENT_TURN / way : 1.0;
-    s->h = h, s->looks = step % SYM_EVENT_LOOKS == 0;
+    s->t = t, s->h = h, s->looks = step % SYM_EVENT_LOOKS == 0;
     s->short_step = h <= SYM_EVENT_SHORT_TIME && way <= SYM_EVENT_SHORT_WAY;
     s->longest = longest > SYM_EVENT_SHORTEST ? longest : SYM_EVENT_SHORTEST;
 }
 
-/* Whether all events are so far from zero, at the ends of this step and of the one before and by the rate that they had when
+/* Whether no instant is in the step, and all events are so far from zero, at the ends of this step and of the one before and by the rate that they had when
  * it was looked at last, that they need no look within. */
 static int32_t sym_all_events_are_far(const sym_event_search *s, const sym_event_rows *rows) {
     int32_t i;
+    if (sym_has_instant(s)) return 0;
     for (i = 0; i < s->n; ++i) {
         const double a = rows->earlier[i], b = rows->before[i], c = rows->node[SYM_EVENT_NODES - 1][i];
         const double low = a < b ? (a < c ? a : c) : (b < c ? b : c), high = a > b ? (a > c ? a : c) : (b > c ? b : c);

@@ -176,8 +176,9 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     int32_t status;
     *stop_x = 2.0, r->terminal_event = -1, r->first_met = r->n_event_records;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
-    sym_event_search_set_step(&search, h, sym_way_of_step(r, w, h), r->steps < r->n_from ? 0 : r->steps - r->n_from);
+    sym_event_search_set_step(&search, r->t, h, sym_way_of_step(r, w, h), r->steps < r->n_from ? 0 : r->steps - r->n_from);
     search.evaluate = sym_event_values_within_step, search.data = &step;
+    search.n_instants = s->n_event_instants, search.instants = s->event_instants;
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
     status = sym_event_search_begin(&search);
     while (status == 0) {

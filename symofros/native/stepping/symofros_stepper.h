@@ -179,6 +179,8 @@ typedef struct sym_system {
     const sym_signal *signals;
     /* (n_stops) instants, in order, at which adaptive steps end: kinks, jumps and narrow parts of formulas of time. */
     const double *stops;
+    int32_t n_event_instants;
+    const double *event_instants; /* (n_event_instants) those of formulas of time in events, which are looked at there, in order */
     const int32_t *law_inputs;      /* (n_law) indices in u of the inputs that the law gives */
     const int32_t *quaternion_inputs; /* (n_quaternion_inputs) first indices in u of quaternions that prescribe motions */
     const int32_t *event_direction; /* (n_events) 1 rising, -1 falling, 0 both */
@@ -231,6 +233,9 @@ typedef struct sym_event_search {
     double h;                     /* length of the step [s] */
     int32_t looks;                /* whether the rates of events are looked at that are far from zero */
     int32_t start_changes;        /* whether values at x = 0 may differ from those at the end of the step before */
+    double t;                     /* start of the step [s] */
+    int32_t n_instants;
+    const double *instants;       /* (n_instants) in order [s]: where events are looked at, besides others */
     int32_t taken;                /* event that was returned last; -1: none */
     int32_t touched, unresolved;  /* the event that turns nearest to zero, one too fast to follow; -1: none */
     double touched_x, touched_share; /* where it turns, and its share there of its largest value in the step */
@@ -380,7 +385,7 @@ int32_t sym_find_instants(const sym_instant_search *search, double t0, double t_
 /* Values of the events (n_events) at a state. */
 int32_t sym_run_event_values(sym_run *run, double t, const double *y, double *values);
 /* Tell the search the length h of a step [s], the largest way of a coordinate in it [rad or m], and its number. */
-void sym_event_search_set_step(sym_event_search *search, double h, double way, int64_t step);
+void sym_event_search_set_step(sym_event_search *search, double t, double h, double way, int64_t step);
 /* Begin the search in one step, whose search->memory begins with the values at the end of the step before; the values at its
  * own end are row SYM_EVENT_NODES - 1 afterwards. Returns 0 or a status. */
 int32_t sym_event_search_begin(sym_event_search *search);

@@ -115,6 +115,7 @@ class HandRun:
         held: Indices of the inputs that are given by hand.
         start: First state.
         events: Events met.
+        looks_ahead: Whether instants of formulas of time are looked for before steps are made.
     """
 
     def __init__(
@@ -133,6 +134,7 @@ class HandRun:
         run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
         self._given = par
+        self.looks_ahead = settings.adaptive or bool(run.timed_events)
         self.held = held_by_hand(model, inputs, fixed)
         memory = run.memory
         self.hand = hand = run.ffi.new("sym_hand *")
@@ -277,13 +279,15 @@ class HandRun:
             self._look_ahead(int(self.hand.target - self.hand.mark))
 
     def _look_ahead(self, steps: int) -> None:
-        """Find the instants of formulas of time at which adaptive steps have to end."""
-        if not self.settings.adaptive:
+        """Find the instants of formulas of time at which adaptive steps have to end, or events are looked at."""
+        if not self.looks_ahead:
             return
         t_end = self.start.t + (int(self.hand.mark) + steps) * self.settings.dt
         if t_end > self._known:
             self._known = max(t_end, self.t + _AHEAD * self.settings.dt)
-            self.run.set_stops(self.t, self._known)
+            self.run.set_event_instants(self.t, self._known)
+            if self.settings.adaptive:
+                self.run.set_stops(self.t, self._known)
 
     def _seal(self) -> None:
         """What C has noted joins the chain; of a run that changes its inputs too often the first part is forgotten."""

@@ -48,11 +48,12 @@ class StepSearch:
         """Nothing is known of steps before."""
         self.values[constants()["SYM_EVENT_EARLIER"]] = np.nan
 
-    def arrivals(self, h: float, way: float, number: int) -> Iterator[tuple[int, float]]:
+    def arrivals(self, t: float, h: float, way: float, number: int) -> Iterator[tuple[int, float]]:
         """Which events arrive, and at which x of a step, in the order of time.
 
         Args:
-            h: Length of the step [s].
+            t: Start of the step [s].
+            h: Its length [s].
             way: The largest way of a coordinate in it [rad or m].
             number: Number of the step.
 
@@ -60,7 +61,7 @@ class StepSearch:
             SearchFailedError: The events have no values there.
         """
         ffi, native, noted = self._memory.ffi, self._native, self.noted
-        native.sym_event_search_set_step(noted, h, way, number)
+        native.sym_event_search_set_step(noted, t, h, way, number)
         which, x = ffi.new("int32_t *"), ffi.new("double *")
         self._check(native.sym_event_search_begin(noted))
         while True:
@@ -111,6 +112,8 @@ class EventSearch:
     def start(self, t: float, y: Array) -> int:
         """Evaluate the events at the first state; returns a Status."""
         self._search.restart()
+        system, noted = self.stepper.system, self._search.noted
+        noted.n_instants, noted.instants = system.n_event_instants, system.event_instants
         return self.stepper.event_values(t, y, self._search.values[0])
 
     def find(self, t0: float, t1: float, state: Callable[[float], Array]) -> tuple[int, list[MetEvent]]:
@@ -131,7 +134,7 @@ class EventSearch:
         self._steps += 1
         met = list[MetEvent]()
         try:
-            for which, x in self._search.arrivals(t1 - t0, (t1 - t0) * speeds.max(initial=0.0), self._steps):
+            for which, x in self._search.arrivals(t0, t1 - t0, (t1 - t0) * speeds.max(initial=0.0), self._steps):
                 event = stepper.events[which]
                 if event.once and stepper.system.event_terminal[which] == -1:
                     continue  # In this step, too, the first one alone counts.

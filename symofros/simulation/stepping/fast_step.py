@@ -18,7 +18,7 @@ def fast_step(hand: HandRun, made: Callable[[int], Any], plain: Callable[..., An
         made: What comes of steps with another status than that they were just made.
         plain: The same call with any arguments, for all that is out of the ordinary.
     """
-    Step = step_type() if not hand.settings.adaptive else None  # These look ahead before their steps.
+    Step = None if hand.looks_ahead else step_type()
     if Step is None:
         return None
     ffi, native = hand.run.ffi, hand.run.native

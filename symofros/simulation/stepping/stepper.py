@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.names import TIME
 from symofros.native import native_number
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls import constants
@@ -24,6 +26,7 @@ _AT_ONCE = 1e-9
 _ACCUMULATION = native_number("stepping/sticking.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
+_TIMED = re.compile(rf"\b{TIME}\b")
 
 
 class Stepper(BoundRun):
@@ -198,6 +201,20 @@ class Stepper(BoundRun):
         """Find the instants between start and end [s] of a run at which steps have to end, for formulas of time."""
         stops = self.model.formula_instants(list(self.inputs.formulas.values()), self.par, t0, t_end)
         self.system.n_stops, self.system.stops = len(stops), self.memory.doubles(stops)
+
+    @property
+    def timed_events(self) -> list[Any]:
+        """Formulas of events in which time stands."""
+        return [event.formula for event in self.events if _TIMED.search(str(event.formula))]
+
+    def set_event_instants(self, t0: float, t_end: float) -> None:
+        """Find the instants in a run at which formulas of time in events bend, jump or are narrow, to look there."""
+        if formulas := self.timed_events:
+            jumps = self.model.formula_instants(formulas, self.par, t0, t_end)
+            instants = np.sort(
+                np.concatenate([jumps, 0.5 * (jumps[1:] + jumps[:-1])])
+            )  # Values at jumps may be neither.
+            self.system.n_event_instants, self.system.event_instants = len(instants), self.memory.doubles(instants)
 
     def next_stop(self, t: float, end: float) -> float:
         """The first instant after t at which a step has to end, else `end` [s]; for integrators of others."""

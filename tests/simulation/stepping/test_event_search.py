@@ -30,7 +30,7 @@ def searched(functions: list[Function], h: float) -> tuple[list[float], int]:
     values[0], values[known["SYM_EVENT_EARLIER"]] = functions[0](0.0), np.nan
     which, x, found = memory.own("int32_t[]", 1), memory.own("double[]", 1), list[float]()
     for k in range(len(functions)):
-        native.sym_event_search_set_step(search, h, 0.01, k + 1)
+        native.sym_event_search_set_step(search, k * h, h, 0.01, k + 1)
         assert native.sym_event_search_begin(search) == 0
         while native.sym_event_search_next(search, which, x) == 0 and which[0] >= 0:
             found.append(k + x[0])

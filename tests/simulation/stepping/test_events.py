@@ -251,3 +251,38 @@ def test_an_event_that_turns_often_in_a_step_loses_no_zero_in_silence(fast: sf.M
         assert noted or len(run.events) == crossings(rate, level, speed, end), (rate, level, end, speed)
         silent += not noted
     assert silent >= 10
+
+
+# Formulas of time that pass zero twice about t = c within about w, one narrow part of which lies between two looks.
+NARROW = {
+    "tent": "abs(t - {c}) - {w}",
+    "bell": "exp(-((t - {c})/{w})^2) - 0.5",
+    "window": "sign(t - {c}) - sign(t - {c} - {w}) - 1",
+    "resonance": "1/(1 + ((t - {c})/{w})^2) - 0.5",
+    "of the state, too": "z - 1 + 9*exp(-((t - {c})/{w})^2)",
+}
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("shape", NARROW)
+def test_formulas_of_time_lose_no_zero_and_bear_no_note(rotor: sf.Model, shape: str, method: str) -> None:
+    """Anywhere in steps, at their ends, too, and a stepper finds what a run does."""
+    rng, formula = np.random.default_rng(3), NARROW[shape].replace("z", "a")
+    for place in (rng.uniform(0.2, 0.8), 0.7 + rng.uniform(-1e-3, 1e-3), 0.7):
+        c, w = float(place), float(10.0 ** rng.uniform(-6, -2))
+        options: dict[str, Any] = {"method": method, "dt": 0.1}
+        events = {"twice": formula.format(c=repr(c), w=repr(w))}
+        run = sf.simulate(rotor, [0.1], t_end=1.0, events=events, **options)
+        assert len(run.events) == 2 and not run.outcome.notes, (c, w, run.events, run.outcome.notes)
+        assert all(abs(one.t - c) <= 2.0 * w for one in run.events)
+        if method not in ("cvode", "cvode_adams", "ida"):
+            stepper = sf.Stepper(rotor, events=events, method=method, dt=0.1)
+            stepper.reset([0.1])
+            stepper.step(steps=10)
+            assert [one.t for one in stepper.events] == pytest.approx([one.t for one in run.events], abs=1e-9)
+
+
+def test_a_formula_of_the_state_that_jumps_is_not_said_to_turn_often(rotor: sf.Model) -> None:
+    """Beside a point at which the events are looked at: a jump there is no fast change."""
+    run = sf.simulate(rotor, [0.0], [1.0], 1.0, method="rk4", dt=0.1, events={"jump": "sign(a - 0.40000000000005)"})
+    assert [one.t for one in run.events] == pytest.approx([0.4]) and not run.outcome.notes
