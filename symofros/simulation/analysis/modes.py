@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, vector
@@ -13,13 +12,13 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.force_states import kink_notes
+from symofros.simulation.analysis.imbalance import imbalance_notes
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
-from symofros.simulation.analysis.rigid_motions import rigid_motions
+from symofros.simulation.analysis.rigid_motions import Complex, RigidMotions, rigid_motions
 from symofros.simulation.analysis.state_space import state_space
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
-Complex = npt.NDArray[np.complex128]
 # Share of its states of forces below which a mode's coordinates are rounding.
 _STILL = 1e-12
 
@@ -38,7 +37,7 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: beams whose theory errs by more than a per cent, rates of states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates of states of forces that have a kink.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
@@ -89,25 +88,38 @@ def modes(
     )
     refuse_opposite(model, state[0], state[2], par)
     states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
-    A, basis = _linearised(model, *state, states, par, t)
+    A, basis, balanced = _linearised(model, *state, states, par, t)
     # Without constraints A holds the derivatives of the accelerations.
     slopes = None if model.nc else A[model.nv :, : model.nv]
     moving = model.carried
     q, v = (np.asarray(x) for x in model.carry(*state[:2], states))
     bendings = bendings_in_motion(moving, q, v, state[2], par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
-    s, vectors = np.linalg.eig(A)
-    changes = basis @ vectors
-    zeros, rigid = rigid_motions(A, basis, s, changes, _inertia(model, state[0], state[2], par))
-    s = np.where(zeros, 0.0, s)
-    others = np.flatnonzero(~zeros & (s.imag >= 0.0))
-    order = [*rigid, *others[np.argsort(np.abs(s[others]), kind="stable")]]
+    inertia = _inertia(model, state[0], state[2], par)
+    s, changes, rigid = _motions(A, basis, inertia)
+    others = np.flatnonzero(~rigid.zeros & (s.imag >= 0.0))
+    order = [*rigid.chosen, *others[np.argsort(np.abs(s[others]), kind="stable")]]
     s = s[order]
     size = np.abs(s)
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
     notes = bending_notes(bendings) + (kink_notes(moving, q, v, state[2], par, t) if model.nz else ())
+    if not balanced:
+
+        def spectrum(q: Array, v: Array) -> Complex:
+            A, basis, _ = _linearised(model, q, v, state[2], states, par, t)
+            return _motions(A, basis, inertia)[0]
+
+        notes = (*imbalance_notes(model.with_precision("double"), (*state, states), par, t, spectrum), *notes)
     return Modes(s, size, damping, shapes, bendings, notes, z_shapes)
+
+
+def _motions(A: Array, basis: Array, inertia: Array) -> tuple[Complex, Complex, RigidMotions]:
+    """Eigenvalues, which are 0 of rigid motions, their changes of the state, and which are rigid."""
+    s, vectors = np.linalg.eig(A)
+    changes = np.asarray(basis @ vectors, dtype=np.complex128)
+    rigid = rigid_motions(A, basis, s, changes, inertia)
+    return np.where(rigid.zeros, 0.0, s).astype(np.complex128), changes, rigid
 
 
 def _shapes(X: Complex, Z: Complex) -> tuple[Complex, Complex]:
@@ -130,11 +142,11 @@ def _inertia(model: Model, q: Array, u: Array, par: ArrayLike | None) -> Array:
 
 def _linearised(
     model: Model, q: Array, v: Array, u: Array, z: Array, par: ArrayLike | None, t: float
-) -> tuple[Array, Array]:
-    """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions."""
+) -> tuple[Array, Array, bool]:
+    """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions, and whether so."""
     if not np.any(v) and not model.nz:
         A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
         if A is not None:
-            return A, np.eye(2 * model.nv)
+            return A, np.eye(2 * model.nv), True
     linear_model = state_space(model, q, v, u, par=par, t=t, z=z if model.nz else None)
-    return linear_model.A, linear_model.basis
+    return linear_model.A, linear_model.basis, False

@@ -163,6 +163,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a rod bends so far between its sections that its place is off by more than a per cent",
         "more sections",
     ),
+    "no equilibrium": NoteKind(
+        "the state is neither an equilibrium nor a steady motion: '…' accelerates by …",
+        "modes are asked for at a state that moves on, to where the linearised equations are others",
+        "the state that `sf.equilibrium` finds",
+    ),
     "critical load": NoteKind(
         "beam '…' is loaded past its critical load",
         "axial loads leave a beam no stiffness, so that a rest is unstable or a run has no bent rest",

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.models import GUESSES
 from tests.models import compiled as model
 
 
@@ -100,5 +101,48 @@ class TestModes:
         m = sf.compile(sf.System("s", [sf.RigidBody("fork", pose), disc], constraints=[rolling]))
         w = critical * (1 + excess)
         at = sf.assemble(m, [0, 0, 1, 0, 0, 0], [w, 0, 0, 0, 0, w], held=["spin"])
-        growth = sf.modes(m, at.q, at.v).eigenvalues.real.max()
-        assert (growth < 1e-2) == stable
+        found = sf.modes(m, at.q, at.v)
+        assert (found.eigenvalues.real.max() < 1e-2) == stable and not found.notes
+
+    NO_EQUILIBRIUM = "the state is neither an equilibrium nor a steady motion"
+
+    @pytest.mark.parametrize("name", ["double_pendulum", "rx90", "four_bar", "heavy_top", "flexible_pendulum"])
+    def test_states_that_do_not_balance_are_noted_and_rests_are_not(self, name: str) -> None:
+        """At a rest to four digits the modes are right to four, too."""
+        m = model(name)
+
+        def moved(by: float) -> np.ndarray:
+            change = by * np.linspace(1.0, 0.1, m.nv) ** 3
+            return sf.assemble(m, rest.q + change).q if m.nc else m.integrate(rest.q, change)
+
+        rest = sf.equilibrium(m, GUESSES.get(name, m.integrate(m.neutral(), np.full(m.nv, 0.1))))
+        assert not sf.modes(m, rest.q).notes and not sf.modes(m, moved(1e-5)).notes
+        far = moved(0.6)
+        (note,) = (one for one in sf.modes(m, far, beam_limit=np.inf).notes if "theory errs" not in one)
+        a = m.forward_dynamics(far, np.zeros(m.nv), np.zeros(m.nu))
+        k = int(np.abs(a).argmax())
+        assert self.NO_EQUILIBRIUM in note and f"'{m.names.v[k]}' accelerates by {a[k]:.3g}," in note
+
+    def test_what_moves_on_to_the_same_equations_is_not_noted(self) -> None:
+        """A fall, and a cart under a constant push with its pendulum at the angle that stays."""
+        body = sf.RigidBody("body", sf.Joint("free", "free"), sf.Inertia(2.0, (0.1, 0.2, 0.3), (1.0, 2.0, 2.5)))
+        falling = sf.compile(sf.System("falling", (body,)))
+        q, _ = falling.random_state(np.random.default_rng(0))
+        assert not sf.modes(falling, q).notes
+        cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True), sf.Inertia(2.0))
+        rod = sf.Inertia(1.0, (0, 0, -0.5), (0.1, 0.1, 0.1))
+        pendulum = sf.RigidBody("rod", sf.Joint("q", "revolute", "cart", axis=(0, 1, 0)), rod)
+        m = sf.compile(sf.System("pushed", (cart, pendulum)))
+        for angle, noted in ((np.arctan2(3.0, 9.81), False), (0.0, True)):
+            a = m.forward_dynamics([0.0, angle], [0.0, 0.0], [9.0])
+            assert (abs(a[1]) > 1e-9) == noted and abs(a[0]) > 2.5
+            assert bool(sf.modes(m, [0.0, angle], u=[9.0]).notes) == noted
+
+    def test_a_spin_that_changes_within_a_period_is_noted(self) -> None:
+        """The stiffness of a turning blade follows the speed."""
+        hub = sf.Joint("hub", "revolute", actuated=True)
+        beam = sf.Beam("b", hub, 1.0, 1.0, EI_z=1.0, bend_y=2, family="legendre")
+        m = sf.compile(sf.System("blade", [beam], gravity=(0, 0, 0)))
+        q, v = np.zeros(3), np.array([2.0, 0.0, 0.0])
+        assert not sf.modes(m, q, v).notes
+        assert self.NO_EQUILIBRIUM in sf.modes(m, q, v, [1.0]).notes[0]

@@ -1,0 +1,98 @@
+"""How far a state is from an equilibrium or a steady motion, and whether that matters (docs/theory/linear.md, 7e)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from symofros.base.arrays import Array
+from symofros.errors import SymofrosError
+from symofros.runtime.model import ArrayLike, Model
+from symofros.simulation.analysis.rigid_motions import Complex
+
+# Accelerations below which a state is at rest, or moves steadily: shares of those of forces that do not balance, and of
+# the linearised equations, where there are none. Accelerations that go on, as a share of the former.
+_BALANCED, _ROUNDING, _GOES_ON = 1e-7, 1e-11, 1e-4
+# Change of an eigenvalue that is worth a note, as a share of it; most that a displacement by rounding [rad or m] may
+# change it by, or it is itself rounding, as of motions that are rigid along each other.
+_NOTED, _SHAKEN, _ROUNDED = 1e-3, 1e-4, 1e-10
+# Longest displacement to where forces balance [rad or m]; share of singular values of the stiffness that is rounding.
+_FARTHEST, _RANK = 0.1, 1e-9
+
+# Eigenvalues of the linearised equations at a configuration and speeds, those of rigid motions 0.
+Spectrum = Callable[[Array, Array], Complex]
+
+
+def imbalance_notes(
+    model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float, spectrum: Spectrum
+) -> tuple[str, ...]:
+    """Note on a state about which small motions are no motions of their own; none where they are.
+
+    Accelerations that change nothing in the equations, as those of a free fall, leave them what they are.
+
+    Args:
+        model: Model in double precision.
+        state: Configuration (nq), speeds (nv), inputs (nu) and states of forces (nz).
+        par: Run-time parameters.
+        t: Time [s].
+        spectrum: Gives the eigenvalues at other states.
+    """
+    (q, v, u, states), nv = state, model.nv
+    z = states if model.nz else None
+    try:
+        a = np.asarray(model.forward_dynamics(q, v, u, par=par, t=t, z=z))
+        M, h, Q = model.dynamics(q, v, u, par=par, t=t, z=z)
+        alone = float(np.abs(np.linalg.solve(M, np.stack([h, Q], axis=-1))).max(initial=0.0))
+    except (SymofrosError, np.linalg.LinAlgError):  # Functions that were left out; what moves no mass.
+        return ()
+    most = float(np.abs(a).max(initial=0.0))
+    if not most > _BALANCED * alone:
+        return ()
+    stiffness = model.linearize(q, v, u, par=par, t=t, z=z)[0][nv : 2 * nv, :nv]
+    if not most > _ROUNDING * np.abs(stiffness).max():
+        return ()
+    step, onwards = _towards_balance(stiffness, a)
+
+    def known(there: Array, faster: Array) -> tuple[Complex, Complex]:
+        """All eigenvalues at a state, and those of them that are more than rounding."""
+        found = spectrum(there, faster)
+        shaken = _changes(found, spectrum(model.integrate(there, np.full(nv, _ROUNDED)), faster))
+        return found, found[shaken < _SHAKEN]
+
+    here = known(q, v)
+    change = _change(here, known(model.integrate(q, step / max(1.0, np.abs(step).max() / _FARTHEST)), v))
+    going = float(np.abs(onwards).max())
+    if going > _GOES_ON * alone:
+        slowest = float(np.abs(here[1]).min(initial=np.inf))
+        there = model.integrate(q, onwards * (_FARTHEST / going))
+        change = max(change, _change(here, known(there, v + onwards / slowest if np.any(v) else v)))
+    if not change > _NOTED:
+        return ()
+    worst = int(np.argmax(np.abs(a)))
+    note = (
+        f"the state is neither an equilibrium nor a steady motion: '{model.names.v[worst]}' accelerates by"
+        f" {a[worst]:.3g}, which changes eigenvalues by {min(100.0 * change, 100.0):.2g} %: these modes are of the"
+        " instant alone; sf.equilibrium finds a rest"
+    )
+    return (note,)
+
+
+def _towards_balance(stiffness: Array, a: Array) -> tuple[Array, Array]:
+    """The displacement s, and the acceleration r in which nothing changes at first, a = r - K s and K r = 0 (7e)."""
+    _, sizes, directions = np.linalg.svd(stiffness)
+    free = directions[sizes <= _RANK * sizes[0]].T
+    both = np.linalg.pinv(np.hstack([-stiffness, free]), rcond=_RANK) @ a
+    return np.asarray(both[: len(a)]), np.asarray(free @ both[len(a) :])
+
+
+def _changes(some: Complex, others: Complex) -> Array:
+    """Distance of each eigenvalue to the nearest other one, as a share of it; infinite of one that is zero."""
+    distances, sizes = np.abs(some[:, np.newaxis] - others).min(axis=1, initial=np.inf), np.abs(some)
+    shares: Array = np.divide(distances, sizes, out=np.full(len(some), np.inf), where=sizes > 0.0)
+    return shares
+
+
+def _change(here: tuple[Complex, Complex], there: tuple[Complex, Complex]) -> float:
+    """The largest of those of eigenvalues that are more than rounding, either way."""
+    return max(float(_changes(x[1], y[0]).max(initial=0.0)) for x, y in ((here, there), (there, here)))
