@@ -141,11 +141,26 @@ class ExaminedRun(HeldRun):
         return float(norms_in(self._metrics_of_some, moved).max())
 
     def rounding(self, states: States) -> float:
-        """Speed of a motion by rounding, in the norm of the kinetic energy: a share of the coordinates a record."""
+        """Speed of a motion by rounding, in the norm of the kinetic energy.
+
+        A share of the coordinates a record, and of what forces that are balanced would give over the records.
+        """
         t, q, _, u = states
+        span = float(t[-1] - t[0])
+        if not span > 0.0:
+            return 0.0
         coordinates = self.model.difference(self.model.neutral(), q[-1])[np.newaxis]
-        span = float(t[-1] - t[0]) / max(1, len(t) - 1)
-        return AT_REST * float(self.norms(q[-1:], u[-1:], coordinates)[0]) / span if span > 0.0 else 0.0
+        moved = float(self.norms(q[-1:], u[-1:], coordinates)[0]) * max(1, len(t) - 1) / span
+        return AT_REST * (moved + span * self._pull(float(t[-1]), q[-1], u[-1]))
+
+    def _pull(self, t: float, q: Array, u: Array) -> float:
+        """Acceleration that gravity, or the applied forces, alone would give at rest, in that norm."""
+        try:
+            M, h, Q = self.model.dynamics(q, np.zeros(self.model.nv), u, par=self.stepper.par, t=t)
+            alone = np.asarray(np.linalg.solve(M, np.stack([h, Q], axis=-1)).T, dtype=np.float64)
+        except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
+            return 0.0
+        return float(np.nan_to_num(norms_in(np.broadcast_to(M, (2, *M.shape)), alone)).max(initial=0.0))
 
     @property
     def repeatable(self) -> bool:
