@@ -37,7 +37,8 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates of states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates of
+            states of forces that have a kink.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
@@ -81,11 +82,8 @@ def modes(
         BeamTheoryError: A beam is bent beyond the limit.
     """
     model.record.refuse_rigid_contacts("modes")
-    state = (
-        given_configuration(model, q),
-        np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv),
-        vector("u", given_inputs(model, u), model.nu),
-    )
+    v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
+    state = (given_configuration(model, q), v, vector("u", given_inputs(model, u), model.nu))
     refuse_opposite(model, state[0], state[2], par)
     states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
     A, basis, balanced = _linearised(model, *state, states, par, t)
