@@ -154,3 +154,36 @@ def test_draws_of_another_shape_are_refused(task: Any, what: str) -> None:
     changed = {what: (lambda rng, n: (np.zeros(2), np.zeros(2))) if what == "start" else (lambda rng, n: np.zeros(3))}
     with pytest.raises(sf.SymofrosError, match="do not fit"):
         sf.interop.gymnasium.MechanismEnv(replace(with_masses(task), **changed)).reset(seed=0)
+
+
+def test_observations_hold_coordinates_then_speeds_where_there_are_more_of_the_first() -> None:
+    """A ball joint: 4 and 3, of each environment its own."""
+    body = sf.RigidBody("top", sf.Joint("b", "ball"), sf.Inertia(1.0, (0, 0, 0.3), (0.1, 0.2, 0.25)))
+
+    def start(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+        q = rng.standard_normal((n, 4))
+        return q / np.linalg.norm(q, axis=1, keepdims=True), rng.standard_normal((n, 3))
+
+    kept = sf.interop.gymnasium.Task(
+        sf.compile(sf.System("top", (body,))), np.zeros(0), start, lambda q, v, u: v[:, 2], lambda q, v: v[:, 2] > 9.0
+    )
+    envs = sf.interop.gymnasium.MechanismVectorEnv(kept, 6)
+    first, _ = envs.reset(seed=3)
+    state, rewards, *_ = envs.step(np.zeros((6, 0)))
+    assert state.shape == (6, 7) and (rewards == state[:, 6]).all()
+    for k in range(6):
+        env = sf.interop.gymnasium.MechanismEnv(kept)
+        assert (env.reset(seed=3 + k)[0] == first[k]).all()
+        np.testing.assert_allclose(env.step(np.zeros(0))[0], state[k], rtol=1e-12)
+
+
+def test_one_step_an_action_is_accurate_for_the_cart_pole(task: Any) -> None:
+    ends = []
+    for substeps in (task.substeps, 16):
+        envs = sf.interop.gymnasium.MechanismVectorEnv(replace(task, substeps=substeps), 16)
+        state, _ = envs.reset(seed=1)
+        forces = np.random.default_rng(0)
+        for _ in range(15):
+            state, _, failed, *_ = envs.step(forces.uniform(-10.0, 10.0, (16, 1)))
+        ends.append(state)
+    assert not failed.any() and np.abs(ends[0] - ends[1]).max() < 2e-6
