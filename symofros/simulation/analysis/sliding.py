@@ -36,7 +36,7 @@ def contact_dynamics(
     slips = model.constraint_rate(q, v, u=u, par=stuck, t=t)
     n, normal = len(balls), [ball.rows[2] for ball in balls]
     change_a, change_lam = np.zeros((len(t), n, model.nv)), np.zeros((len(t), n, model.nc))
-    drags, friction = np.zeros((len(t), n, 2)), _friction(model, states, rows)
+    drags, friction = np.zeros((len(t), n, 2)), _friction(model, states, rows, given.get("z"))
     for j, ball in enumerate(balls):
         drags[:, j] = -(sliding * friction)[:, j, np.newaxis] * _direction(ball, slips, rows)
         pushed = rows.copy()
@@ -51,10 +51,11 @@ def contact_dynamics(
     return a, lam
 
 
-def _friction(model: Model, states: tuple[Array, Array, Array, Array], rows: Array) -> Array:
+def _friction(model: Model, states: tuple[Array, Array, Array, Array], rows: Array, z: Array | None) -> Array:
     """Coefficients of friction (n, number of balls)."""
-    kernel = model.formulas([ball.friction for ball in model.record.rigid_contacts], derivatives=False)
-    given = dict(zip("tqvu", (states[0][:, np.newaxis], *states[1:]), strict=True))
+    t, q, v, u = states
+    kernel = model.carried.formulas([ball.friction for ball in model.record.rigid_contacts], derivatives=False)
+    given: dict[str, Any] = {**dict(zip("qv", model.carry(q, v, z), strict=True)), "t": t[:, np.newaxis], "u": u}
     inputs = [given[group] for group, _ in kernel.signature.inputs]
     found: Array = np.asarray(kernel.run(len(rows), kernel.prepare(rows), inputs)[0]).reshape(len(rows), -1)
     return found

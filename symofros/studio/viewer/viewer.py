@@ -16,6 +16,7 @@ from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.camera_watch import CameraWatch
+from symofros.studio.viewer.page.scene_state import Acting
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
 from symofros.studio.viewer.playing.coordinate_units import coordinate_units
@@ -153,13 +154,21 @@ class Viewer(ViewerPage):
             self._panel = self._new_panel()
             self._judge_bending()
 
-    def show(self, q: ArrayLike | None = None, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
+    def show(
+        self,
+        q: ArrayLike | None = None,
+        *,
+        u: ArrayLike | None = None,
+        par: ArrayLike | None = None,
+        acting: Acting | None = None,
+    ) -> None:
         """Show a configuration, now; a motion that plays is paused.
 
         Args:
             q: Coordinates (nq); the neutral ones by default.
             u: Inputs (nu), for prescribed motions.
             par: Run-time parameters (npar); the mechanism is drawn anew where they change it.
+            acting: Forces of the run that it is a state of, and its time [s], for the layers "forces" and "moments".
 
         Raises:
             ShapeError: An array does not fit the model.
@@ -167,7 +176,7 @@ class Viewer(ViewerPage):
         state = self.mechanism.state(q, u, par)
         with self._painting:
             self._discard()
-            self._stand(state)
+            self._stand(state, acting)
 
     def push(self, t: float, q: ArrayLike, *, u: ArrayLike | None = None, par: ArrayLike | None = None) -> None:
         """Show a configuration soon, without waiting: for loops that have no time to lose.

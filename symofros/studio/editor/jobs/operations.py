@@ -189,7 +189,7 @@ def simulate(request: Json, tell: Tell) -> Json:
         **chosen,
     )
     run = replace(run, outcome=replace(run.outcome, notes=(*start.notes, *run.outcome.notes)))
-    return {**_motion(run, build_tree(system)), "par": start.par.tolist(), "wall_s": time.perf_counter() - began}
+    return {**_motion(run, build_tree(system)), "par": run.par.tolist(), "wall_s": time.perf_counter() - began}
 
 
 def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
@@ -207,6 +207,8 @@ def _motion(run: sf.Trajectory, tree: SpanningTree) -> Json:
     return {
         "t": numbers_for_json(run.t),
         "series": series,
+        "z": [numbers_for_json(row) for row in run.z] if run.model.nz else [],
+        "changes": [[first, numbers_for_json(par)] for first, par in run.changes],
         "method": cost.method,
         "steps": cost.steps,
         "rejected": cost.rejected,

@@ -6,7 +6,7 @@ import gzip
 import math
 from collections.abc import Callable
 from threading import Lock
-from typing import Any
+from typing import Any, NamedTuple
 from urllib.request import urlopen
 
 import numpy as np
@@ -16,9 +16,12 @@ from symofros.description import System
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
 from symofros.studio.editor.jobs.bent_beams import bent_beams
-from symofros.studio.editor.jobs.run_states import states_of
+from symofros.studio.editor.jobs.run_states import states_of, trajectory_of
 from symofros.studio.editor.jobs.worker import error_of
+from symofros.studio.viewer.drawing.arrows import ARROWS
+from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of
+from symofros.studio.viewer.playing.run_forces import RunForces
 from symofros.studio.viewer.viewer import Viewer
 
 Json = dict[str, Any]
@@ -36,6 +39,41 @@ Worker = class extends Worker {
 };
 </script>"""
 BROKEN = Problem("the model has problems", "see their list", "what is drawn is a mechanism", "mend them")
+
+
+_NO_RUN = "Forces are those of a simulated motion: simulate, then move its time."
+
+
+class _Forces(NamedTuple):
+    """Forces of a run.
+
+    Attributes:
+        run: The run, as of `DocumentViewer.seek`.
+        mechanism: Mechanism that is drawn.
+        forces: Its forces; None where it has none.
+        why: Why not.
+    """
+
+    run: Json
+    mechanism: Mechanism
+    forces: RunForces | None
+    why: str
+
+    @classmethod
+    def of(cls, run: Json, mechanism: Mechanism) -> _Forces:
+        """Forces of a run of a mechanism."""
+        try:
+            trajectory = trajectory_of(mechanism.moving, run)
+            if trajectory is None:
+                return cls(run, mechanism, None, "No forces: this motion has no speeds.")
+            forces = RunForces(trajectory, mechanism.tree, mechanism.drawing(trajectory.par))
+        except SymofrosError as error:
+            return cls(run, mechanism, None, f"No forces: {error.problem.what}")
+        return cls(run, mechanism, forces, "")
+
+    def legend(self, layers: frozenset[str]) -> list[str]:
+        """Scales of the layers that are shown, or why there are no forces, in words."""
+        return [self.why] if self.forces is None else self.forces.legend(layers)
 
 
 class DocumentViewer:
@@ -56,6 +94,8 @@ class DocumentViewer:
         self._viewer: Viewer | None = None
         self._page: bytes | None = None
         self._motion: tuple[Json, PlayedMotion] | None = None
+        self._forces: _Forces | None = None  # Of the run that was shown last with its forces.
+        self._is_of_run = False  # What is shown now.
         self._fault: Json | None = None
 
     @property
@@ -100,13 +140,14 @@ class DocumentViewer:
             )
         elif self._viewer.mechanism.system != system:
             self._viewer.set_system(system)
+            self._is_of_run = False
 
     def pose(self, body: Json) -> Json:
         """Move it or change its looks.
 
         Args:
             body: `q`, `par` {name: value}, `exaggeration`, `dark`, `frames`, `labels`, `marked` elements, `reset`,
-                `drag`: a frame that gets a handle, "" for none.
+                `forces`, `moments`, `drag`: a frame that gets a handle, "" for none.
 
         Returns:
             Where everything stands then, and why loops could not be closed.
@@ -127,7 +168,7 @@ class DocumentViewer:
                 raise _nothing_shown()
             if body.get("reset") is True:
                 viewer.reset()
-            for layer in ("frames", "labels"):
+            for layer in ("frames", "labels", *ARROWS):
                 if isinstance(body.get(layer), bool):
                     viewer.set_layer(layer, body[layer])
             if isinstance(body.get("dark"), bool):
@@ -138,11 +179,12 @@ class DocumentViewer:
                 viewer.exaggeration = float(factor)
             try:
                 if isinstance(body.get("drag"), str):
-                    viewer.drag(body["drag"] or None, lambda: self._tell("posed", {**_stand(viewer), "why": ""}))
+                    viewer.drag(body["drag"] or None, lambda: self._dragged(viewer))
                 why = viewer.move(q, par) if q or par else ""
             except SymofrosError as error:
                 raise EditError(_problem(error_of(error))) from None
-            return {**_stand(viewer), "why": why and why.partition("\n")[0]}
+            self._is_of_run = self._is_of_run and not (q or par or body.get("reset") is True)
+            return {**self._stand(viewer), "why": why and why.partition("\n")[0]}
 
     def seek(self, run: Json, time: Any) -> Json:
         """Show the state of a run at a time.
@@ -178,9 +220,33 @@ class DocumentViewer:
                 except SymofrosError as error:
                     raise EditError(_problem(error_of(error))) from None
             motion = self._motion[1]
-            q, u, par = motion.at(float(np.clip(time, motion.start, motion.end)))
-            viewer.show(q, u=u, par=par)
-            return {**_stand(viewer), "why": ""}
+            at = float(np.clip(time, motion.start, motion.end))
+            q, u, par = motion.at(at)
+            forces = self._forces_of(run, viewer)
+            viewer.show(q, u=u, par=par, acting=None if forces is None else (forces, at))
+            self._is_of_run = True
+            return {**self._stand(viewer), "why": ""}
+
+    def _forces_of(self, run: Json, viewer: Viewer) -> RunForces | None:
+        """Forces of a run where they are shown; formed when they are first asked for."""
+        if viewer.layers.isdisjoint(ARROWS):
+            return None
+        known = self._forces
+        if known is None or known.run is not run or known.mechanism is not viewer.mechanism:
+            self._forces = known = _Forces.of(run, viewer.mechanism)
+        return known.forces
+
+    def _dragged(self, viewer: Viewer) -> None:
+        self._is_of_run = False
+        self._tell("posed", {**self._stand(viewer), "why": ""})
+
+    def _stand(self, viewer: Viewer) -> Json:
+        """State of the view, with the scales of the arrows that are shown, or why there are none."""
+        shown, legend = viewer.layers & ARROWS.keys(), []
+        if shown:
+            is_known = self._is_of_run and self._forces is not None
+            legend = self._forces.legend(viewer.layers) if is_known and self._forces is not None else [_NO_RUN]
+        return {**_stand(viewer), "forces": bool(shown), "legend": legend}
 
     def _as_json(self, viewer: Viewer) -> Json:
         coordinates = [
@@ -199,7 +265,7 @@ class DocumentViewer:
             "run_time": list(viewer.mechanism.model.names.par),
             "fault": self._fault,
             "height": viewer.picture_height,
-            **_stand(viewer),
+            **self._stand(viewer),
         }
 
     def page(self) -> bytes | None:
@@ -227,7 +293,7 @@ def _stand(viewer: Viewer) -> Json:
     """
     model, state = viewer.mechanism.model, viewer.state
     gap, unit = None, ""
-    if model.nc:
+    if viewer.mechanism.system.constraints:  # Not of rigid contacts, which are open in a pose.
         open_by = np.abs(model.constraint(state.q, u=state.u, par=state.par))
         worst = int(np.argmax(open_by))
         gap, unit = float(open_by[worst]), GAP_UNITS.get(model.record.measures.unit[worst], "")

@@ -80,7 +80,7 @@ class Mechanism:
         ]
         wanted = {name for name in self._names if name is not None}
         functions: tuple[str, ...] = ("frame_pose",)
-        if system.constraints:
+        if self.tree.system.constraints:  # Those of rigid contacts and of friction that sticks, too.
             functions += ("constraint", "constraint_jacobian", "constraint_rate")
             ends = [
                 end for item in system.constraints if isinstance(item, Closure) for end in (item.first, item.second)
@@ -98,11 +98,11 @@ class Mechanism:
         if not self.is_flexible:
             return ()
         q, u, par = state
-        return bendings_in_motion(self._moving, q, np.zeros(self._moving.nv), u, par)
+        return bendings_in_motion(self.moving, q, np.zeros(self.moving.nv), u, par)
 
     @cached_property
-    def _moving(self) -> Model:
-        """The model with its dynamics, which are made when a beam is bent."""
+    def moving(self) -> Model:
+        """The model with all of its functions, made when it is first asked for: for bent beams, or forces of a run."""
         return compile_system(self.system)
 
     @property

@@ -308,9 +308,9 @@ class ViewerPage:
                 ]
             )
 
-    def _stand(self, state: State) -> None:
+    def _stand(self, state: State, acting: Acting | None = None) -> None:
         self._pause()
-        self._paint(state)
+        self._paint(state, acting)
         self._follow()
 
     def _pause(self) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import re
+from typing import Literal
 
 import numpy as np
 import pytest
 from playwright.sync_api import Page, Request, Response, expect
 
 from tests.studio.editor.browser import steps
-from tests.studio.editor.browser.conftest import Picture, Serve
+from tests.studio.editor.browser.conftest import Faults, Picture, Serve
 from tests.studio.pictures import MANY, changed, differing, settled
 from tests.studio.waiting import at_rest, until
 
@@ -205,3 +206,29 @@ def test_a_motion_plays_at_the_cursor_of_the_plots_and_runs_are_compared(
         expect(scheme).to_have_attribute("data-mantine-color-scheme", colours)
 
     a_second_run_is_compared(page, picture)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_forces_of_a_run_are_drawn_at_its_time(
+    opened: Serve, page: Page, faults: Faults, picture: Picture, theme: Literal["light", "dark"]
+) -> None:
+    page.emulate_media(color_scheme=theme)
+    opened("bar.yaml", source=next(steps.MODELS.glob("*/four_bar.yaml")))
+    still = steps.open_view(page)
+    pose = page.get_by_role("group", name="Pose")
+    pose.get_by_label("Forces").click()
+    expect(pose.get_by_label("Forces")).to_be_checked()
+    expect(pose).to_contain_text("simulate, then move its time")
+    steps.job(page, "Simulate", Duration="0.4", Speed_of_q1="3")
+    steps.results(page).get_by_role("slider", name="Time [s]").fill("0.2")
+    expect(pose).to_contain_text("forces (red):", timeout=steps.JOB)
+    assert faults() == []
+
+    def red(shown: np.ndarray) -> int:
+        r, g, b = (shown[..., k].astype(int) for k in range(3))
+        return int(((r > 150) & (g < 90) & (b < 90)).sum())
+
+    until(page, lambda: red(settled(page)) > red(still) + 30, "no arrows are drawn")
+    picture(f"forces-{theme}")
+    pose.get_by_label("Forces").click()
+    until(page, lambda: red(settled(page)) <= red(still) + 10, "arrows are still drawn")

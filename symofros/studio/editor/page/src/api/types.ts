@@ -304,6 +304,10 @@ export interface Stand {
   gap_unit: string;
   /** Whether frames are drawn. */
   frames: boolean;
+  /** Whether forces and moments of a run are drawn as arrows. */
+  forces: boolean;
+  /** Their scales, or why there are none. */
+  legend: string[];
   beams: BentBeam[];
 }
 
@@ -330,6 +334,9 @@ export interface Pose {
   /** Whether frames are drawn, and their names; bodies are seen through then. */
   frames?: boolean;
   labels?: boolean;
+  /** Whether arrows of forces and of moments are drawn, at instants of a run. */
+  forces?: boolean;
+  moments?: boolean;
   /** Elements that are drawn in the colour of what is chosen. */
   marked?: readonly string[];
   /** A run, whose state at a time is shown; of a diagram's run, of the mechanism that a block moves. */

@@ -155,6 +155,13 @@ function StartHere({ view }: { view: View }) {
   );
 }
 
+/** Shows or hides the arrows, at the time that is shown. */
+function showForces(forces: boolean): void {
+  const { time } = now();
+  void move({ forces, moments: forces });
+  if (time !== null) setTime(time);
+}
+
 /** Sliders of the coordinates, of how much bending is exaggerated, of parameters. */
 function Controls({ view }: { view: View }) {
   const { parameters } = useDocument();
@@ -174,10 +181,18 @@ function Controls({ view }: { view: View }) {
           />{" "}
           Frames
         </label>
+        <label title="Forces and moments at joints, constraints and contacts of the newest simulation, as arrows">
+          <input type="checkbox" checked={view.forces} onChange={({ target }) => showForces(target.checked)} /> Forces
+        </label>
         <Dragged />
         <StartHere view={view} />
         <Loops view={view} />
       </div>
+      {view.legend.map((line) => (
+        <p key={line} className="quiet">
+          {line}
+        </p>
+      ))}
       <Bending view={view} />
       <Coordinates view={view} chosen={view.coordinates.filter((one) => !one.elastic)} />
       {view.flexible ? (
