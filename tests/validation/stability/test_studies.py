@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from tests.models import sampled
+from validation.adapters.exudyn import contact as exudyn_contact
 from validation.stability.catalogue import STUDIES
 from validation.stability.closed_loops import baumgarte
 from validation.stability.contact import bounces, impact, incline
@@ -74,6 +75,12 @@ def test_smooth_friction_creeps_where_its_polynomial_carries_the_load() -> None:
     assert incline.creep(0.01) == pytest.approx(0.01 * incline.SLOW, rel=1e-4)
     assert incline.creep(1 - 1e-9) == pytest.approx(15 / 8 * incline.SLOW, rel=2e-3)
     assert incline.beyond(1.1, (0.2, 0.3), 0.2 + 3.0 + 50 * 0.1 * 0.5 * 9.81 / math.hypot(1, 0.55)) < 1e-12
+
+
+def test_exudyns_block_creeps_by_the_share_of_its_zone_of_speeds() -> None:
+    gx, gz = incline.gravity(0.6)
+    (x, v), (later, _) = exudyn_contact.slid(0.5, 0.1, 1e5, (gx, gz), 1e-3, (0.5, 1.0))
+    assert v == pytest.approx(0.6e-3, rel=1e-9) and later - x == pytest.approx(0.5 * v, rel=1e-9)
 
 
 def test_bounces_are_those_of_a_geometric_series() -> None:

@@ -1,4 +1,4 @@
-"""A block on an incline: what friction holds, by each of our forms of it, by MuJoCo's cones and by Drake."""
+"""A block on an incline: what friction holds, by each of our forms of it, by MuJoCo's cones, by Drake and by Exudyn."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 
 import symofros as sf
 
+from ...adapters.exudyn import contact as exudyn_contact
 from ...adapters.mujoco import motion as mujoco_motion
 from ...reporting.findings import Finding
 from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, longest, simulate
@@ -30,10 +31,11 @@ ENGINES = {
 }
 # Name of the contact model: Drake's own name of its approximation. The first one is its default.
 DRAKE = {"Drake, lagged": "kLagged", "Drake, SAP": "kSap", "Drake, TAMSI": "kTamsi"}
+EXUDYN = "Exudyn, general contact"
 SHARES = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5)
 LOAD = Grid.of("load over what friction carries, tan α/μ [-]", tuple(map(str, SHARES)), ("0.5", "0.999", "1.001"))
 FORMS = SMOOTH, BRISTLES, RIGID, HELD
-WHO = Grid.of("friction [-]", (*FORMS, *ENGINES, *DRAKE), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
+WHO = Grid.of("friction [-]", (*FORMS, *ENGINES, *DRAKE, EXUDYN), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
 STEPS = (1e-3, 4e-3)
 MJCF = (
     '<mujoco><option timestep="{h!r}" integrator="implicitfast" gravity="{gx!r} 0 {gz!r}" {cone}/><worldbody>'
@@ -93,6 +95,9 @@ def measure(h: float) -> Callable[[float, float], Cell]:
             return by_mujoco(name, share, h)
         if name in DRAKE:
             return by_drake(name, share, h)
+        if name == EXUDYN:
+            middle, last = exudyn_contact.slid(FRICTION, RADIUS, STIFFNESS, gravity(share), h, (SETTLED, END))
+            return Cell(beyond(share, middle, last[0]))
         run = slid(name, share, h)
         return cell(run, lambda run: beyond(share, (float(run.q[1, 0]), float(run.v[1, 0])), float(run.q[2, 0])))
 
@@ -176,7 +181,7 @@ def judge(maps: Maps) -> Verdict:
             reason="friction lags while bristles bend, by micrometres of speed times 10 s",
         ),
     )
-    asked = (name for name in rows if name in ENGINES or (name in DRAKE and drake_block.INSTALLED))
+    asked = (name for name in rows if name in (*ENGINES, EXUDYN) or (name in DRAKE and drake_block.INSTALLED))
     others = ", ".join(f"{name} {held[name]:.1g} m" for name in asked)
     statement = (
         f"Below the limit of friction Coulomb's block stays. In 10 s a rigid contact creeps by {held[RIGID]:.1g} m, "
@@ -187,8 +192,8 @@ def judge(maps: Maps) -> Verdict:
         "acceleration."
     )
     see = (
-        "Columns left of 1 should be blue: the block stays there. Rows of smooth friction, of MuJoCo's soft cones "
-        "and of Drake are orange: the block creeps, the faster the nearer to the limit."
+        "Columns left of 1 should be blue: the block stays there. Rows of smooth friction, of MuJoCo's soft cones, "
+        "of Drake and of Exudyn are orange: the block creeps, the faster the nearer to the limit."
     )
     return Verdict(statement, see, findings)
 
@@ -197,7 +202,8 @@ STUDY = ParameterStudy(
     "Does friction hold on an incline?",
     f"A block of 1 kg rests on an incline, μ = {FRICTION:g}; after {SETTLED:g} s for settling its motion over "
     f"{END - SETTLED:g} s is compared with Coulomb's: none up to tan α = μ, the closed form beyond. MuJoCo by its "
-    "default softness, implicitfast; Drake by its default contact, lagged, and two others that it offers.",
+    "default softness, implicitfast; Drake by its default contact, lagged, and two others that it offers; Exudyn by "
+    "its general contact, as stiff as ours.",
     LOAD,
     WHO,
     "distance from Coulomb's motion after 10 s [m]",
