@@ -37,8 +37,8 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates of
-            states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates
+            of states of forces that have a kink.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
