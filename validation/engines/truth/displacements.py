@@ -2,33 +2,55 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from decimal import Decimal
+from functools import partial
 
+from ..interface import Joint
 from .arithmetic import Exact, eye, solve
+from .charts import CHARTS, Chart
 from .dynamics import Point, Truth
 
-ROWS = 13
+# Of the table: what speeds of order one take for some 23 digits.
+ROWS = 11
 
 
 def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time: Gragg's midpoint rule, extrapolated to some 25 digits.
+    """Where q' = N(q) v leads with constant v in unit time.
 
     Args:
         truth: The truth.
         q: Coordinates.
         v: Speeds.
-        rows: Rows of the table: what v of order one takes, unless other is said.
+        rows: Rows of the table (`_extrapolated`).
     """
-    rates = truth.kinematics.rates
-    if not truth.kinematics.curved:
-        return q + rates(q) @ v
+    end = q + truth.kinematics.rates(q) @ v
+    # Joints move by themselves, and derivatives move one at a time.
+    for joint, slot in truth.kinematics.moving():
+        chart = CHARTS[slot.chart]
+        if not chart.is_flat:
+            own, speeds = q[list(slot.q)], v[list(slot.v)]
+            end[list(slot.q)] = truth.once(
+                ("integrated", rows, slot.q, *own, *speeds),
+                partial(_extrapolated, partial(_rate, chart, joint, speeds), own, rows),
+            )
+    return end
+
+
+def _rate(chart: Chart, joint: Joint, v: Exact, q: Exact) -> Exact:
+    """Rates of a joint's coordinates."""
+    return chart.rates(joint, q) @ v
+
+
+def _extrapolated(rate: Callable[[Exact], Exact], start: Exact, rows: int) -> Exact:
+    """Where q' = rate(q) leads in unit time: Gragg's midpoint rule, extrapolated."""
     table: list[Exact] = []
     for row in range(rows):
         n = 2 * (row + 1)
-        before, point = q, q + (rates(q) @ v) / n
+        before, point = start, start + rate(start) / n
         for _ in range(n - 1):
-            before, point = point, before + 2 * (rates(point) @ v) / n
-        last = (before + point + (rates(point) @ v) / n) / 2
+            before, point = point, before + 2 * rate(point) / n
+        last = (before + point + rate(point) / n) / 2
         line = [last]
         for k in range(row):
             ratio = Decimal((row + 1) ** 2) / Decimal((row - k) ** 2)

@@ -214,13 +214,11 @@ def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
     draw = np.random.default_rng(seed)
     kinematics = Kinematics(tree, model)
     q, q2 = np.zeros(model.nq), np.zeros(model.nq)
-    for index in range(len(tree.links)):
-        for joint, slot in kinematics.joints(index):
-            if slot is not None and not joint.mimics:
-                chart = CHARTS[slot.chart]
-                for coordinates in (q, q2):
-                    coordinates[list(slot.q)] = chart.sample(joint, draw)
-                    coordinates[[slot.q[k] for k in chart.position]] += tree.away[: len(chart.position)]
+    for joint, slot in kinematics.moving():
+        chart = CHARTS[slot.chart]
+        for coordinates in (q, q2):
+            coordinates[list(slot.q)] = chart.sample(joint, draw)
+            coordinates[[slot.q[k] for k in chart.position]] += tree.away[: len(chart.position)]
     v, a, tau, v2 = (draw.uniform(-1.0, 1.0, model.nv) for _ in range(4))
     if tree.near:
         part = 2.0**-tree.near

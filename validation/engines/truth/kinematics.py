@@ -69,13 +69,18 @@ class Kinematics:
             still = joint.kind == "fixed" or joint.locked is not None
             yield joint, None if still else next(slots)
 
-    def rates(self, q: Exact) -> Exact:
-        """N (nq, nv) with q' = N v."""
-        N = zeros(self.nq, self.nv)
+    def moving(self) -> Iterator[tuple[Joint, Slot]]:
+        """Joints that move by themselves, with their slots."""
         for index in range(len(self.tree.links)):
             for joint, slot in self.joints(index):
                 if slot is not None and not joint.mimics:
-                    N[np.ix_(slot.q, slot.v)] = CHARTS[slot.chart].rates(joint, q[list(slot.q)])
+                    yield joint, slot
+
+    def rates(self, q: Exact) -> Exact:
+        """N (nq, nv) with q' = N v."""
+        N = zeros(self.nq, self.nv)
+        for joint, slot in self.moving():
+            N[np.ix_(slot.q, slot.v)] = CHARTS[slot.chart].rates(joint, q[list(slot.q)])
         return N
 
     def along(self, function: Callable[[Exact], Exact], q: Exact, v: Exact) -> Exact:
