@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 from ..faults.environment import NotAskedError, default_folder, published
 from .interface import EnginePlugin
 from .releases import Opened, Release, opened
-from .verdicts import RED, Cell
+from .verdicts import RED, Cell, Verdict
 
+# Faults of numbers.
+_NUMBERS: tuple[Verdict, ...] = ("wrong", "imprecise")
 # Releases in a row that are asked before it is taken that none there answers.
 _FEW = 3
 # What cells an opened release gives on one tree or file.
@@ -110,31 +113,58 @@ def history(
     """Lines that say when a cell was red, as they are found.
 
     Args:
-        cell: ENGINE/TREE/FUNCTION.
+        cell: ENGINE/TREE/FUNCTION, or that with =VERDICT: what a release has to be to have the fault. Otherwise it is
+            what the stated release is, a wrong number, an exception or a crash: another fault says nothing of this one.
         pair: The plug-in, and a release that has the fault; without a version, the newest.
         requires: Further requirements of the environments.
         folder: Folder of the environments; None: in the cache folder.
         ask: Asks a release about the tree.
 
     Raises:
-        NotAskedError: The releases can't be listed, or the stated one is not red.
+        NotAskedError: The releases can't be listed, or the stated one has not the fault.
+        ValueError: There is no such verdict.
     """
     plugin, stated = pair
-    listed, place, function = published(stated.package), folder or default_folder(), cell.rpartition("/")[2]
+    what, _, verdict = cell.partition("=")
+    if verdict and verdict not in RED:
+        raise ValueError(f"no red verdict '{verdict}'; there are {', '.join(RED)}")
+    listed, place, function = published(stated.package), folder or default_folder(), what.rpartition("/")[2]
 
-    def asked(version: str) -> bool | str:
+    @cache
+    def found(version: str) -> Cell | str:
         with opened([(plugin, replace(stated, version=version, requires=tuple(requires)))], place) as reach:
             if reach.failures:
                 return next(iter(reach.failures.values()))
-            found = {one.function: one for one in ask(reach)}.get(function)
-        if found is None or (found.verdict != "right" and found.verdict not in RED):
-            return f"{found.verdict}: {found.words}" if found else "no such function"
-        return found.verdict in RED
+            return {one.function: one for one in ask(reach)}.get(function, "no such function")
 
-    search = Search(listed, asked)
-    bad = red_place(search, stated.version, f"{cell}: {plugin.package}")
-    yield f"{cell}: red at {plugin.package} {listed[bad]}"
+    first = found(listed[_place(listed, stated.version)])
+    wanted = (verdict,) if verdict else () if isinstance(first, str) else same_fault(first.verdict)
+    search = Search(listed, lambda version: has_fault(found(version), wanted))
+    bad = red_place(search, stated.version, f"{what}: {plugin.package}")
+    yield f"{what}: {' or '.join(wanted)} at {plugin.package} {listed[bad]}"
     yield from told(search, search.span(bad), plugin.package)
+
+
+def same_fault(verdict: Verdict) -> tuple[Verdict, ...]:
+    """The verdicts by which a fault goes on: numbers may be wrong by more or less."""
+    return _NUMBERS if verdict in _NUMBERS else tuple(one for one in RED if one == verdict)
+
+
+def has_fault(found: Cell | str, wanted: Collection[str]) -> bool | str:
+    """Whether a cell has one of the verdicts that are wanted; in words, why it says nothing of them.
+
+    Args:
+        found: The cell; in words, why there is none.
+        wanted: Verdicts.
+    """
+    if isinstance(found, str) or found.verdict in wanted:
+        return found if isinstance(found, str) else True
+    return False if found.verdict in ("right", *_NUMBERS) else f"{found.verdict}: {found.words}"
+
+
+def _place(listed: Sequence[str], version: str) -> int:
+    """The place of the stated release, or the newest."""
+    return listed.index(version) if version in listed else len(listed) - 1
 
 
 def red_place(search: Search, version: str, what: str) -> int:
@@ -144,9 +174,11 @@ def red_place(search: Search, version: str, what: str) -> int:
         NotAskedError: It is not red.
     """
     listed = search.releases
-    bad = listed.index(version) if version in listed else len(listed) - 1
+    bad = _place(listed, version)
     if search.at(bad) is not True:
-        raise NotAskedError(f"{what} {listed[bad]}: {search.at(bad) or 'is right'}; state a red release by --at")
+        raise NotAskedError(
+            f"{what} {listed[bad]}: {search.at(bad) or 'has not this fault'}; state a release that has it by --at"
+        )
     return bad
 
 

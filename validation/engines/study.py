@@ -20,7 +20,7 @@ from ..reporting.record import Data
 from ..worker_process import WorkerProcess
 from . import changes, parts, releases
 from .bisection import history
-from .causes.grouping import by_function, causes_of, without_their_causes
+from .causes.grouping import without_their_causes
 from .causes.history import histories, named
 from .functions import FUNCTIONS
 from .identities import held
@@ -30,40 +30,10 @@ from .models import acting, flexible, hostile, kinds, loops, sensed, single, sta
 from .models.formats import formats
 from .models.readers import Reading
 from .plugins import OWN
-from .proving.scripts import Proof, Prover
+from .proving.proofs import Proven, faults, proofs
 from .proving.shrink import TRIES
 from .verdicts import Cell, refusals
 from .workers import Job, Worker, registry
-
-
-def fault_groups(cells: Sequence[Judged]) -> list[list[Judged]]:
-    """Red cells that one script stands for: a function of an engine, on the trees that one cause shows it on.
-
-    Returns:
-        Groups of red cells, the first of which stands for the others.
-    """
-    judged_cells = {one.cell: one for one in cells}
-    groups = (lot for group in causes_of(judged_cells) for lot in by_function(group.cells))
-    return [[judged_cells[cell] for cell in lot] for lot in groups]
-
-
-def proofs(
-    plugins: Mapping[str, EnginePlugin],
-    cells: Sequence[Judged],
-    worker: Worker,
-    folder: Path,
-    after: Callable[[Proof], object],
-    tries: int = TRIES,
-) -> list[tuple[Proof, tuple[str, ...]]]:
-    """A proven script for each fault, with the names of all trees that show it; `tries` bounds the shrinking."""
-    results, prover = [], Prover(worker, folder, tries)
-    for group in fault_groups(cells):
-        first = group[0]
-        proof = prover.prove(plugins[first.cell.engine], first)
-        results.append((proof, tuple(one.cell.model for one in group)))
-        after(proof)
-    return results
-
 
 # Seconds for each engine of the smoke tier, so that what is begun then ends within a minute.
 SMOKE = 50.0
@@ -179,7 +149,8 @@ def measure(
         Path | None, typer.Option(help="Say which cells changed against a stored engines.json.")
     ] = None,
     bisect: Annotated[
-        str | None, typer.Option(metavar="ENGINE/TREE/FUNCTION", help="First bad and first good release of this cell.")
+        str | None,
+        typer.Option(metavar="ENGINE/TREE/FUNCTION[=VERDICT]", help="First bad and first good release of this cell."),
     ] = None,
     since: Annotated[
         list[str] | None,
@@ -220,11 +191,7 @@ def measure(
             raise typer.Exit(Exit.MISSED)
         run.expect(len(wanted), "asking engines")
         cells = _within_a_minute(reach, every, wanted) if smoke else _all(run, reach, every, wanted)
-        proven = (
-            proofs(reach.plugins, cells, reach.worker, run.folder / "engines", lambda one: run.advance(one.file), tries)
-            if prove and run.writes and not smoke
-            else []
-        )
+        proven = _proofs(run, reach, cells, tries) if prove and run.writes and not smoke else []
     chosen, plain = reach.plugins, [one.cell for one in cells]
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
@@ -295,7 +262,7 @@ def _chosen(
 
 def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
     """The cells of all engines; of those of this environment, half of the questions in a second process."""
-    if reach.release or (os.cpu_count() or 1) < 2:
+    if not _halves(reach):
         return about(reach.plugins, {name: every[name] for name in wanted}, reach.worker, run.advance)[0]
     found: dict[str, list[Judged]] = {}
 
@@ -312,6 +279,19 @@ def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[st
             run.advance(name)
         rest.result()
     return [cell for name in wanted for cell in found[name]]
+
+
+def _proofs(run: Run, reach: releases.Opened, cells: Sequence[Judged], tries: int) -> list[Proven]:
+    """A proven script for each fault."""
+    found, folder = faults(cells), run.folder / "engines"
+    run.expect(len(found), "proving faults")
+    halves = _halves(reach)
+    return proofs(reach.plugins, found, reach.worker, folder, lambda one: run.advance(one.file), tries, halves)
+
+
+def _halves(reach: releases.Opened) -> bool:
+    """Whether a second process does half: of the engines of this environment, where there are two processors."""
+    return not reach.release and (os.cpu_count() or 1) > 1
 
 
 def _within_a_minute(reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:

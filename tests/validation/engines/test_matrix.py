@@ -11,7 +11,7 @@ import pytest
 
 from tests.late import require
 from validation.engines.identities import held
-from validation.engines.interface import Array, EnginePlugin, Slot, Unsupported
+from validation.engines.interface import Array, EnginePlugin, Slot, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
 from validation.engines.models.formats import formats
 from validation.engines.models.hostile import trees
@@ -20,10 +20,10 @@ from validation.engines.models.readers import Reading
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
 from validation.engines.proving.pieces import Layout
-from validation.engines.study import fault_groups
+from validation.engines.proving.proofs import Fault, dealt, faults
 from validation.engines.truth.dynamics import random_state
-from validation.engines.verdicts import expected, judge
-from validation.engines.workers import Crashed, Job, Worker, answered
+from validation.engines.verdicts import Cell, expected, judge
+from validation.engines.workers import Answer, Crashed, Job, Worker, answered
 
 SIMPLE = ("mass_matrix", "bias", "link_jacobians", "kinetic_energy")
 
@@ -222,5 +222,15 @@ def test_trees_that_one_cause_shows_on_share_a_script() -> None:
         for kind in ("universal", "three hinges", "euler zyx")
         for one in _judged(kind, "coriolis_forces", "coriolis_symmetry")
     ]
-    groups = [[one.cell.model for one in group] for group in fault_groups(reds)]
-    assert groups == [["universal", "three hinges", "euler zyx"]] * 2
+    assert [fault.models for fault in faults(reds)] == [("universal", "three hinges", "euler zyx")] * 2
+
+
+def test_two_processes_prove_half_of_the_faults_each_and_those_of_an_engine_together() -> None:
+    counts = {"a": 1, "b": 5, "c": 2, "d": 3}
+    made = [
+        Fault(Judged(Cell(engine, str(k), "gravity", "wrong"), Answer("gravity", np.zeros(1)), None, Tree("", ())), ())
+        for engine, count in counts.items()
+        for k in range(count)
+    ]
+    lots = [[fault.first.cell.engine for fault in lot] for lot in dealt(made)]
+    assert lots == [["b"] * 5 + ["a"], ["d"] * 3 + ["c"] * 2]

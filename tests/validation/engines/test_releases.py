@@ -15,12 +15,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.engines import changes, releases
-from validation.engines.bisection import Search
+from validation.engines.bisection import Search, has_fault, same_fault
 from validation.engines.interface import EnginePlugin
 from validation.engines.models.kinds import tree_of
 from validation.engines.parts import CELLS, nested
 from validation.engines.releases import CRASHES, Opened, Release, opened
 from validation.engines.study import about
+from validation.engines.verdicts import Cell, Verdict
 from validation.faults.environment import kept
 
 TREES = {name: tree_of(name) for name in ("revolute x", "revolute y", "revolute z", "revolute oblique")}
@@ -154,6 +155,29 @@ def test_strides_find_a_change_among_releases_of_which_some_are_silent(silent: l
         wanted = (min if step > 0 else max)(good, default=None)
         assert beyond == wanted
         assert found == (max if step > 0 else min)([k for k in answering if said[k]])
+
+
+@pytest.mark.parametrize(
+    ("named", "verdict", "says"),
+    [
+        ("wrong", "imprecise", True),
+        ("imprecise", "wrong", True),
+        ("wrong", "right", False),
+        ("wrong", "raises", "raises: said"),
+        ("wrong", "crashes", "crashes: said"),
+        ("wrong", "plug-in", "plug-in: said"),
+        ("raises", "raises", True),
+        ("raises", "wrong", False),
+        ("raises", "crashes", "crashes: said"),
+        ("crashes", "right", False),
+        ("right", "right", False),
+    ],
+)
+def test_a_release_has_the_fault_that_was_named_and_no_other(
+    named: Verdict, verdict: Verdict, says: bool | str
+) -> None:
+    assert has_fault(Cell("mine", "ball", "bias", verdict, words="said"), same_fault(named)) == says
+    assert has_fault("not to be installed", same_fault(named)) == "not to be installed"
 
 
 def test_changed_cells_are_those_that_both_runs_asked() -> None:
