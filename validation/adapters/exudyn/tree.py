@@ -16,8 +16,8 @@ from ..reach import unrepresented
 from . import mapped
 
 NAME = "exudyn"
-# States in one call: Jacobians are read column by column.
-MOST_STATES = 300
+# States in one call, and columns of Jacobians at all of them: Jacobians are read column by column, each of all links.
+MOST_STATES, MOST_COLUMNS = 300, 2000
 _JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic"})
 
 
@@ -37,4 +37,5 @@ def build(subject: Subject) -> Engine | Unsupported:
     engine = build_charted(NAME, subject, _JOINTS, whole=False, merged=True)
     if isinstance(engine, Unsupported):
         return engine
-    return replace(engine, capabilities=mapped.offered(system), most_states=MOST_STATES)
+    most = min(MOST_STATES, MOST_COLUMNS // max(assembly.nv, 1))
+    return replace(engine, capabilities=mapped.offered(system), most_states=most)
