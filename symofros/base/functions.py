@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection
 from typing import get_args
 
-from symofros.base.model_function import Group, cotangent_inputs, transposed
+from symofros.base.model_function import Group, cotangent_inputs, row_of, transposed
 from symofros.base.model_function import ModelFunction as ModelFunction
 from symofros.base.model_function import OutputArray as OutputArray
 from symofros.base.model_function import size_of as size_of
@@ -31,37 +31,10 @@ INPUTS: dict[str, tuple[str, str]] = {
     "dv": ("nv", "direction of the speeds"),
     "da": ("nv", "direction of the accelerations"),
 }
-_OUTPUT = re.compile(r"(?P<name>\w+) \((?P<shape>[^)]*)\)(?: = (?P<source>\w+))?")
-
-
-def _row(
-    name: str,
-    inputs: str,
-    outputs: str,
-    group: Group,
-    summary: str,
-    *,
-    exported: bool = False,
-    by_solver: bool = False,
-    unit: str = "",
-) -> ModelFunction:
-    """A row from its text: inputs by spaces, outputs as in "M (nv, nv); tau (nv) = inverse_dynamics"."""
-    arrays = []
-    for text in outputs.split("; "):
-        match = _OUTPUT.fullmatch(text)
-        assert match is not None, text
-        shape = tuple(size.strip() for size in match["shape"].split(",") if size)
-        arrays.append(OutputArray(match["name"], shape, match["source"] or match["name"]))
-    constrained_only = group == "constraints" or name in ("project", "constraint_rate_derivative")
-    return ModelFunction(
-        name, tuple(inputs.split()), tuple(arrays), summary, group, exported, by_solver, unit, constrained_only
-    )
-
-
 _ROWS: tuple[ModelFunction, ...] = (
-    _row("mass_matrix", "q", "M (nv, nv)", "dynamics", "mass matrix M(q)", exported=True),
-    _row("bias", "q v", "h (nv)", "dynamics", "Coriolis, centrifugal and gravity terms h(q, v)", exported=True),
-    _row(
+    row_of("mass_matrix", "q", "M (nv, nv)", "dynamics", "mass matrix M(q)", exported=True),
+    row_of("bias", "q v", "h (nv)", "dynamics", "Coriolis, centrifugal and gravity terms h(q, v)", exported=True),
+    row_of(
         "gravity_force",
         "q",
         "g (nv) = gravity_force",
@@ -69,9 +42,9 @@ _ROWS: tuple[ModelFunction, ...] = (
         "g(q) = h(q, 0), what holds the weight at rest: the efforts of gravity compensation",
         exported=True,
     ),
-    _row("generalized_force", "q v u t", "Q (nv)", "dynamics", "applied and joint forces Q(q, v, u)", exported=True),
-    _row("dynamics", "q v u t", "M (nv, nv); h (nv); Q (nv)", "dynamics", "M, h and Q in one call", exported=True),
-    _row(
+    row_of("generalized_force", "q v u t", "Q (nv)", "dynamics", "applied and joint forces Q(q, v, u)", exported=True),
+    row_of("dynamics", "q v u t", "M (nv, nv); h (nv); Q (nv)", "dynamics", "M, h and Q in one call", exported=True),
+    row_of(
         "forward_dynamics",
         "q v u gains t",
         "a (nv); lam (nc); rank ()",
@@ -81,7 +54,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
         unit="step",
     ),
-    _row(
+    row_of(
         "inverse_dynamics",
         "q v a t",
         "tau (nv) = inverse_dynamics",
@@ -89,9 +62,9 @@ _ROWS: tuple[ModelFunction, ...] = (
         "efforts that an acceleration takes, M a + h - Q(q, v, 0)",
         exported=True,
     ),
-    _row("kinetic_energy", "q v", "T ()", "dynamics", "kinetic energy [J]", exported=True, unit="energy"),
-    _row("potential_energy", "q t", "V ()", "dynamics", "potential energy [J]", exported=True, unit="energy"),
-    _row(
+    row_of("kinetic_energy", "q v", "T ()", "dynamics", "kinetic energy [J]", exported=True, unit="energy"),
+    row_of("potential_energy", "q t", "V ()", "dynamics", "potential energy [J]", exported=True, unit="energy"),
+    row_of(
         "forward_dynamics_derivatives",
         "q v u t",
         "by_q (nv + nc, nv) = residual_by_q; by_v (nv + nc, nv) = residual_by_v; by_u (nv + nc, nu) = residual_by_u",
@@ -100,7 +73,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         exported=True,
         by_solver=True,
     ),
-    _row(
+    row_of(
         "implicit_terms",
         "q v a u lam t",
         "M (nv, nv); G (nc, nv); by_q (nv + nc, nv) = residual_by_q; by_v (nv + nc, nv) = residual_by_v; "
@@ -109,8 +82,8 @@ _ROWS: tuple[ModelFunction, ...] = (
         "terms of an implicit step's linear system: docs/theory/simulation.md, section 3",
         exported=True,
     ),
-    _row("constraint", "q t", "phi (nc)", "constraints", "phi(q)", exported=True, unit="closing"),
-    _row(
+    row_of("constraint", "q t", "phi (nc)", "constraints", "phi(q)", exported=True, unit="closing"),
+    row_of(
         "constraint_rate",
         "q v t",
         "phi_rate (nc) = constraint_rate",
@@ -119,9 +92,9 @@ _ROWS: tuple[ModelFunction, ...] = (
         exported=True,
         unit="closing",
     ),
-    _row("constraint_jacobian", "q t", "G (nc, nv)", "constraints", "Jacobian G(q)", exported=True, unit="closing"),
-    _row("constraint_bias", "q v t", "gamma (nc)", "constraints", "gamma(q, v), which G v' equals", exported=True),
-    _row(
+    row_of("constraint_jacobian", "q t", "G (nc, nv)", "constraints", "Jacobian G(q)", exported=True, unit="closing"),
+    row_of("constraint_bias", "q v t", "gamma (nc)", "constraints", "gamma(q, v), which G v' equals", exported=True),
+    row_of(
         "project",
         "q v u t",
         "q_on (nq); v_on (nv); residual (); rank (); energies (2); gap ()",
@@ -131,35 +104,35 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
         unit="step",
     ),
-    _row(
+    row_of(
         "closure_wrenches",
         "q lam t",
         "on_second (nw, 6) = wrenches_on_second; on_first (nw, 6) = wrenches_on_first",
         "constraints",
         "force and moment of each constraint on the frames that it joins",
     ),
-    _row(
+    row_of(
         "joint_wrenches",
         "q v a u lam t",
         "wrench (nj, 6) = joint_wrenches",
         "dynamics",
         "force and moment that each joint transmits to its body",
     ),
-    _row(
+    row_of(
         "section_forces",
         "q v a u lam t",
         "F (nf, 6) = section_forces",
         "dynamics",
         "force and moment inside elastic beams at their stations, N Vy Vz T My Mz in the axes of the section",
     ),
-    _row(
+    row_of(
         "prescribed_efforts",
         "q v a u lam t",
         "effort (ns) = prescribed_efforts",
         "dynamics",
         "efforts of the drives of prescribed motions",
     ),
-    _row(
+    row_of(
         "contact_forces",
         "q v t",
         "gap (nk) = contact_gaps; push (nk) = contact_pushes; force (nk, 3) = contact_forces; "
@@ -167,21 +140,21 @@ _ROWS: tuple[ModelFunction, ...] = (
         "dynamics",
         "distances of balls from the surfaces that they may touch, forces on them and where these act",
     ),
-    _row(
+    row_of(
         "constraint_rate_derivative",
         "q v t",
         "by_q (nc, nv) = constraint_rate_by_q",
         "derivatives",
         "derivative of G v - b by q",
     ),
-    _row(
+    row_of(
         "inverse_dynamics_derivatives",
         "q v a t",
         "dtau_dq (nv, nv) = inverse_dynamics_by_q; dtau_dv (nv, nv) = inverse_dynamics_by_v",
         "derivatives",
         "derivatives of inverse_dynamics by q and v",
     ),
-    _row(
+    row_of(
         "inverse_dynamics_second_derivatives",
         "q v a t",
         "d2tau_dq2 (nv, nv nv); d2tau_dv2 (nv, nv nv); d2tau_dqdv (nv, nv nv); d2tau_dadq (nv, nv nv)",
@@ -189,7 +162,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "second derivatives of inverse_dynamics; entry (i, j nv + k) is that of tau_i by the j-th, then the k-th",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "inverse_dynamics_hvp",
         "q v a t tau_bar dq dv da",
         "by_q (nv); by_v (nv); by_a (nv)",
@@ -197,7 +170,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "Hessian-vector product: change of the derivatives of tau_bar . inverse_dynamics along (dq, dv, da)",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "inverse_dynamics_hessian",
         "q v a t tau_bar",
         "H (3 nv + npar, 3 nv + npar)",
@@ -205,14 +178,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         "second derivatives of tau_bar . inverse_dynamics by (q, v, a, par)",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "inverse_dynamics_by_par",
         "q v a t",
         "dtau_dpar (nv, npar) = inverse_dynamics_by_par",
         "derivatives",
         "derivative of inverse_dynamics by the run-time parameters",
     ),
-    _row(
+    row_of(
         "forward_dynamics_by_par",
         "q v u t",
         "by_par (nv + nc, npar) = residual_by_par",
@@ -220,7 +193,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "derivative of the accelerations (and multipliers) by the run-time parameters",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "forward_dynamics_hessian",
         "q v u t a_bar lam_bar",
         "H (2 nv + nu + npar, 2 nv + nu + npar)",
@@ -228,14 +201,14 @@ _ROWS: tuple[ModelFunction, ...] = (
         "second derivatives of a_bar . v' + lam_bar . lam by (q, v, u, par)",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "residual_derivatives",
         "q v a u lam t",
         "by_q (nv + nc, nv) = residual_by_q; by_v (nv + nc, nv) = residual_by_v; by_u (nv + nc, nu) = residual_by_u",
         "derivatives",
         "derivatives of (M a + h - Q - G^T lam; G a - gamma) by q, v and u",
     ),
-    _row(
+    row_of(
         "rest_stiffness",
         "q u lam t",
         "K (nv, nv)",
@@ -244,7 +217,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
         unit="rest",
     ),
-    _row(
+    row_of(
         "rest_forces",
         "q u t",
         "h (nv); Q (nv)",
@@ -253,7 +226,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         by_solver=True,
         unit="rest",
     ),
-    _row(
+    row_of(
         "rest_damping",
         "q u t",
         "D (nv, nv)",
@@ -261,21 +234,21 @@ _ROWS: tuple[ModelFunction, ...] = (
         "derivative of h - Q by v at rest, v = 0",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "residual",
         "q v a u lam t",
         "R (nv) = dynamic_residual; phi (nc); phi_rate (nc) = constraint_rate",
         "stepping",
         "M a + h - Q - G^T lam, phi and G v - b",
     ),
-    _row(
+    row_of(
         "momentum",
         "q v u t",
         "p (nv) = momentum; F (nv) = momentum_force; M (nv, nv)",
         "stepping",
         "p = M v, and F with p' = F + ad_v^T p",
     ),
-    _row(
+    row_of(
         "beam_stiffness",
         "",
         "L (nb) = beam_lengths; EI (nb, 2) = bending_stiffnesses; K (nv, nv) = elastic_stiffness",
@@ -283,7 +256,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "of elastic beams: lengths, EI_z and EI_y at mid-length (rods: 0), and stiffness of the elastic coordinates",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "instant_operands",
         "t",
         "operand (ni); kind (ni)",
@@ -291,7 +264,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "operands of formulas of time that steps end at zeros or extrema of: docs/theory/simulation.md, (3a)",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "mass_matrix_values",
         "q",
         "values (nz)",
@@ -299,7 +272,7 @@ _ROWS: tuple[ModelFunction, ...] = (
         "entries of M's lower triangle that may differ from zero",
         by_solver=True,
     ),
-    _row(
+    row_of(
         "mass_matrix_pattern",
         "",
         "row (nz); column (nz)",
@@ -307,39 +280,39 @@ _ROWS: tuple[ModelFunction, ...] = (
         "rows and columns of mass_matrix_values",
         by_solver=True,
     ),
-    _row("center_of_mass", "q", "p_WScm (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
-    _row(
+    row_of("center_of_mass", "q", "p_WScm (3) = center_of_mass", "dynamics", "mass centre of all that joints carry"),
+    row_of(
         "centroidal_momentum",
         "q v",
         "h_G (6) = centroidal_momentum",
         "dynamics",
         "momentum about the mass centre, linear then angular",
     ),
-    _row(
+    row_of(
         "centroidal_momentum_matrix",
         "q",
         "A_G (6, nv) = centroidal_momentum_matrix",
         "dynamics",
         "A_G with centroidal_momentum = A_G v",
     ),
-    _row(
+    row_of(
         "centroidal_momentum_rate",
         "q v a",
         "h_G_rate (6) = centroidal_momentum_rate",
         "dynamics",
         "rate of the momentum about the mass centre",
     ),
-    _row("coriolis_matrix", "q v", "C (nv, nv) = coriolis_matrix", "dynamics", "C with C v = h without weight"),
-    _row(
+    row_of("coriolis_matrix", "q v", "C (nv, nv) = coriolis_matrix", "dynamics", "C with C v = h without weight"),
+    row_of(
         "regressor",
         "q v a",
         "Y (nv, npi) = regressor",
         "derivatives",
         "Y with M a + h = Y pi, for the links' inertial parameters pi, ten a link",
     ),
-    _row("frame_pose", "q", "p (3); R (3, 3)", "frames", "p_WF and R_WF of a frame", exported=True),
-    _row("frame_velocity", "q v", "V (6) = velocity", "frames", "velocity and angular velocity", exported=True),
-    _row(
+    row_of("frame_pose", "q", "p (3); R (3, 3)", "frames", "p_WF and R_WF of a frame", exported=True),
+    row_of("frame_velocity", "q v", "V (6) = velocity", "frames", "velocity and angular velocity", exported=True),
+    row_of(
         "frame_acceleration",
         "q v a",
         "A (6) = acceleration",
@@ -347,17 +320,17 @@ _ROWS: tuple[ModelFunction, ...] = (
         "acceleration and angular acceleration",
         exported=True,
     ),
-    _row("frame_jacobian", "q", "J (6, nv) = jacobian", "frames", "J with frame_velocity = J v", exported=True),
-    _row("frame_jacobian_rate", "q v", "dJ (6, nv) = jacobian_rate", "frames", "rate of the Jacobian", exported=True),
-    _row("frame_position_by_par", "q", "by_par (3, npar) = position_by_par", "frames", "derivative of p_WF by par"),
-    _row(
+    row_of("frame_jacobian", "q", "J (6, nv) = jacobian", "frames", "J with frame_velocity = J v", exported=True),
+    row_of("frame_jacobian_rate", "q v", "dJ (6, nv) = jacobian_rate", "frames", "rate of the Jacobian", exported=True),
+    row_of("frame_position_by_par", "q", "by_par (3, npar) = position_by_par", "frames", "derivative of p_WF by par"),
+    row_of(
         "frame_position_hessian",
         "q p_WF_bar",
         "H (nv + npar, nv + npar) = position_hessian",
         "frames",
         "second derivatives of p_WF_bar . p_WF by (q, par)",
     ),
-    _row(
+    row_of(
         "frame_derivatives",
         "q v a u",
         "pose_by_q (6, nv); pose_by_u (6, nu); velocity_by_q (6, nv); velocity_by_v (6, nv) = jacobian; "
@@ -388,7 +361,6 @@ _TRANSPOSED = (
     "frame_acceleration",
     "frame_jacobian",
 )
-
 
 _WITH_VJP = tuple(row for row in _ROWS if row.name in _TRANSPOSED)
 for _row_with_vjp in _WITH_VJP:

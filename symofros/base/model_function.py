@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import prod
 from typing import Literal
 
 Group = Literal["dynamics", "constraints", "derivatives", "stepping", "frames"]
+_OUTPUT = re.compile(r"(?P<name>\w+) \((?P<shape>[^)]*)\)(?: = (?P<source>\w+))?")
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,30 @@ class ModelFunction:
         """The outputs that have derivatives, keyed by the input group of their cotangents."""
         of = "_WF" if self.of_frame else ""
         return {f"{output.name}{of}_bar": output for output in self.outputs if output.name != "rank"}
+
+
+def row_of(
+    name: str,
+    inputs: str,
+    outputs: str,
+    group: Group,
+    summary: str,
+    *,
+    exported: bool = False,
+    by_solver: bool = False,
+    unit: str = "",
+) -> ModelFunction:
+    """A row from its text: inputs by spaces, outputs as in "M (nv, nv); tau (nv) = inverse_dynamics"."""
+    arrays = []
+    for text in outputs.split("; "):
+        match = _OUTPUT.fullmatch(text)
+        assert match is not None, text
+        shape = tuple(size.strip() for size in match["shape"].split(",") if size)
+        arrays.append(OutputArray(match["name"], shape, match["source"] or match["name"]))
+    constrained_only = group == "constraints" or name in ("project", "constraint_rate_derivative")
+    return ModelFunction(
+        name, tuple(inputs.split()), tuple(arrays), summary, group, exported, by_solver, unit, constrained_only
+    )
 
 
 def cotangent_inputs(row: ModelFunction) -> dict[str, tuple[str, str]]:

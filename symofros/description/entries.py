@@ -10,7 +10,8 @@ from dataclasses import fields
 from functools import cache, partial, wraps
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from symofros.base.arguments import bound, checker_of, entries_of, shown
+from symofros.base.annotations import checker_of, shown
+from symofros.base.arguments import bound, entries_of
 from symofros.description.values import Rotation, as_rotation
 from symofros.errors import ArgumentError, DescriptionError, Problem, did_you_mean
 from symofros.expr.expression import Expression

@@ -10,9 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from symofros.expr.edges import ONE, ZERO, Edge
-from symofros.expr.factors import SingularMatrixError
-from symofros.expr.graph import Graph
+from symofros.expr.edges import ZERO, Edge
 from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.acceleration import Acceleration, base_to_tip, velocities
 from symofros.mechanics.dynamics.bodies.rotors import MovingRotor
@@ -22,6 +20,7 @@ from symofros.mechanics.dynamics.forward.articulated_inertia import (
     acceleration_from_parent,
     wrench_in_parent,
 )
+from symofros.mechanics.dynamics.forward.free_joint import ArticulatedBody, FreeJoint
 from symofros.mechanics.dynamics.jourdain import link_wrenches, subtree_wrenches
 from symofros.mechanics.kinematics.links import MovingLink, TreeKinematics
 from symofros.mechanics.spatial.across import PartialVelocity
@@ -153,7 +152,7 @@ def _rates(
     kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], driven: _Driven
 ) -> list[Edge]:
     """Rates v' of all speeds (nv): from the tips to the base, and back (eqs. 39-46)."""
-    links = [*map(_ArticulatedBody, _inertias(kinematics, inertias), driven.wrenches)]
+    links = [*map(ArticulatedBody, _inertias(kinematics, inertias), driven.wrenches)]
     joints = _tip_to_base(kinematics, links, rotors, driven)
     v_rate = [ZERO] * kinematics.nv
     for k in kinematics.states:
@@ -173,27 +172,6 @@ def _rates(
     return v_rate
 
 
-class _ArticulatedBody(NamedTuple):
-    """A body and all it carries, the joints beyond it free: the wrench inertia * (acceleration) + bias on it (eq. 39).
-
-    Attributes:
-        inertia: Articulated inertia about Lo, in L.
-        bias: Wrench at zero acceleration, about Lo, in L.
-    """
-
-    inertia: ArticulatedInertia
-    bias: Wrench
-
-    def with_acceleration(self, x: Acceleration) -> _ArticulatedBody:
-        """The body with a known part of its acceleration made part of the bias (eq. 43)."""
-        return _ArticulatedBody(self.inertia, self.bias + self.inertia.times(x))
-
-    def added_to_parent(self, link: MovingLink, parent: _ArticulatedBody) -> _ArticulatedBody:
-        """The parent, about its own origin, with this body fixed to it at the joint's position (eqs. 11, 44)."""
-        inertia = self.inertia.added_to_parent(link, parent.inertia)
-        return _ArticulatedBody(inertia, parent.bias + wrench_in_parent(link, self.bias))
-
-
 def _inertias(kinematics: TreeKinematics, inertias: list[LinkInertia]) -> list[ArticulatedInertia]:
     """Inertia of the links by themselves, beams as they are bent."""
     articulated = [ArticulatedInertia.of(inertia) for inertia in inertias]
@@ -205,10 +183,10 @@ def _inertias(kinematics: TreeKinematics, inertias: list[LinkInertia]) -> list[A
 
 def _tip_to_base(
     kinematics: TreeKinematics,
-    links: list[_ArticulatedBody],
+    links: list[ArticulatedBody],
     rotors: list[MovingRotor],
     driven: _Driven,
-) -> list[_FreeJoint | None]:
+) -> list[FreeJoint | None]:
     """Each joint with everything beyond it articulated, base to tip; none of a section before a beam's tip.
 
     Args:
@@ -218,8 +196,8 @@ def _tip_to_base(
         driven: What moves them.
     """
     g, biases, forces = kinematics.g, driven.biases, driven.forces
-    bodies = dict(enumerate(links)) | {BASE: _ArticulatedBody(ArticulatedInertia.none(g), no_wrench(g))}
-    joints: list[_FreeJoint | None] = []
+    bodies = dict(enumerate(links)) | {BASE: ArticulatedBody(ArticulatedInertia.none(g), no_wrench(g))}
+    joints: list[FreeJoint | None] = []
     # What is carried by sections of a beam before its tip acts on the speeds of the tip, which comes after them.
     carried: dict[int, _Coupling] = {}
     for i, link in reversed(list(enumerate(kinematics.links))):
@@ -248,92 +226,13 @@ def _tip_to_base(
         ]
         if coupling.in_parent:
             U = [wrench_in_parent(link, U_k) + on_parent for U_k, on_parent in zip(U, coupling.wrenches, strict=True)]
-            joint = _FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.first_speed)
+            joint = FreeJoint(g, body.added_to_parent(link, parent), U, D, d, True, link.first_speed)
             bodies[link.parent] = joint.body
         else:
-            joint = _FreeJoint(g, body, U, D, d, False, link.first_speed)
+            joint = FreeJoint(g, body, U, D, d, False, link.first_speed)
             bodies[link.parent] = joint.body.with_acceleration(biases[i]).added_to_parent(link, parent)
         joints.insert(0, joint)
     return joints
-
-
-class _FreeJoint:
-    """One joint's speeds, eliminated from the equations of the bodies beyond it (eqs. 41, 42).
-
-    Args:
-        g: The graph.
-        body: Body whose acceleration x' all rows refer to, with the joint locked.
-        U: Wrench on that body per rate of each speed (n).
-        D: Generalized inertia of the speeds (n x n).
-        d: Forces on the speeds at v' = 0, less generalized forces (n).
-        in_parent: Whether that body is the parent; otherwise the link itself, as it moves at v' = 0.
-        v: Index of the first speed.
-
-    Attributes:
-        body: Articulated body with the joint free.
-        in_parent: Whether that body is the parent.
-
-    Raises:
-        SingularMatrixError: A pivot is the number zero.
-    """
-
-    def __init__(
-        self,
-        g: Graph,
-        body: _ArticulatedBody,
-        U: Sequence[Wrench],
-        D: Rows,
-        d: Sequence[Edge],
-        in_parent: bool,
-        v: int,
-    ) -> None:
-        self.in_parent = in_parent
-        self._g = g
-        self._ratios: list[list[Edge]] = []
-        self._free: list[Edge] = []
-        rows = body.inertia.rows() + [[*U_k.f, *U_k.n, *D[k]] for k, U_k in enumerate(U)]
-        right = [*body.bias.f, *body.bias.n, *d]
-        for k in reversed(range(6, len(rows))):
-            row, pivot = rows[k], rows[k][k]
-            if pivot == ZERO:
-                raise SingularMatrixError(v + k - 6)
-            inverse = g.div(ONE, pivot)
-            ratios = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
-            for i in range(k):
-                for j in range(i + 1):
-                    rows[i][j] = g.sub(rows[i][j], _product(g, (row[i], ratios[i]), (row[j], ratios[j])))
-                right[i] = g.sub(right[i], g.mul(ratios[i], right[k]))
-            self._ratios.insert(0, ratios)
-            self._free.insert(0, -g.mul(right[k], inverse))
-        wrench = Wrench(Vec3(g, *right[:3]), Vec3(g, *right[3:6]))
-        self.body = _ArticulatedBody(ArticulatedInertia.of_rows(g, rows), wrench)
-
-    def rates(self, x: Acceleration) -> list[Edge]:
-        """Rates v' of the joint's speeds at an acceleration x' of the body (eq. 45)."""
-        known = [*x.a, *x.alpha]
-        for ratios, free in zip(self._ratios, self._free, strict=True):
-            products = [-self._g.mul(a, b) for a, b in zip(ratios, known, strict=True)]
-            known.append(_sum_in_pairs(self._g, [free, *products]))
-        return known[6:]
-
-
-def _quotient(g: Graph, edge: Edge, pivot: Edge, inverse: Edge) -> Edge:
-    """Quotient edge / pivot: exactly 1 for the pivot, so that entries which a free joint makes vanish fold to zero."""
-    return g.div(edge, pivot) if abs(edge) == abs(pivot) else g.mul(edge, inverse)
-
-
-def _product(g: Graph, x: tuple[Edge, Edge], y: tuple[Edge, Edge]) -> Edge:
-    """Product x y / pivot of two entries, each with its quotient; the same node whichever comes first."""
-    if abs(x[1]) == ONE or (abs(y[1]) != ONE and abs(x[0]) > abs(y[0])):
-        return g.mul(x[1], y[0])
-    return g.mul(x[0], y[1])
-
-
-def _sum_in_pairs(g: Graph, terms: Sequence[Edge]) -> Edge:
-    """A sum that waits for fewer additions in a row: along a chain all links wait for it."""
-    while len(terms) > 1:
-        terms = [g.sum(terms[i : i + 2]) for i in range(0, len(terms), 2)]
-    return terms[0]
 
 
 @dataclass(frozen=True)
@@ -364,7 +263,7 @@ class _Coupling:
         )
 
 
-def _carried(link: MovingLink, body: _ArticulatedBody, moving: _ArticulatedBody) -> _Coupling:
+def _carried(link: MovingLink, body: ArticulatedBody, moving: ArticulatedBody) -> _Coupling:
     """Coupling of the speeds that move a section of a beam, by the articulated body it carries (rods.md, eq. 19).
 
     Args:
