@@ -40,12 +40,7 @@ def info(
     """Show a model: tree, sizes, masses, limits, parameters; or a diagram: blocks, rates, order."""
     if is_diagram(model):
         reading.require_none(NOT_FOR_DIAGRAMS)
-        from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
-
-        try:
-            diagrams.print_diagram(sf.load_diagram(model, network=network), as_json, out)
-        except sf.SymofrosError as error:
-            raise refuse(error) from None
+        _show_diagram(model, network, as_json)
         return
     system = load(model, reading)
     tree = build_tree(system)
@@ -74,6 +69,15 @@ def info(
         out.print(_routes(choices))
     for note in system.notes:
         out.print(f"note: {note}", markup=False, highlight=False, soft_wrap=True)
+
+
+def _show_diagram(path: FilePath, network: bool, as_json: bool) -> None:
+    from symofros.diagrams.files import command as diagrams  # Diagrams load the library of blocks.
+
+    try:
+        diagrams.print_diagram(sf.load_diagram(path, network=network), as_json, out)
+    except sf.SymofrosError as error:
+        raise refuse(error) from None
 
 
 def _counts(system: sf.System, frame: str) -> dict[str, Operations]:

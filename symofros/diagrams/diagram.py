@@ -184,11 +184,7 @@ class Diagram(metaclass=CheckedCalls):
         outlets = part._sources_of_outlets()
         inside = dict(part.blocks)
         if condition is not None:
-            try:
-                inside = dict(on_condition(inside, condition, outlets))
-            except DescriptionError as error:
-                part_of = f"diagram '{self.name}': part '{name}': "
-                raise DescriptionError([replace(one, what=part_of + one.what) for one in error.problems]) from None
+            inside = self._conditional(name, inside, condition, outlets)
         self.parts[name] = Part(part, dict(models or {}), dict(inputs), condition)
         known = dict(models or {})
         for inner, setup in part.models.items():
@@ -202,22 +198,36 @@ class Diagram(metaclass=CheckedCalls):
         if condition is not None:
             self._connect_condition(name, condition, inside)
         for inlet, source in inputs.items():
-            if inlet not in part.inlets:
-                raise DescriptionError(
-                    Problem(
-                        f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'",
-                        f"'{inlet}'",
-                        f"inlets: {', '.join(part.inlets) or 'none'}",
-                        did_you_mean(inlet, part.inlets),
-                    )
-                )
-            for target in part.fed_by(inlet):
-                self.connect(source, f"{name}{INSIDE}{target}")
+            self._feed(name, part, inlet, source)
         for outlet, source in outlets.items():
             self.outlets[f"{name}.{outlet}"] = f"{name}{INSIDE}{source}"
         for (kind, first, *rest), line in part.origin.items():
             inside_name = f"{name}.{first}" if kind == "outlet" else f"{name}{INSIDE}{first}"
             self.origin[kind, inside_name, *rest] = line
+
+    def _conditional(
+        self, part: str, blocks: Mapping[str, Block], condition: Condition, outlets: Mapping[str, str]
+    ) -> dict[str, Block]:
+        """A part's blocks as they run on its condition."""
+        try:
+            return dict(on_condition(blocks, condition, outlets))
+        except DescriptionError as error:
+            part_of = f"diagram '{self.name}': part '{part}': "
+            raise DescriptionError([replace(one, what=part_of + one.what) for one in error.problems]) from None
+
+    def _feed(self, name: str, part: Diagram, inlet: str, source: str) -> None:
+        """Connect a source to all that an inlet of a part feeds."""
+        if inlet not in part.inlets:
+            raise DescriptionError(
+                Problem(
+                    f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'",
+                    f"'{inlet}'",
+                    f"inlets: {', '.join(part.inlets) or 'none'}",
+                    did_you_mean(inlet, part.inlets),
+                )
+            )
+        for target in part.fed_by(inlet):
+            self.connect(source, f"{name}{INSIDE}{target}")
 
     def _connect_condition(self, part: str, condition: Condition, blocks: Mapping[str, Block]) -> None:
         """Feed what tells the signals of a part's condition, and by it the part's blocks."""

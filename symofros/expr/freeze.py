@@ -43,13 +43,7 @@ def freeze(expression: sympy.Expr) -> Expression:
     if expression.is_Symbol:
         return Expression("symbol", name=str(expression.name))
     if expression.is_number and (expression.is_Number or expression.is_NumberSymbol):
-        if not expression.is_finite:
-            raise ValueError(f"{expression} is not a finite number")
-        if expression is sympy.pi:
-            return Expression("symbol", name="pi")
-        if expression.is_Rational and expression.q != 1:
-            return Expression("div", (_number(expression.p), _number(expression.q)))
-        return _number(float(expression))
+        return _constant(expression)
     args = tuple(freeze(arg) for arg in expression.args)
     if expression.is_Add:
         return reduce(lambda a, b: Expression("add", (a, b)), args)
@@ -65,6 +59,16 @@ def freeze(expression: sympy.Expr) -> Expression:
     if name in ("min", "max"):
         return reduce(lambda a, b: Expression(name, (a, b)), args)
     return Expression(name, args)
+
+
+def _constant(number: sympy.Expr) -> Expression:
+    if not number.is_finite:
+        raise ValueError(f"{number} is not a finite number")
+    if number is sympy.pi:
+        return Expression("symbol", name="pi")
+    if number.is_Rational and number.q != 1:
+        return Expression("div", (_number(number.p), _number(number.q)))
+    return _number(float(number))
 
 
 def _number(value: float) -> Expression:

@@ -154,20 +154,7 @@ def stage_data(file: str) -> dict[str, Any]:
     for count, prim in enumerate(prims):
         if count > MAX_PRIMS:
             return {"fault": f"it has more than {MAX_PRIMS} prims"}
-        path, kind = str(prim.GetPath()), str(prim.GetTypeName())
-        own = carrier.get(str(prim.GetPath().GetParentPath()), "")
-        if prim.HasAPI(UsdPhysics.RigidBodyAPI):
-            own = path
-            data["bodies"].append(_body(prim))
-        carrier[path] = own
-        if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
-            data["roots"].append(path)
-        if prim.IsA(UsdPhysics.Scene):
-            data["scenes"].append(_scene(prim))
-        elif prim.IsA(UsdPhysics.Joint):
-            data["joints"].append(_joint(prim, kind))
-        elif prim.IsA(UsdGeom.Gprim) and own:
-            data["shapes"].append(_shape(prim, kind, own))
+        _take_prim(prim, data, carrier)
     data["carrier"] = {path: body for path, body in carrier.items() if body}
     wanted = {body["path"] for body in data["bodies"]} | {shape["path"] for shape in data["shapes"]}
     wanted |= {end for joint in data["joints"] for end in (joint["body0"], joint["body1"]) if end}
@@ -177,6 +164,26 @@ def stage_data(file: str) -> dict[str, Any]:
             matrix = cache.GetLocalToWorldTransform(prim)
             data["placements"][path] = [number(list(matrix.GetRow(row))) for row in range(4)]
     return {"stage": data, "layers": layers, "missing": []}
+
+
+def _take_prim(prim: Any, data: dict[str, Any], carrier: dict[str, str]) -> None:
+    """Note what a prim is: a body, a root, a scene, a joint, a shape."""
+    from pxr import UsdGeom, UsdPhysics  # An extra, looked for by `main`.
+
+    path, kind = str(prim.GetPath()), str(prim.GetTypeName())
+    own = carrier.get(str(prim.GetPath().GetParentPath()), "")
+    if prim.HasAPI(UsdPhysics.RigidBodyAPI):
+        own = path
+        data["bodies"].append(_body(prim))
+    carrier[path] = own
+    if prim.HasAPI(UsdPhysics.ArticulationRootAPI):
+        data["roots"].append(path)
+    if prim.IsA(UsdPhysics.Scene):
+        data["scenes"].append(_scene(prim))
+    elif prim.IsA(UsdPhysics.Joint):
+        data["joints"].append(_joint(prim, kind))
+    elif prim.IsA(UsdGeom.Gprim) and own:
+        data["shapes"].append(_shape(prim, kind, own))
 
 
 def places(layer: Any) -> list[str]:

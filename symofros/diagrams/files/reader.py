@@ -15,27 +15,25 @@ from symofros.description.yaml import DIAGRAM, Node, YamlFault, compose
 from symofros.diagrams.block import Block, ModelFile
 from symofros.diagrams.conditional import SIGNAL, Condition
 from symofros.diagrams.diagram import Diagram
-from symofros.diagrams.files.entries import Entries
-from symofros.diagrams.files.fields import CONSENT, Misfit, read, required, runs_native_code, types_of
+from symofros.diagrams.files.blocks import MAX_BLOCKS, BlockReader, Permissions
+from symofros.diagrams.files.fields import Misfit, read
 from symofros.diagrams.files.inlets import read_inlets
 from symofros.diagrams.files.paths import DIAGRAMS, refused
 from symofros.diagrams.files.reading_options import READING, read_options
-from symofros.diagrams.files.registry import INPUTS, KIND, entry_of, kinds
+from symofros.diagrams.files.registry import kinds
 from symofros.diagrams.files.run_settings import read_settings
-from symofros.errors import DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.loading import load
 
 VERSION = 1
 MAX_BYTES = 4 << 20
 MAX_FILES = 100
 MAX_LEVELS = 10
-MAX_BLOCKS = 10_000
 
 HEAD = DIAGRAM
 SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
 MODEL = ("file", "functions", *READING, "start", "parameters")
 PART = ("file", "diagram", "models", "inputs", "condition")
-COMMON = ("kind", "period", "offset", "inputs")
 
 _ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
 
@@ -92,23 +90,14 @@ def read_diagram(
 
 
 @dataclass
-class _Shared:
+class _Shared(Permissions):
     """State shared by the readers of one diagram's files."""
 
-    folder: Path
-    kinds: Mapping[str, type[Block]]
-    network: bool
-    allow_native: bool | Mapping[str, str]
     problems: list[Problem] = field(default_factory=list)
     systems: dict[tuple[Path, str], System | None] = field(default_factory=dict)
     files: int = 0
     bytes_left: int = MAX_BYTES
     unwritten: dict[Path, bytes] = field(default_factory=dict)
-
-    def consent(self, file: str) -> bool | str:
-        """Consent to run the native code of a file, as of FMU."""
-        given = self.allow_native
-        return given if isinstance(given, bool) else given.get(file, False)
 
     def file(self, path: Path, shown: str, including: tuple[Path, ...]) -> Diagram | None:
         """A file's diagram, as far as it can be read."""
@@ -137,12 +126,12 @@ class _Shared:
         return diagram
 
 
-class _Reader(Entries):
+class _Reader(BlockReader):
     """One file of a diagram."""
 
     def __init__(self, shared: _Shared, path: Path, shown: str, here: tuple[Path, ...]) -> None:
-        super().__init__(shown, shared.problems)
-        self.shared, self.base, self.here = shared, path.parent, here
+        super().__init__(shown, shared.problems, path.parent, shared)
+        self.shared, self.here = shared, here
 
     def diagram(self, entries: Mapping[str, Node], name: str) -> Diagram:
         """The diagram that the entries of a file or of an inline part state."""
@@ -216,110 +205,6 @@ class _Reader(Entries):
                 self.take(node, error.problems)
         return self.shared.systems[key]
 
-    def block(self, diagram: Diagram, name: str, node: Node) -> None:
-        """A block of a kind, its fields by the class."""
-        what = f"block '{name:.60}'"
-        if len(diagram.blocks) >= MAX_BLOCKS:
-            self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "split the diagram")
-            return
-        entries = self.mapping(node, what)
-        if self.missing(node, what, "kind", entries, "a block is of a kind"):
-            return
-        kind = self.text(entries["kind"], f"{what}: kind")
-        if kind not in self.shared.kinds:
-            if kind:
-                self.fault(
-                    entries["kind"],
-                    f"{what}: no kind of blocks '{kind:.60}'",
-                    f"'{kind:.60}'",
-                    "kinds are the classes of symofros.blocks in snake_case",
-                    did_you_mean(kind, self.shared.kinds),
-                )
-            return
-        owner = self.shared.kinds[kind]
-        block = self.made(what, kind, owner, name, node, entries)
-        if block is None:
-            return
-        reach = block.reaches()
-        if reach and not self.shared.network:
-            self.fault(
-                node,
-                f"{what} reaches another machine",
-                reach,
-                "a diagram's file stays on this machine unless its reader says otherwise",
-                "load_diagram(path, network=True), or simulate --network",
-            )
-        try:
-            diagram.add(block)
-        except DescriptionError as error:
-            self.take(node, error.problems)
-            return
-        diagram.origin["block", name] = self.where(node, key=True)
-        if "inputs" in entries:
-            for port, item in self.mapping(entries["inputs"], f"{what}: inputs").items():
-                self.wire(diagram, name, port, item)
-
-    def made(
-        self, what: str, kind: str, owner: type[Block], name: str, node: Node, entries: Mapping[str, Node]
-    ) -> Block | None:
-        """The block, if its fields are of their types and all there."""
-        names = {entry_of(name): name for name in types_of(owner) if name != "name"}
-        types = types_of(owner)
-        known = list(dict.fromkeys([*COMMON, *names]))
-        before = len(self.problems)
-        values: dict[str, Any] = {}
-        for key, item in self.mapping(node, f"{what} ({kind})", known).items():
-            if key in (KIND, INPUTS):
-                continue
-            try:
-                value = read(types[names[key]], item)
-                values[names[key]] = self.inside(value, item) if names[key] in owner.paths else value
-            except Misfit as error:
-                self.fault(
-                    error.node,
-                    f"{what}: {key} does not fit",
-                    error.node.plain(),
-                    error.rule,
-                    f"see the fields of {kind}",
-                )
-            except (SymofrosError, ValueError, TypeError) as error:
-                self.fault(item, f"{what}: {key} does not fit", f"{error}", f"as {kind} takes it", "mend it")
-        for key in sorted({entry_of(name) for name in required(owner) - {"name"}} - entries.keys()):
-            self.missing(node, what, key, entries, f"{kind} needs {key}")
-        if len(self.problems) > before:
-            return None
-        if runs_native_code(owner):
-            values[CONSENT] = self.shared.consent(values["file"])
-        try:
-            return owner(name=name, **values)
-        except DescriptionError as error:
-            self.take(node, error.problems, key=True)
-        except (SymofrosError, ValueError, TypeError) as error:
-            problem = Problem(
-                f"{what} ({kind}) can't be made", f"{error}"[:200], "its fields fit each other", "mend them"
-            )
-            self.take(node, [problem], key=True)
-        return None
-
-    def inside(self, value: Any, node: Node) -> Any:
-        """The whole path of a file that a block names; nothing is read from elsewhere than the diagram's folder."""
-        if not isinstance(value, str) or not value:
-            return value
-        problem = refused(value, self.base, self.shared.folder)
-        self.take(node, [problem] if problem else [])
-        return str(resolved(self.base / value)) if not problem else value
-
-    def wire(self, diagram: Diagram, block: str, port: str, node: Node) -> None:
-        """An input and its source."""
-        source = self.text(node, f"input '{block:.60}.{port:.60}'", 1000)
-        if not source:
-            return
-        try:
-            diagram.connect(source, f"{block}.{port}")
-        except DescriptionError as error:
-            self.take(node, error.problems)
-        diagram.origin.setdefault(("input", block, port), self.where(node))
-
     def part(self, diagram: Diagram, name: str, node: Node) -> None:
         """A diagram inside this one, from a file or inline."""
         what = f"part '{name:.60}'"
@@ -346,15 +231,7 @@ class _Reader(Entries):
         if len(diagram.blocks) + len(inner.blocks) > MAX_BLOCKS:
             self.fault(node, "too many blocks", f"more than {MAX_BLOCKS}", f"at most {MAX_BLOCKS}", "drop parts")
             return
-        for reserved in sorted(inputs.keys() & _ARGUMENTS):
-            self.fault(
-                entries["inputs"],
-                f"{what}: no inlet can be called '{reserved}'",
-                f"'{reserved}'",
-                "the name is one of Diagram.include's own",
-                "rename the inlet",
-            )
-            del inputs[reserved]
+        self.drop_reserved(inputs, what, entries)
         condition = self.condition(what, entries["condition"]) if "condition" in entries else None
         if condition is not None:
             for signal in condition.signals():
@@ -367,6 +244,18 @@ class _Reader(Entries):
             for target in inner.fed_by(inlet):
                 block, _, port = f"{name}/{target}".rpartition(".")
                 diagram.origin["input", block, port] = self.where(entries["inputs"].value[inlet])
+
+    def drop_reserved(self, inputs: dict[str, str], what: str, entries: Mapping[str, Node]) -> None:
+        """Note and leave out inlets that are called as arguments of `Diagram.include`."""
+        for reserved in sorted(inputs.keys() & _ARGUMENTS):
+            self.fault(
+                entries["inputs"],
+                f"{what}: no inlet can be called '{reserved}'",
+                f"'{reserved}'",
+                "the name is one of Diagram.include's own",
+                "rename the inlet",
+            )
+            del inputs[reserved]
 
     def condition(self, what: str, node: Node) -> Condition | None:
         """When a part runs; None where that could not be read."""

@@ -241,19 +241,7 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         for key, values in piece.parameters.items():
             layout.parameters[name, key] = _placed(layout.par, layout.par_names, f"{name}.{key}", values)
     for name, piece in pieces.items():
-        for port in piece.block.lock_inputs():
-            place = layout.held.get(wired.sources.get((name, port), ("", "")))
-            if place is None:
-                raise DescriptionError(
-                    Problem(
-                        f"block '{name}': input '{port}' is not held between samples",
-                        "a continuous signal",
-                        "constraints engage at samples",
-                        "put a hold with a period before it",
-                    )
-                )
-            layout.lock_inputs += range(place.start, place.start + place.size)
-            layout.lock_names += [f"{name}.{port}[{k}]" for k in range(place.size)]
+        _locks(layout, wired, name, piece)
     for model in wired.models.names:
         names = wired.models.record(model).par_names
         layout.parameters["", model] = Place(len(layout.par), (len(names),))
@@ -264,6 +252,23 @@ def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence
         if piece.switching is not None:
             _keep(layout, wired, piece, piece.switching.kept)
     return layout
+
+
+def _locks(layout: Layout, wired: Wired, name: str, piece: Piece) -> None:
+    """Note where the signals are held that engage constraints."""
+    for port in piece.block.lock_inputs():
+        place = layout.held.get(wired.sources.get((name, port), ("", "")))
+        if place is None:
+            raise DescriptionError(
+                Problem(
+                    f"block '{name}': input '{port}' is not held between samples",
+                    "a continuous signal",
+                    "constraints engage at samples",
+                    "put a hold with a period before it",
+                )
+            )
+        layout.lock_inputs += range(place.start, place.start + place.size)
+        layout.lock_names += [f"{name}.{port}[{k}]" for k in range(place.size)]
 
 
 def _keep(layout: Layout, wired: Wired, piece: Piece, index: tuple[int, ...]) -> None:

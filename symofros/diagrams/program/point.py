@@ -124,26 +124,12 @@ class Point:
         name, layout = piece.name, self._layout
         if group == "t":
             return [self.g.input("t", 0)]
-        if group == "q":
-            return self.input("q", layout.q[name], self._q).flat
-        if group == "v":
-            return self.input("v", layout.v[name], self._v).flat
+        if group in ("q", "v", "a", "lam"):
+            return self._of_motion(name, group)
         if group == "gains":
             first = layout.lam[name].start - self._lam
             rows = [first + i for i in range(piece.nc)]
             return [self.g.input("gains", i) for i in (*rows, *(self._nc + i for i in rows))]
-        if group in ("a", "lam"):
-            if not self._after:
-                raise DescriptionError(
-                    Problem(
-                        f"block '{name}': accelerations or constraint forces are needed between samples",
-                        f"'{group}'",
-                        "under constraints they are known once the equations of the instant are solved",
-                        "take them through a sampled block (a hold with a period)",
-                    )
-                )
-            place = layout.v[name] if group == "a" else layout.lam[name]
-            return self.input(group, place, self._v if group == "a" else self._lam).flat
         if group.startswith(INPUT):
             return self._values[self._wired.sources[name, group.removeprefix(INPUT)]].flat
         if group.startswith(STATE):
@@ -152,6 +138,27 @@ class Point:
             return self.input("u", layout.memory[name, group.removeprefix(MEMORY)]).flat
         if group.startswith(PARAMETER):
             return self.input("par", layout.parameters[name, group.removeprefix(PARAMETER)]).flat
+        return self._of_model(name, group)
+
+    def _of_motion(self, name: str, group: str) -> list[Edge]:
+        """Edges of a mechanism's motion; accelerations and multipliers are there once they are solved for."""
+        layout = self._layout
+        if group in ("a", "lam") and not self._after:
+            raise DescriptionError(
+                Problem(
+                    f"block '{name}': accelerations or constraint forces are needed between samples",
+                    f"'{group}'",
+                    "under constraints they are known once the equations of the instant are solved",
+                    "take them through a sampled block (a hold with a period)",
+                )
+            )
+        places = {"q": (layout.q, self._q), "v": (layout.v, self._v), "a": (layout.v, self._v)}
+        of, first = places.get(group, (layout.lam, self._lam))
+        return self.input(group, of[name], first).flat
+
+    def _of_model(self, name: str, group: str) -> list[Edge]:
+        """Edges of a model's parameters, as the block has them."""
+        layout = self._layout
         own = self.input("par", layout.parameters["", self._models[group]]).flat
         kept = layout.kept.get(name)
         if (

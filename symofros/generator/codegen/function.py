@@ -318,6 +318,19 @@ def _chunks_in_lanes(statements: list[Statement]) -> list[list[Item]]:
     return [first] * bool(first) + _chunks([statement for i, statement in enumerate(statements) if i not in early])
 
 
+def _last_uses(chunks: list[list[Item]]) -> tuple[dict[int, int], set[int]]:
+    """The last chunk that reads each value, and the values that other iterations of loops read."""
+    last: dict[int, int] = {}
+    fetched: set[int] = set()
+    for i, chunk in enumerate(chunks):
+        for item in chunk:
+            if isinstance(item, Loop):
+                fetched |= item.fetched
+                last.update(dict.fromkeys(item.fetched, i))
+            last.update(dict.fromkeys(item.reads, i))
+    return last, fetched
+
+
 def _allocate(chunks: list[list[Item]], widths: Mapping[int, int]) -> dict[int, int]:
     """Work slots for values that cross from one chunk into another, or are read by other iterations of loops.
 
@@ -327,14 +340,7 @@ def _allocate(chunks: list[list[Item]], widths: Mapping[int, int]) -> dict[int, 
         chunks: Statements and loops of each chunk.
         widths: Doubles of each vector, by its key.
     """
-    last: dict[int, int] = {}
-    fetched: set[int] = set()
-    for i, chunk in enumerate(chunks):
-        for item in chunk:
-            if isinstance(item, Loop):
-                fetched |= item.fetched
-                last.update(dict.fromkeys(item.fetched, i))
-            last.update(dict.fromkeys(item.reads, i))
+    last, fetched = _last_uses(chunks)
     slots: dict[int, int] = {}
     free: dict[int, list[int]] = defaultdict(list)
     ends: dict[int, list[int]] = {}

@@ -92,19 +92,10 @@ def stated_values(system: System) -> Iterator[Stated]:
             yield from _joint_values(body.joint)
         yield from _beam_values(body) if isinstance(body, Beam) else _body_values(body)
     for connection in system.connections:
-        key = ("connection", connection.name)
-        if isinstance(connection, Contact):
-            for label, value in connection.values():
-                yield Stated(f"contact '{connection.name}': {label}", value, key, units=units_of(Contact, label))
-            continue
-        for label in ("stiffness", "length", "damping"):
-            units = units_of(Connection, label)
-            what, value = f"connection '{connection.name}': {label}", getattr(connection, label)
-            yield Stated(what, value, key, units=units, remedy=_LINE_BY_FORMULA)
-    for power in system.virtual_power:
-        for speed, value in power.forces:
-            key = ("virtual_power", power.name)
-            yield Stated(f"virtual power '{power.name}': force on {speed}", value, key, "motion")
+        yield from _connection_values(connection)
+    for power, speed, value in ((one, *force) for one in system.virtual_power for force in one.forces):
+        key = ("virtual_power", power.name)
+        yield Stated(f"virtual power '{power.name}': force on {speed}", value, key, "motion")
     for constraint in system.constraints:
         yield from _constraint_values(constraint)
     for switch in system.switches:
@@ -114,6 +105,18 @@ def stated_values(system: System) -> Iterator[Stated]:
         yield Stated(f"potential '{potential.name}'", potential.energy, key, "energy")
     for state in system.states:
         yield Stated(f"state '{state.name}': rate", state.rate, ("state", state.name), "motion")
+
+
+def _connection_values(connection: Connection | Contact) -> Iterator[Stated]:
+    key = ("connection", connection.name)
+    if isinstance(connection, Contact):
+        for label, value in connection.values():
+            yield Stated(f"contact '{connection.name}': {label}", value, key, units=units_of(Contact, label))
+        return
+    for label in ("stiffness", "length", "damping"):
+        units = units_of(Connection, label)
+        what, value = f"connection '{connection.name}': {label}", getattr(connection, label)
+        yield Stated(what, value, key, units=units, remedy=_LINE_BY_FORMULA)
 
 
 def _constraint_values(constraint: Constraint) -> Iterator[Stated]:

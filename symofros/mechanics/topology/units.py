@@ -147,12 +147,7 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
         sign = 1 if kind == "mul" else -1
         return tuple(a + sign * b for a, b in zip(left, right, strict=True))
     if kind == "pow" or kind == "sqrt":
-        exponent = 0.5 if kind == "sqrt" else formula.args[1].number if formula.args[1].kind == "number" else None
-        base = args[0]
-        if base is None or (exponent is None and base != _ONE):
-            return None
-        power = Fraction(exponent or 0.0).limit_denominator(60)
-        return tuple(power * a for a in base)
+        return _power(formula, args[0])
     if kind in _RATIOS:
         _common(formula, args)
         return _ONE
@@ -160,6 +155,17 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
         if unit is not None and unit != _ONE:
             raise _Clash(f"the argument of {kind} is a ratio or an angle; '{argument}' is in {shown(unit)}")
     return _ONE
+
+
+def _power(formula: Expression, base: Powers | None) -> Powers | None:
+    """Powers of a power or square root."""
+    exponent = 0.5 if formula.kind == "sqrt" else None
+    if formula.kind == "pow" and formula.args[1].kind == "number":
+        exponent = formula.args[1].number
+    if base is None or (exponent is None and base != _ONE):
+        return None
+    power = Fraction(exponent or 0.0).limit_denominator(60)
+    return tuple(power * a for a in base)
 
 
 def _common(formula: Expression, units: list[Powers | None]) -> Powers | None:
