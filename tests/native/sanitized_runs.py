@@ -15,7 +15,7 @@ import numpy as np
 import symofros as sf
 from symofros.runtime.calls import binding
 from symofros.simulation.stepping.methods import METHODS
-from tests.simulation.test_actions import PLAN, grabbing
+from tests.simulation.grasping import PLAN, grabbing
 
 MODELS = Path(__file__).parents[2] / "reference_models"
 FIXED = ("euler", "semi_implicit_euler", "rk4", "implicit_euler", "generalized_alpha", "variational")

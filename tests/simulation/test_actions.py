@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,53 +12,8 @@ from symofros.base.functions import FUNCTIONS
 from symofros.description.yaml.yaml_writer import write_yaml
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.stepping.bound_run import BoundRun
+from tests.simulation.grasping import SIDE, docking, grabbing, model_of, tumbling
 from tests.simulation.mechanisms import slide
-
-_SIDE = sf.Inertia(1.0, (0.5, 0.02, 0.01), (0.01, 0.1, 0.11))
-_AXES = ("x", "y", "z")
-
-
-def grabbing(pose: str = "", *, closed: bool = True, flexible: bool = False, noise: float = 0.0) -> sf.System:
-    """An arm on a free base and a free target without weight, which the tip of the arm may hold.
-
-    Args:
-        pose: That the switch of the closure states; "" for none.
-        closed: Whether there is a closure.
-        flexible: Whether the outer link is a beam.
-        noise: By which the rotation of the target's handle is no rotation about z alone.
-    """
-    end = sf.Frame("end", (1, 0, 0))
-    base = sf.RigidBody("base", sf.Joint("root", "free"), sf.Inertia(5.0, (0.1, 0, 0), (1, 2, 3)), (end,))
-    shoulder = sf.Joint("q1", "revolute", "base", axis=(0, 0, 1), frame="end")
-    elbow = sf.Joint("q2", "revolute", "upper", axis=(0, 1, 0), frame="end")
-    fore: Any = sf.RigidBody("fore", elbow, _SIDE, (sf.Frame("tip", (1, 0, 0)),))
-    if flexible:
-        fore = sf.Beam("fore", elbow, 1.0, 1.0, EI_z=50.0, bend_y=2, retain="all")
-    handle = sf.Frame("handle", (0.2, 0.1, -0.05), sf.Rotation.rpy(noise, -noise, 0.7))
-    target = sf.RigidBody(
-        "target", sf.Joint("f", "free"), sf.Inertia("m", (0.1, 0.05, -0.03), (0.3, 0.2, 0.25)), (handle,)
-    )
-    held = sf.Closure("grasp", ("fore", "tip"), ("target", "handle"), rotations=_AXES)
-    return sf.System(
-        "grabbing",
-        (base, sf.RigidBody("upper", shoulder, _SIDE, (end,)), fore, target),
-        (sf.Parameter("m", 2.0), sf.Parameter("grip", 0.0)),
-        gravity=(0, 0, 0),
-        constraints=(held,) if closed else (),
-        switches=(sf.Switch("grasp", "grip", pose),) if pose else (),  # type: ignore[arg-type]
-    )
-
-
-@cache
-def model_of(**options: Any) -> sf.Model:
-    """Its model."""
-    return sf.compile(grabbing(**options))
-
-
-def tumbling(model: sf.Model, seed: int = 1) -> tuple[Any, Any]:
-    """A state in which nothing is held."""
-    q, v = model.random_state(np.random.default_rng(seed))
-    return q, v
 
 
 def momentum(model: sf.Model, q: Any, v: Any, par: Any) -> Any:
@@ -106,18 +60,6 @@ def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, f
     assert np.abs(run.lam[held:free]).max() > 1e-6 and not run.lam[free:].any() and not run.lam[:held].any()
 
 
-@cache
-def docking() -> tuple[sf.Model, Any, Any]:
-    """A start from which the frames are at their stated relative pose after 5 ms of free motion, at unlike speeds."""
-    model = model_of(pose="stated")
-    q, v = model.neutral(), np.zeros(model.nv)
-    q[model.names.q.index("q2")] = 0.4
-    shut = sf.assemble(model, q, par=model.checked_parameters({**model.parameters, "grip": 1.0})).q
-    v = np.random.default_rng(2).uniform(-1, 1, model.nv)
-    back = sf.simulate(model, shut, -v, 5e-3, dt=1e-4)
-    return model, back.q[-1], -back.v[-1]
-
-
 @pytest.mark.parametrize("method", ["rk4", "dop853"])
 def test_a_switched_motion_is_that_of_two_models(method: str) -> None:
     """The tree without the closure, then the loop: to rounding, and bit by bit as begun anew with other parameters."""
@@ -162,7 +104,7 @@ def _read_by(model: sf.Model, name: str, given: dict[str, Any]) -> dict[str, Any
 
 def test_a_joint_locks_and_a_rope_tautens_where_they_are() -> None:
     """A coupling and a rod hold the coordinate and the distance of the moment, and switches may say the opposite."""
-    hinge = sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), _SIDE, (sf.Frame("end", (1, 0, 0)),))
+    hinge = sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), SIDE, (sf.Frame("end", (1, 0, 0)),))
     cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0), position=(0, 1, 0)), sf.Inertia(2.0))
     system = sf.System(
         "brake",
@@ -323,106 +265,6 @@ def test_what_is_refused() -> None:
     for switch, said in ((sf.Switch("egde", 1), "did you mean 'edge'"), (sf.Switch("edge", 1, "moment"), "no pose")):
         with pytest.raises(sf.DescriptionError, match=said):
             sf.compile(sf.System("s", edge.bodies, constraints=edge.constraints, switches=(switch,)))
-
-
-PLAN = {
-    "grab": sf.Event("t - 0.0203", action={"grip": 1}, once=True),
-    "drop": sf.Event("t - 0.04", action={"grip": "1 - grip", "dq1": 0.1}),
-}
-
-
-@pytest.mark.parametrize("method", ["rk4", "generalized_alpha", "dopri5"])
-def test_a_stepper_acts_as_a_run_does(method: str) -> None:
-    """To the last bit by fixed steps, with the same events; states are kept and put back with the modes in them."""
-    model = model_of(pose="moment")
-    q, v = tumbling(model)
-    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": PLAN, "rtol": 1e-10, "atol": 1e-12}
-    run = sf.simulate(model, q, v, 0.06, **options)
-    stepper = sf.Stepper(model, **options)
-    stepper.reset(q, v)
-    stepper.step(steps=30)
-    held, par = stepper.save(), stepper.par.copy()
-    assert par[model.names.par.index("grip")] == 1.0 and len(stepper.events) == 1
-    for other in (stepper, stepper.copy()):
-        while other.t < 0.06 - 1e-9:
-            assert other.step()
-        assert other.outcome.ok and [found.name for found in other.events] == ["grab", "drop"]
-        if method == "dopri5":
-            assert np.abs(other.q - run.q[-1]).max() < 1e-8
-        else:
-            assert np.array_equal(other.q, run.q[-1]) and np.array_equal(other.v, run.v[-1])
-            pairs = zip(other.events, run.events, strict=True)
-            assert all(np.array_equal(a.v_after, b.v_after) and a.energy_lost == b.energy_lost for a, b in pairs)
-    end = stepper.q.copy()
-    stepper.restore(held)
-    assert np.array_equal(stepper.par, par) and len(stepper.events) == 1
-    for _ in range(30):
-        stepper.step()
-    assert np.array_equal(stepper.q, end)
-    stepper.reset(q, v)
-    assert stepper.par[model.names.par.index("grip")] == 0.0 and stepper.step(steps=60)
-    assert [found.name for found in stepper.events] == ["grab", "drop"]
-
-
-@pytest.mark.parametrize(("method", "threads"), [("rk4", 2), ("dopri5", 1)])
-def test_each_of_many_acts_as_one_alone(method: str, threads: int) -> None:
-    """Modes, parameters and events are its own, whoever shares its thread; kept states have them."""
-    model, rng, n = model_of(pose="moment"), np.random.default_rng(5), 5
-    q, v = (np.array(rows) for rows in zip(*(model.random_state(rng) for _ in range(n)), strict=True))
-    options: dict[str, Any] = {"dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
-    mixed = PLAN | {"late": sf.Event("q1 - 0.3", action={"m": "2*m"}, once=True)}
-    many = sf.simulate_batch(model, q, v, 0.06, events=mixed, threads=threads, output=0.01, **options)
-    for i in range(n):
-        run, one = sf.simulate(model, q[i], v[i], 0.06, events=mixed, **options), many[i]
-        assert one.outcome.ok and "not examined" in one.outcome.notes[-1]
-        assert [found.name for found in one.events] == [found.name for found in run.events]
-        assert np.abs(many.q_last[i] - run.q[-1]).max() < 1e-9
-        assert np.allclose(one.par_over_time[-1], run.par_over_time[-1], atol=1e-9)
-        for mine, other in zip(one.events, run.events, strict=True):
-            assert mine.t == pytest.approx(other.t, abs=1e-10)
-            assert mine.energy_lost == pytest.approx(other.energy_lost, abs=1e-7)
-    if method == "dopri5":
-        return
-    steppers = sf.Steppers(model, n, events=mixed, threads=threads, dt=1e-3)
-    steppers.reset(q, v)
-    steppers.step(steps=30)
-    held = steppers.save()
-    others = steppers.copy()
-    for these in (steppers, others):
-        assert these.step(steps=30).all() and np.abs(these.q - many.q_last).max() < 1e-12
-        assert [found.name for found in these.events(2)] == [found.name for found in many.events(2)]
-    end = steppers.q.copy()
-    steppers.restore(held)
-    assert len(steppers.events(2)) < len(others.events(2)) and steppers.step(steps=30).all()
-    assert np.array_equal(steppers.q, end) and np.array_equal(steppers.par, others.par)
-    steppers.reset(q, v, which=np.arange(n) == 2)
-    assert steppers.step().all() and not steppers.events(2) and np.array_equal(steppers.par[2], model.parameter_values)
-
-
-def test_one_of_many_whose_action_fails_ends_alone() -> None:
-    """In the words of a run; bounces that become ever shorter end before they fall through."""
-    ball = slide(name="z", axis=(0, 0, 1), gravity=(0, 0, -10))
-    model, heights = sf.compile(ball), np.array([[0.2], [5.0]])
-    events = {"contact": sf.Event("z", "falling", action={"dz": "-0.5*dz"}), "deep": sf.Event("z + 1", terminal=True)}
-    many = sf.simulate_batch(model, heights, t_end=0.9, dt=2e-3, events=events)
-    steppers = sf.Steppers(model, 2, dt=2e-3, events=events)
-    steppers.reset(heights)
-    steppers.step(steps=450)
-    for outcome in (many.outcome(0), steppers.outcome(0)):
-        assert outcome.kind == "interrupted" and "'contact' acts again" in outcome.reason
-        assert outcome.t == pytest.approx(0.6, abs=1e-4)
-    assert many.outcome(1).ok and steppers.running.tolist() == [False, True] and not many.events(1)
-
-
-def test_what_a_stepper_cannot_do_ends_its_motion() -> None:
-    """As it ends a run, in the same words."""
-    model, q, v = docking()
-    for action in ({"grip": 1}, {"grip": 0.5}, {"dq1": "1/grip"}):
-        events = {"dock": sf.Event("t - 1e-3", action=action)}
-        stepper = sf.Stepper(model, dt=1e-4, events=events)
-        stepper.reset(q, v)
-        assert not stepper.step(steps=50)
-        assert stepper.outcome == sf.simulate(model, q, v, 0.01, dt=1e-4, events=events).outcome
 
 
 @pytest.mark.parametrize("method", ["rk4", "dopri5", "cvode"])

@@ -12,8 +12,8 @@ import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.diagrams.run.test_switching import CASES
 from tests.exports.cases import build, run, sources
+from tests.simulation.grasping import grabbing
 from tests.simulation.mechanisms import slide
-from tests.simulation.test_actions import grabbing
 
 MAIN = Path(__file__).with_name("events.c").read_text()
 # A ball that bounces as a body that strikes a constraint does, and is caught at its third contact.
