@@ -29,6 +29,7 @@ from symofros.exports.diagram import write_diagram
 from symofros.exports.fmi.fmu import write_diagram_fmu2, write_diagram_fmu3, write_fmu2, write_fmu3
 from symofros.exports.folder import Exported as Exported
 from symofros.exports.folder import check_folder
+from symofros.exports.functions import states_note
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
 from symofros.exports.limits import joints_of, limits_note
@@ -42,7 +43,6 @@ from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
-from symofros.runtime.record import ModelRecord
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
@@ -66,8 +66,6 @@ _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, st
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
-# Targets whose speeds may end with states of forces; of descriptions, which note the elements that they leave out.
-_WITH_STATES = ("c", "fmu2", "fmu3", "urdf", "mjcf")
 _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
@@ -153,8 +151,6 @@ def export(
     if target == "cuda":
         Compilation(system).record.refuse_sticking(f"export: '{target}'")
         Compilation(system).record.refuse_rigid_contacts(f"export: '{target}'")
-    if target not in _WITH_STATES:
-        Compilation(system).record.refuse_states(f"export '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
             Problem(
@@ -297,22 +293,12 @@ def _material(
         (
             *system.notes,
             *limits_note(joints_of(system)),
-            *_states_note(record),
+            *states_note(record),
             *first.notes,
             *singular_start(interpreted, first.q),
             *((_UNKNOWN_INSTANTS,) if instants and target not in _STEPPED else ()),
         ),
         event_plan(compilation, interpreted, events, c_name, target),
-    )
-
-
-def _states_note(record: ModelRecord) -> tuple[str, ...]:
-    """What states of forces are called in a package."""
-    if not record.state_names:
-        return ()
-    listed = ", ".join(record.state_names)
-    return (
-        f"states of forces are the last speeds, their rates the last accelerations, beside idle coordinates: {listed}",
     )
 
 

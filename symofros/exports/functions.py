@@ -70,3 +70,13 @@ def _arrays(arrays: Iterable[tuple[str, int | tuple[int, ...]]]) -> str:
 def _size(size: int | tuple[int, ...]) -> str:
     sizes = (size,) if isinstance(size, int) else size
     return " x ".join(map(str, sizes)) or "number"
+
+
+def states_note(record: ModelRecord) -> tuple[str, ...]:
+    """What states of forces are called in an export, where there are some."""
+    if not record.state_names:
+        return ()
+    listed = ", ".join(record.state_names)
+    return (
+        f"states of forces are the last speeds, their rates the last accelerations, beside idle coordinates: {listed}",
+    )

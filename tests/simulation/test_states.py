@@ -284,14 +284,6 @@ def test_what_has_no_states_says_so(ask: Any) -> None:
         ask(dragged())
 
 
-@pytest.mark.parametrize("target", ["mex", "sfunction", "wasm", "cuda"])
-def test_exports_that_have_none_say_so(target: Any, tmp_path: Path) -> None:
-    joint = sf.Joint("x", "prismatic", elements=(sf.LuGre(1.0, 10.0),))
-    system = sf.System("rubbing", (sf.RigidBody("b", joint, sf.Inertia(1.0)),))
-    with pytest.raises(sf.SymofrosError, match=f"has states of forces: export '{target}' has none"):
-        sf.export(system, target, tmp_path / "out")
-
-
 def test_models_without_states_refuse_them() -> None:
     model = block(sf.Damper(1.0))
     assert model.nz == 0 and model.carried is model and model.names.z == ()

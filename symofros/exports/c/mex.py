@@ -8,6 +8,7 @@ from symofros.base.c_text import c_string, comment
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.unity import unity
 from symofros.exports.folder import Exported, write_folder
+from symofros.exports.functions import states_note
 from symofros.exports.material import Material
 from symofros.native import native_text
 
@@ -25,7 +26,7 @@ tau = {name}(3, X, A, U, Parameters, t)               inverse dynamics
 [T, X] = {name}(9, X, U, Parameters, [t0 t_end dt])   simulation, inputs held; events act
 
 X = [q; v]. U, Parameters and t may be left out or empty: defaults, and t = 0. SI units, radians.
-V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.
+V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.{states}
 """
 
 _BUILD = """% Builds {name}, in Octave or Matlab: run it in this folder.
@@ -57,6 +58,7 @@ def write_mex(material: Material, folder: Path) -> Exported:
         nu=len(record.u_names),
         npar=len(record.par_names),
         nc=record.nc,
+        states="".join(f"\n{note}." for note in states_note(record)),
     )
     shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
     beams = [body for body in material.system.beams if body.modes]

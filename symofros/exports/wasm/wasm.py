@@ -120,18 +120,19 @@ def _script(material: Material, module: bytes) -> str:
     names = {
         "q": record.q_names,
         "v": record.v_names,
+        "z": record.state_names,
         "u": record.u_names,
         "par": record.par_names,
         "constraints": record.constraint_names,
         "frames": material.frames,
     }
-    sizes = {"nq": record.q_names, "nv": record.v_names, "nu": record.u_names, "npar": record.par_names}
+    sizes = {f"n{key}": len(names[key]) for key in ("q", "v", "z", "u", "par")} | {"nc": record.nc}
     lines = [
         f"// {_comment(record.name)}: written by {material.generator}; hash {record.hash}.",
         native_text("exports/symofros_wasm.mjs"),
         f"const STATUSES = {_json(_statuses())};",
         f"export const names = {_json(names)};",
-        f"export const sizes = {json.dumps({key: len(each) for key, each in sizes.items()} | {'nc': record.nc})};",
+        f"export const sizes = {json.dumps(sizes)};",
         f'const BYTES = "{base64.b64encode(module).decode()}";',
         "",
         "/** The model of this file. */",

@@ -116,7 +116,7 @@ static mxArray *as_array(const sym_function *f, int32_t k, const double *x) {
 
 /* 0: [SysDim, SysSet, FlexLink, Parameter, Frame, Info] = model(0) */
 static void describe(int nlhs, mxArray **plhs) {
-    static const char *dims[] = {"nq", "nv", "nu", "npar", "nc", "nx", "nframes"};
+    static const char *dims[] = {"nq", "nv", "nu", "npar", "nc", "nx", "nframes", "nz"};
     static const char *sets[] = {"X0", "U0", "q_names", "v_names", "u_names", "constraint_names", "method", "dt"};
     static const char *flexible[] = {"name", "first", "count"};
     static const char *parameter[] = {"names", "values"};
@@ -124,12 +124,12 @@ static void describe(int nlhs, mxArray **plhs) {
     static const char *info[] = {"name", "hash", "generator", "functions"};
     const sym_model *m = instance->model;
     const sym_plant *p = instance->plant;
-    const int32_t numbers[7] = {m->nq, m->nv, m->nu, m->npar, m->nc, m->nq + m->nv, p->n_frames};
+    const int32_t numbers[8] = {m->nq, m->nv, m->nu, m->npar, m->nc, m->nq + m->nv, p->n_frames, sym_nz(m)};
     mxArray *made[6];
     double *x;
     int i;
-    made[0] = mxCreateStructMatrix(1, 1, 7, dims);
-    for (i = 0; i < 7; ++i) mxSetField(made[0], 0, dims[i], number((double)numbers[i]));
+    made[0] = mxCreateStructMatrix(1, 1, 8, dims);
+    for (i = 0; i < 8; ++i) mxSetField(made[0], 0, dims[i], number((double)numbers[i]));
     made[1] = mxCreateStructMatrix(1, 1, 8, sets);
     mxSetField(made[1], 0, "X0", mxCreateDoubleMatrix((mwSize)(m->nq + m->nv), 1, mxREAL));
     x = mxGetPr(mxGetField(made[1], 0, "X0"));
