@@ -241,7 +241,7 @@ def _require(tree: Tree, layout: Layout) -> None:
 def compiled() -> dict[str, str]:
     """Variables by which JAX keeps what it compiles, of engines' functions of one structure, for all processes."""
     from symofros import SymofrosError  # Where a release answers there is NumPy alone.
-    from symofros.tools import cache_folder, create_cache_folder
+    from symofros.tools import cache_folder, create_cache_folder  # For the same reason.
 
     folder = cache_folder() / "compiled"
     try:
