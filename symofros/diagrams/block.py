@@ -254,6 +254,10 @@ class Block(metaclass=CheckedCalls):
         """Memory that begins by what signals are -> its value at the start, after the first samples."""
         return {}
 
+    def keeps_instants(self) -> bool:
+        """Whether its memory holds instants, from which time passes whether it runs or not."""
+        return False
+
     def samples(self) -> Mapping[str, Signal]:
         """Outputs that are given by samples over time, one signal (n) or (n, size) each."""
         return {}

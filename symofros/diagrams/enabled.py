@@ -6,7 +6,7 @@ docs/theory/diagrams.md, section 11.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,8 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 
 # Crossings of a continuous block that runs on a condition.
 _ENABLES, _DISABLES = "enables", "disables"
-# Its memory: whether it is enabled; outputs at the instant at which it was disabled.
-_ON, _HELD = "on", "held_"
+# Its memory: whether it is enabled; outputs at the instant at which it was disabled; memory of the block itself.
+_ON, _HELD, _OWN = "on", "held_", "own_"
 # A signal from here on is above zero: one that is zero has not arrived there.
 _LEAST = float(np.finfo(np.float64).tiny)
 
@@ -34,21 +34,36 @@ class Enabled(OnCondition):
         return self.block.states(environment)
 
     def memory(self, environment: Environment) -> Mapping[str, Any]:
-        """Whether it is enabled, and its outputs while it is not."""
-        own = self.block.memory(environment)
-        if own:
-            rule = "what is enabled in time has states, and no memory: integrators, transfer functions, filters"
-            raise refused(self.name, "in a conditional part it keeps memory", ", ".join(own), rule, "give it a period")
+        """Whether it is enabled, its outputs while it is not, and what the block keeps."""
+        own = {_OWN + key: value for key, value in self.block.memory(environment).items()}
+        if own and type(self.block).crossings is Block.crossings:
+            rule = "what is enabled in time has states, or memory that changes at crossings located in time"
+            kept = ", ".join(key.removeprefix(_OWN) for key in own)
+            raise refused(self.name, "in a conditional part it keeps memory", kept, rule, "give it a period")
         ports = self.block.ports(environment).outputs
-        return {_ON: 0.0} | {_HELD + port.name: self.initial_value(port) for port in ports if self._holds(port.name)}
+        held = {_HELD + port.name: self.initial_value(port) for port in ports if self._holds(port.name)}
+        return {_ON: 0.0, **held, **own}
+
+    def inside(self, context: EvaluationContext) -> EvaluationContext:
+        """Where the block's own formulas are written: its memory, and no signals of the condition."""
+        own = {key.removeprefix(_OWN): value for key, value in context.memory.items() if key.startswith(_OWN)}
+        return replace(super().inside(context), memory=own)
 
     def _holds(self, output: str) -> bool:
         """Whether an output keeps its last value while the block is not enabled; else it is the initial one then."""
         return self.condition.outputs == "held" or not self.is_outlet(output)
 
     def memory_at_start(self, context: EvaluationContext) -> Values:
-        """Whether it is enabled from the start."""
-        return {_ON: self._level(context).apply("step")}
+        """Whether it is enabled from the start, and what the block keeps then."""
+        on = self._level(context).apply("step")
+        return {_ON: on, **self._begun(context, on, context.memory)}
+
+    def _begun(self, context: EvaluationContext, begins: Tensor, before: Mapping[str, Tensor]) -> Values:
+        """What the block keeps: as at its start where it begins (1), else as before."""
+        first = {key: context.numbers(value) for key, value in self.block.memory(context.environment).items()}
+        at_start = self.block.memory_at_start(replace(self.inside(context), memory=first))
+        first = {_OWN + key: value for key, value in (first | dict(at_start)).items()}
+        return {key: begins * value + (1.0 - begins) * before[key] for key, value in first.items()}
 
     def compute(self, context: EvaluationContext) -> Values:
         """Outputs of the block while it is enabled; else those of the instant before, or initial ones (12)."""
@@ -66,8 +81,13 @@ class Enabled(OnCondition):
         return {name: context.memory[_ON] * rate for name, rate in rates.items()}
 
     def crossings(self, context: EvaluationContext) -> Mapping[str, Crossing]:
-        """The signal's, and those of the block."""
-        level, own = self._level(context), self.block.crossings(self.inside(context))
+        """The signal's, and those of the block; what it keeps crossings change only while it is enabled (14a)."""
+        level, own, on = self._level(context), dict(self.block.crossings(self.inside(context))), context.memory[_ON]
+        if self.block.memory(context.environment):
+            off = {"rising": -1.0, "falling": 1.0}
+            own = {
+                name: replace(one, value=on * one.value + (1.0 - on) * off[one.direction]) for name, one in own.items()
+            }
         return {_ENABLES: Crossing(level, "rising"), _DISABLES: Crossing(level, "falling"), **own}
 
     def crossed(self, context: EvaluationContext, which: str) -> Values:
@@ -77,12 +97,14 @@ class Enabled(OnCondition):
             held = {_HELD + name: value for name, value in self.compute(context).items() if self._holds(name)}
             return {_ON: context.numbers(0.0), **held}
         if which == _ENABLES:
-            first = self.block.states(context.environment) if self.condition.states == "reset" else {}
+            if self.condition.states != "reset":
+                return {_ON: context.numbers(1.0)}
+            first = self.block.states(context.environment)
             begun = {key: on * states[key] + (1.0 - on) * np.asarray(value, float) for key, value in first.items()}
-            return {_ON: context.numbers(1.0), **begun}
-        changed = self.block.crossed(self.inside(context), which)
-        before = {**states, **memory}
-        return {key: on * value + (1.0 - on) * before[key] for key, value in changed.items()}
+            return {_ON: context.numbers(1.0), **begun, **self._begun(context, 1.0 - on, memory)}
+        changed, before = self.block.crossed(self.inside(context), which), {**states, **memory}
+        own = {key if key in states else _OWN + key: value for key, value in changed.items()}
+        return {key: on * value + (1.0 - on) * before[key] for key, value in own.items()}
 
     def _level(self, context: EvaluationContext) -> Tensor:
         """The signal, so that it is below zero where it does not enable."""
@@ -159,6 +181,9 @@ def _unfit(block: Block, condition: Condition, is_read: bool) -> Iterator[Proble
     elif isinstance(block, Enabled):
         rule = "what is continuous is enabled by one signal"
         yield Problem(f"{what} is continuous", "a condition within another", rule, "give it a period")
+    elif block.keeps_instants() and condition.states == "held" and not condition.triggered:
+        rule = "time passes while it is not enabled: what it keeps of instants begins anew with the part"
+        yield Problem(f"{what} keeps instants", kind.__name__, rule, "states='reset', or give it a period")
     elif block.period is None and condition.triggered and (_moves(block) or is_read):
         found = "states of its own" if _moves(block) else "an outlet reads it"
         rule = "what runs at edges is sampled: states, and what outlets read"

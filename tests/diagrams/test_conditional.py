@@ -199,7 +199,11 @@ def _with(block: Any, outlet: str = "", inner: bool = False, **wires: str) -> sf
     [
         (_with(Lag(name="lag"), x="sum"), {"triggered": "trigger"}, ["'lag'", "is continuous", "enable the part"]),
         (_with(blocks.Gain(name="g"), "g", u="sum"), {"triggered": "trigger"}, ["'g'", "an outlet reads it"]),
-        (_with(blocks.Relay(name="r"), "r", u="sum"), {}, ["'part/r'", "it keeps memory", "is_on", "give it a period"]),
+        (
+            _with(blocks.Relay(name="r"), "r", u="sum"),
+            {"triggered": "trigger"},
+            ["'r'", "is continuous", "enable the part"],
+        ),
         (_with(Lag(name="lag", tau=1.0), x="sum", inner=True), {}, ["a condition within another", "one signal"]),
         (_with(Spoken(name="talk", heard=[], period=STEP), x="sum"), {}, ["'talk'", "calls Python"]),
         (_with(Counter(name="enabled", period=STEP)), {}, ["'enabled' is taken", "rename the block"]),

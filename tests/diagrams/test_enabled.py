@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
+from symofros.diagrams.block import Block, Port, Ports
 from symofros.diagrams.files.command import as_data
 from tests.diagrams.parts import Counter, Lag
 from validation.references import MODELS
@@ -151,3 +153,111 @@ def test_files_state_them(tmp_path: Path) -> None:
     runs = [sf.Simulation(one).run(1.0, dt=1e-2, record=0.1) for one in (whole(EVERY), again)]
     assert all(np.array_equal(runs[0][f"{name}.y"], runs[1][f"{name}.y"]) for name in EVERY)
     assert as_data(sf.Simulation(again).resolved)["blocks"]["held_held/sum"]["kind"] == "integrator"
+
+
+# Of the input of a relay; at 7.3 rad/s it is enabled once above the one and off, once below the other and on.
+UPPER, LOWER, FAST = 0.5, -0.6, 7.3
+
+
+def relay_by_hand(states: str, starts_on: bool, t: np.ndarray, t_end: float) -> tuple[np.ndarray, np.ndarray]:
+    """A relay of sin(FAST t) while WAVE enables it: its output, held between, and the integral of that."""
+    level = [(np.arcsin(UPPER) + 2 * np.pi * k) / FAST for k in range(12)]
+    fall = [(np.pi - np.arcsin(LOWER) + 2 * np.pi * k) / FAST for k in range(12)]
+    marks = sorted([*((at, "on") for at in level), *((at, "off") for at in fall), *((at, "wave") for at in WAVE)])
+    enabled, on, held = True, starts_on, 0.0
+    ends, values = [0.0], [float(on)]
+    for at, what in marks:
+        if what == "wave":
+            enabled = not enabled
+            if enabled:
+                u = np.sin(FAST * at)
+                on = starts_on if states == "reset" else on
+                on = u >= UPPER or (on and u > LOWER)
+            else:
+                held = float(on)
+        elif enabled:
+            on = what == "on"
+        ends.append(at)
+        values.append(float(on) if enabled else held)
+    ends_, values_ = np.array(ends), np.array(values)
+    sums = np.concatenate([[0.0], np.cumsum(np.diff(ends_) * values_[:-1])])
+    which = np.searchsorted(ends_, t, side="right") - 1
+    return values_[which], sums[which] + values_[which] * (t - ends_[which])
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("starts_on", [False, True])
+@pytest.mark.parametrize("states", ["held", "reset"])
+def test_a_relay_switches_while_it_is_enabled(states: Any, starts_on: bool, method: str) -> None:
+    """At its levels, located in time, and as it is enabled beyond one; its integral tells the instants."""
+    part = sf.Diagram("part")
+    part.add(blocks.Relay(name="relay", lower=LOWER, upper=UPPER, starts_on=starts_on))
+    part.add_inlet("u", "relay.u")
+    part.outlets = {"y": "relay"}
+    diagram = whole({})
+    diagram.add(blocks.Formula(name="fast", formulas={"y": f"sin({FAST}*t)"}))
+    diagram.include("part", part, None, sf.Condition(enabled="signal.y", states=states), u="fast")
+    diagram.add(blocks.Integrator(name="sum"), u="part.y")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(5.0, dt=5e-3, method=method, rtol=1e-9, atol=1e-11, record=0.0125)
+    y, total = relay_by_hand(states, starts_on, run.t, 5.0)
+    assert run.outcome.ok and run["sum.y"] == pytest.approx(total, abs=2e-9)
+    if method == "rk4" and starts_on:
+        other = simulation.interpret(5.0, dt=5e-3, record=0.0125)
+        assert [one.t for one in other.crossings] == pytest.approx([one.t for one in run.crossings], abs=1e-9)
+        assert other["sum.y"][-1] == pytest.approx(total[-1], abs=2e-9)
+    told = np.abs(run["part.y"] - y) < 1e-12  # But for one side of each instant.
+    assert told.mean() > 0.97 and 0.1 < y.mean() < 0.9
+
+
+@dataclass(frozen=True, kw_only=True)
+class Keeper(Block):
+    """A continuous block whose memory nothing changes."""
+
+    def ports(self, environment: Any) -> Ports:
+        return Ports((), (Port("y", ()),))
+
+    def memory(self, environment: Any) -> dict[str, Any]:
+        return {"kept": 1.0}
+
+    def compute(self, context: Any) -> dict[str, Any]:
+        return {"y": context.memory["kept"]}
+
+
+def test_memory_that_no_crossing_changes_is_refused() -> None:
+    part = sf.Diagram("part")
+    part.add(Keeper(name="keeper"))
+    diagram = whole({})
+    diagram.include("part", part, None, sf.Condition(enabled="signal.y"))
+    with pytest.raises(sf.DescriptionError, match="(?s)'part/keeper'.*keeps memory.*kept.*give it a period"):
+        sf.Simulation(diagram)
+
+
+def machine(**fields: Any) -> blocks.StateMachine:
+    return blocks.StateMachine(
+        name="machine",
+        machine_states={"rest": blocks.MachineState({"y": 1.0}), "late": blocks.MachineState({"y": "2 + t"})},
+        transitions=[blocks.Transition("rest", "late", "elapsed - 0.3")],
+        outputs={"y": 0.0},
+        **fields,
+    )
+
+
+def test_a_state_machine_begins_anew_where_it_is_enabled() -> None:
+    """Entered at the instant, late 0.3 s later; held in between; time passes, so that it can't go on."""
+    part = sf.Diagram("part")
+    part.add(machine())
+    part.outlets = {"y": "machine.y"}
+    diagram = whole({})
+    diagram.include("part", part, None, sf.Condition(enabled="signal.y", states="reset"))
+    run = sf.Simulation(diagram).run(4.0, dt=5e-3, record=0.0125)
+    y = np.zeros(len(run.t))
+    for begin, end, on in spans("wave", 4.0):
+        rows = (run.t >= begin) & (run.t <= end)
+        y[rows] = np.where(run.t[rows] >= begin + 0.3, 2.0 + run.t[rows], 1.0) if on else 2.0 + begin
+    away = np.abs(run.t[:, None] - np.array([0.3, *WAVE, *(np.array(WAVE) + 0.3)])).min(axis=1) > 1e-8
+    assert run["part.y"][away] == pytest.approx(y[away], abs=1e-9)
+    late = [one.t for one in run.crossings if one.crossing == "rest_to_late"]
+    assert late == pytest.approx([0.3, WAVE[1] + 0.3, WAVE[3] + 0.3][: len(late)], abs=1e-9) and len(late) >= 2
+    with pytest.raises(sf.DescriptionError, match="keeps instants"):
+        whole({}).include("part", part, None, sf.Condition(enabled="signal.y"))

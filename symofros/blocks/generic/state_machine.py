@@ -172,6 +172,10 @@ class StateMachine(Block):
         """Continuous: the first state is entered."""
         return {} if self.period is not None else self._entered(context, "", self._first)
 
+    def keeps_instants(self) -> bool:
+        """Continuous: that at which the active state was entered."""
+        return self.period is None
+
     def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
         """Continuous: conditions of transitions that leave the active state; -1 in other states."""
         if self.period is not None:
