@@ -115,7 +115,7 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
 
 
 def switching() -> tuple[sf.Diagram, list[str]]:
-    """A relay that begins on, a machine that reads it, integrals that are enabled; and outputs that tell of them."""
+    """A relay that begins on, a machine that reads it, integrals and relays that are enabled; outputs of all."""
     diagram = sf.Diagram("switching")
     diagram.add(blocks.Sine(name="u", frequency=1.0, phase=2.0))
     diagram.add(blocks.Relay(name="relay", lower=-0.5, upper=0.5), u="u.y")
@@ -130,12 +130,13 @@ def switching() -> tuple[sf.Diagram, list[str]]:
     )
     part = sf.Diagram("part")
     part.add(blocks.Integrator(name="sum", start=0.25))
+    part.add(blocks.Relay(name="sign", lower=0.1, upper=0.4), u="sum.y")
     part.add_inlet("u", "sum.u")
-    part.outlets = {"x": "sum.y"}
+    part.outlets = {"x": "sum.y", "sign": "sign.y"}
     resets = sf.Condition(enabled="u.y", outputs="reset", states="reset", initial={"x": -1.0})
     diagram.include("wave", part, None, resets, u="u.y")
     diagram.include("relayed", part, None, sf.Condition(enabled="relay.y"), u="u.y")
-    return diagram, ["relay.y", "m.state", "m.y", "m.n", "wave/sum.y", "relayed/sum.y"]
+    return diagram, ["relay.y", "m.state", "m.y", "m.n", "wave/sum.y", "relayed/sum.y", "relayed/sign.y"]
 
 
 def test_programs_switch_where_python_does(tmp_path: Path) -> None:
@@ -149,7 +150,7 @@ def test_programs_switch_where_python_does(tmp_path: Path) -> None:
     last = [np.flatnonzero(np.abs(run.t - t) < 1e-12)[-1] for t in printed[:, 0]]  # Crossings are recorded, too.
     last[0] = 0  # What is met at the start is so in the first step.
     want = np.column_stack([run[name][last] for name in outputs_printed])
-    assert len({tuple(row) for row in want[:, [0, 1, 3]]}) == 4
+    assert len({tuple(row) for row in want[:, [0, 1, 3]]}) == 4 and set(want[:, -1]) == {0.0, 1.0}
     np.testing.assert_allclose(printed[:, 1:], want, atol=1e-9)
 
 
