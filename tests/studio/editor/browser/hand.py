@@ -15,6 +15,11 @@ window.presses = {clicks: 0, keys: 0};
 addEventListener("pointerdown", (event) => event.isTrusted && window.presses.clicks++, true);
 addEventListener("keydown", (event) => event.isTrusted && window.presses.keys++, true);
 """
+# Of a path of SVG, in the window.
+_MIDDLE = """path => {
+  const {x, y} = path.getPointAtLength(path.getTotalLength() / 2).matrixTransform(path.getScreenCTM());
+  return [x, y];
+}"""
 
 
 class Hand:
@@ -28,6 +33,12 @@ class Hand:
         """Click something once it stands still."""
         at_rest(target)
         target.click()
+
+    def press_line(self, path: Locator) -> None:
+        """Click the middle of a line, once it stands still."""
+        at_rest(path)
+        x, y = path.evaluate(_MIDDLE)
+        self.page.mouse.click(x, y)
 
     def twice(self, target: Locator) -> None:
         """Double click something: two clicks."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,7 @@ BARS = {
     "three bodies to C": (40, 30),
     "a four-bar": (20, 4),
     "a diagram with a subsystem": (20, 4),
+    "PD, subsystem and scopes": (40, 20),
     "the tour": (10, 4),
 }
 
@@ -173,6 +175,67 @@ def test_blocks_become_a_subsystem_that_one_goes_into(
         for each in (whole, sf.load_diagram(next(tmp_path.glob("held_arm*.yaml"))))
     ]
     assert (runs[0]["plant.q"] == runs[1]["plant.q"]).all()
+
+
+def test_a_law_with_a_subsystem_and_scopes_is_drawn_and_run(
+    serve: Serve, page: Page, hand: Hand, picture: Picture, faults: Faults, tmp_path: Path
+) -> None:
+    """An empty diagram beside the file of an arm: four blocks, four wires, gains, a subsystem, two scopes, a run."""
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    page.goto(serve("law.yaml", content="symofros_diagram: 1\nblocks: {}\n").url)
+    palette = page.get_by_role("navigation", name="Palette")
+    hand.press(palette.get_by_role("button", name="Generic"))
+    for title, block in (
+        ("Model", "models/model"),
+        ("forward dynamics", "blocks/forward_dynamics"),
+        ("constant", "blocks/constant"),
+        ("joint pd", "blocks/joint_pd"),
+    ):
+        hand.press(palette.get_by_role("button", name=title, exact=True))
+        expect(steps.block(page, block)).to_be_visible()
+    hand.twice(steps.block(page, "blocks/constant").locator(".block-title"))
+    hand.put(steps.window(page).get_by_label("Value", exact=True), "[0.6,-0.4]")
+    hand.press(steps.window(page).get_by_role("button", name="OK"))
+    hand.twice(steps.block(page, "blocks/joint_pd").locator(".block-title"))
+    hand.put(steps.window(page).get_by_label("Proportional gain", exact=True), "60")
+    hand.put(steps.window(page).get_by_label("Derivative gain", exact=True), "9")
+    hand.press(steps.window(page).get_by_role("button", name="OK"))
+    hand.press(page.get_by_role("button", name="Show the whole diagram"))
+    for source, target, edge in (
+        ("output y of constant", "input q_desired of joint_pd", "joint_pd/inputs/q_desired"),
+        ("output q of forward_dynamics", "input q of joint_pd", "joint_pd/inputs/q"),
+        ("output v of forward_dynamics", "input v of joint_pd", "joint_pd/inputs/v"),
+        ("output effort of joint_pd", "input u of forward_dynamics", "forward_dynamics/inputs/u"),
+    ):
+        hand.draw(steps.port(page, source), steps.port(page, target))
+        expect(steps.wire(page, f"blocks/{edge}")).to_have_count(1)
+    hand.press(page.get_by_role("button", name="Arrange the blocks"))
+    steps.problems(page, 0)
+    picture("law-drawn")
+    page.keyboard.down("Control")
+    for name in ("constant", "joint_pd"):
+        hand.press(steps.block(page, f"blocks/{name}").locator(".block-title"))
+    page.keyboard.up("Control")
+    steps.block(page, "blocks/joint_pd").locator(".block-title").click(button="right")
+    hand.press(page.get_by_role("menuitem", name="Group into a subsystem"))
+    expect(steps.block(page, "parts/subsystem")).to_be_visible()
+    hand.press(page.get_by_role("button", name="Arrange the blocks"))
+    for k, output in enumerate(("q", "v")):
+        wire = page.locator(f'.react-flow__edge[data-id^="parts/subsystem"][data-id$="{output}"]')
+        hand.press_line(wire.locator(".react-flow__edge-interaction"))
+        hand.press(page.get_by_role("button", name="Add a scope"))
+        expect(page.locator('.react-flow__node[data-id^="blocks/scope"]')).to_have_count(k + 1)
+    steps.problems(page, 0)
+    hand.press(button(page, "Run"))
+    simulated(page)
+    for signal in ("q", "v"):
+        expect(steps.results(page).get_by_role("img", name=f"forward_dynamics.{signal}")).to_be_visible()
+    picture("law-run")
+    assert faults() == []
+    steps.saved(page)
+    within(hand, "PD, subsystem and scopes")
+    run = sf.Simulation(sf.load_diagram(tmp_path / "law.yaml")).run(3.0)
+    assert run.q[-1] == pytest.approx([0.6, -0.4], abs=0.5)
 
 
 def test_the_tour_ends_with_a_motion(opened: Serve, page: Page, hand: Hand, picture: Picture, faults: Faults) -> None:
