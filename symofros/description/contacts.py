@@ -49,7 +49,8 @@ class Contact:
 
     *Rigid*, with `restitution` in place of `stiffness`: balls on a plane strike, slide, stick and part by Coulomb's
     law, exactly, as modes of a run ("BALL.mode": 0 open, 1 slides, 2 sticks; docs/theory/constraints.md, section 15).
-    Runs, batches and steppers choose the modes; all other functions see an open contact unless a mode is set.
+    Runs, batches, steppers, C packages, MEX and FMUs choose the modes; all other functions see an open contact unless a
+    mode is set.
 
     Attributes:
         name: Unique name, among connections too.

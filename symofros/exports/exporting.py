@@ -258,7 +258,9 @@ def _material(
     instants, constrained = described.has_instants, described.record.nc > 0
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
-    if described.record.sticking:
+    if not stepping.method.family.batched:
+        described.record.refuse_rigid_contacts(f"export: '{target}' by '{stepping.method.name}'")
+    if described.record.sticking or described.record.rigid_contacts:
         needs = (*needs, "constraint")
     stepped = ("forward_dynamics", "project") if constrained else ("forward_dynamics",)
     offered = stepped if chosen else wasm.functions(constrained) if target == "wasm" else exported(constrained)

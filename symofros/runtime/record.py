@@ -141,6 +141,12 @@ class RigidContactRecord(NamedTuple):
     restitution: str
     watched: tuple[str, str]
 
+    @property
+    def state(self) -> tuple[str, ...]:
+        """Formulas of its state: distance, velocity against the plane (3), friction, restitution."""
+        quantities = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz"))
+        return (*quantities, self.friction, self.restitution)
+
 
 class JointLimit(NamedTuple):
     """Limit of a joint, which no force keeps.
@@ -312,7 +318,7 @@ class ModelRecord:
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            choose = "`simulate`, batches and steppers choose them, by explicit methods"
+            choose = "`simulate`, batches, steppers, C packages, MEX and FMUs choose them, by explicit methods"
             remedy = "a compliant contact: stiffness in place of restitution"
             raise _no_modes(f"{what}: rigid contact", found, choose, remedy)
 

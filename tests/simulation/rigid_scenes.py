@@ -37,28 +37,37 @@ def ball(e: float = 0.5, friction: float = 0.5) -> sf.Model:
     return sf.compile(ball_system(e, friction))
 
 
-@cache
-def rod(friction: float, e: float = 0.0) -> sf.Model:
+def rod_system(friction: float, e: float = 0.0) -> sf.System:
     """A rod of 1 kg and 2 m in a plane, whose lower tip touches the ground: Painleve's."""
     x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
     z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"))
     turning = sf.Joint("angle", "revolute", axis=(0, 1, 0), parent="z")
     body = sf.RigidBody("rod", turning, sf.Inertia(1.0, moments=(1 / 3, 1 / 3, 1e-3)))
     tip = sf.Contact("tip", ("rod", None), GROUND, restitution=e, friction=friction, points=[(0, 0, -1)])
-    return sf.compile(sf.System("rod", (x, z, body), connections=(tip,)))
+    return sf.System("rod", (x, z, body), connections=(tip,))
 
 
-def box(
+@cache
+def rod(friction: float, e: float = 0.0) -> sf.Model:
+    """The same, compiled."""
+    return sf.compile(rod_system(friction, e))
+
+
+def box_system(
     friction: float, gravity: tuple[float, float, float] = (0, 0, -G), height: float = 0.1, e: float = 0.0
-) -> sf.Model:
+) -> sf.System:
     """A box of 2 kg on four feet, at whose centre a force draws."""
     pull = sf.Load(force=(sf.formula("pull"), 0, 0), axes="world")
     inertia = sf.Inertia(2.0, moments=(0.02, 0.03, 0.04))
     body = sf.RigidBody("box", sf.Joint("free", "free"), inertia, loads=(pull,))
     feet = [(x, y, -height) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
     sole = sf.Contact("sole", ("box", None), GROUND, restitution=e, friction=friction, points=feet)
-    system = sf.System("box", (body,), inputs=(sf.Input("pull"),), connections=(sole,), gravity=gravity)
-    return sf.compile(system)
+    return sf.System("box", (body,), inputs=(sf.Input("pull"),), connections=(sole,), gravity=gravity)
+
+
+def box(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), **stated: float) -> sf.Model:
+    """The same, compiled."""
+    return sf.compile(box_system(friction, gravity, **stated))
 
 
 def rested(model: sf.Model, height: float) -> Any:

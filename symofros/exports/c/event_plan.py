@@ -47,9 +47,9 @@ def event_plan(
         ExportError: The target has no steps of its own, or can't end where an event does.
         SymofrosError: An action can't be done.
     """
-    model.record.refuse_rigid_contacts(f"export: '{target}'")
     if target not in _TARGETS:
         model.record.refuse_sticking(f"export: '{target}'")
+        model.record.refuse_rigid_contacts(f"export: '{target}'")
     events = events_of(model, given)
     if not events:
         return None
@@ -59,6 +59,7 @@ def event_plan(
     sources: dict[str, Sequence[Any]] = {
         "events": [event.formula for event in events],
         "actions": actions.stated.formulas if actions else (),
+        "contacts": [formula for ball in model.record.rigid_contacts for formula in ball.state],
     }
     files = {
         f"{c_name}_{kind}.inc": compilation.formulas_source(formulas, f"{c_name}_{kind}", reactions=kind == "events")
@@ -106,7 +107,8 @@ def planned(
         events: The events, ends of modes last.
         actions: What they do; None: nothing.
         record: Names and switches of what moves.
-        files: File name -> C text of their formulas, NAME_events, and of their actions', NAME_actions.
+        files: File name -> C text of their formulas, NAME_events, of their actions', NAME_actions, and of the states of
+            rigid contacts, NAME_contacts.
     """
     return EventPlan(tuple(_lines(name, events, actions, record, tuple(files))), files)
 
@@ -118,6 +120,11 @@ def _lines(
     switches = record.switches
     turning = [switch for switch in switches if switch.rotation]
     sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
+    balls = record.rigid_contacts
+    contacts = [
+        f"{{{one.mode}, {{{integers(one.pushes)}}}, {{{integers(one.way)}}}, {one.apart}, {{{integers(one.rows)}}}}}"
+        for one in balls
+    ]
     places = [f"{{{', '.join(map(str, place))}}}" for place in (places_of(record, actions) if actions else ())]
     arrays = {
         "direction": [event.sign for event in events],
@@ -145,11 +152,13 @@ def _lines(
         *held,
         f"static const sym_switch {name}_switches[] = {{{_switches(name, switches)}}};",
         f"static const sym_sticking {name}_sticking[] = {{{', '.join(sticking) or '{0, 0, 0, 0}'}}};",
+        *([f"static const sym_rigid_contact {name}_rigid_contacts[] = {{{', '.join(contacts)}}};"] if balls else ()),
         f"static const char *const {name}_pose_frames[] = {{{strings(frames)}}};",
         f"static const sym_event_plan {name}_event_plan = {{",
         f"    {len(events)}, {name}_event_names, {pointers},",
         f"    {counts}, {name}_assignments, {name}_switches, {name}_pose_frames,",
-        f"    {len(sticking)}, {actions.first_mode if actions else len(events)}, {name}_sticking, {models}",
+        f"    {len(sticking)}, {actions.first_mode if actions else len(events)}, {name}_sticking, {models},",
+        f"    {len(balls)}, " + (f"{name}_rigid_contacts, {name}_contacts_model" if balls else "NULL, NULL"),
         "};",
     ]
 

@@ -79,11 +79,12 @@ def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
     widths = [width for width in WIDTHS if lanes or any(f"sym_sincos_{width}(" in text for text in code)]
     if not widths:
         return []
-    parts = [Template(native_text("model/trigonometry.c.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))]
+    near = Template(native_text("model/trigonometry.c.in")).substitute(far=repr(FAR), near=_near("sym_near_1"))
+    parts = {"SYM_SINCOS": near}
     if any("sym_sincos_1(" in text for text in code):
-        parts.append(native_text("model/sincos_one.c.in"))
-    parts += [
-        Template(native_text("model/sincos_block.c.in")).substitute(
+        parts["SYM_SINCOS_1"] = native_text("model/sincos_one.c.in")
+    parts |= {
+        f"SYM_SINCOS_{width}": Template(native_text("model/sincos_block.c.in")).substitute(
             width=width,
             bytes=8 * width,
             near=_near(f"sym_near_{width}", f"sym_{width}", f"sym_{width}u", f"(sym_{width}u)", f"(sym_{width})"),
@@ -91,8 +92,9 @@ def routines(code: Iterable[str], lanes: bool = False) -> list[str]:
         )
         for width in widths
         if width > 1
-    ]
-    return parts
+    }
+    # Files of formulas are included beside each other.
+    return [f"#ifndef {guard}\n#define {guard}\n{text}\n#endif\n" for guard, text in parts.items()]
 
 
 def of_lanes(single: bool) -> str:

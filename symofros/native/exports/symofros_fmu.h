@@ -6,7 +6,7 @@
  */
 #include "symofros_fmu_codes.h"
 
-typedef struct fmu_snapshot { /* followed by q, v, u, par, and when each event has acted last */
+typedef struct fmu_snapshot { /* followed by the numbers of fmu_parts */
     char hash[24];
     double t, h, stop;
     int32_t phase, has_stop, cosim, reserved;
@@ -275,6 +275,9 @@ static int fmu_step(fmu *f, double t) {
     case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
     case SYM_ACTS_WITHOUT_END:
         return strcpy(f->message, "an event acts again and again at the same instant, or leaves bodies at rest on each other"), FMU_BEYOND_THEORY;
+    case SYM_NO_CONTACT_FORCE: return strcpy(f->message, "no forces of rigid contacts agree with Coulomb's law (Painleve's paradox)"), FMU_BEYOND_THEORY;
+    case SYM_CONTACTS_AMBIGUOUS:
+        return strcpy(f->message, "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox)"), FMU_BEYOND_THEORY;
     default: return FMU_SINGULAR;
     }
 }
@@ -386,29 +389,46 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
 /* Number of events, where some act. */
 static int32_t fmu_acting(const fmu *f) { return f->instance->run.actions != NULL ? f->instance->system.n_events : 0; }
 
+enum { FMU_PARTS = 6 };
+typedef struct fmu_part { double *at; size_t size; } fmu_part;
+
+/* Numbers that a motion goes on from: the state, inputs, parameters, when each event has acted last, rigid contacts. */
+static void fmu_parts(const fmu *f, fmu_part *parts) {
+    const sym_instance *instance = f->instance;
+    const sym_model *m = instance->model;
+    parts[0].at = instance->q, parts[0].size = (size_t)m->nq;
+    parts[1].at = instance->v, parts[1].size = (size_t)m->nv;
+    parts[2].at = instance->u, parts[2].size = (size_t)m->nu;
+    parts[3].at = instance->par, parts[3].size = (size_t)m->npar;
+    parts[4].at = instance->run.acted_at, parts[4].size = (size_t)fmu_acting(f);
+    parts[5].at = instance->system.contact_memory, parts[5].size = sym_instance_contact_size(instance);
+}
+
 static size_t fmu_snapshot_size(const fmu *f) {
-    const sym_model *m = f->instance->model;
-    const size_t sizes = (size_t)m->nq + (size_t)m->nv + (size_t)m->nu + (size_t)m->npar + (size_t)fmu_acting(f);
+    fmu_part parts[FMU_PARTS];
+    size_t sizes = 0;
+    int i;
+    fmu_parts(f, parts);
+    for (i = 0; i < FMU_PARTS; ++i) sizes += parts[i].size;
     return sizeof(fmu_snapshot) + sizes * sizeof(double);
 }
 
 static void fmu_save(const fmu *f, void *into) {
     const sym_instance *instance = f->instance;
-    const sym_model *m = instance->model;
-    const double *const parts[5] = {instance->q, instance->v, instance->u, instance->par, instance->run.acted_at};
-    const int32_t sizes[5] = {m->nq, m->nv, m->nu, m->npar, fmu_acting(f)};
+    fmu_part parts[FMU_PARTS];
     char *at = (char *)into + sizeof(fmu_snapshot);
     fmu_snapshot head;
     int i;
     memset(&head, 0, sizeof head);
-    strncpy(head.hash, m->hash, sizeof head.hash - 1);
+    strncpy(head.hash, instance->model->hash, sizeof head.hash - 1);
     head.t = instance->t, head.h = instance->run.h, head.stop = f->stop;
     head.phase = (int32_t)f->phase, head.has_stop = f->has_stop, head.cosim = f->cosim;
     memcpy(into, &head, sizeof head);
-    for (i = 0; i < 5; ++i) {
-        if (sizes[i] == 0) continue;
-        memcpy(at, parts[i], (size_t)sizes[i] * sizeof(double));
-        at += (size_t)sizes[i] * sizeof(double);
+    fmu_parts(f, parts);
+    for (i = 0; i < FMU_PARTS; ++i) {
+        if (parts[i].size == 0) continue;
+        memcpy(at, parts[i].at, parts[i].size * sizeof(double));
+        at += parts[i].size * sizeof(double);
     }
 }
 
@@ -422,9 +442,7 @@ static int fmu_owns(const fmu *f, const void *snapshot) {
 /* Returns 0 where the snapshot is of another model or kind. */
 static int fmu_load(fmu *f, const void *from) {
     sym_instance *instance = f->instance;
-    const sym_model *m = instance->model;
-    double *const parts[5] = {instance->q, instance->v, instance->u, instance->par, instance->run.acted_at};
-    const int32_t sizes[5] = {m->nq, m->nv, m->nu, m->npar, fmu_acting(f)};
+    fmu_part parts[FMU_PARTS];
     const char *at = (const char *)from + sizeof(fmu_snapshot);
     fmu_snapshot head;
     int i;
@@ -433,10 +451,11 @@ static int fmu_load(fmu *f, const void *from) {
     if (head.phase < 0 || head.phase > (int32_t)FMU_TERMINATED) return 0;
     instance->t = head.t, instance->run.h = head.h, f->stop = head.stop;
     f->phase = (fmu_phase)head.phase, f->has_stop = head.has_stop;
-    for (i = 0; i < 5; ++i) {
-        if (sizes[i] == 0) continue;
-        memcpy(parts[i], at, (size_t)sizes[i] * sizeof(double));
-        at += (size_t)sizes[i] * sizeof(double);
+    fmu_parts(f, parts);
+    for (i = 0; i < FMU_PARTS; ++i) {
+        if (parts[i].size == 0) continue;
+        memcpy(parts[i].at, at, parts[i].size * sizeof(double));
+        at += parts[i].size * sizeof(double);
     }
     for (i = 0; i < fmu_acting(f); ++i) {
         const sym_event_plan *plan = instance->plant->events;

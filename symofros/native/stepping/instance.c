@@ -82,101 +82,7 @@ static void sym_instance_allocate_instants(sym_instance *instance, sym_arena *ar
     instance->system.stops = instance->stops;
 }
 
-/* A function of a model of formulas as a call at the evaluation point, with a parameters' part of its own. Returns 0 where
- * there is no model. */
-static int32_t sym_instance_bind_formulas(sym_instance *instance, sym_arena *arena, sym_call *call, const sym_model *(*of)(void)) {
-    const sym_model *m = of != NULL ? of() : NULL;
-    const sym_point point = sym_system_point(&instance->system);
-    double *pre, *work;
-    if (m == NULL) return 0;
-    pre = sym_allocate(arena, (size_t)m->npre), work = sym_allocate(arena, sym_work(m));
-    call->init = m->init;
-    return sym_bind_function(arena, call, m->functions, pre, work, &point);
-}
-
-/* Whether the condition of the description or the beams forbid that parameters change to some. */
-static int32_t sym_instance_refuses(void *data, const double *par) {
-    sym_instance *instance = data;
-    const sym_plant *p = instance->plant;
-    const double *L = instance->beam_stiffness.out[0], *EI = instance->beam_stiffness.out[1];
-    int32_t b, differ = 0;
-    if (instance->check_parameters && p->violated(par) >= 0) return 1;
-    if (p->n_beams == 0) return 0;
-    instance->model->init(par, instance->pre);
-    sym_evaluate(&instance->beam_stiffness);
-    for (b = 0; b < p->n_beams; ++b) {
-        const sym_beam *beam = &instance->beams[b];
-        int32_t i;
-        differ |= EI[2 * b] != beam->EI_z || EI[2 * b + 1] != beam->EI_y;
-        for (i = beam->first; i < beam->first + beam->n; ++i)
-            differ |= instance->beam_scale[i] != (p->beam_displacements[i] ? 1.0 / L[b] : 1.0);
-    }
-    return differ;
-}
-
-/* Rows of events that an instance keeps of one call. */
-enum { SYM_INSTANCE_EVENTS = 64 };
-
-/* Lay out what the actions of events need. Returns 0 where the model lacks a function for that. */
-static int32_t sym_instance_allocate_actions(sym_instance *instance, sym_arena *arena) {
-    const sym_event_plan *plan = instance->plant->events;
-    sym_actions *a = &instance->actions;
-    sym_run *r = &instance->run;
-    const sym_point point = sym_system_point(&instance->system);
-    int32_t i, found = instance->model->nc == 0;
-    a->npar = instance->model->npar, a->n_assignments = plan->n_assignments, a->n_switches = plan->n_switches;
-    a->assignments = plan->assignments, a->switches = plan->switches;
-    a->first_mode = plan->first_mode;
-    a->modes = sym_allocate(arena, (size_t)a->npar + 2 * (size_t)plan->n_sticking);
-    a->acts = plan->acts, a->once = plan->once, a->restitution = plan->restitution, a->opens = plan->opens;
-    a->refuses = sym_instance_refuses, a->data = instance;
-    a->engaged = sym_allocate(arena, (size_t)plan->n_switches);
-    a->poses = sym_allocate_bytes(arena, (size_t)plan->n_poses * sizeof *a->poses);
-    if (!found) found = sym_instance_bind(instance, arena, &a->constraint, "constraint");
-    for (i = 0; i < plan->n_poses; ++i) {
-        const sym_function *pose = sym_find(instance->model, "frame_pose", plan->pose_frames[i]);
-        sym_call draft, *call = arena->base != NULL ? a->poses + i : &draft;
-        found &= sym_bind_function(arena, call, pose, instance->pre, instance->work, &point);
-        call->init = instance->model->init;
-    }
-    r->actions = a, r->acts = 1, r->par = instance->par, r->acted_at = sym_allocate(arena, (size_t)plan->n);
-    r->event_done = sym_allocate(arena, (size_t)r->event_capacity * sym_done_size(r));
-    return sym_instance_bind_formulas(instance, arena, &a->values, plan->actions) && found;
-}
-
-/* Lay out what finds events and notes them. Returns 0 where the model lacks a function for that. */
-static int32_t sym_instance_allocate_events(sym_instance *instance, sym_arena *arena) {
-    const sym_event_plan *plan = instance->plant->events;
-    sym_system *s = &instance->system;
-    sym_run *r = &instance->run;
-    size_t n, rows;
-    int32_t i;
-    memset(&instance->actions, 0, sizeof instance->actions);
-    if (plan == NULL) return 1;
-    n = (size_t)plan->n, rows = SYM_INSTANCE_EVENTS + 2 * n;
-    s->n_events = plan->n, s->event_direction = plan->direction;
-    s->n_sticking = plan->n_sticking, s->sticking = plan->sticking;
-    s->held = sym_allocate_bytes(arena, (size_t)plan->n_sticking * sizeof *s->held);
-    instance->event_terminal = sym_allocate_bytes(arena, n * sizeof *instance->event_terminal);
-    s->event_terminal = instance->event_terminal;
-    r->event_values = sym_allocate(arena, SYM_EVENT_ROWS * n);
-    r->event_capacity = (int64_t)rows;
-    r->event_t = sym_allocate(arena, rows), r->event_index = sym_allocate_bytes(arena, rows * sizeof *r->event_index);
-    r->event_q = sym_allocate(arena, rows * (size_t)s->nq), r->event_v = sym_allocate(arena, rows * (size_t)s->nv);
-    if (!sym_instance_bind_formulas(instance, arena, &s->events, plan->formulas)) return 0;
-    for (i = 1; i < s->events.function->n_in; ++i) s->events_of_reactions |= strcmp(s->events.function->in[i].name, "lam") == 0;
-    return plan->actions == NULL || sym_instance_allocate_actions(instance, arena);
-}
-
-/* No event has been met yet, and none has acted for good. */
-static void sym_instance_forget_events(sym_instance *instance) {
-    const sym_event_plan *plan = instance->plant->events;
-    int32_t i;
-    if (plan == NULL) return;
-    memcpy(instance->event_terminal, plan->cut, (size_t)plan->n * sizeof *plan->cut);
-    for (i = 0; i < plan->n && instance->run.actions != NULL; ++i) instance->run.acted_at[i] = -HUGE_VAL;
-    instance->run.n_event_records = 0;
-}
+#include "instance_events.c"
 
 /* Lay out every array of the instance. Returns 0 where the model lacks a function that its method calls. */
 static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
@@ -266,7 +172,7 @@ SYM_EXPORT int32_t sym_instance_prepare(sym_instance *instance) {
     if (instance->refused >= 0) return SYM_PARAMETERS_REFUSED;
     sym_hold_by_modes(&instance->system, instance->par);
     instance->model->init(instance->par, instance->pre);
-    sym_prepare_call(&instance->system.events, instance->par);
+    sym_prepare_call(&instance->system.events, instance->par), sym_prepare_call(&instance->system.contact_state, instance->par);
     sym_instance_prepare_beams(instance);
     sym_instance_forget_stops(instance);
     return 0;
@@ -379,19 +285,6 @@ static void sym_instance_look(sym_instance *instance, double span) {
     instance->run.look_every = instance->run.adaptive ? span / SYM_LOOKS : 0.0;
 }
 
-/* Of more events than there are rows for, the last ones are kept. */
-static void sym_instance_make_room(sym_run *r) {
-    const int64_t n = r->system->n_events, left = r->event_capacity / 2;
-    const size_t nq = (size_t)r->system->nq, nv = (size_t)r->system->nv;
-    const int64_t first = r->n_event_records - left;
-    if (n == 0 || r->n_event_records + n <= r->event_capacity) return;
-    memmove(r->event_t, r->event_t + first, (size_t)left * sizeof *r->event_t);
-    memmove(r->event_index, r->event_index + first, (size_t)left * sizeof *r->event_index);
-    memmove(r->event_q, r->event_q + (size_t)first * nq, (size_t)left * nq * sizeof *r->event_q);
-    memmove(r->event_v, r->event_v + (size_t)first * nv, (size_t)left * nv * sizeof *r->event_v);
-    r->n_event_records = left;
-}
-
 /* Integrate to t_end, between two instants of the model's formulas. Returns SYM_FINISHED or a status below zero. */
 static int32_t sym_instance_advance_between(sym_instance *instance, double t_end, double h) {
     sym_run *r = &instance->run;
@@ -406,13 +299,15 @@ static int32_t sym_instance_advance_between(sym_instance *instance, double t_end
         r->h = span / (count > 1.0 ? count : 1.0);
     }
     sym_instance_make_room(r);
-    status = sym_run_start(r);
+    status = sym_instance_doubt_contacts(instance);
+    if (status == 0) status = sym_run_start(r);
     while (status == SYM_RUNNING || status == SYM_RECORDS_FULL) {
         sym_instance_make_room(r);
         status = sym_run_advance(r, INT32_MAX);
     }
     if (r->adaptive) r->h = r->next_step; /* the next call continues with the controller's step */
     instance->t = status == SYM_FINISHED ? t_end : r->t;
+    sym_instance_leave(instance);
     return status;
 }
 
@@ -425,6 +320,7 @@ SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, do
     sym_run_end_step(&instance->run);
     instance->run.n_event_records = 0;
     instance->actions.at_once = SYM_AT_ONCE * (h > 0.0 ? h : instance->plant->h);
+    instance->system.longest_step = instance->run.adaptive ? 0.0 : h > 0.0 ? h : instance->plant->h;
     sym_instance_look(instance, sym_instance_span(instance, instance->t, t_end));
     while (status == SYM_FINISHED && instance->t < t_end) {
         double end = sym_instance_find_stops(instance, instance->t, t_end);

@@ -27,6 +27,7 @@
 #include "sticking.c"
 #include "impact.c"
 #include "contact_problem.c"
+#include "contact_memory.c"
 #include "rigid_contacts.c"
 #include "actions.c"
 #include "run.c"

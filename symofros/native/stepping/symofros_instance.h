@@ -35,6 +35,9 @@ typedef struct sym_event_plan { /* events of a package, and what they do: symofr
     const sym_sticking *sticking;
     const sym_model *(*formulas)(void);   /* a function of the values of the events, of parameters' parts of its own */
     const sym_model *(*actions)(void);    /* the same of switches and assignments; NULL: no event acts */
+    int32_t n_contacts;                   /* balls of rigid contacts, whose modes' ends follow those of friction */
+    const sym_rigid_contact *contacts;
+    const sym_model *(*contact_state)(void); /* as in sym_system; NULL: there are none */
 } sym_event_plan;
 
 typedef struct sym_plant { /* constants that a package generates besides the model's functions */
@@ -86,6 +89,7 @@ typedef struct sym_instance {
     double stops_begin, stops_end;
     sym_actions actions; /* where events act; `par` and its parts are then those that they have left */
     int32_t *event_terminal; /* (events) */
+    double *left_at;    /* (1 + nq + nv) of rigid contacts: t, q, v at the end of the last motion */
     sym_system system;
     sym_run run;
 } sym_instance;
@@ -121,6 +125,8 @@ double sym_instance_begin_step(sym_instance *instance, double t_end);
 /* Evaluate one function of the model at the present state; out: its outputs in order. Returns 0 where it is absent, or
  * asks for an input that an instance does not hold, or parameters are refused. */
 int32_t sym_instance_call(sym_instance *instance, const sym_function *function, double *const *out);
+/* Doubles of instance->system.contact_memory, all that is kept of rigid contacts from one motion to the next. */
+size_t sym_instance_contact_size(const sym_instance *instance);
 /* Rates of q and v (nq + nv) at the present state. Returns 0 or a status. */
 int32_t sym_instance_rates(sym_instance *instance, double *rates);
 /* Exact directional derivatives at the present state, after sym_instance_rates: along dq (nq), dv (nv), du (nu) those of

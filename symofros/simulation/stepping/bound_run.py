@@ -20,8 +20,6 @@ from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.tableaus import fill_tableau
 from symofros.simulation.user_functions import named_function
 
-# Kinds of methods whose steps choose the modes of rigid contacts.
-_BY_MODES = ("explicit", "semi_implicit")
 _INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
 
 
@@ -118,12 +116,9 @@ class BoundRun:
         system.contacts = memory.own("sym_rigid_contact[]", rows)
         if not balls:
             return
-        if self.method.kind not in _BY_MODES:
+        if not self.method.family.batched:
             self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'")
-        formulas: list[str] = []
-        for ball in balls:
-            formulas += [f"`contact.{ball.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz")]
-            formulas += [ball.friction, ball.restitution]
+        formulas = [formula for ball in balls for formula in ball.state]
         self._bind("contact_state", self.model.formulas(formulas, derivatives=False))
         system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))
         system.contact_memory = memory.zeros(int(self.native.sym_contact_memory_size(system)))

@@ -102,3 +102,16 @@ def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -
             sf.export(BALL, target, tmp_path / target, events=STRIKE)
     with pytest.raises(sf.ExportError, match="'rest' ends the motion"):
         sf.export(BALL, "fmu2", tmp_path / "fmu", events=ends)
+
+
+def test_conditions_and_actions_of_one_package_take_sines(tmp_path: Path) -> None:
+    """Formulas of both are files of the same source."""
+    event = {"swings": sf.Event("sin(x) - 0.1", "rising", action={"dx": "-sin(x)*dx"})}
+    system = slide(name="x", axis=(1, 0, 0), gravity=(1, 0, 0))
+    sf.export(system, "c", tmp_path / "c", name="plan", events=event, dt=1e-3)
+    (tmp_path / "c" / "main.c").write_text(MAIN)
+    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    *met, _, state = run(program, "0.1", "1.0", cwd=tmp_path).splitlines()
+    known = sf.simulate(sf.compile(system), t_end=1.0, dt=1e-3, events=event)
+    assert len(met) == len(known.events) > 0
+    assert np.array(state.split()[1:], dtype=float) == pytest.approx([*known.q[-1], *known.v[-1]], abs=1e-12)

@@ -5,13 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import fmpy
+import numpy as np
 import pytest
 
 import symofros as sf
 from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import quickly
+from tests.exports.fmi.test_fmu import Unit, quickly
+from tests.simulation.rigid_scenes import ball_system, box, box_system, rested, rod_system
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -54,3 +56,46 @@ def test_importers_are_told_that_a_motion_has_ended(tmp_path: Path) -> None:
         )
     assert done["time"][-1] == 0.0 and len(log) < 20
     assert "a contact that rests is penetrated" in "".join(log)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_box_slides_in_co_simulation(tmp_path: Path, version: int) -> None:
+    """As in sf.simulate; a state that is gone back to knows how its feet slide, and moves on by the same bits."""
+    start = {"free.pz": 0.11, "free.vx": 1.0, "free.vy": 0.5, "free.wz": 2.0, "free.wx": 0.2}
+    with quickly():
+        path = sf.export(box_system(0.3), f"fmu{version}", tmp_path, start=start).files[0]  # type: ignore[arg-type]
+    unit = Unit(Path(path), version, True, tmp_path / "unit")
+    assert unit.description.modelExchange is None
+    unit.start()
+    names = unit.named("q.")
+    ends = []
+    for k in range(10):
+        unit.fmu.doStep(0.01 * k, 0.01)
+    kept = unit.fmu.getFMUState() if version == 3 else unit.fmu.getFMUstate()
+    for _ in range(2):
+        for k in range(10, 20):
+            unit.fmu.doStep(0.01 * k, 0.01)
+        ends.append(unit.get(*names))
+        (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(kept)
+    model = box(0.3)
+    v = {name: x for name, x in start.items() if name in model.names.v}
+    run = sf.simulate(model, rested(model, 0.11), v, t_end=0.2, dt=1e-3, method="rk4")
+    assert np.array_equal(*ends) and ends[0] == pytest.approx(run.q[-1], abs=1e-11) and len(run.events) > 2
+
+
+def test_a_ball_strikes_as_co_simulation_begins(tmp_path: Path) -> None:
+    """It leaves the ground at half of its speed."""
+    with quickly():
+        sf.export(ball_system(0.5), "fmu2", tmp_path, start={"free.pz": 0.1, "free.vz": -1.0})
+    done = fmpy.simulate_fmu(str(tmp_path / "ball.fmu"), stop_time=0.05, output_interval=0.01, output=["q.'free.pz'"])
+    assert done["q.'free.pz'"][-1] == pytest.approx(0.1 + 0.5 * 0.05 - 0.5 * 9.81 * 0.05**2, abs=1e-12)
+
+
+def test_importers_are_told_of_painleves_paradox(tmp_path: Path) -> None:
+    """A rod that leans against its slide, with too much friction."""
+    start = {"z": float(np.cos(0.5)), "angle": 0.5, "dx": -2.0}
+    with quickly():
+        sf.export(rod_system(1.6), "fmu2", tmp_path, start=start)
+    with heard() as (logger, log):
+        fmpy.simulate_fmu(str(tmp_path / "rod.fmu"), stop_time=0.1, output_interval=0.01, logger=logger)
+    assert "Painleve's paradox" in "".join(log)

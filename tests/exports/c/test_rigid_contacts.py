@@ -1,0 +1,94 @@
+"""Rigid contacts in packages: the motions of sf.simulate, in calls of any length (docs/theory/constraints.md, 15)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import cos
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.simulation.stepping.status import Status
+from tests.exports.cases import build, run, sources
+from tests.simulation.rigid_scenes import G, ball_system, box_system, rod_system
+
+MAIN, BY_HAND = (Path(__file__).with_name(name).read_text() for name in ("events.c", "contacts.c"))
+SCENES: dict[str, tuple[sf.System, dict[str, float]]] = {
+    "falls": (ball_system(), {"free.pz": 0.2, "free.vx": 2.0}),
+    "strikes at once": (ball_system(), {"free.pz": 0.1, "free.vz": -1.0, "free.wy": 20.0}),
+    "rod": (rod_system(0.4, 0.3), {"z": cos(0.5) + 0.05, "angle": 0.5, "dx": 1.0}),
+    "box": (box_system(0.3), {"free.pz": 0.11, "free.vx": 1.0, "free.vy": 0.5, "free.wz": 2.0, "free.wx": 0.2}),
+}
+
+
+def packaged(folder: Path, main: str, system: sf.System, start: dict[str, float], **options: Any) -> Path:
+    """A program of a system's package and a main."""
+    sf.export(system, "c", folder / "c", name="plan", start=start, dt=1e-3, **options)
+    (folder / "c" / "main.c").write_text(main)
+    return build(folder / "c", "../plan", *sources(folder / "c"))
+
+
+def first(model: sf.Model, start: dict[str, float]) -> tuple[Any, dict[str, float]]:
+    """Coordinates and speeds as a start states them."""
+    q = model.neutral()
+    for name in start.keys() & set(model.names.q):
+        q[model.names.q.index(name)] = start[name]
+    return q, {name: x for name, x in start.items() if name not in model.names.q}
+
+
+def distinct(instants: Iterable[float]) -> list[float]:
+    """Instants of events, those that are the same once."""
+    sorted_ones = sorted(instants)
+    return [t for t, before in zip(sorted_ones, [-1.0, *sorted_ones], strict=False) if t - before > 1e-9]
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+@pytest.mark.parametrize("scene", SCENES)
+def test_packages_move_as_runs_do(tmp_path: Path, scene: str, method: str) -> None:
+    """Each event at its instant, and the state at the end; again after a reset."""
+    system, start = SCENES[scene]
+    options: dict[str, Any] = {"method": method, "rtol": 1e-9, "atol": 1e-12}
+    program = packaged(tmp_path, MAIN, system, start, **options)
+    model, t_end = sf.compile(system), 1.0 if "box" not in scene else 0.2
+    q, v = first(model, start)
+    known = sf.simulate(model, q, v, t_end=t_end, **options | ({"dt": 1e-3} if method == "rk4" else {}))
+    # Steps that adapt begin anew at each call, and differ within their bounds.
+    bound = 1e-11 if method == "rk4" else 1e-6
+    for span in (t_end / 20, t_end):
+        *met, status, state = run(program, repr(span), repr(t_end), cwd=tmp_path).splitlines()
+        assert status == f"status {Status.FINISHED}"
+        assert distinct(float(line.split()[1]) for line in met) == pytest.approx(
+            distinct(found.t for found in known.events), abs=bound
+        )
+        numbers = np.array(state.split()[1:], dtype=float)
+        assert numbers == pytest.approx(np.concatenate([known.q[-1], known.v[-1]]), abs=10 * bound)
+    assert len(known.events) > 2
+
+
+@pytest.mark.parametrize("pull", [5.0, 8.0])
+def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float) -> None:
+    """A force beyond friction lets a box slide from that call on; a box that is lifted by hand falls."""
+    mu, mass, lift = 0.3, 2.0, 0.02
+    program = packaged(tmp_path, BY_HAND, box_system(mu), {"free.pz": 0.1})
+    *_, drawn, _, lifted = run(program, repr(pull), repr(lift), cwd=tmp_path).splitlines()
+    first, last = (np.array(line.split()[1:], dtype=float) for line in (drawn, lifted))
+    a = max(0.0, pull / mass - mu * G)
+    assert first[[0, 7]] == pytest.approx([a * 0.1**2 / 2, a * 0.1], abs=1e-12)
+    # In the air for sqrt(2 lift/g) = 0.064 s, then on the ground: the plastic strike takes mu times the normal impulse.
+    fall = (2 * lift / G) ** 0.5
+    left = max(0.0, a * 0.1 - mu * G * fall)
+    slides = max(0.0, min(0.1 - fall, left / (mu * G)))
+    assert last[2] == pytest.approx(0.1, abs=1e-12)
+    way = first[0] + a * 0.1 * fall + left * slides - mu * G * slides**2 / 2
+    assert last[0] == pytest.approx(way, abs=1e-12)
+
+
+def test_what_packages_refuse(tmp_path: Path) -> None:
+    """Methods that choose no modes, and targets that look for no events."""
+    with pytest.raises(sf.SymofrosError, match="is rigid"):
+        sf.export(ball_system(), "c", tmp_path / "c", method="rodas4")
+    with pytest.raises(sf.SymofrosError, match="is rigid"):
+        sf.export(ball_system(), "wasm", tmp_path / "wasm")
