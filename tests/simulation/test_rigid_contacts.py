@@ -312,7 +312,7 @@ def test_what_is_refused(tmp_path: Path) -> None:
     refused = {
         "rodas4": lambda: sf.simulate(model, rested(model, 0.3), t_end=0.1, method="rodas4"),
         "equilibrium": lambda: sf.equilibrium(model),
-        "export": lambda: sf.export(system, "c", tmp_path / "c"),
+        "export": lambda: sf.export(system, "wasm", tmp_path / "wasm"),
         "diagram": lambda: sf.Simulation(diagram).run(0.1),
     }
     for call in refused.values():
