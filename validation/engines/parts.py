@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,8 @@ Row = dict[str, Any]
 # What rows of a stored table are found by, in its nesting, and what is kept of each.
 CELLS = ("engine", "function", "model"), ("verdict", "error", "tolerance", "words")
 IDENTITIES = ("engine", "identity", "model"), ("error", "ok")
+# Nested tables, of engines first.
+TABLES = "cells", "corrected", "identities"
 # Whoever measured says when, of which source, and by which versions.
 ORIGIN = ("revision", "date", "versions", "digest")
 # What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
@@ -94,6 +96,38 @@ def load(paths: Iterable[Path]) -> list[Data]:
     return parts
 
 
+def others(path: Path, engines: Collection[str], versions: Mapping[str, str]) -> Data:
+    """What a stored report has of other engines than those that are asked anew.
+
+    Args:
+        path: The report.
+        engines: Names of those that are asked anew.
+        versions: Versions of all engines that are here.
+
+    Raises:
+        PartsDisagree: It is no such report, was asked something else, or an engine of it has another version here.
+    """
+    (part,) = load([path])
+    for one in part["engines"]:
+        name, here = one["name"], versions.get(one["name"])
+        if name not in engines and here is not None and here != one["version"]:
+            raise PartsDisagree(
+                f"{path} has {name} {one['version']}, here it is {here}: ask it anew, too, by --engine {name}"
+            )
+    kept = {name for name in engines_of([part]) if name not in engines}
+    left = {table: {name: rows for name, rows in part[table].items() if name in kept} for table in TABLES}
+    # Numbers that it took over bear their own origin already.
+    return (
+        dict(part)
+        | left
+        | {
+            "engines": [one for one in part["engines"] if one["name"] in kept],
+            "proofs": [one for one in part["proofs"] if one["engine"] in kept],
+            "ours": [name for name in part.get("ours", ()) if name in kept],
+        }
+    )
+
+
 def engines_of(parts: Iterable[Data]) -> set[str]:
     """Names of the engines of stored parts."""
     return {engine["name"] for part in parts for engine in part["engines"]}
@@ -121,7 +155,7 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
         result["absent"] = result["absent"] | part["absent"]
         result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
         result["proofs"] = [*result["proofs"], *part["proofs"]]
-        for table in ("cells", "corrected", "identities"):
+        for table in TABLES:
             result[table] = result[table] | part[table]
     # Each part's sources are to be those of now.
     result["digests"] = sorted({one for part in parts for one in (part.get("digest", ""), *part.get("digests", ()))})

@@ -131,6 +131,9 @@ def measure(
     part: Annotated[
         list[Path] | None, typer.Option(help="Take over the engines of a stored engines.json; repeatable.")
     ] = None,
+    update: Annotated[
+        bool, typer.Option("--update", help="Ask --engine anew; take the others over from the report that is there.")
+    ] = False,
     at: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME==VERSION", help="This release, in an environment of its own; NAME: the newest."),
@@ -162,21 +165,25 @@ def measure(
     """Hold engines against thirty digits of truth: every kind of joint, every function that they offer.
 
     A run may be made in parts: --engine for some engines, into a folder of their own; then once more with --part for
-    each folder's engines.json, which measures the engines that no part has, and writes one report of all. Files are
-    written for all questions to all engines, or into a folder that is named.
+    each folder's engines.json, which measures the engines that no part has, and writes one report of all. --update
+    writes the engines that are named into the report that is there, if that was asked the same questions of the same
+    versions. Files are written for all questions to all engines, or into a folder that is named.
     """
     at = releases.newest() if newest else at or []
     if bisect:
         raise typer.Exit(_bisected(bisect, at, requires or (), environments))
     if since:
         raise typer.Exit(_dated(since, run.folder / "engines.json", requires or (), environments))
+    plugins = registry().plugins
+    present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
     try:
         stored, before = parts.load(part or ()), changes.load(baseline)
+        if update:
+            versions = {name: plugin.version() for name, plugin in present.items()}
+            stored.append(parts.others(run.folder / "engines.json", engines or (), versions))
         pairs = [pair for text in at for pair in releases.stated(text, requires or ())]
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
-    plugins = registry().plugins
-    present = {name: plugin for name, plugin in plugins.items() if plugin.version()}
     chosen = _chosen(engines, present, parts.engines_of(stored))
     every = questions()
     wanted = known(models, every, "--kinds", "kind")

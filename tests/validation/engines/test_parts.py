@@ -78,3 +78,35 @@ def test_parts_that_disagree_are_refused(tmp_path: Path, stated: tuple[dict[str,
 def test_parts_of_different_trees_are_refused(tmp_path: Path) -> None:
     with pytest.raises(parts.PartsDisagree, match="different trees"):
         parts.merged(part("a"), parts.load(stored(tmp_path, part("b", models=["free"]))))
+
+
+def _stored(path: Path, **changed: object) -> Path:
+    engines = [{"name": name, "version": "1"} for name in ("mine", "yours")]
+    table = {name: {"bias": {"ball": ["right", 0.0, 0.0]}} for name in ("mine", "yours")}
+    data: dict[str, object] = {"question": parts.question(), "engines": engines, "models": ["ball"], "ours": ["mine"]}
+    data.update(dict.fromkeys(parts.TABLES, table), proofs=[{"engine": "mine"}], revision="old")
+    path.write_text(json.dumps(data | changed))
+    return path
+
+
+def test_a_report_gives_what_it_has_of_engines_that_are_not_asked_anew(tmp_path: Path) -> None:
+    path = _stored(tmp_path / "engines.json")
+    kept = parts.others(path, ["mine"], {"mine": "2", "yours": "1"})
+    assert parts.engines_of([kept]) == {"yours"} and not kept["proofs"] and not kept["ours"]
+    assert [set(kept[table]) for table in parts.TABLES] == [{"yours"}] * 3 and kept["revision"] == "old"
+    assert parts.engines_of([parts.others(path, ["yours"], {"mine": "1"})]) == {"mine"}
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({}, "has yours 1, here it is 2: ask it anew, too, by --engine yours"),
+        ({"question": "x"}, "held to other trees"),
+    ],
+)
+def test_a_report_of_other_versions_or_questions_is_not_taken_over(
+    changed: dict[str, object], said: str, tmp_path: Path
+) -> None:
+    path = _stored(tmp_path / "engines.json", **changed)
+    with pytest.raises(parts.PartsDisagree, match=said):
+        parts.others(path, ["mine"], {"mine": "1", "yours": "2"})

@@ -47,6 +47,7 @@ def test_two_processes_give_the_cells_of_one(engine: str, monkeypatch: pytest.Mo
         ("--kinds ball", False),
         ("--kinds ball --report apart", True),
         ("--smoke", False),
+        ("--engine exudyn --update", True),
     ],
 )
 def test_what_asks_a_part_leaves_the_whole_report(
@@ -60,13 +61,17 @@ def test_what_asks_a_part_leaves_the_whole_report(
     monkeypatch.setattr(study, "registry", lambda: known)
     for asking in ("_all", "_within_a_minute"):
         monkeypatch.setattr(study, asking, lambda *_: [])
-    engine = {"name": "mujoco", "version": "", "conventions": [], "functions": {}}
+    engine = {"name": "mujoco", "version": OWN["mujoco"].version(), "conventions": [], "functions": {}}
     part: dict[str, object] = dict.fromkeys(("cells", "corrected", "identities", "functions", "absent"), {})
     part |= {"question": parts.question(), "engines": [engine], "models": names, "proofs": ()}
-    (tmp_path / "stored.json").write_text(json.dumps(part | {"revision": "", "date": ""}), encoding="utf-8")
+    stored = tmp_path / ("reports/engines.json" if "--update" in options else "stored.json")
+    stored.parent.mkdir(exist_ok=True)
+    stored.write_text(json.dumps(part | {"revision": "", "date": ""}), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     result = CliRunner().invoke(app, ["engines", *options.split()])
     assert result.exit_code in (0, 1), result.output
     written = tmp_path / ("apart" if "apart" in options else "reports") / "engines.json"
     assert written.exists() is writes
+    if "--update" in options:
+        assert parts.engines_of([json.loads(written.read_text())]) == {"mujoco", "exudyn"}
     assert ("Report: " in result.output) is writes

@@ -97,5 +97,5 @@ PLUGIN = SourcePlugin(
     formats=("urdf",),
     write_reading=of_files(read),
     statements=(UNIT_AXIS,),
-    calls=4,
+    calls=1,
 )

@@ -77,5 +77,5 @@ PLUGIN = SourcePlugin(
     formats=("urdf",),
     write_reading=of_files(_of_file),
     statements=(UNIT_AXIS,),
-    calls=4,
+    calls=1,
 )
