@@ -212,13 +212,13 @@ def test_a_law_with_a_subsystem_and_scopes_is_drawn_and_run(
     hand.press(page.get_by_role("button", name="Arrange the blocks"))
     steps.problems(page, 0)
     picture("law-drawn")
-    page.keyboard.down("Control")
-    for name in ("constant", "joint_pd"):
-        hand.press(steps.block(page, f"blocks/{name}").locator(".block-title"))
+    page.keyboard.down("Control")  # The law is chosen since it was linked.
+    hand.press(steps.block(page, "blocks/constant").locator(".block-title"))
     page.keyboard.up("Control")
     steps.block(page, "blocks/joint_pd").locator(".block-title").click(button="right")
     hand.press(page.get_by_role("menuitem", name="Group into a subsystem"))
     expect(steps.block(page, "parts/subsystem")).to_be_visible()
+    expect(steps.block(page, "blocks/constant")).to_have_count(0)
     hand.press(page.get_by_role("button", name="Arrange the blocks"))
     for k, output in enumerate(("q", "v")):
         wire = page.locator(f'.react-flow__edge[data-id^="parts/subsystem"][data-id$="{output}"]')
