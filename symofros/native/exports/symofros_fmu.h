@@ -275,7 +275,7 @@ static int fmu_step(fmu *f, double t) {
     case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
     case SYM_ACTS_WITHOUT_END:
         return strcpy(f->message, "an event acts again and again at the same instant, or leaves bodies at rest on each other"), FMU_BEYOND_THEORY;
-    case SYM_NO_CONTACT_FORCE: return strcpy(f->message, "no forces of rigid contacts agree with Coulomb's law (Painleve's paradox)"), FMU_BEYOND_THEORY;
+    case SYM_NO_CONTACT_FORCE: return strcpy(f->message, "no forces of rigid contacts were found that agree with Coulomb's law (Painleve's paradox)"), FMU_BEYOND_THEORY;
     case SYM_CONTACTS_AMBIGUOUS:
         return strcpy(f->message, "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox)"), FMU_BEYOND_THEORY;
     default: return FMU_SINGULAR;

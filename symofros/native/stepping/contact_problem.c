@@ -1,11 +1,16 @@
 /* Forces of several balls on planes by Coulomb's law: a small problem with cones, at the level of accelerations or of speeds
  * (docs/theory/constraints.md, section 15, (46) to (48)). */
 
-enum { SYM_MOST_CONTACTS = 8, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS, SYM_MOST_SWEEPS = 60, SYM_UNIQUE_UP_TO = 4, SYM_DIRECT_TURNS = 25, SYM_MOST_TURNS = 50 };
+enum { SYM_MOST_CONTACTS = 8, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS, SYM_MOST_SWEEPS = 60, SYM_UNIQUE_UP_TO = 4, SYM_DIRECT_TURNS = 25, SYM_MOST_REFINEMENTS = 12 };
+/* Difference of angles by which rates are taken; angle that is rounding [rad]. */
+#define SYM_ANGLE_STEP 1e-7
+#define SYM_ANGLE_ROUNDING 1e-15
 /* Shares that are rounding: of singular values, of a normal force, of what a ball's point does; by which two motions differ;
  * of what cones have left where several balls share a load. */
 #define SYM_SINGULAR_VALUE 1e-11
 #define SYM_NO_COLUMN 1e-27 /* the square of one, of two columns */
+/* Share of the largest pivot down to which a system is solved as it is, with no thought of its rank. */
+#define SYM_REGULAR 1e-5
 #define SYM_FORCE_ROUNDING 1e-12
 #define SYM_CONTACT_ROUNDING 1e-10
 #define SYM_DIFFERENT 1e-6
@@ -81,6 +86,43 @@ static int32_t sym_least_norm(int32_t n, double *A, const double *y, double *x, 
         for (i = 0; i < n; ++i) x[i] += V[n * i + j] * along;
     }
     return count;
+}
+
+/* x (n) with A x = y by elimination with complete pivoting, A being lost. Returns 0 where a pivot says that A is near to a
+ * matrix of lower rank. */
+static int32_t sym_solve_regular(int32_t n, double *A, const double *y, double *x) {
+    double b[SYM_MOST_FORCES], first = 0.0;
+    int32_t column[SYM_MOST_FORCES], i, j, k;
+    for (i = 0; i < n; ++i) b[i] = y[i], column[i] = i;
+    for (k = 0; k < n; ++k) {
+        int32_t row = k, across = k;
+        for (i = k; i < n; ++i)
+            for (j = k; j < n; ++j)
+                if (fabs(A[n * i + j]) > fabs(A[n * row + across])) row = i, across = j;
+        if (k == 0) first = fabs(A[n * row + across]);
+        if (!(fabs(A[n * row + across]) > SYM_REGULAR * first)) return 0;
+        for (j = 0; j < n; ++j) {
+            const double entry = A[n * k + j];
+            A[n * k + j] = A[n * row + j], A[n * row + j] = entry;
+        }
+        for (i = 0; i < n; ++i) {
+            const double entry = A[n * i + k];
+            A[n * i + k] = A[n * i + across], A[n * i + across] = entry;
+        }
+        i = column[k], column[k] = column[across], column[across] = i;
+        x[0] = b[k], b[k] = b[row], b[row] = x[0];
+        for (i = k + 1; i < n; ++i) {
+            const double factor = A[n * i + k] / A[n * k + k];
+            for (j = k + 1; j < n; ++j) A[n * i + j] -= factor * A[n * k + j];
+            b[i] -= factor * b[k];
+        }
+    }
+    for (k = n - 1; k >= 0; --k) {
+        for (j = k + 1; j < n; ++j) b[k] -= A[n * k + j] * b[j];
+        b[k] /= A[n * k + k];
+    }
+    for (k = 0; k < n; ++k) x[column[k]] = b[k];
+    return 1;
 }
 
 /* The barrier of sym_shared_margin at x = (y, s): its value, HUGE_VAL outside, and gradient and Hessian where they are wanted. */
@@ -216,7 +258,7 @@ static double sym_sticking_margin(const sym_contact_problem *p, const double *mo
 /* Forces and c where the balls have modes, directions of those that begin to slide included: the balls that stick do not move,
  * those that slide stay on their planes, (47). */
 static void sym_forces_of_modes(sym_contact_problem *p) {
-    double A[SYM_MOST_FORCES * SYM_MOST_FORCES], y[SYM_MOST_FORCES] = {0.0}, x[SYM_MOST_FORCES];
+    double A[SYM_MOST_FORCES * SYM_MOST_FORCES], regular[SYM_MOST_FORCES * SYM_MOST_FORCES], y[SYM_MOST_FORCES] = {0.0}, x[SYM_MOST_FORCES];
     int32_t ball[SYM_MOST_FORCES], axis[SYM_MOST_FORCES], m = 0, i, j, k;
     const int32_t n = 3 * p->n;
     for (i = 0; i < p->n; ++i) {
@@ -233,7 +275,8 @@ static void sym_forces_of_modes(sym_contact_problem *p) {
                 A[m * i + j] -= p->mu[ball[j]] * (row[3 * ball[j]] * d[0] + row[3 * ball[j] + 1] * d[1]);
         }
     }
-    (void)sym_least_norm(m, A, y, x, NULL);
+    memcpy(regular, A, (size_t)(m * m) * sizeof *A);
+    if (!sym_solve_regular(m, regular, y, x)) (void)sym_least_norm(m, A, y, x, NULL);
     for (i = 0; i < n; ++i) p->f[i] = 0.0;
     for (i = 0; i < m; ++i) {
         p->f[3 * ball[i] + axis[i]] = x[i];
@@ -279,29 +322,82 @@ static double sym_c_of_direction(void *data, const double *d, double *along) {
     const double *c = of->problem->c + 3 * of->ball;
     memcpy(of->problem->d + 2 * of->ball, d, 2 * sizeof *d);
     sym_forces_of_modes(of->problem);
-    *along = c[0] * d[0] + c[1] * d[1];
+    *along = of->problem->f[3 * of->ball + 2] > 0.0 ? c[0] * d[0] + c[1] * d[1] : -1.0; /* planes do not draw */
     return c[0] * d[1] - c[1] * d[0];
+}
+
+/* Angle from what a ball leaves to the direction in which it begins to slide, as a sine; zero where it leaves nothing. */
+static double sym_off_direction(const sym_contact_problem *p, int32_t ball) {
+    const double *c = p->c + 3 * ball, *d = p->d + 2 * ball, size = hypot(c[0], c[1]);
+    if (!(size > 0.0)) return 0.0;
+    return c[0] * d[0] + c[1] * d[1] > 0.0 ? (c[0] * d[1] - c[1] * d[0]) / size : 1.0;
+}
+
+static void sym_turn_direction(double *d, double angle) {
+    const double x = d[0], y = d[1], cosine = cos(angle), sine = sin(angle), size = hypot(x, y);
+    d[0] = (cosine * x - sine * y) / size, d[1] = (sine * x + cosine * y) / size;
+}
+
+/* Turn balls that begin to slide, in number order, so that friction opposes what they leave, by Newton's method with differences:
+ * the angle by which each is off falls to rounding. */
+static void sym_refine_directions(sym_contact_problem *p, int32_t count, const int32_t *which) {
+    double J[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], off[SYM_MOST_CONTACTS], turn[SYM_MOST_CONTACTS], d[2 * SYM_MOST_CONTACTS];
+    int32_t round, i, j;
+    for (round = 0; round < SYM_MOST_REFINEMENTS; ++round) {
+        double largest = 0.0;
+        sym_forces_of_modes(p);
+        for (i = 0; i < count; ++i) off[i] = sym_off_direction(p, which[i]), largest = fmax(largest, fabs(off[i]));
+        if (!(largest > SYM_ANGLE_ROUNDING) || (round > 0 && largest > 0.5)) return;
+        memcpy(d, p->d, sizeof d);
+        for (j = 0; j < count; ++j) {
+            sym_turn_direction(p->d + 2 * which[j], SYM_ANGLE_STEP);
+            sym_forces_of_modes(p);
+            for (i = 0; i < count; ++i) J[count * i + j] = (sym_off_direction(p, which[i]) - off[i]) / SYM_ANGLE_STEP;
+            memcpy(p->d, d, sizeof d);
+        }
+        (void)sym_least_norm(count, J, off, turn, NULL);
+        for (i = 0; i < count; ++i) sym_turn_direction(p->d + 2 * which[i], -fmax(-0.5, fmin(0.5, turn[i])));
+    }
+    sym_forces_of_modes(p);
+}
+
+/* Whether modes agree, as they are or, better, once directions are refined. */
+static int32_t sym_agree_refined(sym_contact_problem *p, int32_t count, const int32_t *which) {
+    sym_contact_problem first;
+    if (!sym_modes_agree(p)) return 0;
+    first = *p;
+    if (count > 0) sym_refine_directions(p, count, which);
+    if (!sym_modes_agree(p)) *p = first;
+    return 1;
 }
 
 /* Whether modes agree once balls that begin to slide do so against their friction, found by iteration. */
 static int32_t sym_try_modes(sym_contact_problem *p) {
-    int32_t i, round;
-    for (round = 0; round < SYM_MOST_TURNS; ++round) {
+    int32_t which[SYM_MOST_CONTACTS], count = 0, i, round;
+    for (i = 0; i < p->n; ++i)
+        if (p->mode[i] == SYM_SLIDES && !p->slides[i] && p->mu[i] > 0.0) which[count++] = i;
+    for (round = 0; round < SYM_DIRECT_TURNS; ++round) {
         int32_t turns = 0;
         sym_forces_of_modes(p);
-        if (sym_modes_agree(p)) return 1;
-        for (i = 0; i < p->n; ++i) {
-            double *d = p->d + 2 * i, size = hypot(p->c[3 * i], p->c[3 * i + 1]), was[2] = {d[0], d[1]}, next[2] = {d[0], d[1]};
-            sym_ball_in_problem ball = {p, i};
-            if (p->mode[i] != SYM_SLIDES || p->slides[i] || p->mu[i] == 0.0 || !(size > SYM_CONTACT_ROUNDING * p->size)) continue;
-            if (round >= SYM_DIRECT_TURNS) (void)sym_find_direction(sym_c_of_direction, &ball, next);
-            else next[0] = p->c[3 * i] / size, next[1] = p->c[3 * i + 1] / size;
-            memcpy(d, next, sizeof next);
+        if (sym_agree_refined(p, count, which)) return 1;
+        for (i = 0; i < count; ++i) {
+            const double *c = p->c + 3 * which[i], size = hypot(c[0], c[1]);
+            double *d = p->d + 2 * which[i], was[2] = {d[0], d[1]};
+            if (!(size > SYM_CONTACT_ROUNDING * p->size)) continue;
+            d[0] = c[0] / size, d[1] = c[1] / size;
             turns |= hypot(d[0] - was[0], d[1] - was[1]) > SYM_CONTACT_ROUNDING;
         }
-        if (!turns && round != SYM_DIRECT_TURNS - 1) return 0;
+        if (!turns && count > 1) return 0;
+        if (!turns) break;
     }
-    return 0;
+    if (count == 1) {
+        sym_ball_in_problem ball = {p, which[0]};
+        (void)sym_find_direction(sym_c_of_direction, &ball, p->d + 2 * which[0]);
+        sym_forces_of_modes(p);
+    } else {
+        sym_refine_directions(p, count, which);
+    }
+    return sym_agree_refined(p, count, which);
 }
 
 /* Whether normal forces on the balls that do not part are determined, by the other forces. */

@@ -32,7 +32,7 @@ typedef enum sym_status {
     SYM_MODES_UNDECIDED = -14,   /* no modes of friction that sticks agree with what they bring about */
     SYM_HELD_TWICE = -15,        /* friction holds what it or constraints hold already: what it takes is not determined */
     SYM_WRONG_CONTACT = -16,     /* a contact that rests is penetrated, or holds by a force that draws */
-    SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction agree with the motion that they bring about */
+    SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction were found that agree with their motion */
     SYM_CONTACTS_AMBIGUOUS = -18 /* several motions agree with Coulomb's law at rigid contacts */
 } sym_status;
 

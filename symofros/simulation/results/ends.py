@@ -103,8 +103,8 @@ ENDS: dict[int, End] = {
     ),
     Status.NO_CONTACT_FORCE: End(
         "not converged",
-        "no forces of rigid contacts agree with Coulomb's law and the motion that they bring about (Painleve's"
-        " paradox)",
+        "no forces of rigid contacts were found that agree with Coulomb's law and the motion that they bring about"
+        " (Painleve's paradox)",
         "less friction, or a compliant contact there: stiffness in place of restitution",
     ),
     Status.CONTACTS_AMBIGUOUS: End(

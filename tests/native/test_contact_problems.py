@@ -1,0 +1,36 @@
+"""Forces of rigid contacts by the shipped solver, judged by the law itself (docs/theory/constraints.md, (46))."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+import symofros
+
+DRIVER = Path(__file__).parent / "contact_problems.c"
+NATIVE = Path(symofros.__file__).parent / "native"
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The driver, compiled."""
+    gcc, program = shutil.which("gcc"), tmp_path_factory.mktemp("problems") / "run"
+    if gcc is None:
+        pytest.skip("needs gcc")
+    folders = [f"-I{NATIVE / name}" for name in ("model", "stepping")]
+    flags = ["-std=gnu99", "-O1", "-Wno-unused-function", *folders]
+    subprocess.run([gcc, *flags, "-o", program, DRIVER, "-lm"], check=True)
+    return program
+
+
+@pytest.mark.parametrize(("balls", "problems", "share"), [(1, 5000, 0.999), (2, 1500, 0.99), (3, 50, 0.97)])
+def test_answers_are_certified(driver: Path, balls: int, problems: int, share: float) -> None:
+    """To 1e-12 of the loads; few that random directions solve are missed, and most problems have one motion."""
+    command = [driver, *map(str, (balls, problems, 1, 5))]
+    done = subprocess.run(command, capture_output=True, text=True, check=True).stdout.split()
+    certified, several, none, nowhere, missed = map(int, done[1:6])
+    assert certified + several + none + nowhere + missed == problems
+    assert missed <= (1 - share) * problems and certified > 0.85 * problems and float(done[6]) < 1e-12
