@@ -51,14 +51,15 @@ _NARROWING = frozenset({"exp", "tanh", "atan", "sinh", "cosh", "tan"})
 _ENDING = frozenset({"div", "pow", "sqrt", "log", "atan2"})
 
 
-def instant_operands(graph: Graph, edges: Sequence[Edge]) -> tuple[Operand, ...]:
+def instant_operands(graph: Graph, edges: Sequence[Edge], *, of_states: bool = False) -> tuple[Operand, ...]:
     """Operands that depend on time and parameters alone, those of inner formulas first.
 
     Args:
         graph: Graph of the formulas, which receives what the operands take besides.
         edges: Formulas.
+        of_states: Whether what depends on the state counts, too: along a motion it is known.
     """
-    return tuple(dict.fromkeys(_operands(graph, edges)))
+    return tuple(dict.fromkeys(_operands(graph, edges, of_states)))
 
 
 def operands_function(name: str, graph: Graph, edges: Sequence[Edge]) -> Function:
@@ -86,8 +87,10 @@ def with_instants(program: Program) -> Program:
     return replace(program, functions=(*program.functions, function)) if function.outputs[0].edges else program
 
 
-def _operands(graph: Graph, edges: Sequence[Edge]) -> Iterator[Operand]:
+def _operands(graph: Graph, edges: Sequence[Edge], of_states: bool) -> Iterator[Operand]:
     timed, state = _dependence(graph, edges)
+    if of_states:
+        timed, state = timed | state, set()
 
     def known(*args: Edge) -> bool:
         return any(abs(arg) in timed for arg in args) and not any(abs(arg) in state for arg in args)

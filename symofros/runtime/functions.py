@@ -25,6 +25,7 @@ from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.plain import PlainCall, PlainCalls, plain_call
 from symofros.runtime.cuda.device_code import DeviceCode
+from symofros.runtime.instants import Instants, Motion
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
 
@@ -82,7 +83,7 @@ class Functions(Arguments):
         parameter_check: ParameterCheck | None = None,
         origin: Callable[[], Functions] | None = None,
         device_code: Callable[[Key, Precision], DeviceCode] | None = None,
-        instants: Callable[[Sequence[Any], Array, float, float], Array] | None = None,
+        instants: Instants | None = None,
         routes: Callable[[tuple[Key, ...]], Mapping[Key, tuple[Choice, ...]]] | None = None,
         background: BackgroundCompilation | None = None,
     ) -> None:
@@ -168,7 +169,9 @@ class Functions(Arguments):
             return ()
         return self._beams_at(self._par if par is None else self._array("par", par, self.npar))
 
-    def formula_instants(self, formulas: Sequence[Any], par: Array, t0: float, t_end: float) -> Array:
+    def formula_instants(
+        self, formulas: Sequence[Any], par: Array, t0: float, t_end: float, motion: Motion | None = None
+    ) -> Array:
         """Instants at which formulas of time bend, jump or change fast, the model's own and those of laws.
 
         Args:
@@ -176,11 +179,12 @@ class Functions(Arguments):
             par: Run-time parameters (npar).
             t0: Start of a run [s].
             t_end: End of it [s].
+            motion: States of the run by time, along which formulas of these count, too.
 
         Returns:
             Instants in order, between start and end (n) [s].
         """
-        return np.zeros(0) if self._instants_of is None else self._instants_of(formulas, par, t0, t_end)
+        return np.zeros(0) if self._instants_of is None else self._instants_of(formulas, par, t0, t_end, motion)
 
     def kernel(self, name: str, frame: str = "") -> Kernel:
         """A function as the thing that is called, made on demand; for loops of one's own.

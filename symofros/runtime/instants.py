@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -12,6 +12,29 @@ from symofros.runtime.calls.kernel import Array
 
 # Values of an operand, by its number, at times (n) [s].
 Operands = Callable[[int, Array], Array]
+
+
+class Motion(NamedTuple):
+    """A motion that is known.
+
+    Attributes:
+        states: Gives the states "q", "v" and "u", a row for each of the times (n) [s].
+        steps: Times at which its steps end (n) [s].
+    """
+
+    states: Callable[[Array], Mapping[str, Array]]
+    steps: Array
+
+
+class Instants(Protocol):
+    """Instants of a mechanism's own formulas and of laws, as `Functions.formula_instants` gives them."""
+
+    def __call__(
+        self, formulas: Sequence[Any], par: Array, t0: float, t_end: float, motion: Motion | None = None, /
+    ) -> Array:
+        """Laws, parameters (npar), start and end of a run [s], and its motion -> instants (n) [s]."""
+        ...
+
 
 _EVALUATE = "void(void *, int32_t, int32_t, const double *, double *)"
 

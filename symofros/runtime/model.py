@@ -16,6 +16,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike as ArrayLike
 from symofros.runtime.functions import Key as Key
 from symofros.runtime.functions import Rate as Rate
+from symofros.runtime.instants import Motion as Motion
 from symofros.runtime.methods.adjoint import AdjointFunctions
 from symofros.runtime.methods.configurations import ConfigurationFunctions
 from symofros.runtime.methods.constraints import ConstraintFunctions

@@ -238,7 +238,7 @@ def _model(
         """The part's unit, which has the formulas whose zeros the stepper locates."""
         return unit
 
-    def instants(_: Sequence[object], par: Array, t0: float, t_end: float) -> Array:
+    def instants(_: Sequence[object], par: Array, t0: float, t_end: float, motion_of_run: object = None) -> Array:
         """Instants at which formulas of time in the part's motion bend, jump or change fast (n) [s]."""
         edges = [edge for function in motion.functions for edge in function.edges()]
         return formula_instants(motion, edges, par, t0, t_end)

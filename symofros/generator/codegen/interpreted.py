@@ -8,16 +8,22 @@ import numpy as np
 
 from symofros.base.measures import Measures
 from symofros.expr.edges import Edge
-from symofros.expr.instants import instant_operands
+from symofros.expr.instants import InstantKind, Operand, instant_operands
 from symofros.expr.numerics.evaluate import Evaluation, FunctionEvaluation, evaluate_edges
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, differentiate, motion, project
-from symofros.runtime.instants import find_instants
+from symofros.runtime.instants import Motion, Operands, find_instants
+
+# Places in a step at which formulas of the state are looked at, and most change of an operand between two of them by
+# which what it makes is seen.
+_LOOKS, _RESOLVED = 4, 2.0
 
 
-def formula_instants(program: Program, edges: Sequence[Edge], par: Array, t0: float, t_end: float) -> Array:
-    """Instants within a span at which formulas of time bend, jump or change fast.
+def formula_instants(
+    program: Program, edges: Sequence[Edge], par: Array, t0: float, t_end: float, motion: Motion | None = None
+) -> Array:
+    """Instants within a span at which formulas of time, or along a motion, bend, jump or change fast.
 
     Args:
         program: Program whose graph holds the formulas.
@@ -25,19 +31,37 @@ def formula_instants(program: Program, edges: Sequence[Edge], par: Array, t0: fl
         par: Run-time parameters (npar).
         t0: Start of the span [s].
         t_end: End of the span [s].
+        motion: Motion along which formulas of states count, too, where it may pass over parts of them.
 
     Returns:
         Instants in order, between t0 and t_end (n) [s].
     """
-    operands = instant_operands(program.graph, edges)
+    operands = instant_operands(program.graph, edges, of_states=motion is not None)
     if not operands or not t_end > t0:
         return np.zeros(0)
     evaluations = [Evaluation(program, [operand.edge], {}) for operand in operands]
 
     def values(operand: int, t: Array) -> Array:
-        return np.broadcast_to(evaluations[operand]({"t": t[:, np.newaxis], "par": par[np.newaxis]})[0], t.shape)
+        at = {"t": t[:, np.newaxis], "par": par[np.newaxis], **(motion.states(t) if motion is not None else {})}
+        return np.broadcast_to(evaluations[operand](at)[0], t.shape)
 
+    if motion is not None and not _may_pass_over(operands, values, motion.steps):
+        return np.zeros(0)
     return find_instants([operand.kind for operand in operands], values, t0, t_end)
+
+
+def _may_pass_over(operands: Sequence[Operand], values: Operands, steps: Array) -> bool:
+    """Whether steps that end at these times (n) may pass over a part of a formula of the state.
+
+    What changes fast where an operand is small does so while that changes by about one; one kink alone has no length.
+    """
+    looked_at = np.linspace(steps[:-1], steps[1:], _LOOKS, endpoint=False, axis=1).reshape(-1)
+    kinks = sum(operand.kind == InstantKind.KINK for operand in operands)
+    return kinks > 1 or any(
+        not np.abs(np.diff(values(i, looked_at))).max(initial=0.0) < _RESOLVED
+        for i, operand in enumerate(operands)
+        if operand.kind != InstantKind.KINK
+    )
 
 
 class InterpretedUnit:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.runtime.manifold import chart_coordinates, chart_rate, retract
+from symofros.runtime.record import Segment
 from symofros.simulation.stepping.stepper import Stepper
 
 Numbers = npt.NDArray[np.integer[Any]]
@@ -35,6 +37,48 @@ class Path:
     path_a: Array
 
 
+@dataclass(frozen=True)
+class Cubics:
+    """The cubics through the ends of intervals, with their rates there.
+
+    Attributes:
+        segments: Segments of the configuration.
+        begins: Times (k) [s], configurations (k, nq), speeds (k, nv) and accelerations (k, nv) where intervals begin.
+        ends: The same where they end.
+    """
+
+    segments: Sequence[Segment]
+    begins: tuple[Array, Array, Array, Array]
+    ends: tuple[Array, Array, Array, Array]
+
+    @cached_property
+    def _chart(self) -> tuple[Array, Array]:
+        """Displacements over the intervals (k, nv), and their rates at the ends."""
+        (_, q0, _, _), (_, q1, v1, _) = self.begins, self.ends
+        theta = chart_coordinates(self.segments, q0, q1)
+        return theta, chart_rate(self.segments, theta, v1)
+
+    @classmethod
+    def of(cls, stepper: Stepper, states: Sequence[Array], chosen: Numbers) -> Cubics | None:
+        """Of some intervals between recorded t (n), q, v; None where a function of the user's fails. In `preserved`."""
+        places, both = states[:3], list[tuple[Array, Array, Array, Array]]()
+        for numbers in (chosen, chosen + 1):
+            t, q, v = (y[numbers] for y in places)
+            found = stepper.accelerations(t, q, v)
+            if found is None:
+                return None
+            both.append((t, q, v, found[0]))
+        return cls(stepper.model.record.segments, *both)
+
+    def at(self, which: Numbers, x: Array) -> tuple[Array, Array, Array, Array]:
+        """Time (m), q (m, nq), v and a (m, nv) of the path at shares x (m) of intervals, by their numbers (m)."""
+        (t0, q0, v0, a0), (t1, _, v1, a1), (theta, rate), i = self.begins, self.ends, self._chart, which
+        h = (t1 - t0)[i]
+        along, _ = _cubic(x, h[:, np.newaxis], (0.0 * theta[i], v0[i]), (theta[i], rate[i]))
+        v_x, path_a = _cubic(x, h[:, np.newaxis], (v0[i], a0[i]), (v1[i], a1[i]))
+        return t0[i] + x * h, retract(self.segments, q0[i], along), v_x, path_a
+
+
 def path_within(stepper: Stepper, states: Sequence[Array], counts: Numbers) -> Path | None:
     """States within the intervals between recorded ones, at the midpoints of equal parts of each.
 
@@ -46,23 +90,15 @@ def path_within(stepper: Stepper, states: Sequence[Array], counts: Numbers) -> P
     Returns:
         None where a function of the user's fails.
     """
-    t, q, v, _ = states
-    segments = stepper.model.record.segments
     chosen = np.flatnonzero(counts)
     number = counts[chosen]
     at = np.repeat(np.arange(len(chosen)), number)  # Which of the chosen intervals each state lies in.
     x = (np.arange(len(at)) - np.repeat(np.cumsum(number) - number, number) + 0.5) / number[at]
-    (t0, t1), (q0, q1), (v0, v1) = ((y[chosen], y[chosen + 1]) for y in (t, q, v))
-    h = (t1 - t0)[at, np.newaxis]
     with stepper.preserved(), np.errstate(all="ignore"):  # What has exploded overflows.
-        ends = [stepper.accelerations(*state) for state in ((t0, q0, v0), (t1, q1, v1))]
-        if ends[0] is None or ends[1] is None:
+        cubics = Cubics.of(stepper, states, chosen)
+        if cubics is None:
             return None
-        a0, a1 = ends[0][0], ends[1][0]
-        theta = chart_coordinates(segments, q0, q1)
-        along, _ = _cubic(x, h, (0.0 * theta[at], v0[at]), (theta[at], chart_rate(segments, theta, v1)[at]))
-        v_x, path_a = _cubic(x, h, (v0[at], a0[at]), (v1[at], a1[at]))
-        t_x, q_x = t0[at] + x * h[:, 0], retract(segments, q0[at], along)
+        t_x, q_x, v_x, path_a = cubics.at(at, x)
         inside = stepper.accelerations(t_x, q_x, v_x)
     if inside is None:
         return None

@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.simulation.results.examination.finer_steps import States, percent
+from symofros.simulation.results.examination.narrow_parts import passed_over
 from symofros.simulation.results.examination.paths import Numbers, path_within
 from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.stepping.resolution import TOLERANCE
@@ -55,12 +56,20 @@ def stepped_over_note(run: ExaminedRun) -> str:
                 continue
             change = run.change_in_part(coarse, [x[[0, -1]] for x in finer])
             if change > noted:
-                cure = f"max_step={part:.2g}" if settings.adaptive else "a smaller dt"
-                return (
-                    f"the step from t = {first[0]:.6g} s to {coarse[0][1]:.6g} s passes over what acts within it: steps"
-                    f" of {part:.2g} s change the motion there by {percent(change)}; {cure}"
-                )
+                return _said(run, ends, i, part, change)
+        step, part, change = passed_over(run, ends, noted)
+        if change > 0.0:
+            return _said(run, ends, step, part, change)
     return ""
+
+
+def _said(run: ExaminedRun, ends: States, step: int, part: float, change: float) -> str:
+    """The note on a step, by its number, and a change by steps of that length [s]."""
+    cure = f"max_step={part:.2g}" if run.settings.adaptive else "a smaller dt"
+    return (
+        f"the step from t = {ends[0][step]:.6g} s to {ends[0][step + 1]:.6g} s passes over what acts within it: steps"
+        f" of {part:.2g} s change the motion there by {percent(change)}; {cure}"
+    )
 
 
 def _from_the_start(run: ExaminedRun) -> ExaminedRun:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.generator.codegen import interpreted
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination import stepped_over
@@ -41,6 +43,44 @@ def test_a_narrow_force_is_met_or_noted(method: str, seed: int) -> None:
     run = sf.simulate(cart, [0.0], [1.0], t0 + 10.0, t0=t0, u=law, method=method)
     off = abs(run.v[-1, 0] - truth.v[-1, 0])
     assert (off < 1e-3) != bool(noted(run)), (at, width, force, off, str(run.outcome))
+
+
+# Forces on a way of about w about x = c, and the last speed of a kilogram that comes with 1 m/s.
+NARROW = {
+    "bell": ("exp(-((x - {c})/{w})^2)/{w}", (1.0 + 2.0 * np.sqrt(np.pi)) ** 0.5),
+    "tent": ("max(0, 1 - abs(x - {c})/{w})/{w}", 3.0**0.5),
+    "window": ("(sign(x - {c}) - sign(x - {c} - {w}))/{w}", 5.0**0.5),
+    "hill": ("2*(x - {c})/{w}^2*exp(-((x - {c})/{w})^2)", -1.0),
+    "low hill": ("(x - {c})/{w}^2*exp(-((x - {c})/{w})^2)/2", 1.0),
+    "well": ("-2*(x - {c})/{w}^2*exp(-((x - {c})/{w})^2)", 1.0),
+    "own": ("exp(-((x - {c})/{w})^2)/{w}", (1.0 + 2.0 * np.sqrt(np.pi)) ** 0.5),
+}
+
+
+@pytest.mark.parametrize("method", [*ADAPTIVE, "rk4"])
+@pytest.mark.parametrize("shape", NARROW)
+def test_a_force_of_any_narrowness_is_met_or_noted_by_its_formula(method: str, shape: str) -> None:
+    """A law, or a load of the description's; a hill that turns the cart round, and hills and wells that it passes."""
+    (formula, last), rng = NARROW[shape], np.random.default_rng(3)
+    options: dict[str, Any] = {"method": method, "dt": 0.1} if method == "rk4" else {"method": method}
+    for width in (1e-5, 1e-3):
+        law = formula.format(c=repr(float(rng.uniform(2.0, 8.0))), w=width)
+        system, u = (CART, {"x": law}) if shape != "own" else (loaded(law), None)
+        run = sf.simulate(sf.compile(system), [0.0], [1.0], 10.0, u=u, **options)
+        assert (abs(run.v[-1, 0] - last) < 1e-3) != bool(noted(run)), (law, run.v[-1], str(run.outcome))
+
+
+def loaded(force: str) -> sf.System:
+    body = replace(CART.bodies[0], loads=(sf.Load(force=(force, 0, 0)),))
+    return replace(CART, bodies=(body,))
+
+
+@pytest.mark.parametrize("law", ["-20*x - 0.1*tanh(dx/0.2)", "-0.3*dx*abs(dx)", "-2*x/(1 + x^2)"])
+def test_formulas_that_steps_resolve_are_not_searched(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    sought = list[float]()
+    monkeypatch.setattr(interpreted, "find_instants", lambda *given: sought.append(given[2]) or np.zeros(0))
+    run = sf.simulate(sf.compile(CART), [0.1], [1.0], 5.0, u={"x": law}, method="dopri5")
+    assert run.outcome.ok and not run.outcome.notes and not sought
 
 
 PULSE = "20*exp(-((t - 6.3)/0.05)^2)"
