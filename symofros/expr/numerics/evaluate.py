@@ -52,7 +52,8 @@ class Evaluation:
         nodes = needed_nodes(graph, edges, given.keys())
         self._edges = edges
         self._steps = [(node, OPS[graph.op[node]].rule, graph.args[node]) for node in nodes]
-        read = {abs(edge) for edge in edges}.union(*(map(abs, args) for _, _, args in self._steps)).difference(nodes)
+        read = {abs(edge) for edge in edges} | {abs(edge) for _, _, args in self._steps for edge in args}
+        read.difference_update(nodes)
         self._numbers: dict[int, Array | float] = {0: 0.0}
         self._numbers |= {node: graph.value[node] for node in read if node in graph.value}
         self._slots = {node: given.get(node) or graph.slot[node] for node in read.difference(self._numbers)}
