@@ -108,15 +108,14 @@ def stated_values(system: System) -> Iterator[Stated]:
 
 
 def _connection_values(connection: Connection | Contact) -> Iterator[Stated]:
-    key = ("connection", connection.name)
     if isinstance(connection, Contact):
-        for label, value in connection.values():
-            yield Stated(f"contact '{connection.name}': {label}", value, key, units=units_of(Contact, label))
-        return
-    for label in ("stiffness", "length", "damping"):
-        units = units_of(Connection, label)
-        what, value = f"connection '{connection.name}': {label}", getattr(connection, label)
-        yield Stated(what, value, key, units=units, remedy=_LINE_BY_FORMULA)
+        values, remedy = [*connection.values()], ""
+    else:
+        values = [(label, getattr(connection, label)) for label in ("stiffness", "length", "damping")]
+        remedy = _LINE_BY_FORMULA
+    what, key = f"{type(connection).__name__.lower()} '{connection.name}'", ("connection", connection.name)
+    for label, value in values:
+        yield Stated(f"{what}: {label}", value, key, units=units_of(type(connection), label), remedy=remedy)
 
 
 def _constraint_values(constraint: Constraint) -> Iterator[Stated]:
