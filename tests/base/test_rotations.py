@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from symofros.base.rotations import matrix_quaternion, quaternion_matrix
+from symofros.base.rotations import matrix_product, matrix_quaternion, quaternion_matrix
 
 # No turn, half turns about each axis and about oblique ones, and beside them: each entry is the largest somewhere.
 TURNS = [np.zeros(3), *(np.pi * np.eye(3)), *((np.pi - 1e-9) * np.eye(3)), np.pi * np.array([0.6, 0.0, -0.8])]
@@ -21,3 +21,9 @@ def test_quaternions_and_matrices_are_of_the_same_rotation(turn: np.ndarray) -> 
     known = np.append(np.sin(0.5 * angle) * n, np.cos(0.5 * angle))
     assert abs(matrix_quaternion(R) @ known) == pytest.approx(1.0, abs=1e-15)
     np.testing.assert_allclose(quaternion_matrix(known), R, atol=5e-16)
+
+
+@pytest.mark.parametrize("shape", [(3,), (3, 3)])
+def test_products_of_matrices_are_those_of_numpy(shape: tuple[int, ...], rng: np.random.Generator) -> None:
+    R, x = rng.standard_normal((3, 3)), rng.standard_normal(shape)
+    np.testing.assert_allclose(matrix_product(R, x), R @ x, rtol=1e-14, atol=1e-14)
