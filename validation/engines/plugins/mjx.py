@@ -21,10 +21,12 @@ if m.na: empty = empty.replace(act=jax.numpy.array(states))
 def forward(q, v, tau):
     e = jax.jit(mjx.forward)(mx, empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
     return e, jax.jit(mjx.full_m)(mx, e)
-def inverse(q, v, a):
+def inverse(q, v, a): return jax.jit(mjx.inverse)(mx, empty.replace(qpos=q, qvel=v, qacc=a)).qfrc_inverse
+def read(q, v, a):
     e = empty.replace(qpos=q, qvel=v, qacc=a)
-    for one in (mjx.fwd_position, mjx.fwd_velocity, mjx.sensor_pos, mjx.sensor_vel): e = jax.jit(one)(mx, e)
-    return jax.jit(mjx.sensor_acc)(mx, e), jax.jit(mjx.inverse)(mx, e).qfrc_inverse
+    calls = (mjx.fwd_position, mjx.fwd_velocity, mjx.sensor_pos, mjx.sensor_vel, mjx.sensor_acc)
+    for one in calls: e = jax.jit(one)(mx, e)
+    return e
 def got(e, name): return np.array(getattr(e, name) if hasattr(e, name) else getattr(e._impl, name))
 def stepped(q, v, tau, **options):
     from copy import copy
@@ -48,7 +50,7 @@ def _field(name: str) -> Way:
 
 
 def _sensor(kind: str) -> Way:
-    return Way(kind, f"e = inverse(q, v, a)[0]\nvalue = [data(e, '{kind}', k) for k in sensed]")
+    return Way(kind, f"e = read(q, v, a)\nvalue = [data(e, '{kind}', k) for k in sensed]")
 
 
 def _step(integrator: str) -> Way:
@@ -69,7 +71,7 @@ WAYS = {
         "e = forward(q, v, tau)[0]\nvalue = [[*got(e, 'xpos')[k], *np.ravel(got(e, 'xmat')[k])] for k in links]",
     ),
     "forward_dynamics": Way("forward", "value = got(forward(q, v, tau)[0], 'qacc')"),
-    "inverse_dynamics_acted": Way("inverse", "value = inverse(q, v, a)[1]"),
+    "inverse_dynamics_acted": Way("inverse", "value = inverse(q, v, a)"),
     "mass_centre": Way("subtree_com", "value = got(forward(q, v, tau)[0], 'subtree_com')[0]"),
     "link_velocities": Way(
         "cvel",
@@ -98,7 +100,7 @@ WAYS = {
     ),
     "wrench_sensors": Way(
         "force, torque",
-        "e = inverse(q, v, a)[0]\nvalue = [[*data(e, 'force', k), *data(e, 'torque', k)] for k in sensed]",
+        "e = read(q, v, a)\nvalue = [[*data(e, 'force', k), *data(e, 'torque', k)] for k in sensed]",
     ),
     "frame_poses": Way(
         "site_xpos, site_xmat",
