@@ -55,7 +55,7 @@ def test_parts_merge_into_one_report_with_their_origin(tmp_path: Path) -> None:
     assert [engine.get("measured") for engine in whole["engines"]] == [None, origin, origin]
     assert set(whole["cells"]) == {"mine", "theirs", "third"} and len(whole["proofs"]) == 3
     assert whole["absent"] == {}
-    again = parts.merged(part("fourth"), parts.load(stored(tmp_path, whole | {"revision": "later"})))
+    again = parts.merged(part("fourth"), parts.load(stored(tmp_path, dict(whole) | {"revision": "later"})))
     assert [e["measured"]["revision"] for e in again["engines"][1:]] == ["later", "abc", "abc"]
     parts.write_scripts(whole["proofs"], tmp_path / "engines")
     assert {path.name for path in (tmp_path / "engines").iterdir()} == {"mine.py", "theirs.py", "third.py"}
