@@ -1,4 +1,4 @@
-"""Narrow parts of forces of the state that a step passes over: sought by their formulas, proved by short steps (18c).
+"""Narrow parts of forces of the state that a step passes over: sought by their formulas, proved by short steps (18e).
 
 docs/theory/simulation.md, section 8.
 """

@@ -56,14 +56,14 @@ def stepped_over_note(run: ExaminedRun) -> str:
                 continue
             change = run.change_in_part(coarse, [x[[0, -1]] for x in finer])
             if change > noted:
-                return _said(run, ends, i, part, change)
+                return _note(run, ends, i, part, change)
         step, part, change = passed_over(run, ends, noted)
         if change > 0.0:
-            return _said(run, ends, step, part, change)
+            return _note(run, ends, step, part, change)
     return ""
 
 
-def _said(run: ExaminedRun, ends: States, step: int, part: float, change: float) -> str:
+def _note(run: ExaminedRun, ends: States, step: int, part: float, change: float) -> str:
     """The note on a step, by its number, and a change by steps of that length [s]."""
     cure = f"max_step={part:.2g}" if run.settings.adaptive else "a smaller dt"
     return (
