@@ -64,6 +64,8 @@ def passed_over(run: ExaminedRun, ends: States, least: float) -> tuple[int, floa
             formulas = list(stepper.inputs.formulas.values())
             motion = Motion(states, t)
             found = run.model.formula_instants(formulas, stepper.par, float(t[0]), float(t[-1]), motion)
+            if not len(found):
+                return 0, 0.0, 0.0
             parts = _parts(t, found)
             missed = [_missed(run, path(), part) for part in parts]
     except _NoPathError:

@@ -118,10 +118,22 @@ class ExaminedRun(HeldRun):
         return [x[:: -max(1, len(x) // _SPEEDS)] for x in self.states]
 
     @cached_property
+    def _rest_of_some(self) -> tuple[Array, float]:
+        """Mass matrices of `_some`, the last record's first; the largest acceleration there without speeds.
+
+        That which gravity, or the applied forces, alone would give, in the norm of the kinetic energy.
+        """
+        t, q, _, u = self._some
+        try:
+            M, h, Q = self.model.dynamics(q, np.zeros(self.model.nv), u, par=self.stepper.par, t=t)
+            alone = np.linalg.solve(M, np.stack([h, Q], axis=-1))
+        except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
+            return self.metrics(q, u), 0.0
+        return M, max(float(np.nan_to_num(norms_in(M, alone[..., k])).max(initial=0.0)) for k in range(2))
+
+    @property
     def _metrics_of_some(self) -> Array:
-        """Mass matrices of `_some`, the last record's first."""
-        _, q, _, u = self._some
-        return self.metrics(q, u)
+        return self._rest_of_some[0]
 
     @cached_property
     def fastest(self) -> float:
@@ -151,16 +163,7 @@ class ExaminedRun(HeldRun):
             return 0.0
         coordinates = self.model.difference(self.model.neutral(), q[-1])[np.newaxis]
         moved = float(self.norms(q[-1:], u[-1:], coordinates)[0]) * max(1, len(t) - 1) / span
-        return AT_REST * (moved + span * self._pull(float(t[-1]), q[-1], u[-1]))
-
-    def _pull(self, t: float, q: Array, u: Array) -> float:
-        """Acceleration that gravity, or the applied forces, alone would give at rest, in that norm."""
-        try:
-            M, h, Q = self.model.dynamics(q, np.zeros(self.model.nv), u, par=self.stepper.par, t=t)
-            alone = np.asarray(np.linalg.solve(M, np.stack([h, Q], axis=-1)).T, dtype=np.float64)
-        except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
-            return 0.0
-        return float(np.nan_to_num(norms_in(np.broadcast_to(M, (2, *M.shape)), alone)).max(initial=0.0))
+        return AT_REST * (moved + span * self._rest_of_some[1])
 
     @property
     def repeatable(self) -> bool:
