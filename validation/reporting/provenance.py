@@ -17,8 +17,9 @@ from .evidence import revision, standing
 from .numbers import named
 
 # Packages that have a say in the numbers of one report or another.
-_PACKAGES = tuple(
-    "numpy scipy sympy pydantic ruamel.yaml pyarrow distributed pin mujoco exudyn casadi example-robot-data".split()
+_PACKAGES = (
+    *"numpy scipy sympy pydantic ruamel.yaml pyarrow distributed".split(),
+    *"pin mujoco exudyn drake casadi example-robot-data".split(),
 )
 # Further names that reports have for a distribution.
 _ALIASES = {"pinocchio": "pin", "pinocchio-urdf": "pin", "mujoco-urdf": "mujoco"}
