@@ -126,7 +126,7 @@ class ExaminedRun(HeldRun):
         t, q, _, u = self._some
         try:
             M, h, Q = self.model.dynamics(q, np.zeros(self.model.nv), u, par=self.stepper.par, t=t)
-            alone = np.linalg.solve(M, np.stack([h, Q], axis=-1))
+            alone = np.asarray(np.linalg.solve(M, np.stack([h, Q], axis=-1)), dtype=np.float64)
         except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
             return self.metrics(q, u), 0.0
         return M, max(float(np.nan_to_num(norms_in(M, alone[..., k])).max(initial=0.0)) for k in range(2))
