@@ -206,8 +206,8 @@ def test_a_relay_switches_while_it_is_enabled(states: Any, starts_on: bool, meth
         other = simulation.interpret(5.0, dt=5e-3, record=0.0125)
         assert [one.t for one in other.crossings] == pytest.approx([one.t for one in run.crossings], abs=1e-9)
         assert other["sum.y"][-1] == pytest.approx(total[-1], abs=2e-9)
-    told = np.abs(run["part.y"] - y) < 1e-12  # But for one side of each instant.
-    assert told.mean() > 0.97 and 0.1 < y.mean() < 0.9
+    equal = np.abs(run["part.y"] - y) < 1e-12  # But for one side of each instant.
+    assert equal.mean() > 0.97 and 0.1 < y.mean() < 0.9
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -219,8 +219,8 @@ static void sym_batch_forget_beams(const sym_batch *b, sym_run *r) {
 /* Rows of events that one slot may fill in a step. */
 static int64_t sym_batch_share(const sym_batch *b) { return 4 * (int64_t)b->prototype->system->n_events; }
 
-/* Whether there is room for the events of a step of all slots, and for one at the start of a trajectory in each. */
-static int32_t sym_batch_has_room(const sym_batch *b) {
+/* Whether the records can take the events of a step of all slots, and of the start of a trajectory in each. */
+static int32_t sym_batch_can_record(const sym_batch *b) {
     const sym_run *p = b->prototype;
     const int64_t share = sym_batch_share(b);
     return share == 0 || p->event_capacity - p->n_event_records >= b->slots * (share + 1);
@@ -432,10 +432,10 @@ static void sym_batch_step(sym_batch *b) {
 
 SYM_EXPORT int32_t sym_batch_advance(sym_batch *b, int64_t max_steps) {
     for (b->left = max_steps; b->left > 0; --b->left) {
-        if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
+        if (!sym_batch_can_record(b)) return SYM_RECORDS_FULL;
         if (b->n_active < b->slots && b->next < b->n) sym_columns_leave(b);
         while (b->n_active < b->slots && b->next < b->n) {
-            if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
+            if (!sym_batch_can_record(b)) return SYM_RECORDS_FULL;
             sym_batch_activate_next(b);
         }
         if (b->n_active == 0) return 0;

@@ -130,7 +130,7 @@ SYM_EXPORT int32_t sym_hand_batch_go_on(sym_hand_batch *hand, const double *u) {
     while (hand->group < hand->n_groups) {
         sym_batch *b = hand->groups + hand->group;
         if (!hand->begun) {
-            if (!sym_batch_has_room(b)) return SYM_RECORDS_FULL;
+            if (!sym_batch_can_record(b)) return SYM_RECORDS_FULL;
             sym_hand_begin_group(hand, b, hand->first_of_group, u);
             b->left = hand->steps, hand->begun = 1;
         }

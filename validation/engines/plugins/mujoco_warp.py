@@ -12,7 +12,7 @@ from .mujoco.forces import COPY, EXPLICIT, SPARSE
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
-# Trees without constraints need no room for their rows; Warp then compiles no kernels of the solver.
+# Trees without constraints need no memory for their rows; Warp then compiles no kernels of the solver.
 _SETUP = f"""import warp as wp
 {QUIET}
 import mujoco_warp as mjw
@@ -20,12 +20,12 @@ def put(data, **fields):
     for name, value in fields.items():
         getattr(data, name).assign(np.asarray(value, np.float32)[None])
 def got(data, name): return getattr(data, name).numpy()[0]
-def fresh(model, **room):
-    data = mjw.make_data(model, **room)
+def fresh(model, **sizes):
+    data = mjw.make_data(model, **sizes)
     if model.nu: put(data, ctrl=d.ctrl)
     if model.na: put(data, act=states)
     return data
-def made(model, **room): return mjw.put_model(model), fresh(model, **room)
+def made(model, **sizes): return mjw.put_model(model), fresh(model, **sizes)
 def sense(kind, b=None):
     one = m.sensor(f'{{kind}}:{{m.body(b).name}}' if b else kind)
     return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]
@@ -59,19 +59,19 @@ for k, b in enumerate(bs):
     value[k] = np.vstack([Jp.numpy()[0], Jr.numpy()[0]])"""
 
 
-def _step(integrator: str, settings: str = "", room: str = "") -> Way:
+def _step(integrator: str, settings: str = "", sizes: str = "") -> Way:
     """A step with options of a model of its own."""
     stated = f"n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}\n{settings}"
     code = (
-        f"dn = fresh(n{room})\nput(dn, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.step(nw, dn)\n"
+        f"dn = fresh(n{sizes})\nput(dn, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.step(nw, dn)\n"
         "value = np.r_[got(dn, 'qpos'), got(dn, 'qvel')]"
     )
-    return Way(f"step, {integrator}{room}", f"{_kept(stated, room)}{code}")
+    return Way(f"step, {integrator}{sizes}", f"{_kept(stated, sizes)}{code}")
 
 
-def _kept(stated: str, room: str = "") -> str:
+def _kept(stated: str, sizes: str = "") -> str:
     """A model with options of its own, made once: data are new for each call."""
-    made = f"{COPY}{stated}nw = made(n{room})[0]".replace("\n", "\n    ")
+    made = f"{COPY}{stated}nw = made(n{sizes})[0]".replace("\n", "\n    ")
     return f"if 'nw' not in globals():\n    {made}\n"
 
 
@@ -181,7 +181,7 @@ for b in bs:
     value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
     ),
     "step_dampers_implicit": _step("mjINT_EULER"),
-    "step_dampers_implicit:njmax_0": _step("mjINT_EULER", room=", njmax=0"),
+    "step_dampers_implicit:njmax_0": _step("mjINT_EULER", sizes=", njmax=0"),
     "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
     "step_velocities_implicit": _step("mjINT_IMPLICIT"),
     "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
@@ -268,8 +268,8 @@ def _place(name: str) -> tuple[str, str, int | None]:
 
 # Warp's models are changed once they are made of MuJoCo's first: numbers of `last` replace those of the first.
 _CHANGE = """plain = made
-def made(model, **room):
-    model, data = plain(model, **room)
+def made(model, **sizes):
+    model, data = plain(model, **sizes)
     for holder, name, count in FIELDS:
         array = getattr(getattr(model, holder) if holder else model, name)
         numbers = array.numpy()
