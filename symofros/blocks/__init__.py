@@ -48,6 +48,7 @@ from symofros.blocks.generic.state_machine import StateMachine as StateMachine
 from symofros.blocks.generic.state_machine import Transition as Transition
 from symofros.blocks.generic.switching import RateLimit as RateLimit
 from symofros.blocks.generic.switching import Relay as Relay
+from symofros.blocks.graphics.comments import Comment as Comment
 from symofros.blocks.graphics.live_plot import LivePlot as LivePlot
 from symofros.blocks.graphics.recorders import ExtremityPlot as ExtremityPlot
 from symofros.blocks.graphics.recorders import Scope as Scope

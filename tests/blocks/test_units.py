@@ -53,7 +53,7 @@ OF_THE_USER = {
     "Saturation", "Sequence", "Sine", "StateSpace", "Step", "Store", "Sum", "Switch", "TransferFunction", "Transform",
     "FrameTransform", "UdpReceiver", "UdpTransmitter", "UnitDelay", "ZenohPublisher", "ZenohSubscriber", "Scope",
     "LivePlot", "JointTrajectory", "FMU", "KalmanFilter", "LookupTable2D", "Notch", "TransportDelay",
-    "StateMachine", "BusCreator", "BusSelector",
+    "StateMachine", "BusCreator", "BusSelector", "Comment",
 }  # fmt: skip
 # Measured by what is connected: tests below.
 BY_WIRE = {"JointPD", "JointPID"}

@@ -14,6 +14,9 @@ from symofros.studio.editor.editing.data_edits import conditions_of
 
 Json = dict[str, Any]
 
+# Characters that are drawn of a comment; a longer one is refused, and is here to be mended.
+_MOST_DRAWN = 2000
+
 
 class Drawing:
     """The blocks and wires of a document.
@@ -85,6 +88,8 @@ class Drawing:
         node = self._node("blocks", name, kind, group_of(kind), model if isinstance(model, str) else "")
         period = entry.get("period")
         node["period"] = period if type(period) in (int, float) else None
+        if kind == "comment":
+            node["note"], node["heading"] = str(entry.get("text", ""))[:_MOST_DRAWN], entry.get("heading") is True
         ports = self.drafted.ports.get(name) if self.drafted else None
         given = list(_dict(entry.get("inputs")))
         if ports is not None:

@@ -233,3 +233,28 @@ def test_states_that_are_exchanged_are_refused_in_units(opened: Serve, page: Pag
     for words in ("speed.y -> pd.q: units differ", "place.y -> pd.v: units differ", "rad/s"):
         expect(steps.results(page)).to_contain_text(words)
     expect(steps.results(page)).not_to_contain_text("shapes differ")
+
+
+def test_comments_stand_on_the_canvas_and_in_the_file(opened: Serve, page: Page, picture: Picture) -> None:
+    server = opened("drawn.yaml", content=DRAWN)
+    pane = page.locator(".react-flow__pane")
+    pane.click(button="right", position={"x": 420, "y": 60})
+    page.get_by_role("menuitem", name="Comment…").click()
+    steps.fill(page, "Text", "The source is a sine;\nthe gain is its unit.")
+    steps.accept(page)
+    comment = steps.block(page, "blocks/comment")
+    expect(comment).to_contain_text("the gain is its unit.")
+    pane.click(button="right", position={"x": 420, "y": 160})
+    page.get_by_role("menuitem", name="Comment…").click()
+    steps.fill(page, "Text", "Speed of a joint")
+    steps.window(page).get_by_label("Heading").check()
+    steps.accept(page)
+    expect(steps.block(page, "blocks/comment2").locator(".heading")).to_have_text("Speed of a joint")
+    picture("diagram-comments")
+    steps.problems(page, 1)  # As before: nothing feeds the gain.
+    steps.saved(page)
+    words = '  comment: {kind: comment, text: "The source is a sine;\\nthe gain is its unit."}\n'
+    assert server.file.read_text().startswith(DRAWN)
+    assert server.file.read_text()[len(DRAWN) :] == (
+        words + "  comment2: {kind: comment, text: 'Speed of a joint', heading: true}\n"
+    )

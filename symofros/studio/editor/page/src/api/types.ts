@@ -73,7 +73,10 @@ export interface SignalNode {
   kind: string;
   group: string;
   title: string;
+  /** What stands at its foot; of a comment, what it says. */
   note: string;
+  /** Whether a comment is a heading. */
+  heading?: boolean;
   path: Path;
   /** Seconds between samples; null: continuous. */
   period: number | null;

@@ -43,12 +43,19 @@ function choose(changes: readonly (NodeChange | EdgeChange)[]): void {
   if (chosen.size !== before.length || before.some((id) => !chosen.has(id))) update({ selected: [...chosen] });
 }
 
+type Pressed = { preventDefault(): void; clientX: number; clientY: number };
+
 /** Opens the menu of a block, a link, or the canvas; what it is about is chosen first. */
-function openMenu(event: { preventDefault(): void; clientX: number; clientY: number }, id: string | null): void {
+function openMenu(
+  event: Pressed,
+  id: string | null,
+  toCanvas: (at: { x: number; y: number }) => { x: number; y: number },
+): void {
   event.preventDefault();
+  const { x, y } = toCanvas({ x: event.clientX, y: event.clientY });
   const { selected } = now();
   update({
-    menu: { id, at: [event.clientX, event.clientY] },
+    menu: { id, at: [event.clientX, event.clientY], where: [Math.round(x), Math.round(y)] },
     selected: id === null || selected.includes(id) ? selected : [id],
   });
 }
@@ -129,9 +136,9 @@ export function Board<N extends Node>({
       edgeTypes={edgeTypes}
       onNodesChange={onNodesChange}
       onEdgesChange={choose}
-      onNodeContextMenu={(event, node) => openMenu(event, node.id)}
-      onEdgeContextMenu={(event, edge) => openMenu(event, edge.id)}
-      onPaneContextMenu={(event) => openMenu(event, null)}
+      onNodeContextMenu={(event, node) => openMenu(event, node.id, flow.screenToFlowPosition)}
+      onEdgeContextMenu={(event, edge) => openMenu(event, edge.id, flow.screenToFlowPosition)}
+      onPaneContextMenu={(event) => openMenu(event, null, flow.screenToFlowPosition)}
       onPaneClick={() => update({ selected: [] })}
       onConnect={connect}
       onNodeDoubleClick={(_, node) => open(node.id)}

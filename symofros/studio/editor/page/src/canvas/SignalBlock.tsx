@@ -40,6 +40,16 @@ export const SignalBlock = memo(function SignalBlock({ id, data: { node, colour 
   );
   const [width, height] = blockSize(node);
   const kind = node.kind.replaceAll("_", " ");
+  if (node.kind === "comment")
+    return (
+      <div
+        className={`block comment${node.heading === true ? " heading" : ""}${node.problems > 0 ? " wrong" : ""}`}
+        style={{ width, minHeight: height }}
+        title={`comment ${node.title}`}
+      >
+        {node.note || "…"}
+      </div>
+    );
   return (
     <div
       className={`block signal-block ${node.group} rate ${colour}${node.problems > 0 ? " wrong" : ""}`}

@@ -1,22 +1,33 @@
 /** What can be done with a block, a wire, or the canvas: the commands of the menu that the other button opens. */
 
+import type { Point } from "../api/types";
 import type { MenuItem } from "../shell/Menu";
 import { copy, paste } from "../store/clipboard";
-import { look } from "../store/diagram";
+import { addBlock, look } from "../store/diagram";
 import { remove } from "../store/elements";
 import { toggleFolds } from "../store/folding";
 import { group } from "../store/grouping";
 import { now, show, update } from "../store/store";
 import { fileOf, goInto, openProperties, pathOf } from "./open";
 
-/** The commands for an element, or for the canvas where there is none. */
-export function commandsFor(id: string | null): MenuItem[] {
+/** Adds a comment at a place of the canvas, and asks for its words. */
+async function comment(where: Point): Promise<void> {
+  const item = now().catalogue?.diagram.palette.find(({ kind }) => kind === "comment");
+  if (item === undefined) return;
+  await addBlock(item, where);
+  const [id] = now().selected;
+  if (id !== undefined) openProperties(id);
+}
+
+/** The commands for an element, or for the canvas where there is none; what is added comes to a place of the canvas. */
+export function commandsFor(id: string | null, where: Point): MenuItem[] {
   const { document, selected } = now();
   const diagram = document?.diagram ?? null;
   if (id === null) {
     const all = [...(document?.graph.nodes ?? []), ...(diagram?.nodes ?? [])].map((each) => each.id);
     return [
       { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+      ...(diagram === null ? [] : [{ title: "Comment…", act: () => void comment(where) }]),
       { title: "Choose all", keys: "Ctrl A", act: () => update({ selected: all }) },
       { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
     ];

@@ -28,6 +28,21 @@ export function TextField({ value, onChange, label, help, fallback }: Props) {
   );
 }
 
+/** Words of several lines. */
+export function LongTextField({ value, onChange, label, help }: Props) {
+  const { hint } = useForm();
+  return (
+    <textarea
+      value={shown(value)}
+      rows={4}
+      aria-label={label}
+      aria-description={help}
+      onFocus={() => hint(help)}
+      onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}
+    />
+  );
+}
+
 /** A plain number; empty means: left out. */
 export function NumberField({
   value,

@@ -16,7 +16,7 @@ export function ContextMenu() {
   const style = { left: Math.min(x, window.innerWidth - ROOM[0]), top: Math.min(y, window.innerHeight - ROOM[1]) };
   return (
     <aside aria-label="Commands" className="context-menu menu" style={style}>
-      <MenuList title="What can be done here" items={commandsFor(menu.id)} close={close} />
+      <MenuList title="What can be done here" items={commandsFor(menu.id, menu.where)} close={close} />
     </aside>
   );
 }

@@ -21,7 +21,7 @@ export function Window({ title, children, foot, onClose, onSubmit, wide = false 
     const element = dialog.current;
     element?.showModal();
     // The browser would choose the button that closes it.
-    const first = element?.querySelector<HTMLElement>(".window-body :is(input, select, button)");
+    const first = element?.querySelector<HTMLElement>(".window-body :is(input, select, textarea, button)");
     first?.focus();
     if (first instanceof HTMLInputElement) first.select();
     return () => element?.close();

@@ -112,8 +112,8 @@ export interface State extends OfDocument {
   notices: Notice[];
   /** The step of the tour; null while nobody takes it. */
   tour: Tour | null;
-  /** The menu of what was pressed with the other button, and where. */
-  menu: { id: string | null; at: Point } | null;
+  /** The menu of what was pressed with the other button: at a place of the window, which is a place of the canvas. */
+  menu: { id: string | null; at: Point; where: Point } | null;
   right: RightPane | null;
   bottom: BottomPane | null;
 }
