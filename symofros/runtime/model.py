@@ -29,6 +29,7 @@ from symofros.runtime.methods.linear import FrameDerivatives as FrameDerivatives
 from symofros.runtime.methods.linear import Output as Output
 from symofros.runtime.methods.linear import StateMatrices as StateMatrices
 from symofros.runtime.methods.momentum import MomentumFunctions
+from symofros.runtime.methods.reactions import ContactForces as ContactForces
 from symofros.runtime.methods.reactions import ReactionFunctions
 from symofros.runtime.methods.routes import RouteFunctions
 from symofros.runtime.methods.states import StateFunctions
@@ -37,13 +38,13 @@ from symofros.runtime.methods.states import StateFunctions
 class Model(
     AdjointFunctions,
     ConfigurationFunctions,
+    ReactionFunctions,
     ConstraintFunctions,
     CopyFunctions,
     DerivativeFunctions,
     FrameFunctions,
     IdentificationFunctions,
     MomentumFunctions,
-    ReactionFunctions,
     RouteFunctions,
     StateFunctions,
 ):

@@ -142,6 +142,11 @@ class RigidContactRecord(NamedTuple):
     watched: tuple[str, str]
 
     @property
+    def conditions(self) -> tuple[str, ...]:
+        """Constraints that hold it."""
+        return f"{self.name}.normal", f"{self.name}.across"
+
+    @property
     def state(self) -> tuple[str, ...]:
         """Formulas of its state: distance, velocity against the plane (3), friction, restitution."""
         quantities = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz"))

@@ -358,3 +358,34 @@ def test_a_body_that_moves_carries_the_plane() -> None:
     assert run.v[-1] == pytest.approx([1.5, 1.5, 0.0], abs=1e-11)
     momentum = run.v[:, 0] * 3.0 + run.v[:, 1]
     assert momentum == pytest.approx(6.0, abs=1e-11)
+
+
+@pytest.mark.parametrize("spin", [40.0, 0.0])
+def test_reactions_of_a_run_hold_the_bodies_by_newtons_law(spin: float) -> None:
+    """A ball that slides, or lies, on a plate that swings; the joint of the free one transmits nothing."""
+    thing = sf.RigidBody("ball", sf.Joint("free", "free"), sf.Inertia(0.4, moments=(1.6e-3,) * 3))
+    top = sf.Frame("top", (0.2, 0.0, 0.0), sf.Rotation.rpy(0, 0, 0.4))
+    hinge = sf.Joint("hinge", "revolute", axis=(0, 1, 0))
+    plate = sf.RigidBody("plate", hinge, sf.Inertia(3.0, (0.5, 0, 0), (0.5,) * 3), frames=[top])
+    floor = sf.Contact("floor", ("ball", None), ("plate", "top"), restitution=0.0, radius=0.1, friction=0.3)
+    model = sf.compile(sf.System("rigid", [plate, thing], connections=[floor]))
+    start = model.neutral()
+    start[1], start[3] = 0.15, 0.1
+    run = sf.simulate(model, start, {"free.wy": spin}, t_end=0.04, dt=1e-3)
+    found, (p, _) = run.contact_forces(), run.frames["ball"]
+    force, k = found.force[:, 0], slice(10, -5)
+    acceleration = ((p[2:] - 2 * p[1:-1] + p[:-2]) / 1e-6)[9:-4]
+    np.testing.assert_allclose(force[k] / 0.4 + [0, 0, -9.81], acceleration, atol=2e-2)
+    across = np.linalg.norm(force[k] - found.push[k] * run.frames["plate"][1][k][:, :, 2], axis=1)
+    assert across == pytest.approx(0.3 * found.push[k, 0], rel=1e-9) or spin == 0.0
+    # By the run's parameters, and by the model's own, of which no ball slides.
+    for wrenches in (run.joint_wrenches(), model.joint_wrenches(run.q, run.v, run.a, run.u, run.lam, t=run.t)):
+        assert np.abs(wrenches[:, 1]).max() < 1e-12
+        moment = (0.5 + 3.0 * 0.25) * run.a[:, 0] - 3.0 * 9.81 * 0.5 * np.cos(run.q[:, 0])
+        turning = np.cross(found.point[:, 0], -force)[:, 1]
+        np.testing.assert_allclose(wrenches[k, 0, 4], 0.0, atol=1e-9)
+        np.testing.assert_allclose(turning[k], moment[k], atol=1e-6)
+    assert np.isnan(model.contact_forces(run.q, run.v).force).all()
+    np.testing.assert_array_equal(
+        run.closure_wrench("floor.normal", on="first")[:, :3], -run.closure_wrench("floor.normal")[:, :3]
+    )

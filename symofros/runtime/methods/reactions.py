@@ -9,11 +9,12 @@ import numpy as np
 from symofros.errors import Problem, ShapeError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike
+from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.states import StateFunctions
 
 
 class ContactForces(NamedTuple):
-    """State of the balls of compliant contacts.
+    """State of the balls of contacts.
 
     Attributes:
         gap: Distance of each ball from the surface, negative where it penetrates it (..., nk) [m].
@@ -30,7 +31,7 @@ class ContactForces(NamedTuple):
     share: Array
 
 
-class ReactionFunctions(StateFunctions):
+class ReactionFunctions(ConstraintFunctions, StateFunctions):
     """Methods of a model that tell of the reactions in a motion; arguments as in `Model`."""
 
     def joint_wrenches(
@@ -114,22 +115,34 @@ class ReactionFunctions(StateFunctions):
         v: ArrayLike,
         u: ArrayLike | None = None,
         *,
+        lam: ArrayLike | None = None,
         par: ArrayLike | None = None,
         t: ArrayLike = 0.0,
         z: ArrayLike | None = None,
     ) -> ContactForces:
-        """Distances and forces of compliant contacts, in the order of `names.contacts`.
+        """Distances and forces of contacts, in the order of `names.contacts`.
 
         Args:
             q: Configuration (..., nq).
             v: Speeds (..., nv).
             u: Inputs, for prescribed motions.
+            lam: Multipliers (..., nc), as of a run: the forces of rigid contacts, which are not numbers without them.
             par: Run-time parameters.
             t: Time.
             z: States of forces (..., nz), such as the deflections of bristles.
         """
         given = {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t}
-        return ContactForces(*self._call("contact_forces", "", given, par))
+        found = ContactForces(*self._call("contact_forces", "", given, par))
+        if not self.record.rigid_contacts:
+            return found
+        push, force = found.push.copy(), found.force.copy()
+        for ball in self.record.rigid_contacts:
+            k = self.names.contacts.index(ball.name)
+            push[..., k], force[..., k, :] = np.nan, np.nan
+            if lam is not None:
+                parts = [self.closure_wrench(name, q, lam, u=u, par=par, t=t) for name in ball.conditions]
+                push[..., k], force[..., k, :] = np.asarray(lam)[..., ball.rows[2]], sum(parts)[..., :3]
+        return found._replace(push=push, force=force)
 
     def _reactions(
         self,

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from symofros.base.html import html_table
 from symofros.base.names import TIME, coordinate_of, speed_column, speed_of, symbol_of
 from symofros.errors import Problem, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
-from symofros.runtime.model import Model
+from symofros.runtime.model import ContactForces, Model
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import Panel, draw
@@ -207,6 +207,24 @@ class Trajectory:
         """Kinetic and potential energy together (n) [J]."""
         total: Array = self.kinetic_energy + self.potential_energy
         return total
+
+    def joint_wrenches(self) -> Array:
+        """What each joint transmits from its parent to its body (n, joints, 6) [N, N m], as `Model.joint_wrenches`."""
+        given: dict[str, Any] = {"par": self._par, "t": self.t, **self._states}
+        return self.model.joint_wrenches(self.q, self.v, self.a, self.u, self.lam, **given)
+
+    def closure_wrench(self, name: str, on: Literal["second", "first"] = "second") -> Array:
+        """What a constraint exerts on one of its frames (n, 6) [N, N m], as `Model.closure_wrench`.
+
+        Raises:
+            UnknownNameError: There is no such constraint, or it is a condition by formula.
+        """
+        return self.model.closure_wrench(name, self.q, self.lam, on=on, u=self.u, par=self._par, t=self.t)
+
+    def contact_forces(self) -> ContactForces:
+        """Distances and forces of all contacts, rigid ones included (n, ...), as `Model.contact_forces`."""
+        given: dict[str, Any] = {"lam": self.lam, "par": self._par, "t": self.t, **self._states}
+        return self.model.contact_forces(self.q, self.v, self.u, **given)
 
     def section_forces(self, beam: str) -> SectionForces:
         """Force and moment inside an elastic beam at its stations, over time.

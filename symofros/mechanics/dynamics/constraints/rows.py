@@ -66,15 +66,10 @@ class Row:
     facing: tuple[Edge, ...] = ()
 
     def scaled(self, g: Graph, e: Edge) -> Row:
-        """The row times e: as it is for 1, without effect for 0."""
-
-        def acting(vector: Vec3 | None) -> Vec3 | None:
-            return None if vector is None else vector.scaled(e)
-
-        levers = tuple(x._replace(force=acting(x.force), moment=acting(x.moment)) for x in self.levers)
+        """The row times e: as it is for 1, binding nothing for 0; its multiplier, given, acts either way (eq. 14)."""
         facing = tuple(g.add(g.mul(e, cosine), g.sub(ONE, e)) for cosine in self.facing)
         phi, rate, gamma = (g.mul(e, edge) for edge in (self.phi, self.rate, self.gamma))
-        return Row(phi, tuple(g.mul(e, entry) for entry in self.G), rate, gamma, levers, facing)
+        return Row(phi, tuple(g.mul(e, entry) for entry in self.G), rate, gamma, self.levers, facing)
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description import Closure, KnifeEdge, Rod, Rolling, System
-from symofros.mechanics.topology import BASE, SpanningTree, frame_of
-from symofros.runtime.record import STICKS
+from symofros.mechanics.topology import SpanningTree, frame_of
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.arrows import ARROWS, Arrows, ArrowScale
 from symofros.studio.viewer.drawing.drawing import Drawing, LinkPoint
@@ -55,9 +54,7 @@ class RunForces:
 
     def __init__(self, run: Trajectory, tree: SpanningTree, drawing: Drawing) -> None:
         self._t = run.t
-        par = _with_all_rows(run)
-        constraints = _of_constraints(run, tree, drawing, par)
-        self._all = [*_of_joints(run, tree, par), *constraints, *_of_contacts(run, tree, drawing, par)]
+        self._all = [*_of_joints(run, tree), *_of_constraints(run, tree, drawing), *_of_contacts(run)]
         size, force, moment = drawing.size, self._usual("forces"), self._usual("moments")
         # What the other one makes over the mechanism's size by rounding alone is none.
         usual = {
@@ -120,11 +117,8 @@ def _vectors(wrenches: _Wrenches, layer: str) -> Array:
     return wrenches.force if layer == "forces" else wrenches.moment
 
 
-def _of_joints(run: Trajectory, tree: SpanningTree, par: Array) -> list[_Wrenches]:
-    model = run.model
-    z = run.z if model.nz else None
-    lam = run.lam if model.nc else None
-    wrenches = model.joint_wrenches(run.q, run.v, run.a, run.u, lam, par=par, t=run.t, z=z)
+def _of_joints(run: Trajectory, tree: SpanningTree) -> list[_Wrenches]:
+    wrenches = run.joint_wrenches()
     drawn = {frame.link for frame in tree.frames if not frame.placement}
     here = np.zeros(3)
     return [
@@ -134,12 +128,11 @@ def _of_joints(run: Trajectory, tree: SpanningTree, par: Array) -> list[_Wrenche
     ]
 
 
-def _of_constraints(run: Trajectory, tree: SpanningTree, drawing: Drawing, par: Array) -> list[_Wrenches]:
-    model, places = run.model, {triad.name: LinkPoint(triad.link, triad.position) for triad in drawing.triads}
+def _of_constraints(run: Trajectory, tree: SpanningTree, drawing: Drawing) -> list[_Wrenches]:
+    places = {triad.name: LinkPoint(triad.link, triad.position) for triad in drawing.triads}
     found = []
     for name, anchor in _anchors(tree.system).items():
-        wrench = model.closure_wrench(name, run.q, run.lam, u=run.u, par=par, t=run.t)
-        place = places[frame_of(tree, *anchor).name]
+        wrench, place = run.closure_wrench(name), places[frame_of(tree, *anchor).name]
         found.append(_Wrenches(place, False, wrench[:, :3], wrench[:, 3:]))
     return found
 
@@ -153,34 +146,8 @@ def _anchors(system: System) -> dict[str, tuple[str, str | None]]:
     }
 
 
-def _of_contacts(run: Trajectory, tree: SpanningTree, drawing: Drawing, par: Array) -> list[_Wrenches]:
-    model = run.model
-    if not model.names.contacts:
+def _of_contacts(run: Trajectory) -> list[_Wrenches]:
+    if not run.model.names.contacts:
         return []
-    found = model.contact_forces(run.q, run.v, run.u, par=par, t=run.t, z=run.z if model.nz else None)
-    force, none = found.force.copy(), np.zeros((len(run), 3))
-    rigid = {ball.name: list(ball.rows) for ball in model.record.rigid_contacts}
-    surfaces = [(name, contact.second) for contact in tree.system.contacts for name in contact.ball_names]
-    for k, (name, surface) in enumerate(surfaces):
-        if name in rigid:
-            axes = _axes(run, tree, drawing, surface)
-            force[:, k] = np.einsum("...ij,...j->...i", axes, run.lam[:, rigid[name]])
-    return [_Wrenches(None, False, force[:, k], none, found.point[:, k]) for k in range(force.shape[1])]
-
-
-def _with_all_rows(run: Trajectory) -> Array:
-    """Parameters of the records, balls that slide as if they stuck: then all of their multipliers act."""
-    rows = run.par_over_time if run.changes else run.par
-    modes = [ball.mode for ball in run.model.record.rigid_contacts]
-    if not modes:
-        return rows
-    rows = rows.copy()
-    rows[..., modes] = np.where(rows[..., modes] > 0.0, STICKS, rows[..., modes])
-    return rows
-
-
-def _axes(run: Trajectory, tree: SpanningTree, drawing: Drawing, anchor: tuple[str, str | None]) -> Array:
-    """R_WF of a frame, over the records (n, 3, 3), or of one that is fixed in the world (3, 3)."""
-    name = frame_of(tree, *anchor).name
-    triad = next(triad for triad in drawing.triads if triad.name == name)
-    return triad.rotation if triad.link == BASE else run.frames[name][1]
+    found, none = run.contact_forces(), np.zeros((len(run), 3))
+    return [_Wrenches(None, False, found.force[:, k], none, found.point[:, k]) for k in range(found.force.shape[1])]
