@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.reference.beams import data
+from validation.accuracy.reference import data
 from validation.adapters.exudyn import frf as exudyn_frf
 from validation.adapters.exudyn.ancf import Hub, Strip, princeton, spin_up, spinning_frequencies, static_tip
 from validation.checking import Settings, check
