@@ -51,10 +51,6 @@ _WAYS = WAYS | {
         "c1Mc2",
         f"{_SOLVED}value = [[*one.c1Mc2.translation, np.linalg.norm(pin.log3(one.c1Mc2.rotation))] for one in cd]",
     ),
-    "derivatives": Way(
-        "computeConstraintDynamicsDerivatives",
-        f"{_SOLVED}value = [np.array(x) for x in pin.computeConstraintDynamicsDerivatives(m, d, cm, cd, ps)[:3]]",
-    ),
 }
 
 
@@ -125,11 +121,6 @@ class LoopEngine(ChartedEngine):
     def frame_response(self, states: States) -> Array:
         """Accelerations of frames, from forward kinematics."""
         return self.frame_acceleration(replace(states, a=self.forward_dynamics(states)))
-
-    def derivatives(self, states: States) -> tuple[Array, Array, Array]:
-        """Derivatives of v' by q, v and the forces, on the constraints (N, nv, nv) each."""
-        parts = self.asked("derivatives", states)
-        return parts[:, 0], parts[:, 1], parts[:, 2]
 
 
 def build(subject: Subject) -> LoopEngine | Unsupported:
