@@ -6,28 +6,13 @@ import symofros as sf
 from tests.models import sampled
 from tests.validation.subjects import UNIT, every_kind, pendulum, states_of, subject_of, tree
 from validation.adapters.exact import accelerations
-from validation.adapters.mujoco import tree as mujoco
 from validation.adapters.pinocchio import tree as pinocchio
 from validation.checking import Settings, check
-from validation.comparison.errors import compute, state_errors, typical_scales
 from validation.contract.interface import Subject, Unsupported
-from validation.contract.quantities import CONSTRAINED, LOOPS, QUANTITIES, TREE_QUANTITIES
+from validation.contract.quantities import CONSTRAINED, LOOPS, QUANTITIES
 from validation.procedures.derivatives import BY_ENGINES, QUESTIONS
 
 FEW = Settings(states=40)
-
-
-@pytest.mark.parametrize("subject", [every_kind(), *(tree(seed) for seed in range(6))], ids=lambda s: s.label)
-def test_pinocchio_agrees_with_mujoco(subject: Subject) -> None:
-    """Two engines and two ways of merging fixed bodies: what the harness does before ours comes in."""
-    states = states_of(subject)
-    ours, theirs = pinocchio.build(subject), mujoco.build(subject)
-    assert not isinstance(ours, Unsupported) and not isinstance(theirs, Unsupported)
-    scales = typical_scales(ours, states)
-    for name in TREE_QUANTITIES:
-        quantity = QUANTITIES[name]
-        errors = state_errors(quantity, compute(ours, quantity, states), compute(theirs, quantity, states), scales)
-        assert errors.max() <= quantity.tolerance, name
 
 
 def test_engines_agree_with_the_truth_of_a_description() -> None:
