@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,7 +15,7 @@ from validation.adapters.exudyn import loops as exudyn_loops
 from validation.adapters.pinocchio import loops as pinocchio_loops
 from validation.checking import Settings, check
 from validation.comparison.loops import FUNCTIONS, assembled_states
-from validation.contract.interface import Engine, Subject, Unsupported
+from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import LOOPS
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import assemble
@@ -169,25 +167,3 @@ def _accelerations(subject: Subject, m: sf.Model, at: Any, torque: np.ndarray) -
     force = m.generalized_force(at.q, at.v, torque)
     one = type(states)(at.q[None], at.v[None], states.a, torque[None], force[None], force[None])
     return engine.forward_dynamics(one)[0]
-
-
-@dataclass(frozen=True)
-class Faulty:
-    """An engine with one wrong method."""
-
-    engine: Any
-    method: str
-    fault: Callable[[np.ndarray], np.ndarray]
-
-    def __getattr__(self, name: str) -> Any:
-        right = getattr(self.engine, name)
-        return right if name != self.method else lambda states: self.fault(right(states))
-
-
-@pytest.mark.parametrize("quantity", sorted({*LOOPS, "forward_dynamics", "multipliers"}))
-def test_the_comparison_can_fail(quantity: str) -> None:
-    def wrong(subject: Subject) -> Engine:
-        return Faulty(pinocchio_loops.build(subject), quantity, lambda x: x * (1 + 1e-6) + 1e-8)  # type: ignore[return-value]
-
-    found = check(Subject("four_bar", MODELS["four_bar"]), PINOCCHIO, {"pinocchio-loops": wrong})
-    assert quantity in {row.quantity for row in found.comparisons if row.status == "disagree"}
