@@ -8,7 +8,7 @@ from functools import partial
 from time import perf_counter_ns
 
 from ..mechanics.geometry import Array
-from ..timing.race import error, on_one_cpu
+from ..timing.race import error, in_turn
 from .record import NATIVE, OURS, TOLERANCE, Row
 from .sides import Offer, Side, Subject, native
 
@@ -55,7 +55,7 @@ def rows(
         if off is not None:
             sides.append(side)
             errors[who] = off
-    times = raced(sides, states, turns)
+    times = in_turn({side.who: partial(_taken, side) for side in sides}, states, turns, LEAST)
     for who, taken in times.items():
         yield Row.of(environment, subject.label, function, states, who, taken, times.get(OURS), errors[who])
 
@@ -71,17 +71,6 @@ def checked(computed: Array, expected: Array, fail: Callable[[str], object]) -> 
 
 def _first_line(problem: Exception) -> str:
     return next(iter(str(problem).strip().splitlines()), "no word")
-
-
-def raced(sides: Sequence[Side], states: int, turns: int) -> dict[str, list[float]]:
-    """Times of each turn of each side [ns a state], by side."""
-    times: dict[str, list[float]] = {side.who: [] for side in sides}
-    with on_one_cpu():
-        rounds = {side.who: max(1, math.ceil(LEAST / max(min(_taken(side, 1), _taken(side, 1)), 1))) for side in sides}
-        for _ in range(turns):
-            for side in sides:
-                times[side.who].append(_taken(side, rounds[side.who]) / (rounds[side.who] * states))
-    return times
 
 
 def _taken(side: Side, rounds: int) -> int:

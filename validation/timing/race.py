@@ -7,6 +7,7 @@ import os
 import statistics
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from time import thread_time_ns
 from typing import NamedTuple
 
@@ -53,23 +54,31 @@ def race(loops: Mapping[str, Loop], states: int, repeats: int) -> dict[str, Time
     Returns:
         Times by the same names.
     """
-    times: dict[str, list[float]] = {name: [] for name in loops}
+    sides = {name: partial(_nanoseconds, loop.run) for name, loop in loops.items()}
+    return {name: summary(turns) for name, turns in in_turn(sides, states, repeats, LEAST).items()}
+
+
+def in_turn(sides: Mapping[str, Callable[[int], int]], states: int, repeats: int, least: int) -> dict[str, list[float]]:
+    """Times of each turn of each side [ns a state].
+
+    Args:
+        sides: Name of a side -> nanoseconds that so many rounds of it take.
+        states: Number of states of one round.
+        repeats: Interleaved.
+        least: What the rounds of a turn take together at least [ns]; finding how many warms caches and branches.
+    """
+    times: dict[str, list[float]] = {name: [] for name in sides}
     with on_one_cpu():
-        rounds = {name: _rounds(loop.run) for name, loop in loops.items()}
+        rounds = {name: max(1, math.ceil(least / max(min(side(1), side(1)), 1))) for name, side in sides.items()}
         for _ in range(repeats):
-            for name, loop in loops.items():
-                times[name].append(_nanoseconds(loop.run, rounds[name]) / (rounds[name] * states))
-    return {name: summary(turns) for name, turns in times.items()}
+            for name, side in sides.items():
+                times[name].append(side(rounds[name]) / (rounds[name] * states))
+    return times
 
 
 def summary(times: Sequence[float]) -> Times:
     """Minimum and median."""
     return Times(min(times), statistics.median(times))
-
-
-def _rounds(run: Callable[[int], None]) -> int:
-    """Number of rounds that take at least LEAST together; finding it also warms caches and branches."""
-    return max(1, math.ceil(LEAST / max(min(_nanoseconds(run, 1) for _ in range(2)), 1)))
 
 
 def _nanoseconds(run: Callable[[int], None], rounds: int) -> int:
