@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.ops import DIV, OPS
+from symofros.expr.ops import DIV, OPS, STOP_GRADIENT
 
 
 def adjoint(graph: Graph, edges: Sequence[Edge], weights: Sequence[Edge], inputs: Sequence[Edge]) -> list[Edge]:
@@ -27,7 +27,7 @@ def adjoint(graph: Graph, edges: Sequence[Edge], weights: Sequence[Edge], inputs
     Returns:
         One edge for each of `inputs`.
     """
-    nodes = needed_nodes(graph, edges)
+    nodes = needed_nodes(graph, edges, but=STOP_GRADIENT)
     varying = set(map(abs, inputs))
     for node in nodes:
         if any(abs(arg) in varying for arg in graph.args[node]):

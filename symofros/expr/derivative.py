@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
-from symofros.expr.ops import OPS
+from symofros.expr.ops import OPS, STOP_GRADIENT
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import EMPTY, WIDTH, Pack, SignedPack
 
@@ -47,7 +47,7 @@ def along(
     Returns:
         One row an edge, one column a direction.
     """
-    nodes = needed_nodes(graph, edges)
+    nodes = needed_nodes(graph, edges, but=STOP_GRADIENT)
     rows = [[ZERO] * len(directions) for _ in edges]
     for group in groups if groups is not None else [range(len(directions))]:
         for first in range(0, len(group), WIDTH):

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from symofros.description.parser import parse
+from symofros.expr.adjoint import adjoint
 from symofros.expr.derivative import partials
 from symofros.expr.expression import lower
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import evaluate_edges
+from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.program import Program
 
 # Every row of the op table, at points inside its domain and away from kinks.
@@ -69,3 +71,14 @@ def test_where_operands_are_equal_the_lesser_and_the_greater_have_the_mean_of_th
     (row,) = partials(g, [lower(parse(formula), g, {"x": x, "y": y})], [x, y])
     values = evaluate_edges(Program("p", g, {}, ()), row, {"q": np.full((3, 2), 0.7)}, {})
     assert [np.unique(value).tolist() for value in values] == [[0.5], [0.5]]
+
+
+def test_nothing_is_formed_of_what_derivatives_take_for_constant() -> None:
+    """x sin(y cos(x)) with the sine held: its derivatives are there already, and no rate of what it is made of."""
+    g = Graph()
+    x, y = g.input("q", 0), g.input("q", 1)
+    held = g.call(STOP_GRADIENT, g.call("sin", g.mul(y, g.call("cos", x))))
+    edge, before = g.mul(x, held), len(g)
+    assert partials(g, [edge], [x, y]) == [[held, 0]]
+    assert adjoint(g, [edge], [1], [x, y]) == [held, 0]
+    assert (len(g), g.packs) == (before, [])

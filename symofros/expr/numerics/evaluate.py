@@ -12,15 +12,16 @@ from symofros.expr.ops import OPS, Array
 from symofros.expr.program import Function, Program
 
 
-def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> list[int]:
+def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (), but: str = "") -> list[int]:
     """Nodes to evaluate for some edges, operands first; inputs, numbers and given nodes are left out.
 
     Args:
         graph: The graph.
         edges: Edges to evaluate.
         given: Nodes whose values are available.
+        but: Operation whose nodes are left out, too.
     """
-    args, nodes = graph.args, []
+    op, args, nodes = graph.op, graph.args, []
     needed = {abs(edge) for edge in edges}
     marks = bytearray(len(args))
     for node in needed:
@@ -28,7 +29,7 @@ def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (
     # Operands that have operands have smaller numbers than results, so one way down meets all, in order.
     node = marks.rfind(1)
     while node > 0:
-        if args[node] and node not in given:  # Inputs and numbers have no operands.
+        if args[node] and node not in given and op[node] != but:  # Inputs and numbers have no operands.
             nodes.append(node)
             for arg in args[node]:
                 marks[arg if arg > 0 else -arg] = 1
