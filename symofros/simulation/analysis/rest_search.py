@@ -194,6 +194,8 @@ def _newton(balance: Balance, start: Search, reach: Array, tolerance: float, mos
         G = balance.jacobian(q)
         K = np.zeros((nv + nc, nv + nc))
         K[:nv, :nv], K[:nv, nv:], K[nv:, :nv] = balance.stiffness(q, v, lam), -G.T, G
+        if not np.all(np.isfinite(K)):  # As of sqrt(x) at zero, by which no force would be large.
+            break
         if nv > n:
             sizes[n:nv] = np.fmax(sizes[n:nv], balance.brought_rates(K[n:nv, :nv], v, reach))
         brought = (np.abs(K[:n, :n]) @ reach[:n])[balance.free]  # Forces that a motion of the reach brings.

@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.analysis.rest_search import _downhill, _unit_mass
-from tests.models import model
+from tests.models import interpreted, model
 
 
 def geared(ratio: float) -> sf.Model:
@@ -88,3 +88,13 @@ def test_a_spin_that_stays_makes_a_steady_motion(w: float) -> None:
         steady = sf.equilibrium(model, [0.0, -0.8], v, held=["turn"])  # type: ignore[arg-type]
         assert math.cos(steady.q[1]) == pytest.approx(9.81 / w**2, abs=1e-9)
         assert steady.v.tolist() == [w, 0.0] and steady.efforts["turn"] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("force", ["1 - sqrt(x)", "1 - x^(1/3)", "1 + sqrt(x) - 2*x"])
+def test_a_guess_of_infinite_stiffness_is_no_rest(force: str) -> None:
+    """A force of 1 N is not small beside one that the slope of a root at zero would bring."""
+    slider = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=(force,)), sf.Inertia(1.0))
+    made = interpreted(sf.System("root", (slider,), gravity=(0, 0, 0)))
+    with pytest.raises(sf.EquilibriumError, match="x"):
+        sf.equilibrium(made, [0.0])
+    assert sf.equilibrium(made, [0.5]).q == pytest.approx([1.0], abs=1e-9)
