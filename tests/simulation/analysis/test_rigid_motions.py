@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.simulation.analysis.rigid_motions import _unit
+from symofros.simulation.analysis.rigid_motions import _unit, rigid_motions
 from tests.models import interpreted
 
 SOLID = sf.Inertia(1.3, (0.2, 0.1, -0.3), (1.0, 1.2, 0.9))
@@ -25,6 +25,22 @@ def test_directions_are_of_unit_length(rng: np.random.Generator) -> None:
     np.testing.assert_allclose(np.linalg.norm(unit, axis=0), [1.0, 0.0, 1.0], rtol=1e-12)
     factors = unit / np.where(directions == 0.0, 1.0, directions)
     np.testing.assert_allclose(factors, np.tile(factors[0], (4, 1)), rtol=1e-12)
+
+
+@given(seed=st.integers(0, 10**6))
+def test_which_motions_are_rigid_depends_on_neither_their_order_nor_their_size(seed: int) -> None:
+    """For any matrix and any eigenvalues about the size of rounding."""
+    rng = np.random.default_rng(seed)
+    nv = int(rng.integers(1, 4))
+    k = 2 * nv
+    A, basis = rng.standard_normal((k, k)) * 10.0 ** rng.uniform(-3, 3, (k, 1)), np.eye(k)
+    states, inertia = rng.standard_normal((k, k)) + 1j * rng.standard_normal((k, k)), 10.0 ** rng.uniform(-2, 2, nv)
+    s = np.linalg.norm(A) * 10.0 ** rng.uniform(-9, 0, k) + 0j
+    zeros = rigid_motions(A, basis, s, states, inertia).zeros
+    order = rng.permutation(k)
+    np.testing.assert_array_equal(rigid_motions(A, basis, s[order], states[:, order], inertia).zeros, zeros[order])
+    sized = states * 10.0 ** rng.uniform(-6, 6, k)
+    np.testing.assert_array_equal(rigid_motions(A, basis, s, sized, inertia).zeros, zeros)
 
 
 def floating(noise: np.ndarray, links: int, stiffness: float, damping: float = 0.0) -> sf.System:

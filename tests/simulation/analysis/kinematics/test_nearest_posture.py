@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from scipy.optimize import nnls
 import symofros as sf
 from reference_models import MODELS
 from symofros.runtime.calls.kernel import Array
-from symofros.simulation.analysis.kinematics.nearest_posture import _nonnegative
+from symofros.simulation.analysis.kinematics.nearest_posture import FromTargets, _nonnegative
 from tests.simulation.mechanisms import links
 
 FUNCTIONS = sf.Options(functions=("frame_pose", "frame_jacobian"))
@@ -128,3 +130,13 @@ def test_least_squares_of_no_negative_entry_are_those_of_scipy(seed: int) -> Non
     found, (wanted, left) = _nonnegative(A, b), nnls(A, b)
     assert found.min() >= 0.0 and np.linalg.norm(A @ found - b) == pytest.approx(left, rel=1e-12)
     np.testing.assert_allclose(found, wanted, atol=1e-10 * np.abs(wanted).max(initial=1.0))
+
+
+@pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (0.3, -0.7, 1.1)])
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_targets_curve_by_the_square_of_what_moves_them_most(q: tuple[float, ...], scale: float) -> None:
+    """Joints that do not move them add nothing; of none it is one."""
+    J = scale * arm().frame_jacobian("b2.end", np.array(q))[:3]
+    for jacobian, largest in ((J, np.linalg.norm(J, axis=0).max() ** 2), (0.0 * J, 1.0)):
+        task: Any = SimpleNamespace(jacobian=lambda _, rows=jacobian: np.vstack([rows, 1e9 * rows]), wishes=3)
+        assert FromTargets(task, np.array(q)).curvature == pytest.approx(largest, rel=1e-14)

@@ -49,3 +49,11 @@ def test_a_coordinate_at_its_limit_moves_away_from_it_alone(wish: float) -> None
     assert free.movable(high, wishes).tolist() == ([2] if wish > 0.0 else [1, 2])
     assert free.movable(within, wishes).tolist() == [1, 2]
     assert free.within(within + [0.0, -5.0, 5.0]).tolist() == [9.0, -1.0, 0.5]
+
+
+def test_without_rest_a_solution_is_taken_as_it_is() -> None:
+    """The first, after no further step."""
+    task: Any = _Gaps()
+    search = PostureSearch(task, np.zeros(3), None, np.arange(3), (), 1e-9, 10)
+    found = search._nearest_to_rest([np.array([1.0, 2.0, 3.0]), np.zeros(3)])
+    assert found.q.tolist() == [1.0, 2.0, 3.0] and found.solved and found.steps == 0

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.results.examination.energy_balance import _REPEATED, _between, _norms
 from tests.simulation.mechanisms import slide
 
 CART = slide(actuated=True)
@@ -54,3 +58,35 @@ def test_infinite_energy_is_reported_as_not_judged(mass: float, said: bool) -> N
     assert run.q[-1, 0] == pytest.approx(1e40)
     notes = [note.startswith("energy overflows, although the states do not") for note in run.outcome.notes]
     assert notes == [True] * said
+
+
+def test_the_intervals_whose_energy_changes_most_are_repeated() -> None:
+    """Up or down, at most so many, the largest change first."""
+    count, asked = 3 * _REPEATED, list[float]()
+    changes = (
+        np.random.default_rng(2).permutation(np.r_[0.0, np.arange(1.0, count)]) * np.tile([1.0, -1.0], count)[:count]
+    )
+    t = np.arange(count + 1.0)
+
+    def repeated(start: tuple[float, ...], t_end: float, dt: float) -> tuple[int, list[np.ndarray]]:
+        assert (t_end, dt) == (start[0] + 1.0, 1e-3)
+        asked.append(start[0])
+        return 0, [np.array([start[0]])]
+
+    run: Any = SimpleNamespace(
+        states=(t, t, t, t),
+        steps=1000 * count,
+        settings=SimpleNamespace(adaptive=False, dt=1e-3),
+        repeatable=True,
+        repeated=repeated,
+        energies=lambda ends: None,
+    )
+    assert len(list(_between(run, np.r_[0.0, np.cumsum(changes)]))) == _REPEATED
+    assert asked == np.argsort(-np.abs(changes))[:_REPEATED].tolist()
+
+
+@pytest.mark.parametrize("size", [0.0, 1e-300, 1e-170, 1.0, 1e170, 1e300])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_norms_are_those_of_rows_of_any_size(size: float, sign: float) -> None:
+    rows = sign * np.array([[3.0, 4.0], [0.0, 0.0], [0.0, 1e-3]])
+    np.testing.assert_allclose(_norms(size * rows), size * np.array([5.0, 0.0, 1e-3]), rtol=1e-14)

@@ -92,6 +92,11 @@ def test_steps_are_halved_until_little_is_added(
     assert changed.size == (math.inf if math.isnan(largest) else largest)
 
 
+def test_a_part_of_less_than_a_step_counts_as_one() -> None:
+    changed = Held(100, lambda _, k: 0.0).changed(Window(20, None, START + 20.3 * H), "run")
+    assert changed.steps == 1
+
+
 @pytest.mark.parametrize(("part", "step", "most"), [("run", H, 4), ("window", H, 1), ("run", 0.0, 1)])
 def test_only_fixed_steps_of_whole_runs_are_halved_again(part: Part, step: float, most: int) -> None:
     run = Held(100, lambda _, k: 0.02 * k, step=step)

@@ -63,11 +63,15 @@ def _run(model: sf.Model, method: str, place: float, width: float) -> Any:
     )
 
 
-def test_a_force_within_a_step_is_judged_where_the_step_begins() -> None:
+@pytest.mark.parametrize("t0", [0.0, 3.0, -40.0])
+@pytest.mark.parametrize("step", [1e-2, 1e-5])
+def test_a_force_within_a_step_is_judged_where_the_step_begins(step: float, t0: float) -> None:
     """A blow in proportion to x: two steps from zero it is twice as large, where the force has gone."""
-    blow = 20.0 / (1e-4 * np.sqrt(np.pi))
-    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=(f"{blow}*x*exp(-((t - 0.0125)/1e-4)^2)",))
+    late, width = t0 + 1.25 * step, 1e-2 * step
+    blow = 0.2 / (width * step * np.sqrt(np.pi))
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=(f"{blow}*x*exp(-((t - {late!r})/{width})^2)",))
     system = sf.System("s", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0))
-    run = sf.simulate(sf.compile(system, sf.Options(backend="tape")), [0.0], [1.0], 0.1, method="rk4", dt=0.01)
+    model = sf.compile(system, sf.Options(backend="tape"))
+    run = sf.simulate(model, [0.0], [1.0], t0 + 10 * step, t0=t0, method="rk4", dt=step)
     (note,) = run.outcome.notes
-    assert "at t = 0.02 s the speeds that they give are off by 20 % of the largest" in note
+    assert f"at t = {t0 + 2.0 * step:.6g} s the speeds that they give are off by 20 % of the largest" in note

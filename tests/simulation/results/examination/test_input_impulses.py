@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.simulation.results.examination.input_impulses import _MOST, _held, _misjudged, _sharpest, nodes
@@ -84,6 +86,23 @@ def test_pushes_to_both_sides_are_misjudged_by_as_much(name: str) -> None:
         pair = [_misjudged(_held(0, t, sign * values), METHODS[name], 0.0, 1.0, 0.1) for sign in (1.0, -1.0)]
         one, other = ((0.0, 0.0, 0.0) if x is None else (x.t, x.missed, x.whole) for x in pair)
         assert one == pytest.approx(other, rel=1e-12)
+
+
+@given(
+    seed=st.integers(0, 10**6), t0=st.sampled_from([-7.0, 3.0, 1e3]), name=st.sampled_from(["rk4", "euler", "dopri5"])
+)
+def test_impulses_are_misjudged_by_as_much_at_another_time(seed: int, t0: float, name: str) -> None:
+    """Nor by more or less beside a constant part, which any step meets."""
+    rng = np.random.default_rng(seed)
+    t = np.concatenate([[0.0], np.sort(rng.uniform(0.0, 1.0, 5))])
+    values = rng.standard_normal(6)
+    moved = [
+        _misjudged(_held(0, begin + t, bias + values), METHODS[name], begin, begin + 1.0, 0.1)
+        for begin, bias in ((0.0, 0.0), (t0, 0.0), (t0, 30.0))
+    ]
+    first, *others = ((0.0, 0.0) if x is None else (x.missed, x.whole) for x in moved)
+    for other in others:
+        assert other == pytest.approx(first, abs=1e-9)
 
 
 def test_missed_impulses_of_small_effect_are_not_noted() -> None:
