@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from symofros.generator.codegen.interpreted import FormulaInstants as FormulaInstants
 from symofros.generator.codegen.interpreted import InterpretedUnit as InterpretedUnit
-from symofros.generator.codegen.interpreted import formula_instants as formula_instants
 from symofros.generator.codegen.model import model_source as model_source
 from symofros.generator.codegen.solvers import ROUTINES as ROUTINES
 from symofros.generator.passes import run_passes as run_passes

@@ -10,11 +10,10 @@ import numpy as np
 
 from symofros.base.names import TIME
 from symofros.description.values import Value, symbols
-from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.instants import instant_operands
 from symofros.expr.program import Program
-from symofros.generator.codegen.interpreted import formula_instants
+from symofros.generator.codegen.interpreted import FormulaInstants
 from symofros.mechanics.dynamics.formulas import stated_formulas
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.formulas import stated_values, timed_values
@@ -23,7 +22,7 @@ from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
 from symofros.runtime.instants import Instants, Motion
 
-# Spans whose instants are kept.
+# Spans whose instants are kept, and formulas.
 _KEPT = 64
 
 
@@ -40,14 +39,14 @@ def instants_at(tree: SpanningTree) -> Instants:
     known, moving = {*slots, *tree.coordinates.constants}, {name for name, slot in slots.items() if slot.group != "par"}
 
     @lru_cache(maxsize=_KEPT)
-    def lowered(values: tuple[Value, ...]) -> tuple[Program, list[Edge]]:
+    def search(values: tuple[Value, ...], of_states: bool) -> FormulaInstants:
         lowering = Lowering(Graph(), tree.coordinates)
         edges = [lowering.value(value) for value in values]
-        return Program(tree.system.name, lowering.g, {}, ()), edges
+        return FormulaInstants(Program(tree.system.name, lowering.g, {}, ()), edges, of_states)
 
     @lru_cache(maxsize=_KEPT)
     def instants(values: tuple[Value, ...], par: tuple[float, ...], t0: float, t_end: float) -> Array:
-        return formula_instants(*lowered(values), np.array(par), t0, t_end)
+        return search(values, False)(np.array(par), t0, t_end)
 
     @cache
     def all_own() -> tuple[Value, ...]:
@@ -58,8 +57,7 @@ def instants_at(tree: SpanningTree) -> Instants:
         given = [item.formula if isinstance(item, Rate) else item for item in formulas]
         stated = stated_formulas(tree, given)
         if motion is not None:
-            program, edges = lowered((*all_own(), *stated))
-            return formula_instants(program, edges, par, t0, t_end, motion) if edges else np.zeros(0)
+            return search((*all_own(), *stated), True)(par, t0, t_end, motion)
         values = (*own, *(value for value in stated if TIME in symbols(value)))
         return instants(values, tuple(par.tolist()), t0, t_end) if values else np.zeros(0)
 

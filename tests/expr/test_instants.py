@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.expr.instants import InstantKind
+from symofros.generator.codegen import interpreted
 from symofros.runtime.calls.binding import constants
 from symofros.runtime.instants import find_instants
 from tests.models import compiled
@@ -103,3 +106,25 @@ def test_exceptions_of_operands_propagate() -> None:
 
     with pytest.raises(ArithmeticError, match="operand 0"):
         find_instants([0], fail, 0.0, 1.0)
+
+
+def test_how_formulas_are_evaluated_is_found_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not once more in each run, whatever its parameters: of the description's formulas, and of a law's."""
+    made = list[object]()
+
+    class Counted(interpreted.Evaluation):
+        def __init__(self, *given: Any) -> None:
+            made.append(given)
+            super().__init__(*given)
+
+    monkeypatch.setattr(interpreted, "Evaluation", Counted)
+    slide = sf.Joint(
+        "x", "prismatic", axis=(1, 0, 0), actuated=True, effort=("-tanh(dx/5) - p*exp(-((t - 0.5)/0.7)^2)",)
+    )
+    body = sf.RigidBody("b", slide, sf.Inertia(1.0))
+    cart = sf.compile(sf.System("cart", (body,), parameters=(sf.Parameter("p", 1.0),)), sf.Options(backend="tape"))
+    counts = []
+    for p in (1.0, 1.0, 2.0):
+        sf.simulate(cart.with_parameters(p=p), v0=[1.0], t_end=0.5, u={"x": "max(0, t - 0.2)*abs(x)"}, method="dopri5")
+        counts.append(len(made))
+    assert counts[0] > 2 and counts[1:] == counts[:1] * 2

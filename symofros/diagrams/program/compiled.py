@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, wire
 from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr import Program
-from symofros.generator import InterpretedUnit, formula_instants, model_source, run_passes
+from symofros.generator import FormulaInstants, InterpretedUnit, model_source, run_passes
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build import NO_COMPILER, Toolchain, build_library, find_toolchain
@@ -240,8 +240,11 @@ def _model(
 
     def instants(_: Sequence[object], par: Array, t0: float, t_end: float, motion_of_run: object = None) -> Array:
         """Instants at which formulas of time in the part's motion bend, jump or change fast (n) [s]."""
-        edges = [edge for function in motion.functions for edge in function.edges()]
-        return formula_instants(motion, edges, par, t0, t_end)
+        return search()(par, t0, t_end)
+
+    @cache
+    def search() -> FormulaInstants:
+        return FormulaInstants(motion, [edge for function in motion.functions for edge in function.edges()])
 
     beams, switching = partial(part_beams, resolved, part), resolved.switching(part)
     check = None if switching is None else partial(_problems, resolved, part)

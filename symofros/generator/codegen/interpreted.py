@@ -20,34 +20,42 @@ from symofros.runtime.instants import Motion, Operands, find_instants
 _LOOKS, _RESOLVED = 4, 2.0
 
 
-def formula_instants(
-    program: Program, edges: Sequence[Edge], par: Array, t0: float, t_end: float, motion: Motion | None = None
-) -> Array:
-    """Instants within a span at which formulas of time, or along a motion, bend, jump or change fast.
+class FormulaInstants:
+    """Instants of some formulas; how their operands are evaluated is found once.
 
     Args:
         program: Program whose graph holds the formulas.
         edges: Their edges.
-        par: Run-time parameters (npar).
-        t0: Start of the span [s].
-        t_end: End of the span [s].
-        motion: Motion along which formulas of states count, too, where it may pass over parts of them.
-
-    Returns:
-        Instants in order, between t0 and t_end (n) [s].
+        of_states: Whether they are looked at along motions, where those of states count, too.
     """
-    operands = instant_operands(program.graph, edges, of_states=motion is not None)
-    if not operands or not t_end > t0:
-        return np.zeros(0)
-    evaluations = [Evaluation(program, [operand.edge], {}) for operand in operands]
 
-    def values(operand: int, t: Array) -> Array:
-        at = {"t": t[:, np.newaxis], "par": par[np.newaxis], **(motion.states(t) if motion is not None else {})}
-        return np.broadcast_to(evaluations[operand](at)[0], t.shape)
+    def __init__(self, program: Program, edges: Sequence[Edge], of_states: bool = False) -> None:
+        self._operands = instant_operands(program.graph, edges, of_states=of_states)
+        self._evaluations = [Evaluation(program, [operand.edge], {}) for operand in self._operands]
 
-    if motion is not None and not _may_pass_over(operands, values, motion.steps):
-        return np.zeros(0)
-    return find_instants([operand.kind for operand in operands], values, t0, t_end)
+    def __call__(self, par: Array, t0: float, t_end: float, motion: Motion | None = None) -> Array:
+        """Instants within a span at which formulas of time, or along a motion, bend, jump or change fast.
+
+        Args:
+            par: Run-time parameters (npar).
+            t0: Start of the span [s].
+            t_end: End of the span [s].
+            motion: Motion along which formulas of states count, where it may pass over parts of them.
+
+        Returns:
+            Instants in order, between t0 and t_end (n) [s].
+        """
+        operands = self._operands
+        if not operands or not t_end > t0:
+            return np.zeros(0)
+
+        def values(operand: int, t: Array) -> Array:
+            at = {"t": t[:, np.newaxis], "par": par[np.newaxis], **(motion.states(t) if motion is not None else {})}
+            return np.broadcast_to(self._evaluations[operand](at)[0], t.shape)
+
+        if motion is not None and not _may_pass_over(operands, values, motion.steps):
+            return np.zeros(0)
+        return find_instants([operand.kind for operand in operands], values, t0, t_end)
 
 
 def _may_pass_over(operands: Sequence[Operand], values: Operands, steps: Array) -> bool:

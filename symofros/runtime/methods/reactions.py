@@ -141,7 +141,7 @@ class ReactionFunctions(ConstraintFunctions, StateFunctions):
             push[..., k], force[..., k, :] = np.nan, np.nan
             if lam is not None:
                 parts = [self.closure_wrench(name, q, lam, u=u, par=par, t=t) for name in ball.conditions]
-                push[..., k], force[..., k, :] = np.asarray(lam)[..., ball.rows[2]], sum(parts)[..., :3]
+                push[..., k], force[..., k, :] = np.asarray(lam)[..., ball.rows[2]], np.sum(parts, axis=0)[..., :3]
         return found._replace(push=push, force=force)
 
     def _reactions(
