@@ -75,3 +75,23 @@ def test_column_names_are_distinct_and_survive_files(tmp_path: Path) -> None:
         np.testing.assert_array_equal(motion.q, run.q)
     with open(run.save(tmp_path / "run.csv"), newline="") as stream:
         assert next(csv.reader(stream)) == list(run.columns())
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_reactions_hold_the_parameters_that_events_have_set(method: str) -> None:
+    """Weight and drive of a cart that takes a load on; a rod that holds a second one beside it, by its multiplier."""
+    first = sf.RigidBody("first", sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("3*m",)), sf.Inertia("m"))
+    second = sf.RigidBody("second", sf.Joint("y", "prismatic", axis=(1, 0, 0)), sf.Inertia("2*m"))
+    rod = sf.Rod("rod", ("first", None), ("second", None), 1.0)
+    model = sf.compile(sf.System("carts", (first, second), parameters=(sf.Parameter("m", 1.0),), constraints=(rod,)))
+    plan = {"load": sf.Event("t - 0.1", action={"m": "5*m"}, once=True)}
+    run = sf.simulate(model, {"x": 0.0, "y": 1.0}, t_end=0.2, dt=0.01, method=method, events=plan)
+    m = run.par_over_time[:, model.names.par.index("m")]
+    assert set(m) == {1.0, 5.0}
+    np.testing.assert_allclose(run.a, 1.0, atol=1e-8)
+    rod_force = 2.0 * m * run.a[:, 1]
+    np.testing.assert_allclose(run.closure_wrench("rod")[:, 0], rod_force, rtol=1e-9)
+    np.testing.assert_allclose(run.closure_wrench("rod", on="first")[:, 0], -rod_force, rtol=1e-9)
+    held = run.joint_wrenches()
+    np.testing.assert_allclose(held[:, 0, :3], np.outer(m, [3.0, 0.0, 9.81]), atol=1e-8)
+    np.testing.assert_allclose(held[:, 1, :3], np.outer(m, [0.0, 0.0, 2.0 * 9.81]), atol=1e-8)
