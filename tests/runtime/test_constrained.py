@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symofros.base.measures import ANGLE, LENGTH, OTHER, ROTATION, TRANSLATION, Measures
+from symofros.base.measures import ANGLE, FORMULA, LENGTH, OTHER, ROTATION, TRANSLATION, Measures
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import (
     RANK,
@@ -16,9 +16,11 @@ from symofros.runtime.constrained import (
     WEAK_WORTH,
     deviation,
     eliminate,
+    motion,
     natural_sizes,
     null_space,
     pseudo_inverse,
+    solve,
 )
 
 PLANAR_LOOP = Measures((0, 0, 0), (LENGTH, LENGTH, LENGTH), (ROTATION, ROTATION, ROTATION))
@@ -110,3 +112,23 @@ def test_what_moves_no_mass_is_no_pivot_by_a_weak_entry() -> None:
     G = np.array([[0.0, 1.0, 1e-8]])
     for inertia, column in (([1.0, 1e12, 0.0], 1), ([1.0, 1e12, 1e-12], 2), ([1.0, 1.0, 0.0], 1)):
         assert eliminate(G, measures, np.array(inertia)).columns.tolist() == [column]
+
+
+@pytest.mark.parametrize("size", [1e-3, 1e-4])
+@pytest.mark.parametrize("share", [0.3, 1.0])
+def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(size: float, share: float) -> None:
+    """q3^2 (1 + q1) binds nothing on the constraints; a step by what it leaves of q1 leads where q2 is bound.
+
+    The second row is left out, too, until the deviation does not fall.
+    """
+
+    def terms(q: np.ndarray) -> list[np.ndarray]:
+        beyond = float(q[1] >= 0.5)
+        phi = np.array([q[0], q[0] + 0.05 * q[3], q[3] ** 2 * (1.0 + q[1]), beyond * q[2]])
+        G = np.array([[1, 0, 0, 0], [1, 0, 0, 0.05], [0, q[3] ** 2, 0, 2.0 * q[3] * (1.0 + q[1])], [0, 0, beyond, 0.0]])
+        return [np.eye(4), np.zeros(4), G, np.zeros(4), np.ones(4), phi]
+
+    q = np.array([size, 0.0, 0.0, share * size / 0.05])
+    measures = Measures((0, 1, 2, 3), (FORMULA,) * 4, (0,) * 4)
+    assert solve(*terms(q)[:4], measures)[2] == 3
+    assert motion(terms(q), terms, lambda at, step: at + step, q, measures)[2] == 2
