@@ -55,6 +55,30 @@ static void beside_terms(const double *const *in, double *const *out, double *wo
     out[4][0] = out[4][1] = 1.0, out[5][0] = q[0], out[5][1] = q[0] * (1 + q[1]);
 }
 
+/* q0 = 0, q0 + q3/20 = 0 and q3^2 (1 + q1) = 0, which binds nothing more where they hold; beyond q1 = 1/2 q2 = 0. A step
+ * that divides by what the third leaves of q1 leads there. */
+enum { SIZE = 4 };
+static const short own_group[SIZE] = {0, 1, 2, 3}, own_unit[SIZE] = {SYM_ROW_FORMULA, SYM_ROW_FORMULA, SYM_ROW_FORMULA, SYM_ROW_FORMULA};
+static const short own_speed[SIZE] = {0, 0, 0, 0};
+static const sym_measures OWN_MEASURES = {own_group, own_unit, own_speed};
+
+static void fading_terms(const double *const *in, double *const *out, double *work) {
+    const double *q = in[1], beyond = q[1] >= 0.5;
+    const double g[SIZE * SIZE] = {1, 0, 0, 0, 1, 0, 0, 0.05, 0, q[3] * q[3], 0, 2 * q[3] * (1 + q[1]), 0, 0, beyond, 0};
+    int i;
+    (void)work;
+    memset(out[0], 0, SIZE * SIZE * sizeof(double)), memset(out[1], 0, SIZE * sizeof(double));
+    copy(out[2], g, SIZE * SIZE), memset(out[3], 0, SIZE * sizeof(double));
+    for (i = 0; i < SIZE; ++i) out[0][i * SIZE + i] = out[4][i] = 1.0;
+    out[5][0] = q[0], out[5][1] = q[0] + 0.05 * q[3], out[5][2] = q[3] * q[3] * (1 + q[1]), out[5][3] = beyond * q[2];
+}
+
+static void move_all(const double *const *in, double *const *out, double *work) {
+    int i;
+    (void)work;
+    for (i = 0; i < SIZE; ++i) out[0][i] = in[1][i] + in[2][i];
+}
+
 /* dR/dx of one x with N columns: minus the identity above zeros. */
 static void slopes(const double *const *in, double *const *out, double *work) {
     int i;
@@ -107,7 +131,10 @@ int main(void) {
     const double *const weighed[7] = {none, q0, v0, none, none, FORCE, RIGHT};
     static double hessian[K_ * K_];
     static const sym_form form = {N * N, M_ * N, sym_constrained, sym_row_sizes, sym_clear_row};
-    double rank, gap, *results[3];
+    const double faded[SIZE] = {1e-3, 0, 0, 6e-3}, idle[SIZE] = {0};
+    const double *const fading[6] = {none, faded, idle, none, none, none};
+    static const sym_form own_form = {SIZE * SIZE, SIZE * SIZE, sym_constrained, sym_row_sizes, sym_clear_row};
+    double rank, gap, *results[3], found[2 * SIZE];
     sym_ranking ranking = sym_rank_anew(M_);
     double energies[2], A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
     copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
@@ -125,6 +152,10 @@ int main(void) {
     results[0] = r, results[1] = c, results[2] = &rank;
     sym_motion(NQ, N, M_, &MEASURES, &form, beside_terms, move, at, results, work);
     print("motion_a", N, r), print("motion_lam", M_, c), print("motion_rank", 1, &rank), free(work);
+    work = scratch(2 * SIZE * SIZE + SYM_MOTION_WORK(SIZE, SIZE, SIZE) + SYM_CONSTRAINED_WORK(SIZE, SIZE));
+    results[0] = found, results[1] = found + SIZE;
+    sym_motion(SIZE, SIZE, SIZE, &OWN_MEASURES, &own_form, fading_terms, move_all, fading, results, work);
+    print("fading_rank", 1, &rank), free(work);
     work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + SYM_KKT_SOLVE_WORK(N, M_, N));
     out[0] = derivative;
     sym_differentiate(N, M_, &MEASURES, 1, columns, dynamics_terms, slopes, in, out, work);

@@ -82,6 +82,11 @@ def test_beside_the_constraints_the_rank_is_that_on_them(results: dict[str, np.n
     np.testing.assert_allclose(results["motion_a"], [0.0, -2.0, 2.0], rtol=0, atol=1e-3)
 
 
+def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(results: dict[str, np.ndarray]) -> None:
+    """Also where others have been left out at first, so that the steps begin again with fewer doubts."""
+    assert results["fading_rank"] == 2
+
+
 def test_projection_returns_the_initial_residual(results: dict[str, np.ndarray]) -> None:
     q0 = np.array([0.3, 0.1, -0.2])
     np.testing.assert_allclose(results["gap"], np.linalg.norm(G @ q0 - RIGHT), rtol=1e-14)

@@ -1,0 +1,22 @@
+"""Distances between the eigenvalues of two states."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from symofros.simulation.analysis.imbalance import _change, _changes
+
+
+def test_changes_of_eigenvalues_are_shares_of_each_to_the_nearest_other() -> None:
+    """On the same side of the axes; those that are zero have none, and no others are infinitely far."""
+    some, others = np.array([2.0 + 0j, -4.0, 3.0j, 0.0]), np.array([2.2 + 0j, -3.0, 3.3j, 100.0])
+    np.testing.assert_allclose(_changes(some, others), [0.1, 0.25, 0.1, np.inf], rtol=1e-12)
+    assert np.isinf(_changes(some, others[:0])).all()
+
+
+def test_the_largest_change_counts_either_way_by_those_that_are_more_than_rounding() -> None:
+    here, there = np.array([2.0 + 0j, 5.0]), np.array([2.0 + 0j, 8.0])
+    assert _change((here, here), (there, there)) == 0.6
+    assert _change((here, here[:1]), (there, there)) == 0.375
+    assert _change((here, here), (there, there[:1])) == 0.6
+    assert _change((here, here[:0]), (there, there[:0])) == 0.0
