@@ -130,5 +130,6 @@ def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(size: floa
 
     q = np.array([size, 0.0, 0.0, share * size / 0.05])
     measures = Measures((0, 1, 2, 3), (FORMULA,) * 4, (0,) * 4)
-    assert solve(*terms(q)[:4], measures)[2] == 3
+    M, r, G, c, *_ = terms(q)
+    assert solve(M, r, G, c, measures)[2] == 3
     assert motion(terms(q), terms, lambda at, step: at + step, q, measures)[2] == 2
