@@ -1,19 +1,29 @@
 """The matrix measured in parts, some engines at a time: stored parts are taken over if they answer the same question.
 
 Cells and identities are stored as nested tables, which say names once: a fifth of the text of rows that repeat them.
+What an interrupted run has finished is a part, too: the next one of the same sources and packages takes it over.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import pickle
+import shutil
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from functools import cache
+from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
 
+from symofros import SymofrosError
+from symofros.tools import cache_folder, create_cache_folder, write_atomically
+
 from ..reporting.record import Data
+from .matrix import Judged
 from .verdicts import Cell
+from .workers import Crashed
 
 Row = dict[str, Any]
 # What rows of a stored table are found by, in its nesting, and what is kept of each.
@@ -25,6 +35,8 @@ TABLES = "cells", "corrected", "identities"
 ORIGIN = ("revision", "date", "versions", "digest")
 # What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
 _ASKED = tuple("functions/*.py identities.py matrix.py scales.py states.py verdicts.py models/*.py truth/*.py".split())
+# The most that an interrupted run leaves [bytes].
+_LEFT = 1_000_000_000
 
 
 class PartsDisagree(ValueError):
@@ -34,9 +46,14 @@ class PartsDisagree(ValueError):
 @cache
 def question() -> str:
     """Digest of what engines are asked and held to."""
+    return _digest(*_ASKED)
+
+
+def _digest(*patterns: str) -> str:
+    """Digest of files of this folder."""
     folder = Path(__file__).parent
     digest = hashlib.sha256()
-    for path in sorted(path for pattern in _ASKED for path in folder.glob(pattern)):
+    for path in sorted(path for pattern in patterns for path in folder.glob(pattern)):
         digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
 
@@ -169,3 +186,69 @@ def write_scripts(proofs: Iterable[Mapping[str, Any]], folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for proof in (one for one in proofs if one["text"]):
         (folder / Path(proof["file"]).name).write_text(proof["text"], encoding="utf-8")
+
+
+class Finished:
+    """What a run has finished, question by question, for the next one if it is interrupted.
+
+    The files lie in the cache folder, which is this user's alone; those of another key are removed.
+
+    Args:
+        key: What the answers depend on (`finished_key`); "" to keep nothing.
+    """
+
+    def __init__(self, key: str) -> None:
+        self._folder: Path | None = None
+        self._size = 0
+        if not key:
+            return
+        with suppress(OSError, SymofrosError):
+            above = cache_folder() / "asked"
+            create_cache_folder(above / key)
+            for path in above.iterdir():
+                if path.name != key:
+                    shutil.rmtree(path, ignore_errors=True)
+            self._folder = above / key
+            self._size = sum(path.stat().st_size for path in self._folder.iterdir())
+
+    def of(self, name: str) -> list[Judged] | None:
+        """The cells of a question; None where it was not finished."""
+        if self._folder is None:
+            return None
+        try:
+            stored, cells = pickle.loads(self._path(self._folder, name).read_bytes())
+        except Exception:  # No file, or one that is damaged, which may raise whatever it likes.
+            return None
+        return cells if stored == name else None
+
+    def keep(self, name: str, cells: list[Judged]) -> None:
+        """Keep the cells of a question, unless an engine crashed: on a busy machine one may have been too slow."""
+        if self._folder is None or any(isinstance(one.answer.value, Crashed) for one in cells):
+            return
+        content = pickle.dumps((name, cells))
+        if self._size + len(content) > _LEFT:
+            return
+        with suppress(OSError):
+            write_atomically(self._path(self._folder, name), content)
+            self._size += len(content)
+
+    def forget(self) -> None:
+        """Remove all: the report has it."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    @staticmethod
+    def _path(folder: Path, name: str) -> Path:
+        return folder / f"{hashlib.sha256(name.encode()).hexdigest()[:24]}.pickle"
+
+
+def finished_key(engines: Iterable[str], sources: str) -> str:
+    """What the answers of engines depend on: which they are, the sources, and every package of the environment.
+
+    Args:
+        engines: Names of the engines that are asked.
+        sources: Digest of the sources of the report.
+    """
+    packages = sorted(f"{one.name}=={one.version}" for one in distributions())
+    stated = json.dumps([sorted(engines), sources, _digest("**/*.py"), packages])
+    return hashlib.sha256(stated.encode()).hexdigest()[:24]

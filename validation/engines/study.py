@@ -15,7 +15,7 @@ from typing import Annotated
 import typer
 
 from ..faults.environment import NotAskedError
-from ..reporting.command import Exit, Run, known
+from ..reporting.command import Exit, Run, known, present
 from ..reporting.record import Data
 from ..worker_process import WorkerProcess
 from . import changes, parts, releases
@@ -197,8 +197,10 @@ def measure(
         if pairs and not reach.plugins:
             raise typer.Exit(Exit.MISSED)
         run.expect(len(wanted), "asking engines")
-        cells = _within_a_minute(reach, every, wanted) if smoke else _all(run, reach, every, wanted)
+        finished = parts.Finished("" if smoke else _key(run, reach))
+        cells = _within_a_minute(reach, every, wanted) if smoke else _all(run, reach, every, wanted, finished)
         proven = _proofs(run, reach, cells, tries) if prove and run.writes and not smoke else []
+    finished.forget()
     chosen, plain = reach.plugins, [one.cell for one in cells]
     absent = {name: plugin.extra for name, plugin in plugins.items() if name not in present} | registry().failures
     own: Data = {
@@ -267,25 +269,56 @@ def _chosen(
     return {name: present[name] for name in named if name not in stored}
 
 
-def _all(run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[str]) -> list[Judged]:
-    """The cells of all engines; of those of this environment, half of the questions in a second process."""
+def _all(
+    run: Run, reach: releases.Opened, every: Questions, wanted: Sequence[str], finished: parts.Finished
+) -> list[Judged]:
+    """The cells of all engines; of those of this environment, half of the questions in a second process.
+
+    What an interrupted run of the same sources and packages has finished is taken over.
+    """
+    found = {name: cells for name in wanted if (cells := finished.of(name)) is not None}
+    if found:
+        run.say(f"{len(found)} of {len(wanted)} questions are as an interrupted run left them")
+        run.advance(steps=len(found))
+
+    def after(name: str, cells: list[Judged]) -> None:
+        found[name] = cells
+        finished.keep(name, cells)
+        run.advance(name)
+
+    _ask_all(reach, every, [name for name in wanted if name not in found], after)
+    return [cell for name in wanted for cell in found[name]]
+
+
+def _ask_all(
+    reach: releases.Opened,
+    every: Questions,
+    wanted: Sequence[str],
+    after: Callable[[str, list[Judged]], None],
+) -> None:
+    """Ask questions; each is given to `after` with its cells as it is done, from two threads."""
+    ask = _asker(reach.plugins, reach.worker)
     if not _halves(reach):
-        return about(reach.plugins, {name: every[name] for name in wanted}, reach.worker, run.advance)[0]
-    found: dict[str, list[Judged]] = {}
+        for name in wanted:
+            after(name, ask(every[name]))
+        return
 
     def elsewhere() -> None:
         for name, cells in process.call(part_of, list(reach.plugins), list(wanted[1::2])):
-            found[name] = cells
-            run.advance(name)
+            after(name, cells)
 
-    ask = _asker(reach.plugins, reach.worker)
     with WorkerProcess() as process, ThreadPoolExecutor(1) as threads:
         rest = threads.submit(elsewhere)
         for name in wanted[::2]:
-            found[name] = ask(every[name])
-            run.advance(name)
+            after(name, ask(every[name]))
         rest.result()
-    return [cell for name in wanted for cell in found[name]]
+
+
+def _key(run: Run, reach: releases.Opened) -> str:
+    """What answers depend on; "" of other releases, and of a plug-in of another package: its sources are not known."""
+    if reach.release or any(plugin is not OWN.get(name) for name, plugin in reach.plugins.items()):
+        return ""
+    return parts.finished_key(reach.plugins, present(run.topic))
 
 
 def _proofs(run: Run, reach: releases.Opened, cells: Sequence[Judged], tries: int) -> list[Proven]:
