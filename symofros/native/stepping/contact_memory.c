@@ -47,7 +47,7 @@ SYM_EXPORT void sym_run_forget_contacts(sym_run *r) {
     int32_t i;
     for (i = 0; i < s->n_contacts; ++i) {
         double *known = sym_ball_memory(s, i);
-        known[0] = r->par[s->contacts[i].way[0]], known[1] = r->par[s->contacts[i].way[1]], known[2] = 0.0, known[3] = -HUGE_VAL;
+        known[0] = r->par[s->contacts[i].way[0]], known[1] = r->par[s->contacts[i].way[1]], known[2] = 0.0, known[3] = known[4] = -HUGE_VAL;
     }
     if (s->n_contacts > 0) *sym_modes_chosen(s) = *sym_load_shared(s) = 0.0;
 }

@@ -120,12 +120,20 @@ static int sym_settled_now(const sym_run *r, int32_t i) {
 }
 
 /* Whether event i is met at x by rounding alone: a strike has left the bodies on each other, or a little apart, where the step
- * begins, and half way to x they have not moved apart by more. Returns 0 or a status. */
+ * begins, and half way to x they have not moved apart by more; a ball of a rigid contact is not beyond zero at the end of the
+ * step either. Returns 0 or a status. */
 static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, int32_t *is) {
     const sym_run *r = step->run;
+    const double end = r->event_values[(SYM_EVENT_NODES - 1) * r->system->n_events + i];
+    const int settled = r->actions != NULL && sym_settled_now(r, i);
+    int32_t status, near = 1;
     *is = 0;
-    if (r->actions == NULL || (!sym_settled_now(r, i) && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
-    return sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
+    if (r->actions == NULL || (!settled && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
+    status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
+    if (status != 0 || !*is || !settled || !(end < 0.0)) return status;
+    status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &near);
+    *is = near;
+    return status;
 }
 
 /* Whether the step begins as bodies leave a contact that can come to rest, near to which they turn then. */

@@ -8,6 +8,8 @@ enum { SYM_MOST_STRIKES = 10000 };
 #define SYM_SLIP_LEFT 1e-6
 /* Distance by which a ball that grazes a plane may pass it, at first [m]. */
 #define SYM_GRAZES 1e-13
+/* Twice the acceleration towards a plane below which a ball is taken to rise above it from where rounding has put it [m/s^2]. */
+#define SYM_STEEP 1e3
 
 /* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
 static double sym_friction_of(const sym_system *s, int32_t ball) {
@@ -15,14 +17,14 @@ static double sym_friction_of(const sym_system *s, int32_t ball) {
 }
 
 /* Direction (2) in which a ball slides by its slip u: the last known one where the slip is so small that a step of this length
- * can't follow how it turns, and opposite to the slip where it has just passed rest, so that a step beyond the end of a mode is
- * as smooth as the one before, (41b). */
-static void sym_slip_direction(const double *u, const double *known, double *d) {
+ * can't follow how it turns, and opposite to the slip where this has passed rest since it began along `way` (2), so that a step
+ * beyond the end of a mode is as smooth as the one before, (41b). */
+static void sym_slip_direction(const double *u, const double *known, const double *way, double *d) {
     const double slip = hypot(u[0], u[1]);
     memcpy(d, known, 2 * sizeof *d);
     if (slip <= SYM_RESTS_AT || slip <= known[2]) return;
     d[0] = u[0] / slip, d[1] = u[1] / slip;
-    if (d[0] * known[0] + d[1] * known[1] < 0.0) d[0] = -d[0], d[1] = -d[1];
+    if (d[0] * way[0] + d[1] * way[1] < 0.0) d[0] = -d[0], d[1] = -d[1];
 }
 
 /* At the end of a step: the directions of balls that slide. */
@@ -35,9 +37,10 @@ static void sym_keep_directions(sym_run *r) {
     sym_evaluate(&s->contact_state);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
+        const double *way[2] = {r->par + s->contacts[i].way[0], r->par + s->contacts[i].way[1]};
         double *known = sym_ball_memory(s, i);
         if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
-        if (slip > SYM_RESTS_AT && slip > known[2] && state[1] * known[0] + state[2] * known[1] > 0.0)
+        if (slip > SYM_RESTS_AT && slip > known[2] && state[1] * *way[0] + state[2] * *way[1] > 0.0)
             known[0] = state[1] / slip, known[1] = state[2] / slip;
     }
 }
@@ -74,7 +77,10 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
         if (par[s->contacts[i].mode] == SYM_SLIDES) which[n++] = i;
     if (n == 0) return 0;
     sym_evaluate(&s->contact_state);
-    for (j = 0; j < n; ++j) sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, sym_ball_memory(s, which[j]), d[j]);
+    for (j = 0; j < n; ++j) {
+        const double way[2] = {par[s->contacts[which[j]].way[0]], par[s->contacts[which[j]].way[1]]};
+        sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, sym_ball_memory(s, which[j]), way, d[j]);
+    }
     memcpy(scratch.par, par, (size_t)s->npar * sizeof *par);
     memcpy(scratch.a, s->a, nv * sizeof *s->a), memcpy(scratch.lam, s->lam, nc * sizeof *s->lam);
     for (j = 0; j < n && status == 0; ++j) {
@@ -110,7 +116,9 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
 typedef struct sym_touching {
     int32_t of[SYM_MOST_CONTACTS]; /* their numbers */
     double u[SYM_MOST_FORCES];     /* velocities */
-    double apart[SYM_MOST_CONTACTS]; /* how far one may pass the plane by rounding, if it is open */
+    double gap[SYM_MOST_CONTACTS];
+    double apart[SYM_MOST_CONTACTS]; /* how far one may go below that, or the plane, by rounding, if it is open */
+    int32_t returns; /* whether one that moves away would come back within an instant, and is held */
     sym_contact_problem problem;
 } sym_touching;
 
@@ -199,7 +207,7 @@ static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const doub
 
 /* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
  * they are. Returns 0 or a status: one has penetrated where a motion begins, or too many touch. */
-static int32_t sym_find_touching(sym_run *r, const double *par, const double *met, sym_touching *at) {
+static int32_t sym_find_touching(sym_run *r, const double *par, const double *met, int32_t begins, sym_touching *at) {
     const sym_system *s = r->system;
     int32_t i, k, n = 0;
     sym_load_state(r);
@@ -207,11 +215,12 @@ static int32_t sym_find_touching(sym_run *r, const double *par, const double *me
     sym_evaluate(&s->contact_state);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i;
-        if (met == NULL && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
+        if (begins && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
         if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
         at->of[n] = i, at->problem.mu[n] = state[4];
         at->apart[n] = met != NULL && met[i] > 0.0 ? fmin(fmax(SYM_GRAZES, 2.0 * par[s->contacts[i].apart]), SYM_TOUCHING) : 0.0;
+        at->gap[n] = state[0];
         for (k = 0; k < 3; ++k) at->u[3 * n + k] = state[1 + k];
         ++n;
     }
@@ -219,7 +228,8 @@ static int32_t sym_find_touching(sym_run *r, const double *par, const double *me
     return 0;
 }
 
-/* How the balls that touch move: which slide, and in which direction; which move away. */
+/* How the balls that touch move: which slide, and in which direction; which move away. Where a slip turns again within an instant
+ * it vanishes in a spiral. */
 static void sym_sort_touching(const sym_run *r, sym_touching *at, double still, const double *met, const double *par) {
     sym_contact_problem *p = &at->problem;
     int32_t i;
@@ -227,8 +237,11 @@ static void sym_sort_touching(const sym_run *r, sym_touching *at, double still, 
         const sym_rigid_contact *of = r->system->contacts + at->of[i];
         const double x = at->u[3 * i], y = at->u[3 * i + 1], slip = hypot(x, y);
         const int32_t turned = met != NULL && met[at->of[i]] < 0.0 && par[of->mode] == SYM_SLIDES;
+        double *last = sym_ball_memory(r->system, at->of[i]) + 4;
+        const int32_t again = r->t - *last <= SYM_ACCUMULATION * r->actions->at_once;
+        if (turned) *last = r->t;
         p->parts[i] = at->u[3 * i + 2] > still;
-        p->slides[i] = slip > still && !(turned && slip <= SYM_SLIP_LEFT * par[of->way[2]]);
+        p->slides[i] = slip > still && !(turned && (again || slip <= SYM_SLIP_LEFT * par[of->way[2]]));
         if (p->slides[i]) p->d[2 * i] = x / slip, p->d[2 * i + 1] = y / slip;
     }
 }
@@ -250,6 +263,31 @@ static int32_t sym_accelerations_of_balls(sym_run *r, sym_touching *at, double *
     if (status == 0) sym_velocities_of_balls(r, at, s->a, reference);
     for (i = 0; i < 3 * p->n && status == 0; ++i) p->b[i] = p->parts[i / 3] ? 0.0 : p->b[i] - reference[i];
     for (i = 0; i < p->n; ++i) par[s->contacts[at->of[i]].mode] = SYM_OPEN;
+    return status;
+}
+
+/* Modes and forces of the balls that touch, of which those that come back within an instant do not move away: where strikes of
+ * several balls accumulate, as of a box that rocks, (46a). Returns 0 or a status. */
+static int32_t sym_solve_returning(sym_run *r, sym_touching *at, double *par) {
+    sym_contact_problem *p = &at->problem;
+    const double instant = SYM_ACCUMULATION * r->actions->at_once;
+    int32_t slow[SYM_MOST_CONTACTS], i, again = 1, status = 0;
+    at->returns = 0;
+    for (i = 0; i < p->n; ++i) {
+        slow[i] = p->parts[i] && at->u[3 * i + 2] < SYM_SLOW;
+        if (slow[i]) p->parts[i] = 0;
+    }
+    while (again) {
+        again = 0;
+        status = sym_accelerations_of_balls(r, at, par);
+        if (status == 0) status = sym_solve_contacts(p, 1);
+        for (i = 0; i < p->n; ++i) {
+            const double a = p->W[(3 * p->n + 1) * (3 * i + 2)] * p->f[3 * i + 2]; /* what its force takes away */
+            if (!slow[i] || (status == 0 && (p->mode[i] == SYM_OPEN || 2.0 * at->u[3 * i + 2] < a * instant))) continue;
+            p->parts[i] = 1, slow[i] = 0, again = 1;
+        }
+    }
+    for (i = 0; i < p->n; ++i) at->returns |= slow[i] && p->mode[i] != SYM_OPEN;
     return status;
 }
 
@@ -276,20 +314,19 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     }
     if (status != 0) return status;
     sym_sort_touching(r, at, still, met, was);
-    status = sym_accelerations_of_balls(r, at, par);
-    return status != 0 ? status : sym_solve_contacts(p, 1);
+    return sym_solve_returning(r, at, par);
 }
 
-/* Impacts and modes of rigid contacts at the present state. met (n_contacts): 1 where a ball has reached its plane or its force
- * has fallen to zero, -1 where another mode has ended, else 0; NULL: the motion begins. Returns 0 or a status, with the modes
- * as they were. */
-static int32_t sym_settle_contacts(sym_run *r, const double *met) {
+/* Impacts and modes of rigid contacts at the present state, as of sym_settle_contacts. *again: whether speeds of balls have been
+ * taken, after which slips are others. */
+static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, int32_t *again) {
     sym_system *s = r->system;
     double *par = r->actions->modes, gap;
     sym_touching at;
     int32_t i, k, status;
+    *again = 0;
     memcpy(par, r->par, (size_t)s->npar * sizeof *par);
-    status = sym_find_touching(r, par, met, &at);
+    status = sym_find_touching(r, par, met, begins, &at);
     if (status == 0) *sym_modes_chosen(s) = 1.0;
     if (status != 0 || at.problem.n == 0) return status;
     for (i = 0; i < at.problem.n; ++i) {
@@ -309,12 +346,21 @@ static int32_t sym_settle_contacts(sym_run *r, const double *met) {
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
+        if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(SYM_GRAZES, at.apart[i]) - at.gap[i];
         par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
         par[of->way[2]] = at.problem.slides[i] ? hypot(at.u[3 * i], at.u[3 * i + 1]) : 0.0;
     }
-    *sym_load_shared(s) = at.problem.shared;
+    *sym_load_shared(s) = at.problem.shared, *again = at.returns;
     sym_run_set_parameters(r, par);
     return sym_run_engage(r, &gap);
+}
+
+/* Impacts and modes of rigid contacts at the present state. met (n_contacts): 1 where a ball has reached its plane or its force
+ * has fallen to zero, -1 where another mode has ended, else 0; NULL: the motion begins. Returns 0 or a status, with the modes
+ * as they were. */
+static int32_t sym_settle_contacts(sym_run *r, const double *met) {
+    int32_t again, status = sym_settle_once(r, met, met == NULL, &again);
+    return status == 0 && again ? sym_settle_once(r, NULL, 0, &again) : status;
 }
 
 /* Where balls that stick share their load in more than one way, what all of them together have left takes the place of what

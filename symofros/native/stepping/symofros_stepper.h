@@ -102,7 +102,7 @@ typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/th
 } sym_sticking;
 
 /* Entries a ball of a rigid contact: of its state, and of its memory. */
-typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_BALL_ENTRIES = 4 } sym_contact_sizes;
+typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_BALL_ENTRIES = 5 } sym_contact_sizes;
 
 typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/constraints.md, section 15) */
     int32_t mode;    /* parameter: SYM_OPEN, SYM_SLIDES, SYM_STICKS */
