@@ -55,7 +55,7 @@ def rows(
         if off is not None:
             sides.append(side)
             errors[who] = off
-    times = in_turn({side.who: partial(_taken, side) for side in sides}, states, turns, LEAST)
+    times = raced(sides, states, turns)
     for who, taken in times.items():
         yield Row.of(environment, subject.label, function, states, who, taken, times.get(OURS), errors[who])
 
@@ -71,6 +71,11 @@ def checked(computed: Array, expected: Array, fail: Callable[[str], object]) -> 
 
 def _first_line(problem: Exception) -> str:
     return next(iter(str(problem).strip().splitlines()), "no word")
+
+
+def raced(sides: Sequence[Side], states: int, turns: int) -> dict[str, list[float]]:
+    """Times of each turn of each side [ns a state], by side."""
+    return in_turn({side.who: partial(_taken, side) for side in sides}, states, turns, LEAST)
 
 
 def _taken(side: Side, rounds: int) -> int:
