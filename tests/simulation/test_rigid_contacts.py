@@ -79,6 +79,9 @@ def test_a_ball_with_backspin_slides_until_it_rolls() -> None:
     assert run.v[-1, 4] * r == pytest.approx((5 * v0 + 2 * r * spin) / 7, rel=1e-10)
     before = run.t < rolls.t
     assert run.lam[before, 1] == pytest.approx(-mu * 0.4 * G, rel=1e-11)
+    # Contact forces follow the modes of the run, on both sides of the event: mu m g against the slip, then the weight.
+    force, slides = run.contact_forces().force[:, 0] / (0.4 * G), np.arange(len(run)) <= before.sum()
+    np.testing.assert_allclose(force, np.outer(slides, [-mu, 0.0, 0.0]) + [0.0, 0.0, 1.0], atol=1e-10)
 
 
 @pytest.mark.parametrize(("vx", "spin"), [(0.5, 0.0), (4.0, 0.0), (1.0, -25.0)])
