@@ -269,6 +269,8 @@ _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     """Text that has Drake's parser read a file; a base link of URDF that is not called "world" is welded to it."""
+    if tree.actuators:  # Its inputs are joints' forces, not controls before a gear and a gain.
+        return Unsupported("actuators of files: their controls are no input of a plant", offered=False)
     chosen: list[list[_Native]] = []
     for link in tree.links:
         natives = []
