@@ -1,0 +1,55 @@
+"""Bodies that are thrown on a plane come to rest above it, and gain no energy (docs/theory/constraints.md, 15)."""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from tests.simulation.rigid_scenes import GROUND, box, rested
+
+
+def settled(run: sf.Trajectory) -> None:
+    """A motion that has ended as stated, above the plane, and has never gained energy beyond the error of its steps."""
+    assert run.outcome.ok, run.outcome
+    assert run.contact_forces().gap.min() > -1e-9
+    assert np.diff(run.energy).max() < 1e-6 * run.energy[0]
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_a_box_that_rocks_from_edge_to_edge_comes_to_rest(method: str) -> None:
+    """(46a): its strikes without restitution follow each other at a constant ratio, some at speeds of rounding."""
+    model = box(0.5, height=0.05)
+    run = sf.simulate(model, rested(model, 0.3), [1.0, 0, 0, 2.0, -1.0, 0], t_end=0.6, method=method, dt=1e-3)
+    settled(run)
+    assert run.q[-1, 2] == pytest.approx(0.05, abs=1e-9) and np.abs(run.v[-1]).max() < 1e-9
+    # Where the strikes accumulate, less what is left of them within the threshold.
+    assert run.events[-1].t == pytest.approx(0.304027, abs=5e-5)
+
+
+DISC = [(0.2 * cos(angle), 0.2 * sin(angle), -0.06) for angle in (0, 2.1, 4.2)]
+BOX = [(x, y, -0.05) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
+
+
+@pytest.mark.parametrize(
+    ("feet", "restitution", "friction", "seed", "t_end"),
+    [
+        (DISC, 0.3, 1.1, 9, 0.75),  # A slip vanishes in a spiral.
+        (DISC, 0.3, 1.1, 118, 0.6),  # What keeps a ball from moving away changes its slip.
+        (BOX, 0.3, 0.6, 115, 0.6),  # A ball opens that has been a little below the plane.
+        (DISC, 0.7, 0.6, 224, 0.9),  # As it begins, at speeds of rounding, a slip turns by more than a right angle.
+    ],
+)
+def test_what_is_thrown_lands(
+    feet: list[tuple[float, float, float]], restitution: float, friction: float, seed: int, t_end: float
+) -> None:
+    """Found among 300 such motions: balls that fell through the plane, forces of friction that drove them."""
+    sole = sf.Contact("sole", ("thing", None), GROUND, restitution=restitution, friction=friction, points=feet)
+    thing = sf.RigidBody("thing", sf.Joint("free", "free"), sf.Inertia(2.0, moments=(0.02, 0.03, 0.04)))
+    model = sf.compile(sf.System("thrown", [thing], connections=[sole]))
+    draw = np.random.default_rng(seed)
+    draw.random(2)
+    speeds = np.concatenate([draw.normal(size=3), 3.0 * draw.normal(size=3)])
+    settled(sf.simulate(model, rested(model, 0.35), speeds, t_end=t_end, method="dopri5"))
