@@ -10,8 +10,12 @@ SPEEDS = "p.SetVelocities(c, v)\n"
 QV = f"p.SetPositions(c, q)\n{SPEEDS}"
 Q = "p.SetPositions(c, q)\n"
 FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
-# A simulator takes the context that it is given for good: it is given a copy, with the parameters that were changed.
-_SIMULATOR = "sim = drake.Simulator(p, c.Clone())\nc = sim.get_mutable_context()\n"
+# A simulator has a context of its own: it may take one that it is given for good. Its parameters are those that were changed.
+_SIMULATOR = """sim = drake.Simulator(p)
+sim.get_mutable_context().SetTimeStateAndParametersFrom(c)
+c = sim.get_mutable_context()
+c.SetTime(0.0)
+"""
 _SIMULATION = f"""{_SIMULATOR}INTEGRATOR{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
 sim.AdvanceTo({STEP})
 value = np.r_[p.GetPositions(c), p.GetVelocities(c)]"""
