@@ -1,0 +1,13 @@
+# pybullet 3.2.7, rotations: multiplyTransforms is imprecise (X Y).
+# Known: https://github.com/bulletphysics/bullet3/issues/2246.
+import numpy as np
+import pybullet as p
+q = np.array([0.0, 0.0, 0.0, 1.0])
+a = np.array([0.0, 0.0, 0.0])
+tau = np.array([0.0, 0.0, 0.0])
+q2 = np.array([0.2887209756040745, -0.34129830280374557, -0.6372954148539809, -0.6277023346743316])
+x, turn = p.multiplyTransforms(a, q, tau, q2)
+value = [*x, *p.getMatrixFromQuaternion(turn)]
+import numpy as np
+value, expected = np.reshape(value, (12,))[(5,)], 0.0604663751313066
+assert abs(value - expected) <= 2.3e-12, f"{value = }, {expected = }"
