@@ -35,7 +35,7 @@ EXUDYN = "Exudyn, general contact"
 SHARES = (0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 1.5)
 LOAD = Grid.of("load over what friction carries, tan α/μ [-]", tuple(map(str, SHARES)), ("0.5", "0.999", "1.001"))
 FORMS = SMOOTH, BRISTLES, RIGID, HELD
-WHO = Grid.of("friction [-]", (*FORMS, *ENGINES, *DRAKE, EXUDYN), (SMOOTH, BRISTLES, RIGID, "MuJoCo, cones"))
+WHO = Grid.of("friction [-]", (*FORMS, *ENGINES, *DRAKE, EXUDYN), (SMOOTH, BRISTLES, RIGID, HELD, "MuJoCo, cones"))
 STEPS = (1e-3, 4e-3)
 MJCF = (
     '<mujoco><option timestep="{h!r}" integrator="implicitfast" gravity="{gx!r} 0 {gz!r}" {cone}/><worldbody>'

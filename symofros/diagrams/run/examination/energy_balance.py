@@ -43,6 +43,8 @@ def energy_note(run: Examined) -> str:
         acts = _acts(run, rows)
         for name in layout.q:
             kinetic, energy = energies.of(name, some)
+            # Between records at rest there was motion, too, as of a body that slides and stops: of what it lost there.
+            kinetic = np.maximum(kinetic, -np.diff(energy, prepend=energy[:1]))
             power, spans = energies.powers(name, some, a), np.diff(some[0])
             gained = np.where(acts, 0.0, np.diff(energy) - 0.5 * (power[1:] + power[:-1]) * spans)
             unseen = _SMOOTH * np.abs(_bends(power, acts)) * spans
