@@ -10,7 +10,7 @@ SPEEDS = "p.SetVelocities(c, v)\n"
 QV = f"p.SetPositions(c, q)\n{SPEEDS}"
 Q = "p.SetPositions(c, q)\n"
 FORCES = "forces = drake.MultibodyForces(p)\np.CalcForceElementsContribution(c, forces)\n"
-# A simulator has a context of its own, as it may take one that it is given for good: with the parameters that were changed.
+# A simulator has a context of its own: it may keep one that it is given. It gets the parameters that were changed.
 _SIMULATOR = """sim = drake.Simulator(p)
 sim.get_mutable_context().SetTimeStateAndParametersFrom(c)
 c = sim.get_mutable_context()
