@@ -126,13 +126,13 @@ static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, 
     const sym_run *r = step->run;
     const double end = r->event_values[(SYM_EVENT_NODES - 1) * r->system->n_events + i];
     const int settled = r->actions != NULL && sym_settled_now(r, i);
-    int32_t status, near = 1;
+    int32_t status, stays = 1;
     *is = 0;
     if (r->actions == NULL || (!settled && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
     status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
     if (status != 0 || !*is || !settled || !(end < 0.0)) return status;
-    status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &near);
-    *is = near;
+    status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
+    *is = stays;
     return status;
 }
 
