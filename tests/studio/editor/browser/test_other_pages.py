@@ -100,7 +100,7 @@ def test_replays_are_accessible(page: Page, looked: Callable[[], None], replay: 
     # While it plays, the time is the motion's; the coordinates have units.
     expect(instant).to_have_text(re.compile(r"^t = 1\.\d{3} s, deformation × 5, at 0\.5 × its speed$"))
     page.locator("body").press("Space")
-    beside.get_by_text("Coordinates").click()
+    beside.get_by_text("Coordinates", exact=True).click()
 
     def turned() -> bool:
         angle = float(beside.get_by_role("row", name="q1 ").get_by_role("cell").first.inner_text())
