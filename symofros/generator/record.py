@@ -158,10 +158,9 @@ def _rigid_contacts(tree: SpanningTree) -> tuple[RigidContactRecord, ...]:
         rows = tuple(map(conditions.index, ball.conditions))
         first, second = map(_text, ball.watched)
         pushes, way = (tuple(map(place, names)) for names in (ball.pushes, ball.way))
-        record = RigidContactRecord(
-            ball.name, place(ball.mode), pushes, way, place(ball.apart), rows, friction, restitution, (first, second)
-        )
-        records.append(record)
+        held_by = ball.normal.name, ball.across.name
+        places = place(ball.mode), pushes, way, place(ball.apart), rows
+        records.append(RigidContactRecord(ball.name, *places, held_by, friction, restitution, (first, second)))
     return tuple(records)
 
 

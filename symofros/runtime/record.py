@@ -125,6 +125,7 @@ class RigidContactRecord(NamedTuple):
         way: Parameters that are the direction in which it has begun to slide (2), and its speed then.
         apart: Parameter that is how far it may pass the plane, open, by rounding.
         rows: Rows of G that hold it along the axes of the plane.
+        constraints: Names of the constraints of these rows.
         friction: Formula of parameters: coefficient of friction.
         restitution: Formula of parameters: energetic coefficient of restitution.
         watched: Formulas that fall to zero where the mode ends: distance or normal force; slip, or what is left of
@@ -137,14 +138,10 @@ class RigidContactRecord(NamedTuple):
     way: tuple[int, ...]
     apart: int
     rows: tuple[int, ...]
+    constraints: tuple[str, str]
     friction: str
     restitution: str
     watched: tuple[str, str]
-
-    @property
-    def conditions(self) -> tuple[str, ...]:
-        """Constraints that hold it."""
-        return f"{self.name}.normal", f"{self.name}.across"
 
     @property
     def state(self) -> tuple[str, ...]:

@@ -16,15 +16,20 @@ static double sym_friction_of(const sym_system *s, int32_t ball) {
     return s->contact_state.out[0][SYM_CONTACT_ENTRIES * ball + 4];
 }
 
+/* What a slip has along the way in which the ball has begun to slide. */
+static double sym_along_way(const double *par, const sym_rigid_contact *of, const double *slip) {
+    return par[of->way[0]] * slip[0] + par[of->way[1]] * slip[1];
+}
+
 /* Direction (2) in which a ball slides by its slip u: the last known one where the slip is so small that a step of this length
- * can't follow how it turns, and opposite to the slip where this has passed rest since it began along `way` (2), so that a step
- * beyond the end of a mode is as smooth as the one before, (41b). */
-static void sym_slip_direction(const double *u, const double *known, const double *way, double *d) {
+ * can't follow how it turns, and opposite to the slip where this has passed rest since it began, so that a step beyond the end
+ * of a mode is as smooth as the one before, (41b). */
+static void sym_slip_direction(const double *par, const sym_rigid_contact *of, const double *u, const double *known, double *d) {
     const double slip = hypot(u[0], u[1]);
     memcpy(d, known, 2 * sizeof *d);
     if (slip <= SYM_RESTS_AT || slip <= known[2]) return;
     d[0] = u[0] / slip, d[1] = u[1] / slip;
-    if (d[0] * way[0] + d[1] * way[1] < 0.0) d[0] = -d[0], d[1] = -d[1];
+    if (sym_along_way(par, of, d) < 0.0) d[0] = -d[0], d[1] = -d[1];
 }
 
 /* At the end of a step: the directions of balls that slide. */
@@ -37,10 +42,9 @@ static void sym_keep_directions(sym_run *r) {
     sym_evaluate(&s->contact_state);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
-        const double *way[2] = {r->par + s->contacts[i].way[0], r->par + s->contacts[i].way[1]};
         double *known = sym_ball_memory(s, i);
         if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
-        if (slip > SYM_RESTS_AT && slip > known[2] && state[1] * *way[0] + state[2] * *way[1] > 0.0)
+        if (slip > SYM_RESTS_AT && slip > known[2] && sym_along_way(r->par, s->contacts + i, state + 1) > 0.0)
             known[0] = state[1] / slip, known[1] = state[2] / slip;
     }
 }
@@ -78,8 +82,8 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
     if (n == 0) return 0;
     sym_evaluate(&s->contact_state);
     for (j = 0; j < n; ++j) {
-        const double way[2] = {par[s->contacts[which[j]].way[0]], par[s->contacts[which[j]].way[1]]};
-        sym_slip_direction(s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1, sym_ball_memory(s, which[j]), way, d[j]);
+        const double *slip = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1;
+        sym_slip_direction(par, s->contacts + which[j], slip, sym_ball_memory(s, which[j]), d[j]);
     }
     memcpy(scratch.par, par, (size_t)s->npar * sizeof *par);
     memcpy(scratch.a, s->a, nv * sizeof *s->a), memcpy(scratch.lam, s->lam, nc * sizeof *s->lam);

@@ -140,7 +140,7 @@ class ReactionFunctions(ConstraintFunctions, StateFunctions):
             k = self.names.contacts.index(ball.name)
             push[..., k], force[..., k, :] = np.nan, np.nan
             if lam is not None:
-                parts = [self.closure_wrench(name, q, lam, u=u, par=par, t=t) for name in ball.conditions]
+                parts = [self.closure_wrench(name, q, lam, u=u, par=par, t=t) for name in ball.constraints]
                 push[..., k], force[..., k, :] = np.asarray(lam)[..., ball.rows[2]], np.sum(parts, axis=0)[..., :3]
         return found._replace(push=push, force=force)
 

@@ -10,7 +10,7 @@ import { isReference, Reference } from "./Reference";
 import { useForm } from "./context";
 import { RecordField } from "./Record";
 import type { Field } from "./schema";
-import { ChoiceField, FlagField, LongTextField, NumberField, SetField, TextField } from "./scalars";
+import { ChoiceField, FlagField, NumberField, SetField, TextField } from "./scalars";
 import { ValueField } from "./Value";
 import { Matrix, partNames, Vector } from "./Vector";
 
@@ -40,7 +40,7 @@ export function FieldControl({ name, field, value, onChange, path, label, siblin
     case "formula":
       return <Expression {...common} path={path} required={!field.optional} />;
     case "text":
-      return name === "text" ? <LongTextField {...common} /> : <TextField {...common} />;
+      return <TextField {...common} isLong={name === "text"} />;
     case "value":
       return <ValueField {...common} path={path} />;
     case "number":

@@ -13,30 +13,18 @@ interface Props {
   fallback: Json | undefined;
 }
 
-export function TextField({ value, onChange, label, help, fallback }: Props) {
+/** Words, of several lines where they may be long. */
+export function TextField({ value, onChange, label, help, fallback, isLong = false }: Props & { isLong?: boolean }) {
   const { hint } = useForm();
+  const Control = isLong ? "textarea" : "input";
   return (
-    <input
+    <Control
       value={shown(value)}
+      rows={isLong ? 4 : undefined}
       aria-label={label}
       aria-description={help}
       placeholder={shown(fallback)}
-      spellCheck={false}
-      onFocus={() => hint(help)}
-      onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}
-    />
-  );
-}
-
-/** Words of several lines. */
-export function LongTextField({ value, onChange, label, help }: Props) {
-  const { hint } = useForm();
-  return (
-    <textarea
-      value={shown(value)}
-      rows={4}
-      aria-label={label}
-      aria-description={help}
+      spellCheck={isLong}
       onFocus={() => hint(help)}
       onChange={(event) => onChange(event.target.value === "" ? undefined : event.target.value)}
     />

@@ -12,7 +12,7 @@ const FOOT = 17;
 const WIDEST = 260;
 const WORDS = { text: { letter: 6.4, line: 16 }, heading: { letter: 10, line: 24 } };
 
-/** The room that the words of a comment take, lines broken where they must be. */
+/** Width and height of the words of a comment, lines broken where they must be. */
 function commentSize({ note, heading = false }: SignalNode): Point {
   const { letter, line } = heading ? WORDS.heading : WORDS.text;
   const lines = note.split("\n");
