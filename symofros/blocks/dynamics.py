@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from symofros.blocks.checks import refuse
-from symofros.blocks.model_function import OFFERED, told_ports
+from symofros.blocks.model_function import OFFERED, told_ports, told_values
 from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
@@ -147,7 +147,7 @@ class ForwardDynamics(Block):
         signals |= {"lam": context.lam} if record.nc else {}
         given = {**motion, **states, "u": context.inputs["u"], "t": context.t}
         for function in self.tells:
-            values = context.call(self.model, function, lam=context.lam, **given)
+            values = told_values(context, self.model, function, lam=context.lam, **given)
             signals |= {
                 name: values[of.name] for name, of in zip(_told(function), OFFERED[function].outputs, strict=True)
             }

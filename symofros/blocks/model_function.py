@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 
 from symofros.base.functions import FUNCTIONS
 from symofros.blocks.checks import refuse
 from symofros.blocks.quantities import Quantity, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
+from symofros.diagrams.tensor import Tensor, joined, stacked
 from symofros.errors import did_you_mean
 from symofros.runtime.record import ModelRecord
 
@@ -55,7 +56,10 @@ class ModelFunction(Block):
             environment.frame(self.model, self.frame)
         outputs = told_ports(self.name, self.function, record)
         groups = [*row.inputs, *(["u"] if record.driven and "u" not in row.inputs else [])]
+        groups += ["lam"] if _reads_reactions(self.function, record) else []
         inputs = [_input(group, record) for group in groups if group != "t" and _entries(group, record)]
+        if _reads_reactions(self.function, record):
+            inputs[-1] = replace(inputs[-1], default=None)
         if record.state_names:
             inputs.append(Port("z", (len(record.state_names),), "", 0.0))
         return Ports(tuple(inputs), outputs)
@@ -66,8 +70,7 @@ class ModelFunction(Block):
         record = context.environment.model(self.model)
         given = {name: signal for name, signal in none.items() if not _entries(name, record)}
         given |= {"t": context.t, **context.inputs}
-        outputs = context.call(self.model, self.function, self.frame, **given)
-        return {output.name: outputs[output.name] for output in OFFERED[self.function].outputs}
+        return told_values(context, self.model, self.function, self.frame, **given)
 
 
 def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
@@ -90,6 +93,28 @@ def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ..
         rule, remedy = "what it tells of is in the model", "choose a model that has some"
         raise refuse(block, f"'{function}' has no entries", record.name, rule, remedy)
     return outputs
+
+
+def told_values(context: EvaluationContext, model: str, function: str, frame: str = "", **given: Tensor) -> Values:
+    """Outputs of an offered function; forces of rigid contacts are those of their multipliers, as of `contact_forces`."""
+    record = context.environment.model(model)
+    found = context.call(model, function, frame, **given)
+    outputs = {output.name: found[output.name] for output in OFFERED[function].outputs}
+    if not _reads_reactions(function, record):
+        return outputs
+    lam, places = given["lam"], {name: i for i, name in enumerate(record.wrench_names)}
+    wrenches = context.call(model, "closure_wrenches", "", **given)["on_second"]
+    push, force = list(outputs["push"]), list(outputs["force"])
+    for ball in record.rigid_contacts:
+        k = record.contact_names.index(ball.name)
+        normal, across = (wrenches[places[name]][:3] for name in ball.constraints)
+        push[k], force[k] = lam[ball.rows[2]], normal + across
+    return outputs | {"push": joined(push), "force": stacked(force)}
+
+
+def _reads_reactions(function: str, record: ModelRecord) -> bool:
+    """Whether a function tells of forces of rigid contacts, which are multipliers."""
+    return function == "contact_forces" and bool(record.rigid_contacts)
 
 
 def _entries(group: str, record: ModelRecord) -> int:

@@ -161,7 +161,7 @@ class Simulation:
             )
         if any(piece.switching for piece in resolved.pieces.values()):
             what = f"diagram '{resolved.wired.name}': events of mechanisms"
-            rule = "it does not locate events of mechanisms, nor modes of friction that sticks"
+            rule = "it does not locate events of mechanisms, nor modes of friction that sticks, or of rigid contacts"
             raise SymofrosError(Problem(what, "an interpreted run", rule, "use run"))
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None

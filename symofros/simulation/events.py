@@ -112,11 +112,16 @@ class ModeEvent(Event):
         """It does: modes are chosen anew."""
         return True
 
+    @property
+    def of_contact(self) -> bool:
+        """Whether the mode is that of a rigid contact's ball."""
+        return self.words == CONTACT_WORDS
+
     def said(self, before: Any, after: Any, *, impulse: bool = True) -> str:
         """What it came to, by the parameters (npar) before and afterwards, and by whether speeds have changed."""
         ended, begun = (self.words[round(abs(par[self.mode]))] for par in (before, after))
         unchanged = (
-            {"opens": "strikes" if impulse else "grazes", "slides": "turns"} if self.words == CONTACT_WORDS else {}
+            {"opens": "strikes" if impulse else "grazes", "slides": "turns"} if self.of_contact else {}
         )
         return f"{self.name} {unchanged.get(begun, begun) if begun == ended else begun}"
 

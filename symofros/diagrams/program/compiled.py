@@ -322,6 +322,7 @@ def record_of(resolved: Resolved, part: Part | None) -> ModelRecord:
         measures=layout.measures_of(of),
         switches=() if switching is None else switching.switches,
         sticking=() if switching is None else switching.sticking,
+        rigid_contacts=() if switching is None else switching.contacts,
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.program.lowered_block import Piece, watched
@@ -55,7 +55,8 @@ class Fuser:
 
         Args:
             part: The part.
-            whole: Whether "formulas", whose zeros are located, and "actions" are among them, where there are some.
+            whole: Whether "formulas", whose zeros are located, "actions" and "contact_state" are among them, where there
+                are some.
         """
         g = Graph()
         at = self._at(g, part=part)
@@ -67,21 +68,36 @@ class Fuser:
                 outputs = _vector("p", p.flat), Output("R", (3, 3), tuple(R.flat))
                 functions.append(Function("frame_pose", f"{name}.{frame}", ("q", "u", "t"), outputs))
         if whole:
-            functions += [f for f in (self._formulas(at, part), self._actions(at, part)) if f is not None]
+            functions += [form(at, part) for form in self._located_forms(part).values()]
         return self._program(self._wired.name, g, functions, part)
 
     def located(self, part: Part) -> dict[str, Program]:
-        """A part's "formulas" and "actions" as programs of their own, "events" and "actions"; those that there are."""
+        """What locates and acts of a part, each as a program of its own: "events", "actions" and "contacts"."""
         programs: dict[str, Program] = {}
-        for name, form in (("events", self._formulas), ("actions", self._actions)):
+        for name, form in self._located_forms(part).items():
             g = Graph()
-            function = form(self._at(g, part=part), part)
-            if function is not None:
-                programs[name] = self._program(self._wired.name, g, [function], part)
+            programs[name] = self._program(self._wired.name, g, [form(self._at(g, part=part), part)], part)
         return programs
 
-    def _formulas(self, at: Point, part: Part) -> Function | None:
-        """Values whose zeros are located: of crossings, then of events of mechanisms; None where there are none."""
+    def _located_forms(self, part: Part) -> dict[str, Callable[[Point, Part], Function]]:
+        """What writes a part's functions of events: those that it has."""
+        owners = owners_of(self._pieces, part)
+        forms = {"events": self._formulas} if owners or watched(self._pieces) else {}
+        forms |= {"actions": self._actions} if owners else {}
+        return forms | ({"contacts": self._contacts} if self._balls(part) else {})
+
+    def _balls(self, part: Part) -> list[tuple[Piece, Tensor]]:
+        """Mechanisms with rigid contacts, and the states of their balls."""
+        acting = [(self._pieces[name], self._pieces[name].switching) for name in part.blocks]
+        return [(piece, switching.contacts) for piece, switching in acting if switching and switching.contacts.size]
+
+    def _contacts(self, at: Point, part: Part) -> Function:
+        """States of the balls of rigid contacts."""
+        values = [edge for piece, states in self._balls(part) for edge in at.edges(piece, states.flat)]
+        return Function("contact_state", "", AT, (_vector("value", values),))
+
+    def _formulas(self, at: Point, part: Part) -> Function:
+        """Values whose zeros are located: of crossings, then of events of mechanisms."""
         values = [
             edge
             for name, which in watched(self._pieces)
@@ -94,13 +110,11 @@ class Fuser:
             if switching is not None:
                 own[name] = after.edges(self._pieces[name], switching.values.flat)
         values += [own[name][i] for name, i in owners_of(self._pieces, part)]
-        if not values:
-            return None
         inputs = AFTER if reads(at.g, values, ("a", "lam")) else AT
         return Function("formulas", "", inputs, (_vector("value", values),))
 
-    def _actions(self, at: Point, part: Part) -> Function | None:
-        """Values of the formulas of actions, as StatedActions orders them; None where there are none."""
+    def _actions(self, at: Point, part: Part) -> Function:
+        """Values of the formulas of actions, as StatedActions orders them."""
         groups: tuple[list[Edge], ...] = ([], [], [])
         for name in part.blocks:
             piece = self._pieces[name]
@@ -108,7 +122,7 @@ class Fuser:
             for into, formulas in zip(groups, effects, strict=False):
                 into += at.edges(piece, formulas.flat)
         values = [edge for group in groups for edge in group]
-        return Function("actions", "", AT, (_vector("value", values),)) if owners_of(self._pieces, part) else None
+        return Function("actions", "", AT, (_vector("value", values),))
 
     def _judging(self, at: Point, part: Part) -> list[Function]:
         """Functions mass_matrix and beam_stiffness of a part, by which its elastic beams are judged; none without."""

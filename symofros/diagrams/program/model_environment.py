@@ -147,8 +147,9 @@ class Models:
 
     def impacts(self, name: str, options: Options) -> Model:
         """A model of a mechanism that has what tells the impulses of impacts and their energies."""
-        jacobian = ("constraint_jacobian",) if self.record(name).nc else ()
-        return self._chosen(name, options, "kinetic_energy", "potential_energy", "mass_matrix", *jacobian)
+        record = self.record(name)
+        further = ("constraint_jacobian",) * bool(record.nc) + ("contact_forces",) * bool(record.rigid_contacts)
+        return self._chosen(name, options, "kinetic_energy", "potential_energy", "mass_matrix", *further)
 
     def dynamics(self, name: str) -> Model:
         """A model of a mechanism that has its mass matrix and forces; interpreted, as `contacts`."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.program.lowered_block import Piece
-from symofros.runtime.record import StickingRecord, SwitchRecord
+from symofros.runtime.record import RigidContactRecord, StickingRecord, SwitchRecord
 from symofros.simulation.actions import Assignment, StatedActions
 from symofros.simulation.events import Event, ModeEvent
 
@@ -42,6 +42,7 @@ class PartSwitching:
         stated: What they do, in the part's numbers; its formulas are those of the part's function "actions".
         switches: In the part's numbers.
         sticking: In the part's numbers.
+        contacts: Balls of rigid contacts, in the part's numbers.
         frames: Frames whose poses are asked for, (block, frame).
     """
 
@@ -50,6 +51,7 @@ class PartSwitching:
     stated: StatedActions
     switches: tuple[SwitchRecord, ...]
     sticking: tuple[StickingRecord, ...]
+    contacts: tuple[RigidContactRecord, ...]
     frames: tuple[tuple[str, str], ...]
 
     def owner(self, which: int) -> Owner | None:
@@ -59,13 +61,14 @@ class PartSwitching:
 
 
 def owners_of(pieces: Mapping[str, Piece], part: Part) -> tuple[Owner, ...]:
-    """The events of the mechanisms of a part, ends of modes last."""
-    every = [
-        (Owner(name, i), isinstance(event, ModeEvent))
-        for name in part.blocks
-        for i, event in enumerate(_events(pieces[name]))
-    ]
-    return tuple(owner for wanted in (False, True) for owner, is_mode in every if is_mode == wanted)
+    """The events of the mechanisms of a part: stated ones, then ends of modes of friction, then those of contacts."""
+    every = [(Owner(name, i), event) for name in part.blocks for i, event in enumerate(_events(pieces[name]))]
+    return tuple(owner for owner, event in sorted(every, key=lambda one: _rank(one[1])))
+
+
+def _rank(event: Event) -> int:
+    """Place of its kind among the events of a part, as native/stepping/actions.c has them."""
+    return 0 if not isinstance(event, ModeEvent) else 2 if event.of_contact else 1
 
 
 def _events(piece: Piece) -> tuple[Event, ...]:
@@ -96,7 +99,7 @@ def part_switching(
         if isinstance(renamed, ModeEvent):
             renamed = replace(renamed, mode=places[name].par(renamed.mode))
         events.append(renamed)
-    switches, sticking = list[SwitchRecord](), list[StickingRecord]()
+    switches, sticking, contacts = list[SwitchRecord](), list[StickingRecord](), list[RigidContactRecord]()
     frames: dict[tuple[str, str], None] = {}
     for name, at in places.items():
         switching = pieces[name].switching
@@ -106,10 +109,11 @@ def part_switching(
             assignments.append(Assignment(numbers[Owner(name, of.event)], of.group, entry))
         switches += [at.switch(switch) for switch in switching.record.switches]
         sticking += [at.sticking(one) for one in switching.record.sticking]
+        contacts += [at.contact(ball) for ball in switching.record.rigid_contacts]
         frames |= dict.fromkeys((name, frame) for frame in switching.poses)
     first_mode = sum(not isinstance(event, ModeEvent) for event in events)
     stated = StatedActions(tuple(assignments), (), first_mode)
-    return PartSwitching(tuple(events), owners, stated, tuple(switches), tuple(sticking), tuple(frames))
+    return PartSwitching(tuple(events), owners, stated, tuple(switches), tuple(sticking), tuple(contacts), tuple(frames))
 
 
 class _Places(NamedTuple):
@@ -151,3 +155,11 @@ class _Places(NamedTuple):
         """A coordinate with friction that sticks, in the part's numbers."""
         name, q, v = f"{self.block}.{of.name}", self.q + of.q, self.v + of.v
         return of._replace(name=name, q=q, v=v, mode=self.par(of.mode), row=self.row + of.row)
+
+    def contact(self, of: RigidContactRecord) -> RigidContactRecord:
+        """A ball of a rigid contact, in the part's numbers."""
+        pushes, way = tuple(map(self.par, of.pushes)), tuple(map(self.par, of.way))
+        rows, name = tuple(self.row + row for row in of.rows), f"{self.block}.{of.name}"
+        return of._replace(
+            name=name, mode=self.par(of.mode), pushes=pushes, way=way, apart=self.par(of.apart), rows=rows
+        )

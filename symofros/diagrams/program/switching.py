@@ -29,6 +29,7 @@ class Switching:
         values: What falls or rises through zero, of each event (n).
         effects: Values of the formulas of `stated`.
         poses: Frame -> p and R of it, of those whose relative rotation is held.
+        contacts: State of each ball of its rigid contacts, one after the other.
         kept: Run-time parameters of the mechanism that events change, by number.
     """
 
@@ -38,6 +39,7 @@ class Switching:
     values: Tensor
     effects: Tensor
     poses: Mapping[str, tuple[Tensor, Tensor]]
+    contacts: Tensor
     kept: tuple[int, ...]
 
     @property
@@ -61,12 +63,7 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     """
     model = block.mechanism()
     record = models.carried(model) if model else None
-    try:
-        if record is not None:
-            record.refuse_rigid_contacts("diagram")
-    except SymofrosError as error:
-        raise DescriptionError(_of_block(block, error)) from None
-    if record is None or not (block.mechanism_events() or record.sticking):
+    if record is None or not (block.mechanism_events() or record.sticking or record.rigid_contacts):
         return None
     if block.lock_inputs():
         raise DescriptionError(_said_twice(block, record))
@@ -83,6 +80,8 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     first = [f"switch of '{switch.name}'" for switch in record.switches]
     last = [f"friction of '{one.name}'" for one in record.sticking]
     effects = formulas.values(list(zip((*first, *named, *last), stated.formulas, strict=True)), reactions=False)
+    touching = [(f"contact '{ball.name}'", formula) for ball in record.rigid_contacts for formula in ball.state]
+    contacts = formulas.values(touching, reactions=False)
     poses = {}
     for frame in dict.fromkeys(frame for switch in record.switches if switch.rotation for frame in switch.frames):
         pose = at.call(model, "frame_pose", frame, q=at.q, u=u, t=at.t)
@@ -90,12 +89,17 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     kept = {of.entry for of in stated.assignments if of.group == "par"} | {one.mode for one in record.sticking}
     for switch in record.switches:
         kept |= {*switch.rotation, *(place for _, place in switch.offsets)}
-    return Switching(record, events, stated, values, effects, poses, tuple(sorted(kept)))
+    for ball in record.rigid_contacts:
+        kept |= {ball.mode, ball.apart, *ball.pushes, *ball.way}
+    return Switching(record, events, stated, values, effects, poses, contacts, tuple(sorted(kept)))
 
 
 def _said_twice(block: Block, record: ModelRecord) -> Problem:
     """Whether constraints hold is said by an input and by what has modes of its own."""
-    found = "events" if block.mechanism_events() else f"friction of '{record.sticking[0].name}' sticks"
+    found = "events"
+    if not block.mechanism_events():
+        sticks = record.sticking
+        found = f"friction of '{sticks[0].name}' sticks" if sticks else f"contact of '{record.rigid_contacts[0].name}' is rigid"
     rule = "which constraints hold is said by an input of the block, or by events and modes of its mechanism"
     remedy = "state the constraints as switches (sf.Switch) that events act on, in place of `engaged`"
     return Problem(f"block '{block.name}': engaged constraints beside events", found, rule, remedy)

@@ -18,6 +18,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import refuse_beyond
 from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
+from symofros.simulation.results.ends import ENDS
 from symofros.simulation.settings import CLOSED, Settings
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
@@ -103,15 +104,13 @@ def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Star
         if status == Status.BEYOND_THEORY:
             refuse_beyond(stepper.model, stepper.bendings, float(stepper.run.beam_limit), "the first state")
         if status < 0:
-            fault = fault_at(resolved, par, (begin.t, begin.q, begin.v), begin.u)
-            raise SymofrosError(
-                Problem(
-                    f"diagram '{resolved.wired.name}': the first accelerations are not finite",
-                    fault or ", ".join(stepper.model.names.v[:6]),
-                    "the start is one that moves",
-                    "look for a mass of zero or a first state that is not a number",
-                )
-            )
+            found = fault_at(resolved, par, (begin.t, begin.q, begin.v), begin.u)
+            what, remedy = "the first accelerations are not finite", "look for a first state that is not a number"
+            if not found and status != Status.DIVERGED:
+                what, remedy = ENDS[status].reason, ENDS[status].advice
+            found = found or ", ".join(stepper.model.names.v[:6])
+            rule = "the start is one that moves"
+            raise SymofrosError(Problem(f"diagram '{resolved.wired.name}' at its start: {what}", found, rule, remedy))
 
 
 def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par: Array) -> Placed:

@@ -15,6 +15,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.wiring import Source
+from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.trajectory import Statistics
 
 
@@ -106,7 +107,6 @@ class Records:
         a, lam = np.zeros((len(self.t), len(layout.v0))), np.zeros((len(self.t), len(layout.condition_names)))
         for part, model in zip(layout.parts, parts, strict=True):
             if model.nc:  # Those of the others are written out in the signals themselves.
-                a[:, part.v], lam[:, part.conditions], _ = model.constrained_dynamics(
-                    self.q[:, part.q], self.v[:, part.v], self.u, par=par, t=self.t
-                )
+                states = self.t, self.q[:, part.q], self.v[:, part.v], self.u
+                a[:, part.v], lam[:, part.conditions] = contact_dynamics(model, states, par)
         return a, lam

@@ -37,6 +37,7 @@ from symofros.errors import DescriptionError, SymofrosError
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import CompiledKernel
 from symofros.runtime.model import Model
+from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
 from symofros.simulation.results.examination.paths import Numbers
@@ -168,7 +169,8 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
         t, q, v, u = (array[rows] for array in states)
         a, par = np.zeros_like(v), layout.present(ended.par, u)
         for part, model in zip(layout.parts, parts, strict=True):
-            a[:, part.v] = model.forward_dynamics(q[:, part.q], v[:, part.v], u, par=par, t=t)
+            at = t, q[:, part.q], v[:, part.v], u
+            a[:, part.v] = contact_dynamics(model, at, par)[0] if model.nc else model.forward_dynamics(*at[1:], par=par, t=t)
         return np.asarray(a)
 
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))

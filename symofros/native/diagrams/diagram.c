@@ -211,18 +211,18 @@ static void sym_keep_parameters(sym_diagram *d) {
     for (i = 0; i < d->n_kept; ++i) d->u[d->kept[i].input] = d->parts[d->kept[i].part]->par[d->kept[i].par];
 }
 
-/* Let go of what friction holds in a part, whose modes are chosen anew afterwards. */
+/* Let go of what friction and rigid contacts hold in a part, whose modes are chosen anew afterwards. */
 static void sym_let_go_of_part(sym_run *r) {
     double *par = r->actions->modes;
     memcpy(par, r->par, (size_t)r->actions->npar * sizeof *par);
-    sym_let_go(r->system, par);
+    sym_let_go(r->system, par), sym_open_contacts(r->system, par);
     sym_run_set_parameters(r, par);
 }
 
 /* Execute the tasks of the crossings that stopped a part, all at the same time, one after the other. They may change inputs
  * and states. Returns 0 or a status. */
 static int32_t sym_execute_crossings(sym_diagram *d, sym_run *stopped) {
-    const int32_t sticks = stopped->actions != NULL && stopped->system->n_sticking > 0;
+    const int32_t has_modes = stopped->actions != NULL && stopped->system->n_sticking + stopped->system->n_contacts > 0;
     int32_t i, status, crossed = 0;
     int64_t row;
     for (row = stopped->first_met; row < stopped->met_end; ++row) crossed |= stopped->event_index[row] < d->n_crossings;
@@ -233,7 +233,7 @@ static int32_t sym_execute_crossings(sym_diagram *d, sym_run *stopped) {
         status = sym_execute_tasks(d, &d->crossing_tasks[stopped->event_index[row]], 1);
         if (status != 0) return status;
     }
-    if (sticks) sym_let_go_of_part(stopped);
+    if (has_modes) sym_let_go_of_part(stopped);
     for (i = 0; i < d->n_parts; ++i) {
         sym_run *r = d->parts[i];
         memcpy(r->q, d->q + d->q_offset[i], (size_t)r->system->nq * sizeof(double));

@@ -227,7 +227,7 @@ static int32_t sym_begin_contacts(sym_run *r) {
     status = sym_settle_contacts(r, NULL);
     for (i = 0; i < s->n_contacts && status == 0 && row < r->event_capacity; ++i) {
         if (sym_ball_memory(s, i)[3] != r->t) continue;
-        r->event_t[row] = r->t, r->event_index[row] = r->actions->first_mode + 2 * i;
+        r->event_t[row] = r->t, r->event_index[row] = sym_first_contact_event(r) + 2 * i;
         memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
         memcpy(r->event_v + row * s->nv, done.v_set, (size_t)s->nv * sizeof *r->v);
         *done.gap = 0.0;
@@ -243,7 +243,7 @@ static int32_t sym_begin_contacts(sym_run *r) {
 static int32_t sym_end_modes(sym_run *r) {
     const sym_actions *a = r->actions;
     const sym_system *s = r->system;
-    const int32_t first = a->first_mode;
+    const int32_t first = a->first_mode, first_contact = sym_first_contact_event(r);
     double *met = a->modes + a->npar + 2 * s->n_sticking;
     int32_t i, status = 0;
     int64_t row;
@@ -252,16 +252,20 @@ static int32_t sym_end_modes(sym_run *r) {
         const int32_t which = r->event_index[row];
         const sym_done done = sym_run_done(r, row);
         if (which < first) continue;
-        if (s->n_contacts > 0 && met[(which - first) / 2] <= 0.0) met[(which - first) / 2] = (which - first) % 2 ? -1.0 : 1.0;
+        if (which >= first_contact) {
+            double *of = met + (which - first_contact) / 2;
+            if (*of <= 0.0) *of = (which - first_contact) % 2 ? -1.0 : 1.0;
+        }
         memcpy(done.par, r->par, (size_t)r->actions->npar * sizeof *r->par);
         memcpy(done.v_set, r->v, (size_t)r->system->nv * sizeof *r->v);
         if (status == 0) status = sym_count_repeats(r, which);
     }
-    if (status == 0) status = s->n_contacts > 0 ? sym_settle_contacts(r, met) : sym_choose_modes(r);
+    if (status == 0 && s->n_sticking > 0) status = sym_choose_modes(r);
+    if (status == 0 && s->n_contacts > 0) status = sym_settle_contacts(r, met);
     for (row = r->first_met; row < r->met_end; ++row) {
         const sym_done done = sym_run_done(r, row);
         if (status != 0 ? row + 1 < r->met_end : r->event_index[row] < first) continue;
-        if (status == 0 && s->n_contacts > 0) sym_note_contact(r, &done, (r->event_index[row] - first) / 2);
+        if (status == 0 && r->event_index[row] >= first_contact) sym_note_contact(r, &done, (r->event_index[row] - first_contact) / 2);
         else sym_note_modes(r, &done, status);
     }
     return status;

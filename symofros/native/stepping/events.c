@@ -114,9 +114,12 @@ static int32_t sym_event_is_at_zero(sym_event_step *step, int32_t i, double x, d
     return 0;
 }
 
+/* The event at which the first mode of a ball ends: after those of friction that sticks. */
+static int32_t sym_first_contact_event(const sym_run *r) { return r->actions->first_mode + r->system->n_sticking; }
+
 /* Whether event i is of a rigid contact that has been settled where the step begins. */
 static int sym_settled_now(const sym_run *r, int32_t i) {
-    return r->system->n_contacts > 0 && i >= r->actions->first_mode && r->acted_at[i] >= r->t;
+    return r->system->n_contacts > 0 && i >= sym_first_contact_event(r) && r->acted_at[i] >= r->t;
 }
 
 /* Whether event i is met at x by rounding alone: a strike has left the bodies on each other, or a little apart, where the step

@@ -144,7 +144,7 @@ static int32_t sym_instance_doubt_contacts(sym_instance *instance) {
         return 0;
     }
     status = sym_restart_events(r);
-    for (i = r->actions->first_mode; i < s->n_events && status == 0; ++i)
+    for (i = sym_first_contact_event(r); i < s->n_events && status == 0; ++i)
         if (r->event_values[i] < 0.0) *sym_modes_chosen(s) = 0.0;
     return status;
 }

@@ -393,7 +393,7 @@ static int32_t sym_watch_shared_load(sym_run *r, double *values) {
     sym_prepare_call(&s->forward_dynamics, r->par);
     if (status != 0) return status;
     for (i = 0; i < p->n; ++i) {
-        double *value = values + r->actions->first_mode + 2 * at.of[i];
+        double *value = values + sym_first_contact_event(r) + 2 * at.of[i];
         value[0] = value[1] = 1.0;
         if (i == 0) value[1] = sym_sticking_margin(p, p->mode, f, &shared) + 2.0 * SYM_MARGIN_ROUNDING; /* beyond doubt */
     }

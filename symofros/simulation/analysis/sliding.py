@@ -9,7 +9,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.native import native_number
 from symofros.runtime.model import Model
-from symofros.runtime.record import SLIDES, STICKS, RigidContactRecord
+from symofros.runtime.record import SLIDES, RigidContactRecord
 
 _STILL = native_number("stepping/sticking.c", "SYM_RESTS_AT")
 
@@ -31,14 +31,12 @@ def contact_dynamics(
     sliding = np.stack([rows[:, ball.mode] == SLIDES for ball in balls], axis=1) if balls else np.zeros((0, 0))
     if not sliding.any():
         return a, lam
-    stuck = rows.copy()
-    stuck[:, [ball.mode for ball in balls]] = STICKS
-    slips = model.constraint_rate(q, v, u=u, par=stuck, t=t)
     n, normal = len(balls), [ball.rows[2] for ball in balls]
     change_a, change_lam = np.zeros((len(t), n, model.nv)), np.zeros((len(t), n, model.nc))
-    drags, friction = np.zeros((len(t), n, 2)), _friction(model, states, rows, given.get("z"))
+    drags, of_balls = np.zeros((len(t), n, 2)), _states_of_balls(model, states, rows, given.get("z"))
     for j, ball in enumerate(balls):
-        drags[:, j] = -(sliding * friction)[:, j, np.newaxis] * _direction(ball, slips, rows)
+        friction = sliding[:, j] * of_balls[:, j, 4]
+        drags[:, j] = -friction[:, np.newaxis] * _direction(ball, of_balls[:, j, 1:3], rows)
         pushed = rows.copy()
         pushed[:, list(ball.pushes[:2])] = drags[:, j]
         a_j, lam_j, _ = model.constrained_dynamics(q, v, u, par=pushed, t=t, **given)
@@ -51,19 +49,19 @@ def contact_dynamics(
     return a, lam
 
 
-def _friction(model: Model, states: tuple[Array, Array, Array, Array], rows: Array, z: Array | None) -> Array:
-    """Coefficients of friction (n, number of balls)."""
+def _states_of_balls(model: Model, states: tuple[Array, Array, Array, Array], rows: Array, z: Array | None) -> Array:
+    """State of each ball (n, number of balls, 6), as of `Model.contact_state`."""
     t, q, v, u = states
-    kernel = model.carried.formulas([ball.friction for ball in model.record.rigid_contacts], derivatives=False)
+    kernel = model.carried.contact_state()
     given: dict[str, Any] = {**dict(zip("qv", model.carry(q, v, z), strict=True)), "t": t[:, np.newaxis], "u": u}
     inputs = [given[group] for group, _ in kernel.signature.inputs]
-    found: Array = np.asarray(kernel.run(len(rows), kernel.prepare(rows), inputs)[0]).reshape(len(rows), -1)
-    return found
+    found: Array = np.asarray(kernel.run(len(rows), kernel.prepare(rows), inputs)[0])
+    return found.reshape(len(rows), len(model.record.rigid_contacts), -1)
 
 
-def _direction(ball: RigidContactRecord, slips: Array, rows: Array) -> Array:
+def _direction(ball: RigidContactRecord, slip: Array, rows: Array) -> Array:
     """Direction in which a ball slides (n, 2): that of its slip or, without one, that in which it began."""
-    slip, way = slips[:, list(ball.rows[:2])], rows[:, list(ball.way[:2])]
+    way = rows[:, list(ball.way[:2])]
     size = np.linalg.norm(slip, axis=1, keepdims=True)
     along = np.where((slip * way).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
     direction: Array = np.where(size > _STILL, along * slip / np.maximum(size, _STILL), way)

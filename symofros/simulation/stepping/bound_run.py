@@ -118,8 +118,7 @@ class BoundRun:
             return
         if not self.method.family.batched:
             self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'")
-        formulas = [formula for ball in balls for formula in ball.state]
-        self._bind("contact_state", self.model.formulas(formulas, derivatives=False))
+        self._bind("contact_state", self.model.contact_state())
         system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))
         system.contact_memory = memory.zeros(int(self.native.sym_contact_memory_size(system)))
         if self.actions is None:

@@ -13,6 +13,7 @@ import symofros as sf
 from symofros.blocks import Constant, ForwardDynamics, Hold, Sequence
 from symofros.diagrams.block import Crossing
 from tests.simulation.mechanisms import loop, slide
+from tests.simulation.rigid_scenes import ball_system, box_system
 
 
 @dataclass(frozen=True)
@@ -134,7 +135,24 @@ def _brake() -> Case:
     return Case(sf.System("brake", (arm,), parameters), events, 1.0)
 
 
+def _backspin() -> Case:
+    """A ball that is thrown with backspin bounces until it stays on the ground, slides, and rolls."""
+    return Case(ball_system(), {}, 2.0, {"free.pz": 0.5, "free.vx": 1.0, "free.wy": -20.0})
+
+
+def _slab() -> Case:
+    """A slab on four feet slides to rest, and falls over an event that takes its friction away."""
+    tilted = box_system(0.3, gravity=(1.0, 0, -9.8))
+    parameters = (sf.Parameter("mu", 0.3),)
+    (sole,) = tilted.connections
+    system = replace(tilted, parameters=parameters, connections=(replace(sole, friction=sf.formula("mu")),))
+    events = {"wet": sf.Event("t - 0.8", action={"mu": 0.05}), "dry": sf.Event("t - 1", action={"mu": 0.4})}
+    return Case(system, events, 1.3, {"free.pz": 0.1, "free.vx": 1.0})
+
+
 CASES = {
+    "backspin": _backspin(),
+    "slab": _slab(),
     "grasp": _grasp(),
     "latch": _latch(),
     "bounce": _bounce(),
@@ -181,7 +199,7 @@ def test_a_mechanism_alone_moves_as_it_is_simulated(name: str, options: dict[str
     np.testing.assert_allclose(run["plant.q"][-1], alone.q[-1], **near)
     np.testing.assert_allclose(run["plant.v"][-1], alone.v[-1], **near)
     np.testing.assert_allclose(run["plant.lam"][-1], alone.lam[-1], rtol=1e-7, atol=1e-7)
-    assert list(run.outcome.notes) == [one.replace("'strike'", "'plant.strike'") for one in alone.outcome.notes]
+    assert list(run.outcome.notes) == [one.replace("event '", "event 'plant.") for one in alone.outcome.notes]
     assert all("persists" in one for one in alone.outcome.notes), (
         "constraints that hold bodies at rest pass over nothing"
     )
@@ -261,7 +279,9 @@ def test_a_crossing_throws_what_friction_holds() -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class Thrown(ForwardDynamics):
-    """A mechanism that gets a speed at t = 1 s."""
+    """A mechanism of one coordinate that gets a speed at t = 1 s."""
+
+    speed: float = 0.8
 
     def crossings(self, context: Any) -> Mapping[str, Crossing]:
         """The instant."""
@@ -269,7 +289,7 @@ class Thrown(ForwardDynamics):
 
     def crossed(self, context: Any, which: str) -> Mapping[str, Any]:
         """The speed."""
-        return {"v": context.numbers([0.8])}
+        return {"v": context.numbers([self.speed])}
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,127 @@
+"""Rigid contacts of a diagram's mechanisms (docs/theory/diagrams.md, section 9; constraints.md, section 15)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.blocks import ForwardDynamics, Hold, ModelFunction, Sequence
+from tests.diagrams.run.test_switching import CASES, Thrown, diagram, simulated
+from tests.simulation.rigid_scenes import G, ball_system, box_system
+
+THROWN = {"free.pz": 0.5, "free.vx": 1.0, "free.wy": -20.0}
+
+
+def hopper() -> sf.Diagram:
+    """A mass of 2 kg falls on the ground from 0.1 m; a sampled force presses it on, and lifts it from 0.5 s to 0.8 s."""
+    mass = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(2.0))
+    system = sf.System(
+        "hopper",
+        (mass,),
+        inputs=(sf.Input("force"),),
+        virtual_power=(sf.VirtualPower("push", {"dz": "force"}),),
+        connections=(sf.Contact("foot", ("z", None), ("world", None), restitution=0.0, friction=0.5),),
+    )
+    of = sf.Diagram("hopping")
+    of.add_model("m", system, {"z": 0.1})
+    of.add(Sequence(name="force", t=[0.0, 0.5, 0.8], values=[[-10.0], [30.0], [0.0]], kind="hold"))
+    of.add(Hold(name="hold", period=0.1), u="force")
+    of.add(ForwardDynamics(name="plant", model="m", tells=("contact_forces",)))
+    of.connect("hold.y", "plant.u")
+    return of
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_a_sampled_force_lifts_a_mass_off_the_ground(method: str) -> None:
+    """It lands, is pressed on, opens at the sample, flies, and lands again: closed forms."""
+    run = sf.Simulation(hopper()).run(2.0, dt=1e-3, record=0.01, method=method)
+    assert run.outcome.ok
+    landed, opens, again = run.events["plant"]
+    pressed, lifted = G + 5.0, 15.0 - G
+    assert landed.name == "foot sticks" and landed.t == pytest.approx(np.sqrt(0.2 / pressed), abs=1e-9)
+    assert landed.energy_lost == pytest.approx(0.1 * 2.0 * pressed, abs=1e-9)
+    assert (opens.name, opens.t) == ("foot opens", 0.5)
+    height, speed = 0.5 * lifted * 0.3**2, lifted * 0.3
+    fall = (speed + np.sqrt(speed**2 + 2.0 * G * height)) / G
+    assert again.t == pytest.approx(0.8 + fall, abs=1e-9)
+    push = run["plant.contact_forces_push"][:, 0]
+    pressing, flying = (run.t > landed.t) & (run.t < 0.5), (run.t > 0.5) & (run.t < again.t)
+    np.testing.assert_allclose(push[pressing], 2.0 * pressed, rtol=1e-12)
+    assert not push[flying].any() and np.count_nonzero(pressing) > 20
+    np.testing.assert_allclose(run["plant.contact_forces_force"][pressing, 0], [[0, 0, 2.0 * pressed]] * pressing.sum())
+
+
+def test_forces_are_those_of_a_run_by_itself() -> None:
+    """Sliding friction included: by the mechanism, and by a block that is given its multipliers."""
+    case = CASES["slab"]
+    of = diagram(case, tells=("contact_forces",))
+    of.add(ModelFunction(name="felt", model="m", function="contact_forces"))
+    for signal in ("q", "v", "lam"):
+        of.connect(f"plant.{signal}", f"felt.{signal}")
+    options = {"method": "rk4", "dt": 1e-2}
+    run, alone = sf.Simulation(of).run(0.7, record=0.05, **options), simulated(case, output=0.05, **options)
+    forces = alone.contact_forces()
+    for t in (0.05, 0.3, 0.65):
+        i, k = (int(np.flatnonzero(np.isclose(times, t))[-1]) for times in (run.t, alone.t))
+        for block in ("plant.contact_forces_", "felt."):
+            np.testing.assert_allclose(run[f"{block}force"][i], forces.force[k], atol=1e-10)
+            np.testing.assert_allclose(run[f"{block}push"][i], forces.push[k], atol=1e-10)
+    assert (forces.force[1, :, 0] < -0.1).all(), "friction is seen"
+
+
+def test_forces_of_rigid_contacts_are_of_multipliers() -> None:
+    of = diagram(CASES["slab"])
+    of.add(ModelFunction(name="felt", model="m", function="contact_forces"), q="plant.q", v="plant.v")
+    with pytest.raises(sf.DescriptionError, match=r"felt.*lam"):
+        sf.Simulation(of)
+
+
+@pytest.mark.parametrize("order", [("ball", "arm", "second"), ("arm", "second", "ball")])
+def test_modes_of_mechanisms_are_chosen_each_by_its_own_rule(order: tuple[str, ...]) -> None:
+    """Two balls that bounce and a brake that holds an arm, in one diagram: each as without the others."""
+    brake, of = CASES["brake"], sf.Diagram("both")
+    of.add_model("balls", ball_system(), THROWN)
+    of.add_model("arms", brake.system)
+    for name in order:
+        events = {"events": brake.events} if name == "arm" else {}
+        of.add(ForwardDynamics(name=name, model="arms" if name == "arm" else "balls", **events))
+    run = sf.Simulation(of).run(2.0, method="dopri5", rtol=1e-9, atol=1e-11, record=0.5)
+    fine = {"method": "dopri5", "rtol": 1e-9, "atol": 1e-11}
+    for name in order:
+        alone = simulated(brake if name == "arm" else CASES["backspin"], **fine)
+        here = run.events[name]
+        assert [one.name for one in here] == [one.name for one in alone.events]
+        np.testing.assert_allclose([one.t for one in here], [one.t for one in alone.events], atol=1e-8)
+        last = int(np.flatnonzero(np.isclose(run.t, alone.t[-1]))[-1])
+        np.testing.assert_allclose(run[f"{name}.q"][last], alone.q[-1], atol=1e-7)
+
+
+@pytest.mark.parametrize("speed", [2.0, -2.0])
+def test_a_crossing_throws_what_stands_on_the_ground(speed: float) -> None:
+    """A block that resets speeds: upwards the mass flies and lands; downwards it strikes, and rebounds by its restitution."""
+    mass = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(2.0))
+    foot = sf.Contact("foot", ("z", None), ("world", None), restitution=0.5, friction=0.5)
+    of = sf.Diagram("thrown")
+    of.add_model("m", sf.System("mass", (mass,), connections=(foot,)))
+    of.add(Thrown(name="plant", model="m", speed=speed))
+    run = sf.Simulation(of).run(1.3, dt=1e-3)
+    assert run.outcome.ok and [(c.crossing, round(c.t, 9)) for c in run.crossings] == [("kick", 1.0)]
+    leaves = speed if speed > 0.0 else -0.5 * speed
+    flying = (run.t > 1.0) & (run.t < 1.0 + 2.0 * leaves / G)
+    since = run.t[flying] - 1.0
+    np.testing.assert_allclose(run["plant.q"][flying, 0], leaves * since - 0.5 * G * since**2, atol=1e-9)
+    assert np.abs(run["plant.q"][run.t < 1.0]).max() < 1e-12 and flying.sum() > 100
+
+
+def test_a_start_below_the_ground_is_refused() -> None:
+    of = sf.Diagram("sunk")
+    of.add_model("m", box_system(0.5), {"free.pz": 0.09})
+    of.add(ForwardDynamics(name="plant", model="m"))
+    with pytest.raises(sf.SymofrosError, match="penetrated here"):
+        sf.Simulation(of).run(0.1)
+
+
+def test_it_is_not_interpreted() -> None:
+    with pytest.raises(sf.SymofrosError, match="modes of friction that sticks, or of rigid contacts"):
+        sf.Simulation(diagram(CASES["backspin"])).interpret(0.1)
