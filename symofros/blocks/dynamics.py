@@ -147,7 +147,7 @@ class ForwardDynamics(Block):
         signals |= {"lam": context.lam} if record.nc else {}
         given = {**motion, **states, "u": context.inputs["u"], "t": context.t}
         for function in self.tells:
-            values = told_values(context, self.model, function, lam=context.lam, **given)
+            values = told_values(context, self.model, function, "", {**given, "lam": context.lam})
             signals |= {
                 name: values[of.name] for name, of in zip(_told(function), OFFERED[function].outputs, strict=True)
             }

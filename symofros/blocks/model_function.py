@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import prod
 
@@ -70,7 +71,7 @@ class ModelFunction(Block):
         record = context.environment.model(self.model)
         given = {name: signal for name, signal in none.items() if not _entries(name, record)}
         given |= {"t": context.t, **context.inputs}
-        return told_values(context, self.model, self.function, self.frame, **given)
+        return told_values(context, self.model, self.function, self.frame, given)
 
 
 def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
@@ -95,15 +96,15 @@ def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ..
     return outputs
 
 
-def told_values(context: EvaluationContext, model: str, function: str, frame: str = "", **given: Tensor) -> Values:
-    """Outputs of an offered function; forces of rigid contacts are those of their multipliers, as of `contact_forces`."""
-    record = context.environment.model(model)
-    found = context.call(model, function, frame, **given)
+def told_values(at: EvaluationContext, model: str, function: str, frame: str, given: Mapping[str, Tensor]) -> Values:
+    """Outputs of an offered function; forces of rigid contacts are those of their multipliers."""
+    record = at.environment.model(model)
+    found = at.call(model, function, frame, **given)
     outputs = {output.name: found[output.name] for output in OFFERED[function].outputs}
     if not _reads_reactions(function, record):
         return outputs
     lam, places = given["lam"], {name: i for i, name in enumerate(record.wrench_names)}
-    wrenches = context.call(model, "closure_wrenches", "", **given)["on_second"]
+    wrenches = at.call(model, "closure_wrenches", "", **given)["on_second"]
     push, force = list(outputs["push"]), list(outputs["force"])
     for ball in record.rigid_contacts:
         k = record.contact_names.index(ball.name)

@@ -276,7 +276,7 @@ class Functions(Arguments):
         return self._build_formulas(tuple(formulas), derivatives, reactions).kernels["formulas", ""]
 
     def contact_state(self) -> Kernel:
-        """State of each ball of the rigid contacts, one after the other: distance, velocity (3), friction, restitution."""
+        """State of the balls of rigid contacts: distance, velocity (3), friction, restitution of each."""
         own = self._kernels.get(("contact_state", ""))
         return own or self.formulas([x for ball in self.record.rigid_contacts for x in ball.state], derivatives=False)
 

@@ -320,7 +320,9 @@ class ModelRecord:
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            choose = "`simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them, by explicit methods"
+            choose = (
+                "`simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them, by explicit methods"
+            )
             remedy = "a compliant contact: stiffness in place of restitution"
             raise _no_modes(f"{what}: rigid contact", found, choose, remedy)
 

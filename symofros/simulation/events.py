@@ -120,9 +120,7 @@ class ModeEvent(Event):
     def said(self, before: Any, after: Any, *, impulse: bool = True) -> str:
         """What it came to, by the parameters (npar) before and afterwards, and by whether speeds have changed."""
         ended, begun = (self.words[round(abs(par[self.mode]))] for par in (before, after))
-        unchanged = (
-            {"opens": "strikes" if impulse else "grazes", "slides": "turns"} if self.of_contact else {}
-        )
+        unchanged = {"opens": "strikes" if impulse else "grazes", "slides": "turns"} if self.of_contact else {}
         return f"{self.name} {unchanged.get(begun, begun) if begun == ended else begun}"
 
 

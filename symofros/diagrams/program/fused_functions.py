@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
 
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.program.lowered_block import Piece, watched
@@ -55,8 +56,7 @@ class Fuser:
 
         Args:
             part: The part.
-            whole: Whether "formulas", whose zeros are located, "actions" and "contact_state" are among them, where there
-                are some.
+            whole: Whether "formulas", whose zeros are located, "actions" and "contact_state" are among them.
         """
         g = Graph()
         at = self._at(g, part=part)
@@ -82,9 +82,12 @@ class Fuser:
     def _located_forms(self, part: Part) -> dict[str, Callable[[Point, Part], Function]]:
         """What writes a part's functions of events: those that it has."""
         owners = owners_of(self._pieces, part)
-        forms = {"events": self._formulas} if owners or watched(self._pieces) else {}
-        forms |= {"actions": self._actions} if owners else {}
-        return forms | ({"contacts": self._contacts} if self._balls(part) else {})
+        forms: dict[str, tuple[Callable[[Point, Part], Function], Any]] = {
+            "events": (self._formulas, owners or watched(self._pieces)),
+            "actions": (self._actions, owners),
+            "contacts": (self._contacts, self._balls(part)),
+        }
+        return {name: form for name, (form, some) in forms.items() if some}
 
     def _balls(self, part: Part) -> list[tuple[Piece, Tensor]]:
         """Mechanisms with rigid contacts, and the states of their balls."""

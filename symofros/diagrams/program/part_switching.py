@@ -113,7 +113,9 @@ def part_switching(
         frames |= dict.fromkeys((name, frame) for frame in switching.poses)
     first_mode = sum(not isinstance(event, ModeEvent) for event in events)
     stated = StatedActions(tuple(assignments), (), first_mode)
-    return PartSwitching(tuple(events), owners, stated, tuple(switches), tuple(sticking), tuple(contacts), tuple(frames))
+    return PartSwitching(
+        tuple(events), owners, stated, tuple(switches), tuple(sticking), tuple(contacts), tuple(frames)
+    )
 
 
 class _Places(NamedTuple):

@@ -99,7 +99,11 @@ def _said_twice(block: Block, record: ModelRecord) -> Problem:
     found = "events"
     if not block.mechanism_events():
         sticks = record.sticking
-        found = f"friction of '{sticks[0].name}' sticks" if sticks else f"contact of '{record.rigid_contacts[0].name}' is rigid"
+        found = (
+            f"friction of '{sticks[0].name}' sticks"
+            if sticks
+            else f"contact of '{record.rigid_contacts[0].name}' is rigid"
+        )
     rule = "which constraints hold is said by an input of the block, or by events and modes of its mechanism"
     remedy = "state the constraints as switches (sf.Switch) that events act on, in place of `engaged`"
     return Problem(f"block '{block.name}': engaged constraints beside events", found, rule, remedy)

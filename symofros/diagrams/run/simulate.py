@@ -170,7 +170,9 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
         a, par = np.zeros_like(v), layout.present(ended.par, u)
         for part, model in zip(layout.parts, parts, strict=True):
             at = t, q[:, part.q], v[:, part.v], u
-            a[:, part.v] = contact_dynamics(model, at, par)[0] if model.nc else model.forward_dynamics(*at[1:], par=par, t=t)
+            a[:, part.v] = (
+                contact_dynamics(model, at, par)[0] if model.nc else model.forward_dynamics(*at[1:], par=par, t=t)
+            )
         return np.asarray(a)
 
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))

@@ -293,7 +293,7 @@ static void sym_batch_first_slopes(sym_batch *b) {
         double *k = sym_batch_row(b, b->k, i);
         int32_t status = 0;
         if (!r->slope_valid) {
-            status = sym_complete_acceleration(r);
+            status = sym_complete_acceleration(r, r->par);
             sym_store_first_slope(r, k);
         }
         b->status[i] = status != 0 ? status : sym_first_slope(r, k);
@@ -333,7 +333,7 @@ static void sym_batch_evaluate_stage(sym_batch *b, int32_t stage) {
     sym_batch_evaluate_acceleration(b);
     for (i = 0; i < b->n_active; ++i) {
         sym_run *r = b->runs + i;
-        const int32_t status = sym_complete_acceleration(r);
+        const int32_t status = sym_complete_acceleration(r, r->par);
         if (b->status[i] == 0) b->status[i] = status;
         sym_slope_of_acceleration(r->system, sym_batch_row(b, b->stage, i), sym_batch_row(b, k, i));
     }

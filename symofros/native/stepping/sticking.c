@@ -68,8 +68,11 @@ static double sym_mode_by_motion(const sym_system *s, const sym_sticking *of, do
 
 /* Accelerations and multipliers at the evaluation point by parameters that differ in modes. Returns 0 or a status. */
 static int32_t sym_evaluate_modes(sym_run *r, const double *par) {
-    sym_prepare_call(&r->system->forward_dynamics, par);
-    return sym_evaluate_acceleration(r);
+    sym_system *s = r->system;
+    if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
+    sym_prepare_call(&s->forward_dynamics, par);
+    sym_evaluate(&s->forward_dynamics);
+    return sym_complete_acceleration(r, par);
 }
 
 /* Modes of the coordinates at rest, those with a size of 0 or more: from all held on, they change until all agree with the

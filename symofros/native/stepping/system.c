@@ -248,11 +248,11 @@ static int32_t sym_check_acceleration(sym_run *r) {
 
 static int32_t sym_add_sliding(sym_run *r, const double *par);
 
-/* What is to be done once accelerations are evaluated: check them, and add friction of balls that slide. Returns 0 or a
- * status. */
-static int32_t sym_complete_acceleration(sym_run *r) {
+/* What is to be done once accelerations are evaluated by parameters: check them, and add friction of balls that slide. Returns
+ * 0 or a status. */
+static int32_t sym_complete_acceleration(sym_run *r, const double *par) {
     const int32_t status = sym_check_acceleration(r);
-    return status != 0 || r->system->n_contacts == 0 ? status : sym_add_sliding(r, r->par);
+    return status != 0 || r->system->n_contacts == 0 ? status : sym_add_sliding(r, par);
 }
 
 /* Accelerations and multipliers at the evaluation point, inputs included. Returns 0 or a status. */
@@ -260,7 +260,7 @@ static int32_t sym_evaluate_acceleration(sym_run *r) {
     sym_system *s = r->system;
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->forward_dynamics);
-    return sym_complete_acceleration(r);
+    return sym_complete_acceleration(r, r->par);
 }
 
 /* Evaluation point <- the present state. */

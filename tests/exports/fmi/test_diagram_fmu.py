@@ -154,7 +154,10 @@ def test_a_unit_refuses_in_words(version: int, tmp_path: Path) -> None:
         assert words in "".join(log), log
 
 
-@pytest.mark.parametrize(("version", "case"), [(2, "brake"), (3, "bounce"), (3, "grasp"), (2, "rest"), (3, "rest")])
+@pytest.mark.parametrize(
+    ("version", "case"),
+    [(2, "brake"), (3, "bounce"), (3, "grasp"), (2, "rest"), (3, "rest"), (2, "slab"), (3, "backspin")],
+)
 def test_a_unit_does_the_actions_of_the_run(version: int, case: str, tmp_path: Path) -> None:
     """From a state that was saved before them, too: what they set belongs to it."""
     stated = CASES[case]
