@@ -208,9 +208,10 @@ class UnitCompiler:
         def source() -> str:
             with self._generating:
                 progress.begin("generating")
-                # Of a unit on vectors, the code for one state is never called.
+                # Of a unit on vectors, the code for one state is hardly called.
                 packs: Packs = self._packs if lanes is None else "none"
-                text = model_source(program(), self._record, GENERATOR, lanes, packs=packs)
+                whole = None if lanes is None else replace(lanes, are_all=True)
+                text = model_source(program(), self._record, GENERATOR, whole, packs=packs)
             progress.begin("compiling")
             if meanwhile is not None:
                 meanwhile()

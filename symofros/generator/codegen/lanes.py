@@ -65,8 +65,8 @@ def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
         ]
     return [
         "#if SYM_LANES > 1",
-        # One state alone is evaluated as the others are where that is less precise.
-        f"    if (n > {0 if lanes.single else 1} && (SYM_OWN || in_stride[0] == 0)) {{",
+        # One state alone is evaluated as the others are where that is less precise, or nothing else is there.
+        f"    if (n > {0 if lanes.single or lanes.are_all else 1} && (SYM_OWN || in_stride[0] == 0)) {{",
         f"        sym_strided from[{n_in}], to[{n_out}];",
         f"        sym_way way[{n_in + n_out}];",
         f"        sym_column columns[{n_in + n_out}];",
@@ -76,6 +76,25 @@ def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
         "    }",
         "#endif",
     ]
+
+
+def one_state(c_name: str, function: Function) -> str:
+    """The C function that evaluates one state, by vectors: a batch of one.
+
+    Args:
+        c_name: Its name.
+        function: Function that it evaluates.
+    """
+    signature = "(size_t n, const double *const *in, const size_t *in_stride, double *const *out, double *work)"
+    return "\n".join(
+        [
+            f"static void {c_name}_batch{signature};",
+            f"static void {c_name}(const double *const *in, double *const *out, double *work) {{",
+            f"    static const size_t stride[{len(function.inputs) + 1}] = {{0}};",
+            f"    {c_name}_batch(1, in, stride, out, work);",
+            "}",
+        ]
+    )
 
 
 def strided(c_name: str, program: Program, function: Function, work: int, lanes: LaneOptions) -> str:

@@ -275,6 +275,9 @@ def _one_function(
             strided = lanes.strided(c_name, program, function, on_vectors.work, in_lanes)
             vectors = ["#if SYM_LANES > 1", on_vectors.code, strided, "#endif"]
             scratch = lanes.scratch(program, function, on_vectors.work, in_lanes)
+            if in_lanes.are_all:
+                otherwise = lanes.one_state(c_name, function)
+                text = replace(text, code="\n".join(["#if SYM_LANES > 1", otherwise, "#else", text.code, "#endif"]))
     work = max(text.work, scratch)
     title = f"{function.name} {function.frame}".rstrip()
     described = f"{title}: {function.summary}" if function.summary else title

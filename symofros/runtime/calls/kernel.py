@@ -42,11 +42,14 @@ class LaneOptions:
         precision: Floating-point type of the lanes: "double" or "single".
         in_rows: Whether lanes read and write the rows of two states where they lie: for vectors of two doubles, and
             callers that have no other layout. In doubles, of shared parameters.
+        are_all: Whether one state alone is evaluated by them, too, where the compiler has vectors: beside code for one
+            state that nobody calls, a library takes nearly twice as long to compile.
     """
 
     own_parameters: bool = False
     precision: Precision = "double"
     in_rows: bool = False
+    are_all: bool = False
 
     @property
     def single(self) -> bool:

@@ -164,6 +164,28 @@ def test_each_state_may_have_its_own_parameters(case: str) -> None:
         assert own is not kernel and np.array_equal(found, expected, equal_nan=True)
 
 
+@pytest.mark.parametrize("case", ("double_pendulum", "heavy_top"))
+def test_where_vectors_are_all_one_state_is_evaluated_by_them(case: str) -> None:
+    """One alone, and states with parameters of their own that the lanes can't hold: what a loop gives, to the bit."""
+    names = ("bias", "potential_energy")
+    models = {b: sf.compile(stated(case), sf.Options(names, batch=b, flags=QUICK)) for b in ("vector", "loop")}  # type: ignore[arg-type]
+    for name in names:
+        loop, kernel = models["loop"].kernel(name), models["vector"].kernel(name)
+        alone = kernel.in_lanes()  # type: ignore[attr-defined]
+        text = alone.library.with_suffix(".c").read_text(encoding="utf-8")
+        assert alone is not kernel and text.count("_batch(1, in, stride, out, work);") == 1
+        n, par = 3, np.array(parameters(case))
+        pre = loop.prepare(par * np.linspace(1.0, 1.5, n)[:, None])
+        inputs = given(loop, n)
+        results = alone._by_rows(n, [pre, *inputs], 1), loop._by_rows(n, [pre, *inputs], 1)  # type: ignore[attr-defined]
+        for found, expected in zip(*results, strict=True):
+            assert np.array_equal(found, expected, equal_nan=True)
+        outputs = [np.full(value.shape[1:], 7.0) for value in results[1]]
+        alone.bind(pre[:1], [x[0] for x in inputs], outputs)()
+        for output, expected in zip(outputs, results[1], strict=True):
+            assert np.array_equal(output, expected[0], equal_nan=True)
+
+
 # Vectors of each width in every run with one way of passing parameters or the other.
 OWN_IN_EVERY_RUN = {(): True, ("-std=gnu99", "-O2"): False, ("-std=gnu99", "-O2", "-mavx512f"): True}
 
@@ -181,7 +203,11 @@ OWN_IN_EVERY_RUN = {(): True, ("-std=gnu99", "-O2"): False, ("-std=gnu99", "-O2"
         for own in (False, True)
         for precision in ("double", "single")
     ]
-    + [pytest.param(("-std=gnu99", "-O2", "-mavx2"), LaneOptions(in_rows=True), id="rows")],
+    + [
+        pytest.param(("-std=gnu99", "-O2", "-mavx2"), LaneOptions(in_rows=True), id="rows"),
+        pytest.param(("-std=gnu99", "-O2", "-mavx2"), LaneOptions(are_all=True), id="all"),
+        pytest.param((), LaneOptions(are_all=True), id="all, without vectors"),
+    ],
 )
 def test_vector_code_compiles_without_warnings(flags: tuple[str, ...], lanes: LaneOptions, tmp_path: Path) -> None:
     """As strict C99, where batches are loops, and on vectors of every width."""
