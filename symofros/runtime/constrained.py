@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -42,15 +43,22 @@ CLOSED, NEWTON, HALVINGS, LARGEST_STEP = 1e-13, 30, 30, 0.5
 def natural_sizes(G: Array, measures: Measures) -> Array:
     """Natural size of each entry of G (nc, nv), by which rank decisions judge it (docs/theory/constraints.md, (20))."""
     nc, nv = G.shape
+    group, speed, least = _size_tables(measures)
     sizes = np.zeros((nc, SPEED_KINDS))
-    group, unit, speed = (np.array(table, dtype=np.intp) for table in measures)
     np.maximum.at(sizes, (group[:, None], speed), np.where(np.isnan(G), 0.0, np.abs(G)))
-    with_unit = group[unit != FORMULA]
-    sizes[with_unit] = np.maximum(sizes[with_unit], MIN_SIZE)
+    sizes = np.maximum(sizes, least)
+    return np.asarray(sizes[group[:, None], speed], dtype=np.float64).reshape(nc, nv)
+
+
+@lru_cache(maxsize=64)
+def _size_tables(measures: Measures) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp], Array]:
+    """Groups of rows (nc), kinds of speeds (nv), and the least size of each group's entries (nc, SPEED_KINDS)."""
+    group, unit, speed = (np.array(table, dtype=np.intp) for table in measures)
+    least = np.zeros((len(group), SPEED_KINDS))
+    least[group[unit != FORMULA]] = MIN_SIZE
     for kind, own in ((LENGTH, TRANSLATION), (ANGLE, ROTATION)):
-        groups = group[unit == kind]
-        sizes[groups, own] = np.maximum(sizes[groups, own], 1.0)
-    return np.asarray(sizes[group][:, speed], dtype=np.float64).reshape(nc, nv)
+        least[group[unit == kind], own] = 1.0
+    return group, speed, least
 
 
 def residual_weights(G: Array, measures: Measures) -> Array:
@@ -166,7 +174,8 @@ def eliminate(G: Array, measures: Measures, inertia: Array, ranking: Ranking = D
         upper.append(left[p].copy())
         left[changed] -= own_factor * left[p]
         left[changed, d] = 0.0
-        judge(changed)
+        if len(changed):
+            judge(changed)
         factor[p] = 1.0
         lower.append(factor)
     L, U = np.array(lower).reshape(len(rows), nc).T.copy(), np.array(upper).reshape(len(rows), nv)
@@ -221,15 +230,18 @@ def solve(
         a and lam, shaped like r and c, and the rank of G; NaN where no acceleration exists, with rank -1 if M and G are
         finite.
     """
-    nv = len(M)
-    unsolved = np.full_like(r, np.nan), np.full_like(c, np.nan)
     if not (np.all(np.isfinite(M)) and np.all(np.isfinite(G))):
-        return *unsolved, 0
-    L, U, rows, columns, _ = eliminated = eliminate(G, measures, np.diag(M), ranking)
-    Z, _ = free_motions(eliminated, nv)
+        return np.full_like(r, np.nan), np.full_like(c, np.nan), 0
+    return _solve(M, r, c, eliminate(G, measures, np.diag(M), ranking))
+
+
+def _solve(M: Array, r: Array, c: Array, eliminated: Eliminated) -> tuple[Array, Array, int]:
+    """The solution of `solve`, with G eliminated, where M and G are finite."""
+    L, U, rows, columns, _ = eliminated
+    Z, _ = free_motions(eliminated, len(M))
     B = _factor(Z.T @ M @ Z, np.diag(np.abs(Z.T) @ np.abs(M) @ np.abs(Z)))
     if B is None:
-        return *unsolved, -1
+        return np.full_like(r, np.nan), np.full_like(c, np.nan), -1
     a = np.zeros_like(r)
     y = np.linalg.solve(L[rows], c[rows])
     y = y + np.linalg.pinv(L) @ (c - L @ y)  # Least squares, where conditions contradict each other.
@@ -295,11 +307,14 @@ def motion(
         a, lam, and the rank of G.
     """
     M, r, G, c, _, phi = at
-    solution = solve(M, r, G, c, measures)
+    if not (np.all(np.isfinite(M)) and np.all(np.isfinite(G))):
+        return solve(M, r, G, c, measures)
+    eliminated = eliminate(G, measures, np.diag(M))
+    solution = _solve(M, r, c, eliminated)
     off = deviation(G, measures, phi)
     if not (solution[2] > 0 and off > BESIDE):
         return solution
-    if not eliminate(G, measures, np.diag(M)).weakest < min(DOUBT * off, DOUBT_MOST):
+    if not eliminated.weakest < min(DOUBT * off, DOUBT_MOST):
         return solution
     rank = _rank_on_constraints(at, terms, move, q, measures)
     return solution if rank is None or rank >= solution[2] else solve(M, r, G, c, measures, Ranking(most=rank))
