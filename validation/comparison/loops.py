@@ -17,8 +17,8 @@ from ..mechanics.geometry import Array
 
 # Assembly is a search in Python, and some engines rebuild their model for each state.
 MOST = 40
-# Of the random states from which assembly starts, many lead nowhere.
-TRIED = 4 * MOST
+# Of the random states from which assembly starts, many lead nowhere. States between two counts of what they led to.
+TRIED, COUNTED = 4 * MOST, MOST // 4
 # By how much M, each speed measured by its own inertia, and the constraints amplify rounding. Beside a posture where a
 # joint's axes align or a loop is at its limit, engines differ by that, and by nothing of theirs.
 WORST_CONDITION_OF_M, WORST_CONDITION = 1e5, 2e4
@@ -40,8 +40,8 @@ def assembled_states(system: sf.System, states: States, worst: float = WORST_CON
     """
     model = sf.compile(system, sf.Options(functions=FUNCTIONS))
     parts: list[States] = []
-    for first in range(0, min(len(states), TRIED), MOST):
-        parts.append(_assembled(model, states[first : first + MOST], worst))
+    for first in range(0, min(len(states), TRIED), COUNTED):
+        parts.append(_assembled(model, states[first : first + COUNTED], worst))
         if sum(map(len, parts)) >= MOST:
             break
     joined = [np.concatenate([getattr(part, item.name) for part in parts]) for item in fields(States)]
