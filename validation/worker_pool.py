@@ -6,6 +6,7 @@ import gc
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from importlib import import_module
 from pathlib import Path
 from queue import SimpleQueue
 
@@ -13,7 +14,7 @@ import symofros as sf
 
 from .adapters import route_of
 from .checking import ModelResult, Settings, absent, broken, check, failed
-from .inputs.cases import Case
+from .inputs.cases import BODY, Case
 from .worker_process import WorkerError, WorkerProcess
 
 Report = Callable[[ModelResult], None]
@@ -62,6 +63,15 @@ def without_folder(text: str, path: Path | None) -> str:
     return text if path is None else text.replace(f"{path.parent}{os.sep}", "")
 
 
+def longest_first(cases: Sequence[Case]) -> list[Case]:
+    """The models in the order in which they are checked: those that take long keep no worker alone at the end."""
+    try:
+        procedures = import_module(".procedures.catalogue", __package__).PROCEDURES
+    except ModuleNotFoundError:  # What is not installed is said by the jobs that ask for it.
+        procedures = {}
+    return sorted(cases, key=lambda case: -(case.weight + BODY * len(procedures.get(case.label, ()))))
+
+
 def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -> None:
     """Check models, several at a time.
 
@@ -93,7 +103,7 @@ def run(cases: Sequence[Case], settings: Settings, workers: int, done: Report) -
         return result  # type: ignore[no-any-return]
 
     with ThreadPoolExecutor(count) as threads:
-        results = [threads.submit(judged, case) for case in sorted(cases, key=lambda case: -case.weight)]
+        results = [threads.submit(judged, case) for case in longest_first(cases)]
         try:
             for future in as_completed(results):
                 done(future.result())

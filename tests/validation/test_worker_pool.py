@@ -8,7 +8,7 @@ from tests.validation.subjects import URDF
 from validation.checking import ModelResult, Settings
 from validation.contract.interface import Subject
 from validation.inputs.cases import Case
-from validation.worker_pool import ONE_THREAD, run, run_case
+from validation.worker_pool import ONE_THREAD, longest_first, run, run_case
 
 FEW = Settings(states=10, engines=("pinocchio",))
 
@@ -42,6 +42,11 @@ def test_an_internal_fault_is_a_failed_row_with_its_place() -> None:
     (row,) = run_case(Faulty("bad"), FEW).comparisons
     assert row.status == "failed" and row.quantity == "check"
     assert row.note.startswith("ZeroDivisionError: a fault of ours (test_worker_pool.py:")
+
+
+def test_large_models_and_those_of_many_procedures_come_first() -> None:
+    labels = ("gyroscope", "pendulum", "mss")
+    assert [case.label for case in longest_first([Case(label) for label in labels])] == ["pendulum", "mss", "gyroscope"]
 
 
 @pytest.mark.parametrize("workers", [1, 2])

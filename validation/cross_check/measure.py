@@ -23,6 +23,7 @@ from ..reporting.command import Exit, Run
 from ..reporting.record import (
     Data,
 )
+from ..worker_pool import longest_first
 from ..worker_pool import run as run_cases
 from .baseline import Baseline, BaselineError, Regression, machine_of, slowest
 from .junit import to_junit
@@ -67,7 +68,7 @@ def measure(
     settings = Settings(states, seed, tuple(engine) if engine else None, full=full)
     stored = _baseline(baseline, settings)
     cases = _cases(models or [], reading)
-    first = ", ".join(case.label for case in sorted(cases, key=lambda case: -case.weight)[:workers])
+    first = ", ".join(case.label for case in longest_first(cases)[:workers])
     run.expect(len(cases), f"cross-checking {first}")
     results: dict[str, ModelResult] = {}
 
