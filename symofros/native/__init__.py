@@ -30,8 +30,8 @@ def native_text(name: str) -> str:
 
 @cache
 def native_number(name: str, macro: str) -> float:
-    """Value of a macro of a file that is one number, such as SYM_ABI of "model/symofros_model.h"."""
-    match = re.search(rf"^#define {macro} (?P<number>[-+.\de]+)u?$", native_text(name), re.MULTILINE)
+    """Value of a macro that is one number, which a comment may follow, such as SYM_ABI of "model/symofros_model.h"."""
+    match = re.search(rf"^#define {macro} +(?P<number>[-+.\de]+)u?(?: +/\*.*)?$", native_text(name), re.MULTILINE)
     if match is None:
         raise LookupError(f"{name} has lost {macro}")
     return float(match["number"])

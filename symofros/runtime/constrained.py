@@ -10,34 +10,35 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.measures import ANGLE, FORMULA, LENGTH, ROTATION, SPEED_KINDS, TRANSLATION, Measures
+from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 
-# What is left of a row of G that repeats others, as a share of its natural size. A redundant condition that has drifted
-# by d [m or rad] differs by about d, and would ask for accelerations that contradict the others: so the share is above
-# what integration drifts by, and below what distinguishes a posture from a singular one. SYM_RANK in C.
-RANK = 1e-6
+# Thresholds have one place, the C text. What is left of a row of G that repeats others, as a share of its natural size:
+# a redundant condition that has drifted by d [m or rad] differs by about d, and would ask for
+# accelerations that contradict the others, so the share is above what integration drifts by, and below what
+# distinguishes a posture from a singular one.
+RANK = native_number("model/dense.c.in", "SYM_RANK")
+PIVOT = native_number("model/dense.c.in", "SYM_PIVOT")
 # Smaller entries of a row that counts are no rounding above this share of their size: the mass that they move may be so
-# small that they are the pivot. How much more they must be worth, and the share of sizes that they carry on. In C
-# SYM_WEAK_LEAST and so on.
-WEAK_LEAST, WEAK_WORTH, WEAK_SIZE = 1e-14, 1e-3, 1e-8
-# An entry of a row with a unit: a smaller one is rounding; SYM_LEAST_SIZE in C.
-MIN_SIZE = 1e-9
+# small that they are the pivot. How much more they must be worth, and the share of sizes that they carry on.
+WEAK_LEAST, WEAK_WORTH, WEAK_SIZE = (
+    native_number("model/null_space_factors.c.in", f"SYM_WEAK_{name}") for name in ("LEAST", "WORTH", "SIZE")
+)
+MIN_SIZE, SMALL_REACH = (native_number("model/row_sizes.c.in", f"SYM_{name}") for name in ("LEAST_SIZE", "SMALL_REACH"))
+# Of states beside the constraints.
+BESIDE, DOUBT, DOUBT_MOST, FARTHEST = (
+    native_number("model/motion.c.in", f"SYM_{name}") for name in ("BESIDE", "DOUBT", "DOUBT_MOST", "FARTHEST")
+)
+APPROACH = int(native_number("model/motion.c.in", "SYM_APPROACH"))
+# Of the projection.
+CLOSED, STILL, LARGEST_STEP = (
+    native_number("model/project.c.in", f"SYM_{name}") for name in ("CLOSED", "STILL", "LARGEST_STEP")
+)
+NEWTON, HALVINGS = (int(native_number("model/project.c.in", f"SYM_{name}")) for name in ("NEWTON", "HALVINGS"))
 # Rows of G of larger ratios are brought to one size before a least-squares problem is solved: an SVD would lose digits.
 UNLIKE = 1e3
-# What is left of a diagonal entry beyond rounding; SYM_PIVOT in C.
-PIVOT = 1e-13
-# Of states beside the constraints, as in C (motion.c.in): deviation that is rounding; share of a row that it may have
-# left of one that repeats others, over the deviation and at most; deviation of no state that has drifted; steps to the
-# constraints.
-BESIDE, DOUBT, DOUBT_MOST, FARTHEST, APPROACH = 1e-10, 1e2, 0.1, 1e-2, 8
-# Reach [m] below which residuals count in proportion; SYM_SMALL_REACH in C.
-SMALL_REACH = 1e-3
 # Residual over reach that the rounding of coordinates and lengths leaves: some tens of units in the last place.
 RESIDUAL_ROUNDING = 1e-14
-# A speed that counts as rest; SYM_STILL in C.
-STILL = 1e-7
-# Of the projection, as in C: |phi| that no step improves on, most steps, halvings of one, its largest entry.
-CLOSED, NEWTON, HALVINGS, LARGEST_STEP = 1e-13, 30, 30, 0.5
 
 
 def natural_sizes(G: Array, measures: Measures) -> Array:

@@ -79,6 +79,25 @@ static void move_all(const double *const *in, double *const *out, double *work) 
     for (i = 0; i < SIZE; ++i) out[0][i] = in[1][i] + in[2][i];
 }
 
+/* Ranks that sym_motion gives beside those constraints, over three distances from them and SWEEP of the fading row. */
+enum { SWEEP = 24, SIZES = 3 };
+
+static void print_fading_ranks(void) {
+    static const sym_form form = {SIZE * SIZE, SIZE * SIZE, sym_constrained, sym_row_sizes, sym_clear_row};
+    const double none[1] = {0}, idle[SIZE] = {0};
+    double ranks[SIZES * SWEEP], a[SIZE], lam[SIZE], *results[3], *work;
+    int i, j;
+    work = scratch(2 * SIZE * SIZE + SYM_MOTION_WORK(SIZE, SIZE, SIZE) + SYM_CONSTRAINED_WORK(SIZE, SIZE));
+    for (i = 0; i < SIZES; ++i)
+        for (j = 0; j < SWEEP; ++j) {
+            const double q[SIZE] = {pow(10, -3 - i), 0, 0, 2e-4 * pow(1.5, j)};
+            const double *const in[6] = {none, q, idle, none, none, none};
+            results[0] = a, results[1] = lam, results[2] = ranks + i * SWEEP + j;
+            sym_motion(SIZE, SIZE, SIZE, &OWN_MEASURES, &form, fading_terms, move_all, in, results, work);
+        }
+    print("fading_ranks", SIZES * SWEEP, ranks), free(work);
+}
+
 /* dR/dx of one x with N columns: minus the identity above zeros. */
 static void slopes(const double *const *in, double *const *out, double *work) {
     int i;
@@ -131,10 +150,7 @@ int main(void) {
     const double *const weighed[7] = {none, q0, v0, none, none, FORCE, RIGHT};
     static double hessian[K_ * K_];
     static const sym_form form = {N * N, M_ * N, sym_constrained, sym_row_sizes, sym_clear_row};
-    const double faded[SIZE] = {1e-3, 0, 0, 6e-3}, idle[SIZE] = {0};
-    const double *const fading[6] = {none, faded, idle, none, none, none};
-    static const sym_form own_form = {SIZE * SIZE, SIZE * SIZE, sym_constrained, sym_row_sizes, sym_clear_row};
-    double rank, gap, *results[3], found[2 * SIZE];
+    double rank, gap, *results[3];
     sym_ranking ranking = sym_rank_anew(M_);
     double energies[2], A[N * N], B[M_ * N], r[N], c[M_], q[NQ], v[N], residual, derivative[(N + M_) * N], *out[1], *work;
     copy(A, MASS, N * N), copy(B, G, M_ * N), copy(r, FORCE, N), copy(c, RIGHT, M_);
@@ -152,10 +168,7 @@ int main(void) {
     results[0] = r, results[1] = c, results[2] = &rank;
     sym_motion(NQ, N, M_, &MEASURES, &form, beside_terms, move, at, results, work);
     print("motion_a", N, r), print("motion_lam", M_, c), print("motion_rank", 1, &rank), free(work);
-    work = scratch(2 * SIZE * SIZE + SYM_MOTION_WORK(SIZE, SIZE, SIZE) + SYM_CONSTRAINED_WORK(SIZE, SIZE));
-    results[0] = found, results[1] = found + SIZE;
-    sym_motion(SIZE, SIZE, SIZE, &OWN_MEASURES, &own_form, fading_terms, move_all, fading, results, work);
-    print("fading_rank", 1, &rank), free(work);
+    print_fading_ranks();
     work = scratch(SYM_DIFFERENTIATE_WORK(N, M_) + SYM_KKT_SOLVE_WORK(N, M_, N));
     out[0] = derivative;
     sym_differentiate(N, M_, &MEASURES, 1, columns, dynamics_terms, slopes, in, out, work);

@@ -11,6 +11,7 @@ import pytest
 
 from symofros.generator.codegen.solvers import ROUTINES
 from symofros.native import native_text
+from tests.runtime.test_constrained import fading_rank
 
 DRIVER = Path(__file__).parent / "solver_routines.c"
 FLAGS = ("-std=gnu99", "-O1", "-g", "-Wno-unused-function", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -82,9 +83,12 @@ def test_beside_the_constraints_the_rank_is_that_on_them(results: dict[str, np.n
     np.testing.assert_allclose(results["motion_a"], [0.0, -2.0, 2.0], rtol=0, atol=1e-3)
 
 
-def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(results: dict[str, np.ndarray]) -> None:
-    """Also where others have been left out at first, so that the steps begin again with fewer doubts."""
-    assert results["fading_rank"] == 2
+def test_the_rank_beside_rows_that_fade_is_that_of_the_routines_in_numpy(results: dict[str, np.ndarray]) -> None:
+    """From rounding to where the state is too far from the constraints to have drifted; as in the driver."""
+    states = [np.array([10.0 ** (-3 - i), 0, 0, 2e-4 * 1.5**j]) for i in range(3) for j in range(24)]
+    ranks = [fading_rank(q) for q in states]
+    np.testing.assert_array_equal(results["fading_ranks"], ranks)
+    assert set(ranks) == {2, 3}
 
 
 def test_projection_returns_the_initial_residual(results: dict[str, np.ndarray]) -> None:

@@ -114,22 +114,27 @@ def test_what_moves_no_mass_is_no_pivot_by_a_weak_entry() -> None:
         assert eliminate(G, measures, np.array(inertia)).columns.tolist() == [column]
 
 
+FADING = Measures((0, 1, 2, 3), (FORMULA,) * 4, (0,) * 4)
+
+
+def fading_terms(q: np.ndarray) -> list[np.ndarray]:
+    """q0 = 0, q0 + q3/20 = 0, q3^2 (1 + q1) = 0, which binds nothing more there; beyond q1 = 1/2 q2 = 0."""
+    beyond = float(q[1] >= 0.5)
+    phi = np.array([q[0], q[0] + 0.05 * q[3], q[3] ** 2 * (1.0 + q[1]), beyond * q[2]])
+    G = np.array([[1, 0, 0, 0], [1, 0, 0, 0.05], [0, q[3] ** 2, 0, 2.0 * q[3] * (1.0 + q[1])], [0, 0, beyond, 0.0]])
+    return [np.eye(4), np.zeros(4), G, np.zeros(4), np.ones(4), phi]
+
+
+def fading_rank(q: np.ndarray) -> int:
+    """The rank that the motion beside these constraints is given."""
+    return motion(fading_terms(q), fading_terms, lambda at, step: at + step, q, FADING)[2]
+
+
 @pytest.mark.parametrize("size", [1e-3, 1e-4])
 @pytest.mark.parametrize("share", [0.3, 1.0])
 def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(size: float, share: float) -> None:
-    """q3^2 (1 + q1) binds nothing on the constraints; a step by what it leaves of q1 leads where q2 is bound.
-
-    The second row is left out, too, until the deviation does not fall.
-    """
-
-    def terms(q: np.ndarray) -> list[np.ndarray]:
-        beyond = float(q[1] >= 0.5)
-        phi = np.array([q[0], q[0] + 0.05 * q[3], q[3] ** 2 * (1.0 + q[1]), beyond * q[2]])
-        G = np.array([[1, 0, 0, 0], [1, 0, 0, 0.05], [0, q[3] ** 2, 0, 2.0 * q[3] * (1.0 + q[1])], [0, 0, beyond, 0.0]])
-        return [np.eye(4), np.zeros(4), G, np.zeros(4), np.ones(4), phi]
-
-    q = np.array([size, 0.0, 0.0, share * size / 0.05])
-    measures = Measures((0, 1, 2, 3), (FORMULA,) * 4, (0,) * 4)
-    M, r, G, c, *_ = terms(q)
-    assert solve(M, r, G, c, measures)[2] == 3
-    assert motion(terms(q), terms, lambda at, step: at + step, q, measures)[2] == 2
+    """A step by what the third leaves of q1 leads where q2 is bound; the second waits until |phi| does not fall."""
+    q = np.array([size, 0.0, 0.0, 0.9 * share * size / 0.05])
+    M, r, G, c, *_ = fading_terms(q)
+    assert solve(M, r, G, c, FADING)[2] == 3
+    assert fading_rank(q) == 2
