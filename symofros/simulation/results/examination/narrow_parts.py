@@ -5,6 +5,7 @@ docs/theory/simulation.md, section 8.
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import NamedTuple
 
@@ -22,6 +23,9 @@ from symofros.simulation.stepping.status import Status
 # them by that share of its length, at so many states. Parts that are looked at, the first of a run; that are proved.
 _NEAR, _BEYOND, _STATES = (1.0 / 16.0, 1.0), 0.5, 64
 _LOOKED_AT, _PROVED = 64, 4
+# What a stretch leaves out from which it is proved, and how far what short steps show may change by half of them, as
+# shares of what counts; the most halvings.
+_DOUBTED, _SETTLED, _HALVINGS = 0.1, 0.5, 3
 
 
 class _NoPathError(Exception):
@@ -34,6 +38,26 @@ class NarrowPart(NamedTuple):
     step: int
     begin: float
     end: float
+
+
+class Stretch(NamedTuple):
+    """Parts of steps that follow upon each other, looked at as one.
+
+    Attributes:
+        first: Number of the step in which it begins.
+        begin: Its begin, as a share of that step.
+        last: Number of the step in which it ends.
+        end: Its end, as a share of that step.
+        length: Length of the steps that prove [s].
+        missed: Change of speed that the path leaves out in its parts.
+    """
+
+    first: int
+    begin: float
+    last: int
+    end: float
+    length: float
+    missed: float
 
 
 def passed_over(run: ExaminedRun, ends: States, least: float) -> tuple[int, float, float]:
@@ -70,14 +94,39 @@ def passed_over(run: ExaminedRun, ends: States, least: float) -> tuple[int, floa
             missed = [_missed(run, path(), part) for part in parts]
     except _NoPathError:
         return 0, 0.0, 0.0
-    for k in sorted(range(len(parts)), key=lambda k: -missed[k])[:_PROVED]:
-        if missed[k] > 0.5 * least * run.fastest:
-            part = parts[k]
-            length = float((part.end - part.begin) * (t[part.step + 1] - t[part.step]) / _STATES)
-            change = _change(run, path(), part, length)
+    stretches = _stretches(t, parts, missed, whole=not run.settings.adaptive)
+    for stretch in sorted(stretches, key=lambda one: -one.missed)[:_PROVED]:
+        if stretch.missed > _DOUBTED * least * run.fastest:
+            length, change = _proved(run, ends, stretch, least)
             if change > least:
-                return part.step, length, change
+                return stretch.first, length, change
     return 0, 0.0, 0.0
+
+
+def _stretches(t: Array, parts: list[NarrowPart], missed: list[float], *, whole: bool) -> list[Stretch]:
+    """Each part by itself, and, if `whole`, all that follow upon each other as one.
+
+    Args:
+        t: Ends of steps (n).
+        parts: The parts.
+        missed: Change of speed that each leaves out.
+        whole: Whether several steps may err together, as fixed ones do that are not much longer than what they meet.
+    """
+    spans = np.diff(t)
+    lengths = [float((part.end - part.begin) * spans[part.step] / _STATES) for part in parts]
+    stretches = [Stretch(p.step, p.begin, p.step, p.end, *of) for p, *of in zip(parts, lengths, missed, strict=True)]
+    if not whole:
+        return stretches
+    joined = list[Stretch]()
+    for one in sorted(stretches, key=lambda one: (one.first, one.begin)):
+        if not joined or one.first > joined[-1].last + 1:
+            joined.append(one)
+            continue
+        before = joined[-1]
+        last, end = max((before.last, before.end), (one.last, one.end))
+        both = max(before.length, one.length), before.missed + one.missed
+        joined[-1] = Stretch(before.first, before.begin, last, end, *both)
+    return [*stretches, *(one for one in joined if one.last > one.first)]
 
 
 def _parts(t: Array, instants: Array) -> list[NarrowPart]:
@@ -107,15 +156,50 @@ def _missed(run: ExaminedRun, path: Cubics, part: NarrowPart) -> float:
     return float(np.nan_to_num(run.norms(q, found[1], changes)).max())
 
 
-def _change(run: ExaminedRun, path: Cubics, part: NarrowPart, length: float) -> float:
-    """Change of speed over a part by steps of that length [s], beside that of the path, as a share of the fastest."""
-    t, q, v, _ = path.at(np.full(2, part.step), np.array([part.begin, part.end]))
-    start, t_end = (t[0], q[0], v[0]), float(t[1])
-    if run.settings.adaptive:
-        status, finer = run.in_short_steps(start, t_end, length)
-    else:  # Whatever the order of the method.
-        status, finer = run.repeated(start, t_end, length, method=METHODS["rk4"], max_steps=MOST_STEPS)
-    if status != Status.FINISHED:
-        return 0.0
-    change = float(run.norms(q[1:], finer[3][-1:], finer[2][-1:] - v[1:])[0])
-    return change / max(run.fastest, float(run.norms(q[1:], finer[3][-1:], finer[2][-1:])[0]), 1e-300)
+def _proved(run: ExaminedRun, ends: States, stretch: Stretch, least: float) -> tuple[float, float]:
+    """Length of steps [s] within a stretch and the change that they show, as do steps of twice the length.
+
+    The least if none do; 0 where no steps come to its end.
+    """
+    shown, share = [math.inf], 1.0
+    for _ in range(1 + _HALVINGS):
+        change = _change(run, ends, stretch, share)
+        if change is None:
+            break
+        shown.append(change)
+        if change <= least or abs(shown[-1] - shown[-2]) <= _SETTLED * least:
+            break
+        share *= 0.5
+    least_of_two = min(shown[-2:])
+    return share * stretch.length, least_of_two if math.isfinite(least_of_two) else 0.0
+
+
+def _change(run: ExaminedRun, ends: States, stretch: Stretch, share: float) -> float | None:
+    """Change of speed at the end of the last step by short steps from the begin of the first, over the fastest speed.
+
+    Args:
+        run: The run.
+        ends: Ends of steps: t (n), q, v, u.
+        stretch: Where short steps have its length; before and after it they are parts of the run's own.
+        share: Share of these lengths that is taken.
+
+    Returns:
+        None where they do not come to the end.
+    """
+    t, last, finer = ends[0], stretch.last + 1, [x[stretch.first : stretch.first + 1] for x in ends]
+    spans, within = np.diff(t), (stretch.first, stretch.last)
+    begin, end = (float(t[i] + x * spans[i]) for i, x in zip(within, (stretch.begin, stretch.end), strict=True))
+    lengths = (spans[stretch.first] / _STATES, stretch.length, spans[stretch.last] / _STATES)
+    for t_end, length in zip((begin, end, float(t[last])), lengths, strict=True):
+        start, step = [x[-1] for x in finer[:3]], float(share * length)
+        if not t_end > start[0]:
+            continue
+        if run.settings.adaptive:
+            status, finer = run.in_short_steps(start, t_end, step)
+        else:  # Whatever the order of the method.
+            status, finer = run.repeated(start, t_end, step, method=METHODS["rk4"], max_steps=MOST_STEPS)
+        if status != Status.FINISHED:
+            return None
+    q, v, u = (x[-1:] for x in finer[1:])
+    change, fastest = (float(run.norms(q, u, x)[0]) for x in (v - ends[2][last], v))
+    return change / max(run.fastest, fastest, 1e-300)

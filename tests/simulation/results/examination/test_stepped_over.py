@@ -70,6 +70,51 @@ def test_a_force_of_any_narrowness_is_met_or_noted_by_its_formula(method: str, s
         assert (abs(run.v[-1, 0] - last) < 1e-3) != bool(noted(run)), (law, run.v[-1], str(run.outcome))
 
 
+@pytest.mark.parametrize(
+    ("shape", "method", "dt", "c", "w"),
+    [
+        ("hill", "rk4", 0.05, 5.195195312646882, 0.02589640159281024),
+        ("window", "semi_implicit_euler", 0.01, 2.729589344217913, 0.02836061794577942),
+    ],
+)
+def test_fixed_steps_that_err_together_on_a_narrow_force_are_noted(
+    shape: str, method: Any, dt: float, c: float, w: float
+) -> None:
+    """By less than what counts in each step, and by more in all of them; half the step may err as the step does."""
+    run = sf.simulate(
+        sf.compile(CART), None, [1.0], 10.0, u={"x": NARROW[shape][0].format(c=c, w=w)}, method=method, dt=dt
+    )
+    assert abs(run.v[-1, 0] - NARROW[shape][1]) > 0.1 and noted(run), str(run.outcome)
+
+
+@pytest.mark.parametrize(
+    ("dt", "c", "w"), [(0.1, 8.036382369697899, 0.005447557114880878), (0.05, 4.02829742, 0.00164)]
+)
+def test_short_steps_prove_from_a_state_of_the_run(dt: float, c: float, w: float) -> None:
+    """From amid a well that the cubic passes they would be caught in it; and too long ones follow no well."""
+    law = {"x": NARROW["well"][0].format(c=c, w=w)}
+    run = sf.simulate(sf.compile(CART), None, [1.0], 10.0, u=law, method="generalized_alpha", dt=dt)
+    assert abs(run.v[-1, 0] - 1.0) < 1e-9 and not run.outcome.notes, str(run.outcome)
+
+
+@pytest.mark.parametrize("method", ["rk4", "semi_implicit_euler", "generalized_alpha"])
+@pytest.mark.parametrize("seed", range(3))
+def test_fixed_steps_of_the_size_of_a_narrow_force_are_right_or_noted(method: Any, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for shape in ("bell", "tent", "window", "hill", "well"):
+        formula, last = NARROW[shape]
+        dt, c = float(rng.choice([0.1, 0.05, 0.02])), rng.uniform(2.0, 8.0)
+        law = {"x": formula.format(c=c, w=dt * 10 ** rng.uniform(-1.5, 0.5))}
+        run = sf.simulate(sf.compile(CART), None, [1.0], 10.0, u=law, method=method, dt=dt)
+        off = abs(run.v[-1, 0] - last)
+        assert off < 0.1 * max(abs(last), np.abs(run.v).max()) or run.outcome.notes or not run.outcome.ok, (
+            law,
+            dt,
+            off,
+        )
+        assert off > 1e-9 or not noted(run), (law, dt, str(run.outcome))
+
+
 def loaded(force: str) -> sf.System:
     body = replace(CART.bodies[0], loads=(sf.Load(force=(force, 0, 0)),))
     return replace(CART, bodies=(body,))
