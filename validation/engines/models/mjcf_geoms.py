@@ -67,6 +67,27 @@ def _meshes() -> Iterator[tuple[str, Reading]]:
     yield second("of a class of shells", 'class="k"', 'density="6"', thin, shells)
     scales = f'{RADIAN}<default><mesh scale="2 1 0.5"/></default>'
     yield second("scaled by default", "", 'mass="3"', scaled, scales)
+    # A class is that of the mesh: of the geom's own class no mesh takes its scale.
+    small, large = ((size**3 * 700.0 * volume, [x * size for x in pieces]) for size in (0.5, 2.0))
+    sizes = "".join(
+        f'<default class="{name}"><mesh scale="{x} {x} {x}"/></default>' for name, x in (("k", 0.5), ("l", 2))
+    )
+    classes = f"{RADIAN}<default>{sizes}</default>"
+    yield second("scaled by its class", 'class="k"', 'density="700"', uniform(small[0], parts, small[1]), classes)
+    yield second(
+        "scaled by its class, not the geom's",
+        'class="l"',
+        'class="k" density="700"',
+        uniform(large[0], parts, large[1]),
+        classes,
+    )
+    yield second(
+        "of no scale, of a geom whose class has one",
+        "",
+        'class="k" density="700"',
+        uniform(700.0 * volume, parts, pieces),
+        classes,
+    )
 
 
 def _fitted() -> Iterator[tuple[str, Reading]]:
