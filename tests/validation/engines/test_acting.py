@@ -30,6 +30,12 @@ FAULTS = [
     ("mujoco", "servos of position and velocity", "step_forces_implicit", "step_dampers_implicit"),
     ("mujoco", "a damped free body", "step_velocities_implicit", "step_dampers_implicit"),
     ("exudyn", "dampers on hinges", "step_rk4", "step_midpoint"),
+    (
+        *("mujoco", "tendon of a sum of the first and the last of three joints"),
+        *("step_velocities_implicit:sparse", "step_semi_implicit"),
+    ),
+    ("mujoco", "servos along joints", "step_forces_implicit", "step_semi_implicit"),
+    ("mujoco", "servos against the order of joints", "step_velocities_implicit", "step_dampers_implicit"),
 ]
 
 

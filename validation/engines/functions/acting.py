@@ -8,7 +8,7 @@ import numpy as np
 
 from ..interface import Activation, Actuator
 from ..truth import activations, derived
-from ..truth.arithmetic import Exact
+from ..truth.arithmetic import Exact, solve
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
 from .function import Function, functions_of
@@ -42,6 +42,9 @@ def _acting() -> dict[str, Function]:
             "their derivatives (nu, nv)", lambda t, s: _column(t.own.transmissions(s.q), 1), actuators
         ),
         "actuator_forces": Function("forces of actuators (nu)", lambda t, s: t.own.efforts(s.q, s.v), actuators),
+        "controlled_forces": Function(
+            "forces of actuators (nu) that make the accelerations a against all else", _controlled, actuators
+        ),
         "activation_rates": Function("rates of actuators' states (na)", _of_states(activations.rate), states),
         "activations_after_step": Function(
             "actuators' states after a step (na)", _of_states(activations.after_step), states
@@ -50,6 +53,18 @@ def _acting() -> dict[str, Function]:
             "what they do along the speeds (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
         ),
     }
+
+
+def _controlled(t: Truth, s: Point) -> Exact:
+    """Of as many actuators as speeds.
+
+    Raises:
+        ZeroDivisionError: They don't make all forces, or in more than one way.
+    """
+    arms = _column(t.own.transmissions(s.q), 1)
+    if len(arms) != t.nv:
+        raise ZeroDivisionError("not as many actuators as speeds")
+    return solve(arms.T, t.ID(s.q, s.v, s.a) - t.own.passive(s.q, s.v))
 
 
 def _of_states(of: Callable[[Actuator, Activation], Exact]) -> TruthOf:

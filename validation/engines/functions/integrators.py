@@ -22,6 +22,7 @@ def _steps() -> dict[str, Function]:
         "forces_implicit": ("M + h D in place of M, D = -dQ/dv, for lone free bodies -df/dv", single("forces")),
         "velocities_implicit": ("M + h D in place of M, D = -df/dv", single("velocities")),
         "stiffness_implicit": ("v+ = v + h (M + h D + h^2 K)^-1 (f - h K v)", single("stiffness")),
+        "stiffness_implicit_straight": ("the same with q+ = q + h N(q) v+", single("stiffness", steps.straight)),
         "stiffness_implicit_lone": ("the same, for lone free bodies D = -df/dv", single("discrete")),
         "euler": ("q+ = q + h N v, v+ = v + h M^-1 f", runge_kutta(steps.EULER)),
         "midpoint": ("the midpoint rule, in coordinates", runge_kutta(steps.MIDPOINT)),

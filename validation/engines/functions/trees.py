@@ -29,6 +29,12 @@ TREES: dict[str, Function] = {
     "joint_wrenches": Function(
         "what holds each link with all it carries, at its origin along its axes (L, 6)", derived.joint_wrenches
     ),
+    "joint_wrenches_driven": Function(
+        "joint_wrenches at the accelerations that tau makes (L, 6)", derived.driven(derived.joint_wrenches)
+    ),
+    "joint_wrenches_from_rest": Function(
+        "joint_wrenches at rest, at the accelerations that tau makes (L, 6)", derived.from_rest
+    ),
     "subtree_momenta": Function(
         "momentum of each link with all it carries, about their mass centre (L, 6)", derived.subtree_momenta
     ),
@@ -81,6 +87,13 @@ TREES: dict[str, Function] = {
     ),
     "inverse_dynamics_dv": Function(
         "derivative of M a + h by v (nv, nv)", lambda t, s: t.along_speeds(lambda v: t.h(s.q, v), s.v)
+    ),
+    "mass_matrix_dq": Function(
+        "derivative of M by q (nv, nv, nv), the last index that of the derivative",
+        lambda t, s: t.kinematics.tangent(t.M, s.q),
+    ),
+    "link_poses_dq": Function(
+        "derivative of link_poses by q (L, 12, nv)", lambda t, s: t.kinematics.tangent(t.kinematics.flat_poses, s.q)
     ),
     "gravity_dq": Function("derivative of g by q (nv, nv)", lambda t, s: t.kinematics.tangent(t.g, s.q)),
     "forward_dynamics_dq": Function(

@@ -141,6 +141,7 @@ def _tendons() -> list[Tree]:
     links = _chain("tendons", _HINGE, _SLIDE, _HINGE)
     ends = tuple(End(one.name) for one in links)
     coupled = Tendon("coupling", ends, (1.0, -0.5, 2.0), stiffness=4.0, damping=0.5, rest=0.25)
+    apart = replace(coupled, ends=ends[::2], coefficients=(1.0, 2.0), damping=2.5)
     path = tuple(End(name, p=shifted(draw, 0.3)) for name in ("", "a", "c"))
     over = Tendon("path", path, stiffness=4.0, damping=0.5, rest=0.25)
     pulled = (
@@ -149,6 +150,7 @@ def _tendons() -> list[Tree]:
     )
     return [
         Tree("tendon of a sum", links, tendons=(coupled,)),
+        Tree("tendon of a sum of the first and the last of three joints", links, tendons=(apart,)),
         Tree("tendon over points", links, tendons=(over,)),
         Tree(
             "tendon over points of one branch", _chain("short", *[_HINGE] * 3), tendons=(replace(over, ends=path[1:]),)
@@ -191,6 +193,25 @@ def _plain_motors() -> list[Tree]:
         Tree("forces along joints", links, actuators=motors),
         Tree("forces along two of three joints", links, actuators=motors[1:]),
         Tree("forces along joints with rotors at their effort limits", geared, actuators=bounded[:2]),
+    ]
+
+
+def _servos_along_joints() -> list[Tree]:
+    """Servos of position and speed and no more, with what is fed forward, and actuators against the order of joints."""
+    links, damped = _chain("plain servos", _HINGE, _SLIDE, _HINGE), _chain("plain servos", _DAMPED, _SLIDE, _DAMPED)
+    motors = tuple(Actuator(one.name, control=force) for one, force in zip(links, (0.75, -2.5, 1.25), strict=True))
+    servos = tuple(
+        Actuator(one.name, gain=6.0, bias=(0.25, -stiffness, -damping), control=control)
+        for one, stiffness, damping, control in zip(
+            links, (6.0, 3.0, 12.0), (0.5, 1.5, 0.25), (0.5, -1.0, 0.75), strict=True
+        )
+    )
+    return [
+        Tree("servos along joints", links, actuators=servos),
+        Tree("servos along damped joints", damped, actuators=servos),
+        Tree("servos against the order of joints", links, actuators=servos[::-1]),
+        Tree("servo before a force against the order of joints", links, actuators=(servos[2], motors[0])),
+        Tree("forces against the order of joints", links, actuators=motors[::-1]),
     ]
 
 
@@ -308,6 +329,7 @@ def trees() -> dict[str, Tree]:
         tree.name: tree
         for family in (
             _plain_motors,
+            _servos_along_joints,
             _passive,
             _dragged,
             _tendons,

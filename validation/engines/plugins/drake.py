@@ -167,12 +167,7 @@ _BINDINGS: dict[str, tuple[str, Callable[[End], str]]] = {
 def _bound(tree: Tree) -> list[str]:
     """Statements that close loops, for the discrete solver that knows such conditions."""
     bodies = {link.name: f"b{k}" for k, link in enumerate(tree.links)} | {"": "p.world_body()"}
-    lines = [
-        "if hasattr(drake, 'DiscreteContactApproximation'):",
-        "    p.set_discrete_contact_approximation(drake.DiscreteContactApproximation.kSap)",
-        "else:",
-        "    p.set_discrete_contact_solver(drake.DiscreteContactSolver.kSap)",
-    ]
+    lines = [*forces.SAP, "sap(p)"]
     for one in tree.constraints:
         add, place = _BINDINGS[one.kind]
         lines.append(f"p.{add}({', '.join(f'{bodies[end.link]}, {place(end)}' for end in one.ends)})")
@@ -203,8 +198,7 @@ def write(tree: Tree) -> Source | Unsupported:
     lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
     lines += _gravity(tree)
     chosen: list[list[_Native]] = []
-    driven = forces.driven(tree)
-    if isinstance(driven, Unsupported):
+    if isinstance(driven := forces.driven(tree), Unsupported):
         return driven
     for k, link in enumerate(tree.links):
         lines.append(
@@ -233,12 +227,6 @@ def write(tree: Tree) -> Source | Unsupported:
         turn = 2 * math.pi * joint.pitch
         call = native.call.format(frames=frames, axis=_array(joint.axis), turn=turn)[:-1] + _damping(joint) + ")"
         lines.append(f"j{k} = p.AddJoint(drake.{call})")
-        if any(joint.armature) or link.name in driven:
-            limit = f", {driven[link.name]!r}" if driven.get(link.name, math.inf) < math.inf else ""
-            lines.append(f"motor = p.AddJointActuator('m{k}', j{k}{limit})")
-        if any(joint.armature):
-            rotor = joint.armature[0] / 4.0
-            lines.append(f"motor.set_default_rotor_inertia({rotor!r}); motor.set_default_gear_ratio(2.0)")
         if joint.stiffness:
             if joint.kind not in ("revolute", "prismatic"):
                 return Unsupported("springs act on joints of one coordinate", offered=False)
@@ -247,7 +235,7 @@ def write(tree: Tree) -> Source | Unsupported:
         chosen.append([native])
     if any(tendon.kind != "path" or len(tendon.ends) != 2 for tendon in tree.tendons):
         return Unsupported("springs run straight from point to point", offered=False)
-    lines += [_spring(tree, tendon) for tendon in tree.tendons]
+    lines += [*(_spring(tree, tendon) for tendon in tree.tendons), *forces.actuators(tree)]
     if tree.constraints:
         lines = [line.replace("Plant(0.0)", f"Plant({STEP})") for line in lines]
         lines += _bound(tree)
@@ -261,7 +249,8 @@ def write(tree: Tree) -> Source | Unsupported:
         places = [link.name for link in tree.links]
         frames = ", ".join(f"({places.index(end.link)}, {end.R!r}, {list(end.p)!r})" for end in tree.sensors)
         optional["sensed"] = (f"sensed, gravity = [{frames}], {list(tree.gravity)!r}",)
-    return Source(tuple(lines), slots, nq, nv, optional, closing=_CLOSING, spelling=forces.spelling(tree))
+    spelling = forces.spelling(tree)
+    return Source(tuple(lines), slots, nq, nv, optional, forces.lacks(tree), closing=_CLOSING, spelling=spelling)
 
 
 _PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
@@ -292,7 +281,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     ]
     links = f"links = [p.GetBodyByName(name) for name in {names!r}]"
     slots, nq, nv = _slots(tree, chosen)
-    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, closing=_CLOSING)
+    return Source(tuple(lines), slots, nq, nv, {"links": (links,)}, forces.lacks(tree), closing=_CLOSING)
 
 
 def _gravity(tree: Tree) -> list[str]:
@@ -341,6 +330,7 @@ PLUGIN = SourcePlugin(
         Convention("gravity forces", "as applied: the negative of g"),
         Convention("armature", "of actuators, times gear ratio squared"),
         Convention("actuators", "their inputs are joints' forces: the gear ratio is no part of them"),
+        Convention("actuators with gains", "discrete steps have them at their end, with the coordinates there"),
         Convention("bodies", "whose inertia no body can have are refused"),
     ),
     kinds={

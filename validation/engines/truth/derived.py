@@ -123,6 +123,11 @@ def driven(reading: TruthOf) -> TruthOf:
     return lambda truth, s: reading(truth, s._replace(a=truth.FD(s.q, s.v, s.tau)))
 
 
+def from_rest(truth: Truth, s: Point) -> Exact:
+    """`joint_wrenches` (L, 6) at rest, at the accelerations that the forces make."""
+    return driven(joint_wrenches)(truth, s._replace(v=0 * s.v))
+
+
 def frame_poses(truth: Truth, s: Point) -> Exact:
     """Positions and rows of R of the sensors' frames (n, 12)."""
     frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]

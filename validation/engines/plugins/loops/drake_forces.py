@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...interface import ORIGIN, STEP, Tree, Unsupported
+from ...interface import ORIGIN, STEP, Actuator, Tree, Unsupported
 from ...truth.derived import WRENCH
 from ..writing.source import Way
 
@@ -24,39 +24,87 @@ sim.get_mutable_integrator().set_fixed_step_mode(True)
 """
 
 
-def driven(tree: Tree) -> dict[str, float] | Unsupported:
-    """Links whose joints actuators drive -> greatest effort; Drake's are plain motors with one bound either way."""
-    found = {}
+# Of servos, where they are to hold their joint, and at what speed.
+_PLACE, _SPEED = 0.25, -0.5
+SAP = (
+    "def sap(p):",
+    "    if hasattr(drake, 'DiscreteContactApproximation'):",
+    "        p.set_discrete_contact_approximation(drake.DiscreteContactApproximation.kSap)",
+    "    else:",
+    "        p.set_discrete_contact_solver(drake.DiscreteContactSolver.kSap)",
+)
+
+
+def driven(tree: Tree) -> dict[str, Actuator] | Unsupported:
+    """Links whose joints are driven -> actuator, in the order of these: forces, or servos of gains, with one bound."""
     for one in tree.actuators:
-        limits = one.force_limits or (-float("inf"), float("inf"))
-        is_plain = one.link and one.gear == 1.0 and one.bias == ORIGIN and limits[0] == -limits[1]
+        limits = one.force_limits or (0.0, 0.0)
+        is_servo = one.bias[1] < 0.0 >= one.bias[2]
+        is_plain = one.link and one.gear == 1.0 and limits[0] == -limits[1] and (is_servo or one.bias == ORIGIN)
         if not is_plain or one.muscle or one.activation or one.control_limits or one.is_disabled:
-            return Unsupported("actuators are forces along joints, with one bound either way", offered=False)
-        found[one.link] = limits[1]
+            return Unsupported("actuators are forces or servos along joints, with one bound either way", offered=False)
     if any(joint.force_limits for link in tree.links for joint in link.joints):
         return Unsupported("joints have no bounds of forces of their own", offered=False)
-    return found
+    return {one.link: one for one in tree.actuators}
+
+
+def actuators(tree: Tree) -> list[str]:
+    """Statements of the actuators in their order, then of rotors alone, which have no input."""
+    lines, rotors = [], {link.name: link.joints[-1].armature for link in tree.links if any(link.joints[-1].armature)}
+    drives = {one.link: one for one in tree.actuators}
+    places = [link.name for link in tree.links]
+    for name in dict.fromkeys((*drives, *rotors)):
+        k, one = places.index(name), drives.get(name, Actuator())
+        limit = f", {one.force_limits[1]!r}" if one.force_limits else ""
+        lines.append(f"motor = p.AddJointActuator('m{k}', j{k}{limit})")
+        if name in rotors:
+            lines.append(
+                f"motor.set_default_rotor_inertia({rotors[name][0] / 4.0!r}); motor.set_default_gear_ratio(2.0)"
+            )
+        if any(one.bias):
+            gains = f"drake.PdControllerGains(p={-one.bias[1]!r}, d={-one.bias[2]!r})"
+            lines.append(f"motor.set_controller_gains({gains})")
+    return [*lines, *(SAP if _servos(tree) else ())]
+
+
+def _servos(tree: Tree) -> bool:
+    return any(any(one.bias) for one in tree.actuators)
 
 
 def spelling(tree: Tree) -> dict[str, str]:
     """Where speeds are set, inputs are, too."""
     if not tree.actuators:
         return {}
-    # Actuators are numbered in the order of links; those of rotors alone have no input.
-    made = [
-        link.name for link in tree.links if any(any(joint.armature) for joint in link.joints) or link.name in _on(tree)
-    ]
-    inputs = [_on(tree).get(name, 0.0) for name in made]
+    rotors = [link for link in tree.links if any(link.joints[-1].armature)]
+    alone = len({link.name for link in rotors} - {one.link for one in tree.actuators})
+    inputs = [_input(one) for one in tree.actuators] + [0.0] * alone
+    ports = {"get_actuation_input_port()": inputs}
+    if _servos(tree):
+        held = [_PLACE] * len(inputs) + [_SPEED] * len(inputs)
+        ports["get_desired_state_input_port(drake.default_model_instance())"] = held
+    fixed = "".join(f"p.{port}.FixValue(c, {values!r})\n" for port, values in ports.items())
     # Inputs are none of the state that a plant of other numbers takes over.
-    many = f"InitializeAutoDiff(np.array({inputs!r}), np.zeros(({len(inputs)}, len(v)))).flatten()"
-    return {
-        SPEEDS: f"{SPEEDS}p.get_actuation_input_port().FixValue(c, {inputs!r})\n",
-        "ad.SetVelocities(d, v_)": f"ad.SetVelocities(d, v_)\nad.get_actuation_input_port().FixValue(d, {many})",
-    }
+    many = "".join(
+        f"\nx = InitializeAutoDiff(np.array({values!r}), np.zeros(({len(values)}, len(v))))"
+        f"\nad.{port}.FixValue(d, x.flatten())"
+        for port, values in ports.items()
+    )
+    return {SPEEDS: f"{SPEEDS}{fixed}", "ad.SetVelocities(d, v_)": f"ad.SetVelocities(d, v_){many}"}
 
 
-def _on(tree: Tree) -> dict[str, float]:
-    return {one.link: one.gain * one.control for one in tree.actuators}
+def _input(one: Actuator) -> float:
+    """What is fed forward: the force beside that of a servo's gains."""
+    constant, by_place, by_speed = one.bias
+    return one.gain * one.control + constant + by_place * _PLACE + by_speed * _SPEED
+
+
+def lacks(tree: Tree) -> tuple[str, ...]:
+    """Discrete steps have servos, as dampers, at their end, springs not; controllers want all joints driven."""
+    joints = [joint for link in tree.links for joint in link.joints]
+    is_stiff = _servos(tree) and not tree.tendons and not any(joint.stiffness for joint in joints)
+    of_dampers, of_servos = "step_dampers_implicit_straight", "step_stiffness_implicit_straight"
+    is_whole = len(tree.actuators) == sum(joint.kind != "fixed" for joint in joints)
+    return (of_dampers if is_stiff else of_servos, *(() if is_whole else ("controlled_forces",)))
 
 
 def _integrated(name: str) -> Way:
@@ -65,6 +113,22 @@ def _integrated(name: str) -> Way:
 
 
 WAYS: dict[str, Way] = {
+    "step_stiffness_implicit_straight": Way(
+        "JointActuator.set_controller_gains",
+        _SIMULATION.replace("INTEGRATOR", ""),
+        0.0,
+        (("Plant(0.0)", f"Plant({STEP})"), ("p.Finalize()", "sap(p); p.Finalize()")),
+    ),
+    "controlled_forces": Way(
+        "InverseDynamicsController",
+        f"""{QV}gains, state = np.ones(len(v)), np.r_[q, v]
+controller = drake.InverseDynamicsController(p, gains, 0 * gains, gains, True)
+e = controller.CreateDefaultContext()
+controller.get_input_port_estimated_state().FixValue(e, state)
+controller.get_input_port_desired_state().FixValue(e, state)
+controller.get_input_port_desired_acceleration().FixValue(e, a)
+value = controller.get_output_port_control().Eval(e)""",
+    ),
     "step_dampers_implicit_straight": Way(
         "MultibodyPlant with a time step",
         _SIMULATION.replace("INTEGRATOR", ""),
@@ -98,6 +162,7 @@ WAYS: dict[str, Way] = {
     ),
 }
 
+_APPLIED = "p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
 # With the forces that make the accelerations a.
 _DRIVEN = f"{QV}{FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
 # The diagram, built once, owns the plant.
@@ -121,6 +186,11 @@ def _sensors(kind: str, *names: str, more: str = "") -> Way:
     return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
 
 
+_HELD = """held, value = p.get_reaction_forces_output_port().Eval(c), []
+for j in js:
+    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
+    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
+    value.append([*force, *(moment + np.cross(x.translation(), force))])"""
 WAYS |= {
     "joint_speed_limits": Way("GetVelocityUpperLimits", "value = p.GetVelocityUpperLimits()"),
     "joint_limits": Way(
@@ -129,12 +199,9 @@ WAYS |= {
     ),
     "joint_wrenches": Way(
         "reaction_forces",
-        f"""{_DRIVEN}held, value = p.get_reaction_forces_output_port().Eval(c), []
-for j in js:
-    x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
-    force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
-    value.append([*force, *(moment + np.cross(x.translation(), force))])""",
+        f"{_DRIVEN}{_HELD}",
     ),
+    "joint_wrenches_driven": Way("reaction_forces", f"{QV}{_APPLIED}{_HELD}"),
     "accelerometers": _sensors(
         "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
     ),

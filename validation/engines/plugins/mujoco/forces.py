@@ -25,6 +25,12 @@ mj.mj_step2(m, e)
 """
 _WRENCHES = "value = [[*data('force', k), *data('torque', k)] for k in sensed]"
 _ACCELEROMETERS = "value = [data('accelerometer', k) for k in sensed]"
+# About the mass centre of the whole mechanism that the body is in.
+_HELD = """value = []
+for b in bs:
+    moment, force = d.cfrc_int[b].reshape(2, 3)
+    R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
+    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])"""
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
 COPY = "from copy import copy\nn = copy(m)\n"
@@ -67,15 +73,10 @@ WAYS = {
     # Tendons and actuators that couple joints are solved for by iterations.
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
     "step_rk4_manifold": _step("mjINT_RK4"),
-    # About the mass centre of the whole mechanism that the body is in.
-    "joint_wrenches": Way(
-        "mj_rnePostConstraint: cfrc_int",
-        f"""{QVA}mj.mj_rnePostConstraint(m, d)
-value = []
-for b in bs:
-    moment, force = d.cfrc_int[b].reshape(2, 3)
-    R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
-    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
+    "joint_wrenches": Way("mj_rnePostConstraint: cfrc_int", f"{QVA}mj.mj_rnePostConstraint(m, d)\n{_HELD}"),
+    "joint_wrenches_driven": Way(
+        "mj_forward, mj_rnePostConstraint: cfrc_int",
+        f"{_DRIVEN}mj.mj_forward(m, d)\nmj.mj_rnePostConstraint(m, d)\n{_HELD}",
     ),
     "subtree_momenta": Way(
         "mj_subtreeVel",
@@ -133,7 +134,15 @@ for k in sensed:
     "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),
     "passive_forces": Way("qfrc_passive", f"{QV}value = d.qfrc_passive"),
     "tendon_lengths": Way("ten_length", f"{QV}value = d.ten_length"),
-    "tendon_arms": Way("ten_J", f"{QV}value = d.ten_J.reshape(-1, m.nv)"),
+    # Entries that are not zero since the model has their places.
+    "tendon_arms": Way(
+        "ten_J",
+        f"{QV}value = np.array(d.ten_J)\n"
+        "if hasattr(m, 'ten_J_rownnz'):\n"
+        "    value = np.zeros((m.ntendon, m.nv))\n"
+        "    mj.mju_sparse2dense(value, np.ravel(d.ten_J), m.ten_J_rownnz, m.ten_J_rowadr, m.ten_J_colind)\n"
+        "value = value.reshape(-1, m.nv)",
+    ),
     "actuator_lengths": Way("actuator_length", f"{QV}value = d.actuator_length"),
     "actuator_arms": Way(
         "actuator_moment",
