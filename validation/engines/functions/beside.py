@@ -6,7 +6,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import constraints, derived, steps, turns
+from ..truth import constraints, derived, poses, steps, turns
+from ..truth.arithmetic import root
 from .function import Function, functions_of
 
 
@@ -39,6 +40,26 @@ def _of_turns() -> dict[str, Function]:
         "rpy_second_rates": (
             "second rates of roll, pitch, yaw v, of rates a, at angular acceleration tau along the axes before (3)",
             turns.rpy_second_rates,
+        ),
+        "rotation_matrix_dq": (
+            "derivative of the rows of R along the angular velocity in the turned axes (9, 3)",
+            turns.along_speeds(lambda R: R.reshape(9)),
+        ),
+        "rotation_to_rpy_dq": (
+            "derivative of roll, pitch, yaw of R along it (3, 3)",
+            turns.along_speeds(poses.angles_of),
+        ),
+        "rotation_of_rpy_du": (
+            "derivative of the rows of Rz(u[2]) Ry(u[1]) Rx(u[0]) by u = v + (4, -8, 8) (9, 3)",
+            turns.by_vector(lambda u: poses.matrix_of(u).reshape(9)),
+        ),
+        "rotation_exponential_du": (
+            "derivative of the rows of the rotation by u = v + (4, -8, 8) by u (9, 3)",
+            turns.by_vector(lambda u: turns.turned_by(u).reshape(9)),
+        ),
+        "unit_vector_du": (
+            "derivative of u / |u| by u = v + (4, -8, 8) (3, 3)",
+            turns.by_vector(lambda u: u / root(u @ u)),
         ),
         "rotation_halfway": (
             "rows of the rotation a quarter of the way from R to Q, the shorter way (9)",

@@ -29,6 +29,12 @@ def _term(method: str, inputs: str, rows: str = "[cut:]") -> str:
 
 WAYS = {
     "mass_matrix": Way("mass_matrix", "value = np.array(robot.mass_matrix_fun()(*place(q)))[cut:, cut:]"),
+    "mass_matrix_dq": Way(
+        "jacobian of mass_matrix",
+        """s = ca.SX.sym("s", len(q))
+M = ca.SX(robot.mass_matrix(np.eye(4), s))[6:, 6:]
+value = np.array(ca.Function("e", [s], [ca.densify(ca.jacobian(ca.vec(M.T), s))])(q)).reshape(*[len(q)] * 3)""",
+    ),
     "bias": Way("bias_force", _term("bias_force_fun", "*place(q), *move(v)")),
     "gravity": Way("gravity_term", _term("gravity_term_fun", "*place(q)")),
     "coriolis_forces": Way("coriolis_term", _term("coriolis_term_fun", "*place(q), *move(v)")),
@@ -73,7 +79,7 @@ def read(tree: Tree, described: Described) -> Source:
         nq=count + 7 * floating,
         nv=count + 6 * floating,
         optional={"links": (f"links = {list(described.links)}",), "place": _PLACE},
-        lacks=() if floating else ("forward_dynamics",),
+        lacks=("mass_matrix_dq",) if floating else ("forward_dynamics",),
         spelling=_FLOATING if floating else _FIXED,
     )
 

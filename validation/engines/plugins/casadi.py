@@ -115,6 +115,8 @@ for twist in twists:
     "centroidal_momentum_rate_dv": _matrix("jacobian", "ca.jacobian(rate(momentum), w)", _A),
     "inverse_dynamics_dq": _matrix("jacobian", "by_q(ID)", _A),
     "inverse_dynamics_dv": _matrix("jacobian", "ca.jacobian(ID, w)", _A),
+    "mass_matrix_dq": Way("jacobian", f"value = number(by_q(ca.vec(M.T)), {_Q}).reshape(len(v), len(v), len(v))"),
+    "link_poses_dq": Way("jacobian", f"value = [number(by_q(ca.vertcat(p, ca.vec(R.T))), {_Q}) for p, R in poses]"),
     "gravity_dq": _matrix("jacobian", "by_q(weight)", _Q),
     "forward_dynamics_dq": _matrix("jacobian of solve", "by_q(FD)", _TAU),
     "forward_dynamics_dv": _matrix("jacobian of solve", "ca.jacobian(FD, w)", _TAU),

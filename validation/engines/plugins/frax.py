@@ -22,6 +22,14 @@ with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
     file.flush()
     robot = Robot(file.name, joint_ordering={joints}, floating_base={base})
 '''
+# Rates of the coordinates, of which a quaternion has half the products with its own.
+_RATES = """def rates(q):
+    if len(q) == {count}: return np.eye(len(q))
+    w, x, y, z = q[3:7]
+    N = np.zeros((len(q), len(q) - 1))
+    N[:3, :3], N[7:, 6:] = np.eye(3), np.eye(len(q) - 7)
+    N[3:7, 3:6] = np.array([[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]]) / 2
+    return N"""
 
 
 _STANDING = (
@@ -38,6 +46,11 @@ WAYS = {
     "coriolis_forces": Way("centrifugal_coriolis_vector", "value = robot.centrifugal_coriolis_vector(q, v)"),
     "inverse_dynamics": Way("rnea", "value = robot.rnea(q, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None)"),
     "forward_dynamics": Way("forward_dynamics", "value = robot.forward_dynamics(q, v, tau, None)"),
+    "mass_matrix_dq": Way("jacfwd of mass_matrix", "value = jax.jacfwd(robot.mass_matrix)(q) @ rates(q)"),
+    "inverse_dynamics_dq": Way(
+        "jacfwd of rnea",
+        "value = jax.jacfwd(lambda x: robot.rnea(x, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None))(q) @ rates(q)",
+    ),
     "mass_centre": Way("center_of_mass", "value = robot.center_of_mass(q)"),
     "mass_centre_jacobian": Way("center_of_mass_jacobian", "value = robot.center_of_mass_jacobian(q)"),
 }
@@ -50,7 +63,8 @@ def read(tree: Tree, described: Described) -> Source:
     count, floating = len(described.moving), described.floating
     setup = _SETUP.format(text=text, joints=list(described.moving), base="'quaternion'" if floating else None)
     slots = slots_of(tree, described, described.moving, "free wxyz, linear before and angular after")
-    return Source((setup,), slots, nq=count + 7 * floating, nv=count + 6 * floating)
+    rates = {"rates": (_RATES.format(count=count),)}
+    return Source((setup,), slots, nq=count + 7 * floating, nv=count + 6 * floating, optional=rates)
 
 
 def _of_file(tree: Tree, described: Described) -> Source:

@@ -174,7 +174,13 @@ def _about(axis: int, angle: Exact) -> Exact:
 
 def of_rpy(t: Truth, s: Point) -> Exact:
     """Rows of Rz(v[2]) Ry(v[1]) Rx(v[0]) (9)."""
-    return (_about(2, s.v[2]) @ _about(1, s.v[1]) @ _about(0, s.v[0])).reshape(9)
+    return matrix_of(s.v).reshape(9)
+
+
+def matrix_of(angles: Exact) -> Exact:
+    """The rotation (3, 3) of roll, pitch, yaw."""
+    roll, pitch, yaw = angles
+    return _about(2, yaw) @ _about(1, pitch) @ _about(0, roll)
 
 
 def rate_of_rpy(t: Truth, s: Point) -> Exact:

@@ -9,11 +9,13 @@ and along the axes before, w = A^T r'. The angles roll, pitch, yaw make R = Rz R
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import product
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve
+from .arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve, stack
+from .derived import TruthOf
 from .dynamics import Point, Truth
 
 _UNIT = exact(np.eye(3))
@@ -141,6 +143,20 @@ def between(t: Truth, s: Point) -> Exact:
     """Rows of the rotation a quarter of the way from R to Q (9)."""
     R = turn(t, s.q)
     return (R @ turned_by(rotation_vector(R.T @ turn(t, s.q2)) / 4)).reshape(9)
+
+
+def along_speeds(of: Callable[[Exact], Exact]) -> TruthOf:
+    """The derivative of a function of R along the angular velocity in the turned axes (n, 3)."""
+    return lambda t, s: t.kinematics.tangent(lambda q: of(turn(t, q)), s.q)
+
+
+def by_vector(of: Callable[[Exact], Exact]) -> TruthOf:
+    """The derivative of a function of the vector u = v + (4, -8, 8) by it (n, 3)."""
+
+    def function(t: Truth, s: Point) -> Exact:
+        return stack([rate(of, s.v + exact([4.0, -8.0, 8.0]), axis) for axis in eye(3)])
+
+    return function
 
 
 def adjoint(t: Truth, s: Point) -> Exact:

@@ -29,7 +29,18 @@ out = ad.CalcInverseDynamics(d, InitializeAutoDiff(a, np.zeros((len(v), len(v)))
 _FORWARD = """port = ad.get_applied_generalized_force_input_port()
 port.FixValue(d, InitializeAutoDiff(tau, np.zeros((len(v), len(v)))).flatten())
 out = ad.EvalTimeDerivatives(d).CopyToVector()[len(q):]"""
+# Entries that depend on nothing have no derivatives.
+_EACH = """
+many = np.array(out, dtype=object)
+out = np.r_[many.ravel(), InitializeAutoDiff(v * 0, np.eye(len(v))).flatten()]"""
+_WHOLE = "\nvalue = value[: many.size].reshape(*many.shape, -1)"
+_POSES = """poses = [ad.EvalBodyPoseInWorld(d, ad.get_body(b.index())) for b in links]
+out = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]"""
 WAYS = {
+    "mass_matrix_dq": Way(
+        "CalcMassMatrix, AutoDiffXd", _gradient(f"out = ad.CalcMassMatrix(d){_EACH}", _BY_Q) + _WHOLE
+    ),
+    "link_poses_dq": Way("EvalBodyPoseInWorld, AutoDiffXd", _gradient(_POSES + _EACH, _BY_Q) + _WHOLE),
     "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_Q)),
     "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_V)),
     "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_Q)),

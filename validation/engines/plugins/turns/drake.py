@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...truth.poses import CENTRE, MASS, MOMENTS
 from ..writing.source import HALF_TURNS, Way
 
-IMPORTS = ("import pydrake.all as drake",)
+IMPORTS = ("import numpy as np", "import pydrake.all as drake")
 _R = "R, Q = (drake.RotationMatrix(drake.Quaternion(x)) for x in (q, q2))\n"
 _X = "X, Y = drake.RigidTransform(drake.Quaternion(q), a), drake.RigidTransform(drake.Quaternion(q2), tau)\n"
 # Angular parts come first.
@@ -16,6 +16,57 @@ _I = (
     f"I = drake.SpatialInertia.MakeFromCentralInertia({MASS}, {list(CENTRE)}, J)\n"
 )
 _SWAPPED = "value = np.roll({of}, (3, 3), (0, 1))"
+
+
+# Numbers with derivatives: of R along its angular velocity, of a vector by itself.
+_AD = """from pydrake.autodiffutils import AutoDiffXd as AD, ExtractGradient, InitializeAutoDiff
+from pydrake.common.eigen_geometry import AngleAxis_, Quaternion_
+from pydrake.math import RollPitchYaw_, RotationMatrix_
+"""
+_SEEDED = f"""{_AD}w, x, y, z = q
+N = np.array([[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]]) / 2
+Q = Quaternion_[AD](wxyz=InitializeAutoDiff(q, N).flatten())
+R = RotationMatrix_[AD](Q)
+"""
+_U = f"{_AD}u = InitializeAutoDiff(v + [4, -8, 8], np.eye(3)).flatten()\nlength = np.sqrt(u.dot(u))\n"
+
+
+def _along(of: str) -> str:
+    return f"{_SEEDED}value = ExtractGradient(np.ravel({of}))"
+
+
+def _by_vector(of: str) -> str:
+    return f"{_U}value = ExtractGradient(np.ravel({of}))"
+
+
+_AGAIN = "RotationMatrix_[AD](R.{}()).matrix()"
+_DERIVATIVES = {
+    "rotation_matrix_dq": Way("RotationMatrix, AutoDiffXd", _along("R.matrix()")),
+    "rotation_matrix_dq:ToQuaternion": Way("ToQuaternion, AutoDiffXd", _along(_AGAIN.format("ToQuaternion"))),
+    "rotation_matrix_dq:ToRollPitchYaw": Way("ToRollPitchYaw, AutoDiffXd", _along(_AGAIN.format("ToRollPitchYaw"))),
+    "rotation_to_rpy_dq": Way("RollPitchYaw, AutoDiffXd", _along("RollPitchYaw_[AD](R).vector()")),
+    "rotation_to_rpy_dq:Quaternion": Way(
+        "RollPitchYaw of a Quaternion, AutoDiffXd", _along("RollPitchYaw_[AD](Q).vector()")
+    ),
+    "rotation_of_rpy_du": Way(
+        "RollPitchYaw, AutoDiffXd", _by_vector("RollPitchYaw_[AD](u).ToRotationMatrix().matrix()")
+    ),
+    "rotation_of_rpy_du:ToQuaternion": Way(
+        "RollPitchYaw.ToQuaternion, AutoDiffXd",
+        _by_vector("RotationMatrix_[AD](RollPitchYaw_[AD](u).ToQuaternion()).matrix()"),
+    ),
+    "rotation_exponential_du": Way(
+        "RotationMatrix of an AngleAxis, AutoDiffXd",
+        _by_vector("RotationMatrix_[AD](AngleAxis_[AD](length, u / length)).matrix()"),
+    ),
+    **{
+        name: Way(
+            "MakeFromOneVector, AutoDiffXd",
+            _by_vector(f"RotationMatrix_[AD].MakeFromOneVector(u, {k}).matrix()[:, {k}]"),
+        )
+        for k, name in enumerate(("unit_vector_du", "unit_vector_du:about y", "unit_vector_du:about z"))
+    },
+}
 
 
 def _flat(of: str) -> str:
@@ -49,6 +100,7 @@ WAYS = {
         "AngleAxis",
         "n = np.linalg.norm(v)\nvalue = drake.AngleAxis(n, v / n if n else np.eye(3)[0]).rotation().ravel()",
     ),
+    **_DERIVATIVES,
     "rotation_half_turns": Way(
         "ToQuaternion",
         f"{HALF_TURNS}value = [drake.RotationMatrix(H).ToQuaternion().rotation().ravel() for H in half_turns]",
