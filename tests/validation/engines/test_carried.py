@@ -61,6 +61,21 @@ def test_a_link_that_turns_alone_carries_the_inertia_that_its_force_takes() -> N
         assert J[k][:, k] @ whole @ J[k][:, k] == pytest.approx(M[k, k])
 
 
+def test_what_holds_a_link_has_the_force_that_drives_its_joint() -> None:
+    """Along the axis of a joint without armature, at any speed; at rest it is what it is without speeds."""
+    J, held = _of("jacobian_local"), _of("joint_wrenches_driven")
+    axial = [J[k][3:, k] @ held[k][3:] for k in range(_N)]
+    np.testing.assert_allclose(axial, _STATE.tau, atol=1e-11)
+    still = replace(_STATE, v=0 * _STATE.v)
+    np.testing.assert_allclose(_of("joint_wrenches_from_rest"), _of("joint_wrenches_driven", still), atol=1e-12)
+    assert np.abs(_of("joint_wrenches_from_rest") - held).max() > 0.1
+
+
+@pytest.mark.parametrize("name", ["mass_matrix", "link_poses"])
+def test_derivatives_by_coordinates_are_slopes(name: str) -> None:
+    np.testing.assert_allclose(_of(f"{name}_dq") @ _STATE.v, _slope(name), atol=1e-8)
+
+
 def test_links_have_what_moves_them() -> None:
     """Of a link that carries none, what holds it is what moves it; of roots, what the world exerts."""
     held = _of("joint_wrenches")

@@ -154,6 +154,7 @@ def trees() -> dict[str, Tree]:
         Tree("armature everywhere", armature),
         _far("base 100 m away", (64.0, -48.0, 60.0)),
         _far("base 10 km away", (6400.0, -4800.0, 6000.0)),
+        replace(_free_with_branches(), name="free base without weight", gravity=ORIGIN),
         replace(_free_with_branches(), name="free base 10 km away", away=(6400.0, -4800.0, 6000.0)),
         Tree("six oblique hinges", _chain("six", 6)),
         *_small_turns(),

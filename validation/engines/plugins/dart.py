@@ -68,6 +68,10 @@ WAYS = {
         "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",
     ),
     "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
+    "joint_wrenches_driven": Way(
+        "computeForwardDynamics, getBodyForce",
+        _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n"),
+    ),
     "forward_dynamics": Way(
         "computeForwardDynamics",
         f"{_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()",

@@ -40,6 +40,13 @@ _Q = "put(dw, qpos=q)\nmjw.fwd_position(mw, dw)\n"
 _QV = "put(dw, qpos=q, qvel=v)\nmjw.fwd_position(mw, dw)\nmjw.fwd_velocity(mw, dw)\n"
 _FORWARD = "put(dw, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.forward(mw, dw)\n"
 _INVERSE = "put(dw, qpos=q, qvel=v, qacc=a)\nmjw.inverse(mw, dw)\n"
+# About the mass centre of the whole mechanism that the body is in.
+_HELD = """mjw.rne_postconstraint(mw, dw)
+value = []
+for b in bs:
+    moment, force = got(dw, 'cfrc_int')[b].reshape(2, 3)
+    R, arm = got(dw, 'xmat')[b], got(dw, 'subtree_com')[m.body_rootid[b]] - got(dw, 'xpos')[b]
+    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])"""
 # Rows by MuJoCo's numbering of M, of which the lower triangle is kept.
 _FULL = """value, M = np.zeros((m.nv, m.nv)), got(dw, 'M')
 for i in range(m.nv):
@@ -170,16 +177,8 @@ WAYS = {
         f"{_QV}mjw.subtree_vel(mw, dw)\nlinear, angular = got(dw, 'subtree_linvel'), got(dw, 'subtree_angmom')\n"
         "value = [[*(mw.body_subtreemass.numpy()[0, b] * linear[b]), *angular[b]] for b in bs]",
     ),
-    # About the mass centre of the whole mechanism that the body is in.
-    "joint_wrenches": Way(
-        "rne_postconstraint: cfrc_int",
-        f"""{_INVERSE}mjw.rne_postconstraint(mw, dw)
-value = []
-for b in bs:
-    moment, force = got(dw, 'cfrc_int')[b].reshape(2, 3)
-    R, arm = got(dw, 'xmat')[b], got(dw, 'subtree_com')[m.body_rootid[b]] - got(dw, 'xpos')[b]
-    value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])""",
-    ),
+    "joint_wrenches": Way("rne_postconstraint: cfrc_int", f"{_INVERSE}{_HELD}"),
+    "joint_wrenches_driven": Way("forward, rne_postconstraint: cfrc_int", f"{_FORWARD}{_HELD}"),
     "step_dampers_implicit": _step("mjINT_EULER"),
     "step_dampers_implicit:njmax_0": _step("mjINT_EULER", sizes=", njmax=0"),
     "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),

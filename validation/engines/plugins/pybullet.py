@@ -46,7 +46,7 @@ WAYS = {
     ),
     "gravity": Way(
         "calculateInverseDynamics",
-        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(q)] * 2)",
+        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(v)] * 2)",
     ),
     "joint_speed_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[11] for k in moving]"),
     "joint_force_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[10] for k in moving]"),
@@ -70,19 +70,66 @@ WAYS = {
 }
 
 # A joint has a motor that holds it still unless its greatest force is zero, and a greatest speed; a link has a damper.
-_STEP = f"""gravity
+_DRIVEN = """gravity
 joints
-p.setTimeStep({STEP})
+p.setTimeStep(STEP)
 for k in range(-1, p.getNumJoints(robot)):
     p.changeDynamics(robot, k, linearDamping=0, angularDamping=0, maxJointVelocity=1e9)
 for k, position, speed, force in zip(moving, q, v, tau):
     p.resetJointState(robot, k, position, speed)
     p.setJointMotorControl2(robot, k, p.VELOCITY_CONTROL, force=0)
     p.setJointMotorControl2(robot, k, p.TORQUE_CONTROL, force=force)
-p.stepSimulation()
+"""
+_STEP = f"""{_DRIVEN.replace("STEP", repr(STEP))}p.stepSimulation()
 states = p.getJointStates(robot, moving)
 value = [*(s[0] for s in states), *(s[1] for s in states)]"""
 WAYS["step_semi_implicit"] = Way("stepSimulation", _STEP)
+# Sensors read the wrench of the accelerations at the end of the step, at the mass centre along the principal axes: of a
+# short step, they are those at its beginning.
+_SHORT = 2.0**-24
+_HELD = f"""{_DRIVEN.replace("STEP", repr(_SHORT))}for k in links: p.enableJointForceTorqueSensor(robot, k, 1)
+p.stepSimulation()
+value = []
+for k in links:
+    info, held = p.getDynamicsInfo(robot, k), np.reshape(p.getJointState(robot, k)[2], (2, 3))
+    force, moment = held @ np.reshape(p.getMatrixFromQuaternion(info[4]), (3, 3)).T
+    value.append([*force, *(moment + np.cross(info[3], force))])
+    p.enableJointForceTorqueSensor(robot, k, 0)"""
+_REACTIONS = "getJointState: joint reaction forces"
+WAYS["joint_wrenches_driven"] = Way(_REACTIONS, _HELD, 1e-6)
+WAYS["joint_wrenches_from_rest"] = Way(_REACTIONS, _HELD.replace("q, v, tau", "q, 0 * q, tau"), 1e-6)
+# A free base stands where the frame of its inertia does: mass centre and principal axes. There its speeds are taken,
+# the angular ones first, and its accelerations, which are those of the mass centre; forces have the linear part first.
+_BASE = """joints
+base, still = p.getDynamicsInfo(robot, -1), len(moving)
+centre, own = np.array(base[3]), np.reshape(p.getMatrixFromQuaternion(base[4]), (3, 3))
+about = np.eye(6 + still)
+about[:6, :6] = np.block([[np.zeros((3, 3)), own.T], [own.T, own.T @ np.cross(np.eye(3), centre).T]])
+def product(x, y): return [*(x[3] * y[:3] + y[3] * x[:3] + np.cross(x[:3], y[:3])), x[3] * y[3] - x[:3] @ y[:3]]
+def inverse_dynamics(q, v, a):
+    v, a = about @ v, about @ a
+    a[3:6] += np.cross(v[:3], v[3:6])
+    position = q[:3] + np.reshape(p.getMatrixFromQuaternion(q[3:7]), (3, 3)) @ centre
+    place = [*position, *product(q[3:7], np.array(base[4]))]
+    forces = np.array(p.calculateInverseDynamics(robot, [*place, *q[7:]], v.tolist(), a.tolist()))
+    return about.T @ np.r_[forces[3:6], forces[:3], forces[6:]]
+def stand(q, v):
+    R = np.reshape(p.getMatrixFromQuaternion(q[3:7]), (3, 3))
+    p.resetBasePositionAndOrientation(robot, *p.multiplyTransforms(q[:3], q[3:7], *base[3:5]))
+    p.resetBaseVelocity(robot, R @ (v[:3] + np.cross(v[3:6], centre)), R @ v[3:6])
+    place = p.getBasePositionAndOrientation(robot)
+    link = p.multiplyTransforms(*place, *p.invertTransform(*base[3:5]))
+    return *place, *base[3:5], *link, *p.getBaseVelocity(robot)"""
+_LINK = "p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1)"
+_FREE = {
+    "p.calculateInverseDynamics(robot, q.tolist()": "inverse_dynamics(q",
+    "p.calculateMassMatrix(robot, q.tolist())": "about.T @ p.calculateMassMatrix(robot, q[7:].tolist()) @ about",
+    "zip(moving, q, 0 * q)": "zip(moving, q[7:], 0 * q)",
+    "zip(moving, q, v)": "zip(moving, q[7:], v[6:])",
+    f"[{_LINK} for k in links]": f"[stand(q, v), *({_LINK} for k in links[1:])]",
+}
+# What is asked of free bases.
+_OF_FREE = ("mass_matrix", "inverse_dynamics", "bias", "gravity", "link_poses", "link_velocities")
 
 
 def write(tree: Tree) -> Source | Unsupported:
@@ -101,23 +148,29 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     described = describe(tree)
     if isinstance(described, Unsupported):
         return described
-    if described.floating:
-        return Unsupported("coordinates of floating bases are not documented", offered=False)
-    setup = _SETUP.format(text=text, form=form.split()[0], load=_LOADS[form])
+    free = described.floating
+    if free and not tree.links[0].mass:
+        return Unsupported("bases without mass stand still", offered=False)
+    setup = _SETUP.format(text=text, form=form.split()[0], load=_LOADS[form].replace("=True", f"={not free}", 1))
     count = len(described.moving)
     optional: dict[str, tuple[str, ...]] = {"gravity": ("gravity = True", _GRAVITY.format(gravity=tree.gravity))}
     if form.startswith("urdf") and all(len(link.joints) == 1 for link in tree.links):
         # Links, and the joints before them, are numbered as in the file.
-        places = [k for k, link in enumerate(tree.links) if link.joints[0].kind != "fixed"]
+        places = [k - free for k, link in enumerate(tree.links) if link.joints[0].kind not in ("fixed", "free")]
         optional |= {"joints": ("joints = ()",), "moving": (f"moving = {places}",)}
-        optional |= {"links": (f"links = {list(range(len(tree.links)))}",)}
+        optional |= {"links": (f"links = {list(range(-free, len(tree.links) - free))}",)}
     else:
         optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
         optional |= {"links": (_LINKS.format(links=list(described.links)),)}
-    slots = slots_of(tree, described, described.moving)
+    slots = slots_of(tree, described, described.moving, "free xyzw, body speeds")
     # Its reader of SDF takes no joint with the world: one function asked says so.
-    lacks = tuple(name for name in WAYS if name != "link_poses") if form == "sdf" else ()
-    return Source(tuple(setup.split("\n")), slots, count, count, optional, lacks)
+    asked = ("link_poses",) if form == "sdf" else _OF_FREE if free else tuple(WAYS)
+    lacks = tuple(name for name in WAYS if name not in asked)
+    lines = tuple(setup.split("\n"))
+    if not free:
+        return Source(lines, slots, count, count, optional, lacks)
+    optional["about"] = tuple(_BASE.split("\n"))
+    return Source(lines, slots, count + 7, count + 6, optional, lacks, spelling=_FREE)
 
 
 PLUGIN = SourcePlugin(
@@ -131,6 +184,11 @@ PLUGIN = SourcePlugin(
         Convention("points of Jacobians", "from the link's origin, along the principal axes of its inertia"),
         Convention("links without <inertial>", "get a mass of 1 kg and moments of 1 kg m^2, with a warning"),
         Convention("files", "cached by name"),
+        Convention(
+            "free base",
+            "the frame of its inertia; calculateInverseDynamics takes position and quaternion, then angular before"
+            " linear velocity and acceleration of the mass centre, and gives the linear force first",
+        ),
         Convention("armature", "none"),
         Convention("stepSimulation", "links are damped by 0.04 and joints held by motors unless both are set to zero"),
     ),

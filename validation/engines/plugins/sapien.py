@@ -52,6 +52,7 @@ put(q, v)
 robot.set_qf(tau[place].astype(np.float32))
 scene.step()
 value = [*parts(robot.get_qpos()), *parts(robot.get_qvel())]"""
+_SHORT = 2.0**-60
 
 WAYS = {
     "bias": Way("compute_passive_force", _FORCE.format(v="v", gravity=True, coriolis=True)),
@@ -71,6 +72,17 @@ for link in links:
     value.append([*(link.linear_velocity - np.cross(w, arm)), *w])""",
     ),
     "step_semi_implicit": Way("Scene.step", _STEP),
+    # In the joint's frame on the child, with speeds that are those at the end of the step.
+    "joint_wrenches_driven": Way(
+        "link_incoming_joint_forces",
+        f"""{_MATRIX}{_STEP.replace(repr(STEP), repr(_SHORT))}
+held, value = robot.link_incoming_joint_forces, []
+for link in links:
+    X, wrench = matrix(link.joint.pose_in_child), held[link.index]
+    force, moment = X[:3, :3] @ wrench[:3], X[:3, :3] @ wrench[3:]
+    value.append([*force, *(moment + np.cross(X[:3, 3], force))])""",
+        1e-3,
+    ),
     # Friction as an argument of the joint, 0 unless stated.
     "step_semi_implicit:set_joint_properties": Way("set_joint_properties, Scene.step", _STEP, built=_AS_MADE),
     "joint_limits": Way("limits", "value = parts([joint.limits[0] for joint in robot.active_joints])"),

@@ -31,6 +31,10 @@ WAYS = {
     "coriolis_symmetry": Way("coriolis_matrix", "C = m.coriolis_matrix(q, v)\nvalue = C + C.T"),
     "inverse_dynamics": Way("inverse_dynamics", "value = m.inverse_dynamics(q, v, a)"),
     "joint_wrenches": Way("joint_wrenches", "value = m.joint_wrenches(q, v, a, tau, [])[own]"),
+    "joint_wrenches_driven": Way(
+        "forward_dynamics, joint_wrenches",
+        "value = m.joint_wrenches(q, v, m.forward_dynamics(q, v, tau), tau, [])[own]",
+    ),
     "forward_dynamics": Way("forward_dynamics", "value = m.forward_dynamics(q, v, tau)"),
     "kinetic_energy": Way("kinetic_energy", "value = m.kinetic_energy(q, v)"),
     "potential_energy": Way("potential_energy", "value = m.potential_energy(q)"),
@@ -180,7 +184,7 @@ def write(tree: Tree) -> Source | Unsupported:
         made.nq,
         made.nv,
         {"own": (f"own = {own!r}",)},
-        lacks=() if whole else ("joint_wrenches",),
+        lacks=() if whole else ("joint_wrenches", "joint_wrenches_driven"),
     )
 
 

@@ -1,0 +1,89 @@
+"""Answers that are altered as a fault would alter them are red cells, where the engine's own are right."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+
+from tests.late import needs_extra
+from validation.engines.interface import Tree
+from validation.engines.matrix import cells
+from validation.engines.models import acting, hostile, single
+from validation.engines.models.kinds import tree_of
+from validation.engines.plugins import OWN
+from validation.engines.plugins.writing.source import Source, SourcePlugin
+from validation.engines.workers import registry
+
+_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | single.trees()
+# Engine, tree, function, text of the call -> what it is in a call that has the fault.
+FAULTS = [
+    ("mujoco", "revolute x", "joint_wrenches_driven", "= q, v, tau", "= q, v, 2 * tau"),
+    ("mujoco", "free", "joint_wrenches_driven", "mj.mj_rnePostConstraint(m, d)\n", ""),
+    ("casadi", "ball", "mass_matrix_dq", "by_q(", "2 * by_q("),
+    ("casadi", "free", "link_poses_dq", "ca.vec(R.T)", "ca.vec(R)"),
+    ("drake", "revolute x", "joint_wrenches_driven", "FixValue(c, tau)", "FixValue(c, 2 * tau)"),
+    ("drake", "ball", "mass_matrix_dq", "(q, N)", "(q, 2 * N)"),
+    ("drake", "free", "link_poses_dq", "(q, N)", "(q, 2 * N)"),
+    ("drake", "servos along joints", "step_stiffness_implicit_straight", "FixValue(c, tau)", "FixValue(c, tau + 0.5)"),
+    (
+        "drake",
+        "servos against the order of joints",
+        "controlled_forces",
+        "control().Eval(e)",
+        "control().Eval(e)[::-1]",
+    ),
+    (
+        "drake",
+        "forces against the order of joints",
+        "actuated_forces",
+        "output_port().Eval(c)",
+        "output_port().Eval(c)[::-1]",
+    ),
+    ("drake", "rotations", "rotation_matrix_dq", "R.matrix()", "R.matrix().T"),
+    ("drake", "rotations", "rotation_to_rpy_dq", ".vector()", ".vector()[::-1]"),
+    ("drake", "rotations", "rotation_of_rpy_du", "_[AD](u)", "_[AD](2 * u)"),
+    ("drake", "rotations", "rotation_exponential_du", "(length,", "(2 * length,"),
+    ("drake", "rotations", "unit_vector_du", "MakeFromOneVector(u, 0)", "MakeFromOneVector(u + 1, 0)"),
+    (
+        "pybullet",
+        "free base without weight",
+        "inverse_dynamics",
+        "inverse_dynamics(q,",
+        "inverse_dynamics(np.r_[q[:7], q[6:-1]],",
+    ),
+    ("pybullet", "revolute x", "joint_wrenches_from_rest", "force=force", "force=2 * force"),
+    ("sapien", "revolute x", "joint_wrenches_driven", "tau[place]", "50 * tau[place]"),
+    ("dart", "revolute x", "joint_wrenches_driven", "setForces(tau)", "setForces(2 * tau)"),
+    (
+        "symofros",
+        "revolute x",
+        "joint_wrenches_driven",
+        "forward_dynamics(q, v, tau)",
+        "forward_dynamics(q, v, 2 * tau)",
+    ),
+    ("frax", "revolute oblique", "mass_matrix_dq", "@ rates(q)", "@ rates(2 * q) * 2"),
+    ("adam", "revolute oblique", "mass_matrix_dq", "ca.vec(M.T)", "2 * ca.vec(M.T)"),
+]
+
+
+@pytest.mark.parametrize(("engine", "name", "function", "right", "wrong"), FAULTS)
+def test_a_planted_fault_is_a_red_cell(
+    engine: str, name: str, function: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plugin = OWN[engine]
+    assert isinstance(plugin, SourcePlugin)
+    if not plugin.version():
+        pytest.skip(needs_extra(engine, plugin.package))
+    tree = _FAMILIES[name] if name in _FAMILIES else tree_of(name)
+    (sound,) = cells(plugin, tree, (function,))
+    written = plugin.written(tree)
+    assert isinstance(written, Source)
+    code = written.spelled(plugin.ways[function].code)
+    assert right in code
+    planted = replace(written, spelling={plugin.ways[function].code: code.replace(right, wrong)})
+    monkeypatch.setitem(registry().plugins, engine, replace(plugin, write=lambda tree: planted))
+    (red,) = cells(plugin, tree, (function,))
+    assert sound.verdict == "right" or (engine == "pybullet" and sound.verdict == "imprecise")
+    assert red.verdict == "wrong"
