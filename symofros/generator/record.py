@@ -159,7 +159,8 @@ def _rigid_contacts(tree: SpanningTree) -> tuple[RigidContactRecord, ...]:
         first, second = map(_text, ball.watched)
         pushes, way = (tuple(map(place, names)) for names in (ball.pushes, ball.way))
         held_by = ball.normal.name, ball.across.name
-        places = place(ball.mode), pushes, way, place(ball.apart), rows
+        pole = -1 if ball.contact.surface == "plane" else place(ball.pole)
+        places = place(ball.mode), pushes, way, place(ball.apart), pole, rows
         records.append(RigidContactRecord(ball.name, *places, held_by, friction, restitution, (first, second)))
     return tuple(records)
 

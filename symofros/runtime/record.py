@@ -121,10 +121,11 @@ class RigidContactRecord(NamedTuple):
     Attributes:
         name: Name of the ball.
         mode: Run-time parameter that is its mode: 0 open, 1 slides, 2 sticks.
-        pushes: Parameters that are a further force on the ball, along the axes of the plane.
+        pushes: Parameters that are a further force on the ball, along the axes of contact.
         way: Parameters that are the direction in which it has begun to slide (2), and its speed then.
-        apart: Parameter that is how far it may pass the plane, open, by rounding.
-        rows: Rows of G that hold it along the axes of the plane.
+        apart: Parameter that is how far it may pass the surface, open, by rounding.
+        pole: Parameter that is the sign of a sphere's pole; -1 on a plane.
+        rows: Rows of G that hold it along the axes of contact.
         constraints: Names of the constraints of these rows.
         friction: Formula of parameters: coefficient of friction.
         restitution: Formula of parameters: energetic coefficient of restitution.
@@ -137,6 +138,7 @@ class RigidContactRecord(NamedTuple):
     pushes: tuple[int, ...]
     way: tuple[int, ...]
     apart: int
+    pole: int
     rows: tuple[int, ...]
     constraints: tuple[str, str]
     friction: str
@@ -145,9 +147,10 @@ class RigidContactRecord(NamedTuple):
 
     @property
     def state(self) -> tuple[str, ...]:
-        """Formulas of its state: distance, velocity against the plane (3), friction, restitution."""
+        """Formulas of its state: distance, velocity against the surface (3), friction, restitution, normal's tilt."""
         quantities = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz"))
-        return (*quantities, self.friction, self.restitution)
+        tilt = "1" if self.pole < 0 else f"`contact.{self.name}.nz`"
+        return (*quantities, self.friction, self.restitution, tilt)
 
 
 class JointLimit(NamedTuple):

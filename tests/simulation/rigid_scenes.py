@@ -70,6 +70,21 @@ def box(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), **sta
     return sf.compile(box_system(friction, gravity, **stated))
 
 
+def sphere(name: str, mass: float, radius: float, *frames: sf.Frame) -> sf.RigidBody:
+    """A free homogeneous ball."""
+    inertia = sf.Inertia(mass, moments=(0.4 * mass * radius**2,) * 3)
+    return sf.RigidBody(name, sf.Joint(name, "free"), inertia, frames=frames)
+
+
+def in_shell(friction: float, axis: tuple[float, float, float] = (1, 0, 0), angle: float = 0.0) -> sf.System:
+    """A ball inside a free shell, whose frame of contact is turned about an axis; without weight."""
+    shell = sphere("shell", 2.0, 0.5, sf.Frame("hollow", rotation=sf.Rotation.axis_angle(axis, angle)))
+    sizes: dict[str, Any] = {"surface": "sphere", "inside": True, "radius": 0.1, "surface_radius": 0.5}
+    contact = sf.Contact("wall", ("ball", None), ("shell", "hollow"), restitution=0.0, friction=friction, **sizes)
+    bodies = [sphere("ball", 1.0, 0.1), shell]
+    return sf.System("in_shell", bodies, gravity=(0, 0, 0), connections=[contact])
+
+
 def rested(model: sf.Model, height: float) -> Any:
     """The configuration in which a box stands."""
     q = model.neutral()

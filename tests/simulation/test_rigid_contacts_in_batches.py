@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.simulation.rigid_scenes import GROUND, G, ball, box, rested, rod
+from tests.simulation.rigid_scenes import GROUND, G, ball, box, in_shell, rested, rod
 
 STEPS: list[dict[str, Any]] = [
     {"method": "rk4", "dt": 1e-3},
@@ -26,6 +26,11 @@ def starts(name: str, n: int) -> tuple[sf.Model, Any, Any]:
     elif name == "rod":
         model, angle = rod(0.4, 0.3), rng.uniform(-1, 1, n)
         q, v = np.stack([0 * angle, np.cos(angle) + 0.05, angle], axis=1), rng.uniform(-2, 2, (n, 3))
+    elif name == "shell":
+        model = sf.compile(in_shell(0.3, (0, 1, 0), 2.5))
+        q, v = np.array([model.neutral()] * n), rng.uniform(-4, 4, (n, 12))
+        q[:, 0], v[:, 0], v[:, 6] = np.where(np.arange(n) < 3, 0.4, 0.39), 0.4, 0.0
+        return model, q, v
     else:
         model = box(0.3)
         q = np.array([rested(model, 0.11)] * n)
@@ -41,7 +46,7 @@ def apart(events: Sequence[Any]) -> list[Any]:
     return [one for k, one in enumerate(events) if k == 0 or one.t > events[k - 1].t]
 
 
-@pytest.mark.parametrize("name", ["ball", "rod", "box"])
+@pytest.mark.parametrize("name", ["ball", "rod", "box", "shell"])
 @pytest.mark.parametrize("steps", STEPS)
 def test_batches_move_as_single_runs_do(name: str, steps: dict[str, Any]) -> None:
     """States to 1e-12, each event at its instant, with what it took; strikes at the start, too."""

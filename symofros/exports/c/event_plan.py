@@ -122,7 +122,8 @@ def _lines(
     sticking = [f"{{{one.q}, {one.v}, {one.mode}, {one.row}}}" for one in record.sticking]
     balls = record.rigid_contacts
     contacts = [
-        f"{{{one.mode}, {{{integers(one.pushes)}}}, {{{integers(one.way)}}}, {one.apart}, {{{integers(one.rows)}}}}}"
+        f"{{{one.mode}, {{{integers(one.pushes)}}}, {{{integers(one.way)}}}, {one.apart}, {one.pole},"
+        f" {{{integers(one.rows)}}}}}"
         for one in balls
     ]
     places = [f"{{{', '.join(map(str, place))}}}" for place in (places_of(record, actions) if actions else ())]

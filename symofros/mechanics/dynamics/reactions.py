@@ -4,8 +4,9 @@
 that frame's origin in world axes; `reaction.JOINT.fx` to `.mz` the wrench that a joint transmits to its body, about the
 joint's point in body axes (docs/theory/constraints.md, section 13, (33)). `contact.BALL.gap` is the distance of a ball
 of a contact from its surface, `contact.BALL.vx` to `.vz` the velocity of its material point there against the
-surface's, in the axes of the surface; these follow from coordinates and speeds alone. A coordinate, parameter or input
-of such a name is meant first.
+surface's, in the axes of the surface, of rigid contacts in the axes of contact, and `contact.BALL.nz` the normal's
+component along z of the surface's frame; these follow from coordinates and speeds alone. A coordinate, parameter or
+input of such a name is meant first.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ def bind_contacts(equations: Equations, used: Iterable[str]) -> None:
     for name in sorted(contact_symbols(tree).intersection(used) - {*own.symbols, *own.keys, *own.constants}):
         ball, quantity = name.removeprefix("contact.").rsplit(".", 1)
         touching = equations.touching_balls[balls.index(ball)]
-        lowering.bind(name, dict(zip(QUANTITIES, (touching.gap, *touching.slip), strict=True))[quantity])
+        lowering.bind(name, dict(zip(QUANTITIES, (touching.gap, *touching.slip, touching.tilt), strict=True))[quantity])
 
 
 def bind_reactions(equations: Equations, used: Iterable[str]) -> bool:

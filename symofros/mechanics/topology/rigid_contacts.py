@@ -1,11 +1,12 @@
-"""Rigid contacts: modes of balls on planes, and what holds them (docs/theory/constraints.md, section 15).
+"""Rigid contacts: modes of balls on planes and spheres, and what holds them (docs/theory/constraints.md, section 15).
 
-A mode is a run-time parameter, "foot.mode": 0 is open, what it is unless a run sets it, 1 slides and 2 sticks. In modes
-1 and 2 the condition "foot.normal" keeps the ball on the plane, in mode 2 "foot.across.x" and ".y" its point of contact
-from slipping; their multipliers are the forces on the ball along the axes of the plane. The parameters "foot.push_x" to
-".push_z" are a further force along these axes, by which a run adds sliding friction, and "foot.way_x", ".way_y" and
-".way_speed" the direction in which the ball has begun to slide, and its speed then; "foot.apart" is how far a ball that
-has grazed the plane may pass it by rounding.
+A mode is a run-time parameter, "foot.mode": 0 is open, what it is unless a run sets it, 1 slides and 2 sticks. In
+modes 1 and 2 the condition "foot.normal" keeps the ball on the surface, in mode 2 "foot.across.x" and ".y" its point
+of contact from slipping; their multipliers are the forces on the ball along the axes of contact: those of a plane, of
+a sphere two tangents and the normal. The parameters "foot.push_x" to ".push_z" are a further force along these axes,
+by which a run adds sliding friction, and "foot.way_x", ".way_y" and ".way_speed" the direction in which the ball has
+begun to slide, and its speed then; "foot.apart" is how far a ball that has grazed the surface may pass it by rounding.
+On a sphere "foot.pole", 1 or -1, is the end of its z axis from which the tangents are turned to where the ball is.
 """
 
 from __future__ import annotations
@@ -25,9 +26,11 @@ from symofros.mechanics.topology.sticking import sticking_coordinates
 # Speed [m/s] against the direction of sliding at which a ball has come to rest: below any that matters,
 # above the rounding of one that has just begun to slide.
 _REST = 1e-14
-# Quantities of a ball in formulas, "contact.foot.gap": its distance from the plane, and the velocity of its material
-# point against the plane's, along the axes of the plane.
-QUANTITIES = ("gap", "vx", "vy", "vz")
+# Quantities of a ball in formulas, "contact.foot.gap": its distance from the surface, the velocity of its material
+# point against the surface's along the axes of contact, and the z component of the normal in the axes of the surface.
+QUANTITIES = ("gap", "vx", "vy", "vz", "nz")
+# Least cosine between normal and pole, less than which the pole is taken anew: 120 degrees.
+_POLE_LEAST = -0.5
 
 
 class RigidBall(NamedTuple):
@@ -50,7 +53,7 @@ class RigidBall(NamedTuple):
 
     @property
     def pushes(self) -> tuple[str, ...]:
-        """Names of the parameters that are a further force, along the axes of the plane."""
+        """Names of the parameters that are a further force, along the axes of contact."""
         return tuple(f"{self.name}.push_{axis}" for axis in AXES)
 
     @property
@@ -60,12 +63,24 @@ class RigidBall(NamedTuple):
 
     @property
     def apart(self) -> str:
-        """Name of the parameter that is how far an open ball may pass the plane before it strikes: by rounding."""
+        """Name of the parameter that is how far an open ball may pass the surface before it strikes: by rounding."""
         return f"{self.name}.apart"
 
     @property
+    def pole(self) -> str:
+        """Name of the parameter that is the sign of a sphere's pole."""
+        return f"{self.name}.pole"
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Its parameters, at what they are unless a run sets them."""
+        names = (self.mode, *self.pushes, *self.way, self.apart)
+        pole = () if self.contact.surface == "plane" else (Parameter(self.pole, 1.0),)
+        return (*(Parameter(name, 0.0) for name in names), *pole)
+
+    @property
     def normal(self) -> Touching:
-        """The condition that keeps the ball on the plane."""
+        """The condition that keeps the ball on the surface."""
         return Touching(f"{self.name}.normal", self.contact, self.number, (2,))
 
     @property
@@ -75,7 +90,7 @@ class RigidBall(NamedTuple):
 
     @property
     def conditions(self) -> tuple[str, str, str]:
-        """Names of the conditions along x, y and z of the plane."""
+        """Names of the conditions along the axes of contact."""
         x, y = self.across.conditions
         return x, y, self.normal.name
 
@@ -88,7 +103,10 @@ class RigidBall(NamedTuple):
 
     @property
     def watched(self) -> tuple[Value, Value]:
-        """What falls to zero where a mode ends, (40): distance or normal force; slip, or what friction has left."""
+        """What falls to zero where a mode ends, (40): distance or normal force; slip, or what friction has left.
+
+        On a sphere the latter falls to zero, too, where the normal has come too far from its pole.
+        """
         m, one, two = _symbol(self.mode), Term(1.0), Term(2.0)
         is_open, slides, sticks = (m - one) * (m - two) / two, m * (two - m), m * (m - one) / two
         (vx, vy), (wx, wy) = (_symbol(f"contact.{self.name}.{x}") for x in ("vx", "vy")), map(_symbol, self.way[:2])
@@ -97,7 +115,11 @@ class RigidBall(NamedTuple):
         ahead = wx * vx + wy * vy + Term(_REST)
         left = limit * limit - fx * fx - fy * fy
         gap = _symbol(f"contact.{self.name}.gap") + _symbol(self.apart)
-        return (is_open * gap + (one - is_open) * fz).value, (is_open + slides * ahead + sticks * left).value
+        across = is_open + slides * ahead + sticks * left
+        if self.contact.surface != "plane":
+            near = _symbol(self.pole) * _symbol(f"contact.{self.name}.nz") - Term(_POLE_LEAST)
+            across = across * (is_open + (one - is_open) * near)
+        return (is_open * gap + (one - is_open) * fz).value, across.value
 
 
 def rigid_balls(system: System) -> Iterator[RigidBall]:
@@ -114,10 +136,9 @@ def with_rigid_contacts(system: System) -> System:
     if not balls:
         return system
     rows: Any = [row for ball in balls for row in (ball.normal, ball.across)]  # Of the generator's own kind.
-    names = [name for ball in balls for name in (ball.mode, *ball.pushes, *ball.way, ball.apart)]
     return replace(
         system,
-        parameters=(*system.parameters, *(Parameter(name, 0.0) for name in names)),
+        parameters=(*system.parameters, *(parameter for ball in balls for parameter in ball.parameters)),
         constraints=(*system.constraints, *rows),
         switches=(*system.switches, *(switch for ball in balls for switch in ball.switches)),
     )

@@ -1,13 +1,15 @@
 /* Rigid contacts with friction: forces while balls slide, impacts, and which mode each takes (docs/theory/constraints.md,
  * section 15). */
 
-enum { SYM_MOST_STRIKES = 10000 };
+enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a ball's state */
 /* Slip up to which adaptive steps do not follow how its direction turns [m/s]. */
 #define SYM_SLOW 1e-5
 /* Share of the speed with which a ball began to slide that is left by the turning of its path where it comes to rest. */
 #define SYM_SLIP_LEFT 1e-6
 /* Distance by which a ball that grazes a plane may pass it, at first [m]. */
 #define SYM_GRAZES 1e-13
+/* Cosine between a normal and its pole from which on a pole stays as it is. */
+#define SYM_POLE_STAYS -0.25
 /* Twice the acceleration towards a plane below which a ball is taken to rise above it from where rounding has put it [m/s^2]. */
 #define SYM_STEEP 1e3
 
@@ -209,14 +211,29 @@ static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const doub
     return SYM_NO_CONTACT_FORCE;
 }
 
+/* Poles of spheres by the normals at the evaluation point, in par: one that is far from its pole takes the other one. */
+static void sym_choose_poles(const sym_system *s, double *par) {
+    int32_t i, taken = 0;
+    for (i = 0; i < s->n_contacts; ++i) {
+        const double tilt = s->contact_state.out[0][SYM_CONTACT_ENTRIES * i + SYM_TILT];
+        double *pole = par + s->contacts[i].pole;
+        if (s->contacts[i].pole < 0 || *pole * tilt >= SYM_POLE_STAYS) continue;
+        *pole = -*pole, taken = 1;
+    }
+    if (!taken) return;
+    sym_prepare_call(&s->contact_state, par);
+    sym_evaluate(&s->contact_state);
+}
+
 /* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
  * they are. Returns 0 or a status: one has penetrated where a motion begins, or too many touch. */
-static int32_t sym_find_touching(sym_run *r, const double *par, const double *met, int32_t begins, sym_touching *at) {
+static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int32_t begins, sym_touching *at) {
     const sym_system *s = r->system;
     int32_t i, k, n = 0;
     sym_load_state(r);
     if (sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->contact_state);
+    sym_choose_poles(s, par);
     for (i = 0; i < s->n_contacts; ++i) {
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i;
         if (begins && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
@@ -332,7 +349,10 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
     memcpy(par, r->par, (size_t)s->npar * sizeof *par);
     status = sym_find_touching(r, par, met, begins, &at);
     if (status == 0) *sym_modes_chosen(s) = 1.0;
-    if (status != 0 || at.problem.n == 0) return status;
+    if (status != 0 || at.problem.n == 0) {
+        sym_prepare_call(&s->contact_state, r->par); /* poles are as they were */
+        return status;
+    }
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
         par[of->mode] = SYM_OPEN;
@@ -340,7 +360,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
     }
     status = sym_decide_contacts(r, &at, r->par, met, par);
     if (status != 0) {
-        sym_prepare_call(&s->forward_dynamics, r->par);
+        sym_prepare_call(&s->forward_dynamics, r->par), sym_prepare_call(&s->contact_state, r->par);
         return status;
     }
     for (i = 0; i < at.problem.n; ++i) {

@@ -102,14 +102,15 @@ typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/th
 } sym_sticking;
 
 /* Entries a ball of a rigid contact: of its state, and of its memory. */
-typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 6, SYM_BALL_ENTRIES = 5 } sym_contact_sizes;
+typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 7, SYM_BALL_ENTRIES = 5 } sym_contact_sizes;
 
 typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/constraints.md, section 15) */
     int32_t mode;    /* parameter: SYM_OPEN, SYM_SLIDES, SYM_STICKS */
-    int32_t push[3]; /* parameters: a further force on the ball, along the axes of the plane */
+    int32_t push[3]; /* parameters: a further force on the ball, along the axes of contact */
     int32_t way[3];  /* parameters: x, y of the direction in which it has begun to slide, and its speed then */
-    int32_t apart;   /* parameter: how far it may pass the plane, open, by rounding */
-    int32_t row[3];  /* of G, which hold it along the axes of the plane */
+    int32_t apart;   /* parameter: how far it may pass the surface, open, by rounding */
+    int32_t pole;    /* parameter: sign of the pole of a sphere; -1: of a plane */
+    int32_t row[3];  /* of G, which hold it along the axes of contact */
 } sym_rigid_contact;
 
 typedef struct sym_assignment { /* what one action sets */
@@ -206,8 +207,8 @@ typedef struct sym_system {
     int32_t *held;                /* it stays as it is, and at rest, exactly */
     int32_t n_contacts;
     const sym_rigid_contact *contacts; /* (n_contacts) balls of rigid contacts */
-    /* One output, SYM_CONTACT_ENTRIES of each: its distance, its velocity against the plane (3), its coefficients of friction
-     * and of restitution. */
+    /* One output, SYM_CONTACT_ENTRIES of each: its distance, its velocity against the surface (3), its coefficients of
+     * friction and of restitution, and the normal's component along z of the surface's frame. */
     sym_call contact_state;
     int32_t npar;
     double longest_step;               /* of fixed steps [s] */

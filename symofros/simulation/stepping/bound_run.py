@@ -112,7 +112,9 @@ class BoundRun:
         """Balls of rigid contacts (docs/theory/constraints.md, section 15)."""
         system, memory, balls = self.system, self.memory, self.model.record.rigid_contacts
         system.n_contacts, system.npar = len(balls), self.model.npar
-        rows = [(ball.mode, list(ball.pushes), list(ball.way), ball.apart, list(ball.rows)) for ball in balls]
+        rows = [
+            (ball.mode, list(ball.pushes), list(ball.way), ball.apart, ball.pole, list(ball.rows)) for ball in balls
+        ]
         system.contacts = memory.own("sym_rigid_contact[]", rows)
         if not balls:
             return

@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.exports.cases import build, run, sources
-from tests.simulation.rigid_scenes import G, ball_system, box_system, rod_system
+from tests.simulation.rigid_scenes import G, ball_system, box_system, in_shell, rod_system
 
 MAIN, BY_HAND = (Path(__file__).with_name(name).read_text() for name in ("events.c", "contacts.c"))
 SCENES: dict[str, tuple[sf.System, dict[str, float]]] = {
@@ -21,6 +21,7 @@ SCENES: dict[str, tuple[sf.System, dict[str, float]]] = {
     "strikes at once": (ball_system(), {"free.pz": 0.1, "free.vz": -1.0, "free.wy": 20.0}),
     "rod": (rod_system(0.4, 0.3), {"z": cos(0.5) + 0.05, "angle": 0.5, "dx": 1.0}),
     "box": (box_system(0.3), {"free.pz": 0.11, "free.vx": 1.0, "free.vy": 0.5, "free.wz": 2.0, "free.wx": 0.2}),
+    "shell": (in_shell(0.3, (0, 1, 0), 2.5), {"ball.px": 0.4, "ball.vy": 3.0, "ball.vz": 2.0, "ball.wx": 3.0}),
 }
 
 

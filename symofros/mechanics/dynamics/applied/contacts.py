@@ -11,6 +11,7 @@ from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
+from symofros.mechanics.dynamics.applied.contact_axes import TINY, norm, sphere_normal, tangents
 from symofros.mechanics.dynamics.applied.elements import smoothed_sign
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -18,9 +19,6 @@ from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.rigid_contacts import RigidBall
 from symofros.mechanics.topology.tree import frame_of
 
-# What roots are taken of is at least this, a number of single precision too: the derivative of a root of zero does not
-# exist, and that of these is zero there.
-_TINY = 1e-30
 # Share of the largest friction from which on bristles begin to slip as they are bent further.
 _BREAKAWAY = 0.9
 
@@ -37,7 +35,9 @@ class TouchingBall:
         point: Point of the surface next to the ball's centre, where the force acts [m].
         energy: Energy that the penetration and bristles store [J].
         share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
-        slip: Velocity of the ball's material point there against the surface's, in the axes of the surface [m/s].
+        slip: Velocity of the ball's material point there against the surface's, in the axes of the surface, of rigid
+            contacts in the axes of contact [m/s].
+        tilt: Component of the normal along z of the surface's frame.
         rates: Rates of the deflections of its bristles, in the axes of the surface; none without bristles [m/s].
     """
 
@@ -49,6 +49,7 @@ class TouchingBall:
     energy: Edge
     share: Edge
     slip: Vec3
+    tilt: Edge
     rates: tuple[Edge, ...]
 
 
@@ -84,11 +85,13 @@ def _touching(
     # Of points fixed to the two bodies at the point of contact.
     at_first, at_second = (_velocity_at(g, frames.velocity(end), p_WP - frames.pose(end).p_WF) for end in ends)
     slip = at_first - at_second
-    slip_S = second.R_WF.T.times(slip)
     if contact.rigid:
-        names = RigidBall(contact, number, contact.ball_names[number]).pushes
-        force = Vec3(g, *(lowering.symbol(name) for name in names))
-        return TouchingBall(gap, ZERO, force.z, second.R_WF.times(force), p_WP, ZERO, ZERO, slip_S, ())
+        ball = RigidBall(contact, number, contact.ball_names[number])
+        axes = second.R_WF if contact.surface == "plane" else tangents(lowering, ball, second.R_WF, normal)
+        pushes = Vec3(g, *(lowering.symbol(name) for name in ball.pushes))
+        along = axes.T.times(slip)
+        return TouchingBall(gap, ZERO, pushes.z, axes.times(pushes), p_WP, ZERO, ZERO, along, gradient.z, ())
+    slip_S = second.R_WF.T.times(slip)
     depth = g.call("max", -gap, ZERO)
     approach = -slip.dot(normal)
     elastic = g.mul(lowering.value(contact.stiffness or 0.0), _power(g, depth, contact.exponent))
@@ -108,7 +111,7 @@ def _touching(
         drag = _friction(lowering, contact, push, across)
     size = _size(lowering, contact)
     share = ZERO if size is None else g.div(depth, size)
-    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share, slip_S, rates)
+    return TouchingBall(gap, depth, push, normal.scaled(push) - drag, p_WP, energy, share, slip_S, gradient.z, rates)
 
 
 def _velocity_at(g: Graph, velocity: list[Edge], offset: Vec3) -> Vec3:
@@ -144,7 +147,7 @@ class _Bristles:
         g = self.g = lowering.g
         self.stiffness = lowering.value(contact.bristle_stiffness or 0.0)
         self.damping = lowering.value(contact.bristle_damping or 0.0)
-        tiny = g.constant(_TINY)
+        tiny = g.constant(TINY)
         self.z = z
         self.along = normal.scaled(normal.dot(z))
         self.across = z - self.along
@@ -162,8 +165,8 @@ class _Bristles:
     def drag(self) -> Vec3:
         """The force against the slip, in S: (19), (20)."""
         g = self.g
-        lag = g.mul(self.damping, _norm(g, self.elastic_slip))
-        share = g.div(self.left, g.add(g.add(self.left, lag), g.constant(_TINY)))
+        lag = g.mul(self.damping, norm(g, self.elastic_slip))
+        share = g.div(self.left, g.add(g.add(self.left, lag), g.constant(TINY)))
         spring = self.across.scaled(g.mul(self.stiffness, self.held))
         return spring + self.elastic_slip.scaled(g.mul(self.damping, share))
 
@@ -183,11 +186,7 @@ def _power(g: Graph, depth: Edge, exponent: float) -> Edge:
     """A power of the penetration whose derivatives exist at zero."""
     if exponent == 1.0:
         return depth
-    return g.mul(depth, depth if exponent == 2.0 else g.sqrt(g.call("max", depth, g.constant(_TINY))))
-
-
-def _norm(g: Graph, x: Vec3) -> Edge:
-    return g.sqrt(g.call("max", x.dot(x), g.constant(_TINY)))
+    return g.mul(depth, depth if exponent == 2.0 else g.sqrt(g.call("max", depth, g.constant(TINY))))
 
 
 def _surface(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]:
@@ -203,10 +202,9 @@ def _surface(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]
     elif contact.surface == "capsule":
         half = g.mul(g.constant(0.5), lowering.value(contact.length or 0.0))
         away = Vec3(g, x.x, x.y, g.sub(x.z, g.call("min", g.call("max", x.z, -half), half)))
-    length = _norm(g, away)
-    normal = away.scaled(g.div(ONE, length))
+    length, normal = sphere_normal(g, away, contact.inside)
     distance = g.sub(length, lowering.value(contact.surface_radius or 0.0))
-    return (-distance, -normal) if contact.inside else (distance, normal)
+    return (-distance if contact.inside else distance), normal
 
 
 def _box(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]:
@@ -217,13 +215,13 @@ def _box(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]:
     beyond = [g.sub(g.call("abs", edge), h) for edge, h in zip(x, half, strict=True)]
     most = g.call("max", g.call("max", beyond[0], beyond[1]), beyond[2])
     outside = Vec3(g, *(g.call("max", d, ZERO) for d in beyond))
-    distance = g.add(_norm(g, outside), g.call("min", most, ZERO))
+    distance = g.add(norm(g, outside), g.call("min", most, ZERO))
     within = g.call("step", -most)
     along = [g.add(out, g.mul(within, g.call("step", g.sub(d, most)))) for out, d in zip(outside, beyond, strict=True)]
     # The sign of a coordinate, 1 of zero.
     signs = [g.sub(g.mul(g.constant(2.0), g.call("step", edge)), ONE) for edge in x]
     normal = Vec3(g, *(g.mul(sign, edge) for sign, edge in zip(signs, along, strict=True)))
-    return distance, normal.scaled(g.div(ONE, _norm(g, normal)))
+    return distance, normal.scaled(g.div(ONE, norm(g, normal)))
 
 
 def _size(lowering: Lowering, contact: Contact) -> Edge | None:

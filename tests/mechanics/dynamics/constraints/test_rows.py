@@ -88,6 +88,37 @@ def test_rates_of_conditions_are_their_derivatives_along_the_motion(case: str) -
     assert np.abs(drift + gamma).max() < 1e-8 * max(1.0, np.abs(gamma).max())
 
 
+SURFACES: dict[str, dict[str, Any]] = {
+    "plane": {},
+    "sphere": {"surface": "sphere", "surface_radius": 0.3},
+    "hollow sphere": {"surface": "sphere", "surface_radius": 0.9, "inside": True},
+}
+
+
+@pytest.mark.parametrize(("surface", "pole"), [("plane", None), *((x, s) for x in list(SURFACES)[1:] for s in (1, -1))])
+def test_rows_of_rigid_contacts_are_derivatives_along_the_motion(surface: str, pole: float | None) -> None:
+    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38d)."""
+    contact = sf.Contact("k", A, B, restitution=0.0, radius=0.1, points=[(0.05, 0.1, -0.1)], **SURFACES[surface])
+    m = sf.compile(
+        tree(connections=(contact,)),
+        sf.Options(functions=(*FUNCTIONS, "contact_forces", "closure_wrenches"), backend="interpreter"),
+    )
+    given = {"par": {"k.mode": 2.0} | ({} if pole is None else {"k.pole": pole})}
+    q, v = state(m)
+    G, gamma = m.constraint_jacobian(q, **given), m.constraint_bias(q, v, **given)
+    rate = m.constraint_rate(q, v, **given)
+    assert rate == pytest.approx(G @ v, abs=1e-12) and m.names.constraints[0] == "k.normal"
+    for distance in (m.constraint, lambda q, **x: m.contact_forces(q, v, **x).gap):
+        along = sixth(lambda s, distance=distance: distance(m.integrate(q, s * v), **given))
+        assert along[0] == pytest.approx(rate[0], abs=1e-9)
+    drift = sixth(lambda s: m.constraint_rate(m.integrate(q, s * v), v, **given))
+    assert np.abs(drift + gamma).max() < 1e-8 * max(1.0, np.abs(gamma).max())
+    # The axes are at right angles: those of a wrench on the ball by each multiplier, of the unit length.
+    pushes = np.concatenate([m.closure_wrench("k.across", q, x, **given)[..., :3] for x in np.eye(3)[1:]])
+    pushes = np.vstack([m.closure_wrench("k.normal", q, [1, 0, 0], **given)[:3], pushes.reshape(2, 3)])
+    assert pushes @ pushes.T == pytest.approx(np.eye(3), abs=1e-14)
+
+
 def test_rates_at_the_closed_posture_are_the_blocked_spins() -> None:
     """Both frames of a ball on the ground: G is the identity in the blocked directions."""
     for axes in ROTATIONS:

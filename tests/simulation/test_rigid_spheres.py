@@ -1,0 +1,157 @@
+"""Rigid contacts of spheres with each other: closed forms, momentum, axes (docs/theory/constraints.md, 15)."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import cos, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import symofros as sf
+from tests.simulation.rigid_scenes import FINE, GROUND, G, in_shell, sphere
+
+RADIUS, CORE = 0.1, 0.5
+
+
+@cache
+def on_top(friction: float) -> sf.Model:
+    """A ball on a sphere that is fixed."""
+    contact = sf.Contact(
+        "top",
+        ("ball", None),
+        GROUND,
+        surface="sphere",
+        radius=RADIUS,
+        surface_radius=CORE,
+        restitution=0.0,
+        friction=friction,
+    )
+    return sf.compile(sf.System("on_top", [sphere("ball", 1.0, RADIUS)], connections=[contact]))
+
+
+def beside_top(model: sf.Model, angle: float) -> Any:
+    """The ball at an angle from the upright."""
+    q = model.neutral()
+    q[[0, 2]] = (CORE + RADIUS) * sin(angle), (CORE + RADIUS) * cos(angle)
+    return q
+
+
+@cache
+def pair(friction: float, e: float) -> sf.Model:
+    """Two free balls, of 1 kg and 0.1 m, and of 3 kg and 0.2 m."""
+    bodies = [sphere("a", 1.0, 0.1), sphere("b", 3.0, 0.2)]
+    sizes: dict[str, Any] = {"surface": "sphere", "radius": 0.1, "surface_radius": 0.2}
+    contact = sf.Contact("pair", ("a", None), ("b", None), restitution=e, friction=friction, **sizes)
+    return sf.compile(sf.System("pair", bodies, gravity=(0, 0, 0), connections=[contact]))
+
+
+def momentum(model: sf.Model, q: Any, v: Any, mass: tuple[float, float], radius: tuple[float, float]) -> Any:
+    """Linear and angular momentum, about the world's origin, of two homogeneous balls, and their kinetic energy."""
+    found = np.zeros(7)
+    for k, name in enumerate(("a", "b") if "a.px" in model.names.q else ("ball", "shell")):
+        p, velocity = model.frame_pose(name, q)[0], model.frame_velocity(name, q, v)
+        inertia = 0.4 * mass[k] * radius[k] ** 2
+        found[:3] += mass[k] * velocity[:3]
+        found[3:6] += mass[k] * np.cross(p, velocity[:3]) + inertia * velocity[3:]
+        found[6] += 0.5 * mass[k] * velocity[:3] @ velocity[:3] + 0.5 * inertia * velocity[3:] @ velocity[3:]
+    return found
+
+
+def test_a_ball_slides_off_a_sphere() -> None:
+    """Without friction it leaves where cos = 2/3 of that of the start."""
+    model, angle = on_top(0.0), 0.3
+    run = sf.simulate(model, beside_top(model, angle), t_end=0.6, **FINE)
+    (leaves,) = run.events
+    assert leaves.name == "top opens"
+    assert leaves.q[2] / (CORE + RADIUS) == pytest.approx(2 / 3 * cos(angle), abs=1e-9)
+    # From there on it falls freely.
+    t = run.t[-1] - leaves.t
+    assert run.q[-1, 2] == pytest.approx(leaves.q[2] + leaves.v[2] * t - G / 2 * t**2, abs=1e-9)
+
+
+@pytest.mark.parametrize("friction", [0.5, 2.0, 1e4])
+def test_a_ball_rolls_on_a_sphere_until_it_slips(friction: float) -> None:
+    """N = m g (17 c - 10 c_0)/7 and F = 2/7 m g s: it slips at F = mu N, and leaves at 10/17 c_0 for large mu."""
+    model, angle = on_top(friction), 0.3
+    run = sf.simulate(model, beside_top(model, angle), t_end=0.65, **FINE)
+    slips, leaves = run.events[0], run.events[-1]
+    at = brentq(lambda x: 2 * sin(x) - friction * (17 * cos(x) - 10 * cos(angle)), angle, 1.2, xtol=1e-14)
+    assert slips.name == "top slides" and leaves.name == "top opens" and leaves.t > slips.t
+    assert slips.q[2] / (CORE + RADIUS) == pytest.approx(cos(at), abs=1e-9)
+    assert friction < 1e4 or leaves.q[2] / (CORE + RADIUS) == pytest.approx(10 / 17 * cos(angle), abs=1e-3)
+    rolls = run.t < slips.t
+    height = run.q[rolls, 2] / (CORE + RADIUS)
+    assert np.linalg.norm(run.q[rolls, :3], axis=1) == pytest.approx(CORE + RADIUS, abs=1e-11)
+    assert run.lam[rolls, 0] == pytest.approx(G / 7 * (17 * height - 10 * cos(angle)), abs=1e-8)
+    # The force in world axes, from the multipliers along the axes of contact.
+    force = run.contact_forces().force[:, 0]
+    acceleration = np.array([model.frame_acceleration("ball", *x)[:3] for x in zip(run.q, run.v, run.a, strict=True)])
+    np.testing.assert_allclose(force, acceleration + [0, 0, G], atol=1e-9)
+
+
+@pytest.mark.parametrize("e", [0.0, 0.6, 1.0])
+def test_two_balls_strike(e: float) -> None:
+    """Without friction: what they exchange is along the line of centres, and the speed there comes back e times."""
+    model = pair(0.0, e)
+    q, v = model.neutral(), np.array([2.0, 0, 0, -3, 1, 5, 0, 0, 0, 1, 2, 3])
+    q[7:10] = 0.5, 0.1, 0.05
+    run = sf.simulate(model, q, v, t_end=0.3, **FINE)
+    strike, d0 = run.events[0], q[7:10]
+    t = brentq(lambda t: np.linalg.norm(d0 - [2 * t, 0, 0]) - 0.3, 0, 0.24, xtol=1e-15)
+    n = ([2 * t, 0, 0] - d0) / 0.3
+    impulse = (1 + e) * 0.75 * -2.0 * n[0]
+    assert strike.t == pytest.approx(t, abs=1e-12) and strike.impulse[0] == pytest.approx(impulse, rel=1e-11)
+    assert strike.energy_lost == pytest.approx((1 - e**2) * 0.5 * 0.75 * (2.0 * n[0]) ** 2, abs=1e-12)
+    for name, share in (("a", 1.0), ("b", -1 / 3)):
+        changes = np.subtract(*(model.frame_velocity(name, strike.q, x) for x in (strike.v_after, strike.v)))
+        assert changes == pytest.approx([*(share * impulse * n), 0, 0, 0], abs=1e-11)
+
+
+def test_balls_that_rub_keep_their_momentum() -> None:
+    """Stronge's impact with friction gives each ball the opposite of the other's impulse, at one point of contact."""
+    model = pair(0.3, 0.5)
+    q, v = model.neutral(), np.array([2.0, 0, 0, -3, 1, 5, 0, 0, 0, 1, 2, 3])
+    q[7:10] = 0.5, 0.1, -0.15
+    run = sf.simulate(model, q, v, t_end=0.3, **FINE)
+    before, after = (momentum(model, run.q[k], run.v[k], (1.0, 3.0), (0.1, 0.2)) for k in (0, -1))
+    assert run.events[0].name == "pair strikes" and after[:6] == pytest.approx(before[:6], abs=1e-11)
+    assert before[6] - after[6] == pytest.approx(run.events[0].energy_lost, rel=1e-10) and run.events[0].energy_lost > 0
+    # Within the cone, against the slip: the impulse's part along the surface.
+    normal, x, y = run.events[0].impulse
+    assert 0 < sqrt(x * x + y * y) <= 0.3 * normal * (1 + 1e-12)
+
+
+def test_where_centres_coincide() -> None:
+    """Balls outside of each other penetrate there, in words; one in a hollow sphere moves freely until it strikes."""
+    refused = sf.simulate(pair(0.0, 0.5), t_end=0.1)
+    assert refused.outcome.kind == "input failed" and "penetrate" in str(refused.outcome)
+    model = sf.compile(in_shell(0.3))
+    run = sf.simulate(model, model.neutral(), {"ball.vz": -0.5}, t_end=0.9, **FINE)
+    assert [one.t for one in run.events] == [pytest.approx(0.8, abs=1e-12)] and run.events[0].name == "wall strikes"
+    assert run.v[-1, [2, 8]] == pytest.approx(-1 / 6, abs=1e-12)  # Plastic: they go on together.
+
+
+@pytest.mark.parametrize("friction", [0.1, 20.0])
+def test_the_axes_of_contact_have_no_part_in_the_motion(friction: float) -> None:
+    """A ball goes round in a free shell, past either pole of the surface's frame: as in any other frame."""
+    v = np.array([0.0, 1.2, 0.4, 3.0, -1.0, 2.0, 0.0, 0.1, 0.0, 0.4, -0.3, 0.2])
+    ends, events = [], set()
+    # Of the second frame the z axis is where the ball begins, of whose normal it is the opposite.
+    for axis, angle in (((1, 0, 0), 0.0), ((0, 1, 0), pi / 2), ((1, 2, 3), 2.5)):
+        model = sf.compile(in_shell(friction, axis, angle))
+        q = model.neutral()
+        q[0] = 0.4
+        run = sf.simulate(model, q, v, t_end=3.0, **FINE)
+        assert run.outcome.ok, run.outcome
+        kept = np.array([momentum(model, run.q[k], run.v[k], (1.0, 2.0), (0.1, 0.5)) for k in (0, len(run) // 2, -1)])
+        np.testing.assert_allclose(kept[1:, :6], kept[:1, :6].repeat(2, axis=0), atol=1e-9)
+        assert abs(model.contact_forces(run.q, run.v).gap).max() < 1e-10
+        sticks = run.t >= next(one.t for one in run.events if one.name == "wall sticks")
+        assert np.ptp(run.kinetic_energy[sticks]) < 1e-9
+        events.add(len(run.events))
+        ends.append(np.concatenate([run.q[-1], run.v[-1]]))
+    np.testing.assert_allclose(ends[1:], [ends[0]] * 2, atol=1e-8)
+    assert len(events) > 1  # Poles are taken anew where frames need it.
