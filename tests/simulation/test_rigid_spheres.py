@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from functools import cache
 from math import cos, pi, sin, sqrt
 from typing import Any
@@ -155,3 +156,41 @@ def test_the_axes_of_contact_have_no_part_in_the_motion(friction: float) -> None
         ends.append(np.concatenate([run.q[-1], run.v[-1]]))
     np.testing.assert_allclose(ends[1:], [ends[0]] * 2, atol=1e-8)
     assert len(events) > 1  # Poles are taken anew where frames need it.
+
+
+def row_of_balls(e: float | None) -> sf.Model:
+    """Five balls of 1 kg that touch in a row, as rigid contacts or, with None, by conditions that strike at once."""
+    bodies, names = [], [f"x{k}" for k in range(5)]
+    for k, name in enumerate(names):
+        slide = sf.Joint(name, "prismatic", axis=(1, 0, 0), position=(0.2 * k, 0, 0))
+        bodies.append(sf.RigidBody(f"b{k}", slide, sf.Inertia(1.0)))
+    given: dict[str, Any] = {"gravity": (0, 0, 0)}
+    if e is None:
+        couplings = [sf.Coupling(f"c{k}", f"{b} - {a}") for k, (a, b) in enumerate(itertools.pairwise(names))]
+        given |= {"constraints": couplings, "switches": [sf.Switch(one.name, "hit") for one in couplings]}
+        given["parameters"] = [sf.Parameter("hit", 0.0)]
+    else:
+        sizes: dict[str, Any] = {"surface": "sphere", "radius": 0.1, "surface_radius": 0.1}
+        pairs = [((f"b{k}", None), (f"b{k + 1}", None)) for k in range(4)]
+        given["connections"] = [sf.Contact(f"c{k}", *pair, restitution=e, **sizes) for k, pair in enumerate(pairs)]
+    return sf.compile(sf.System("cradle", bodies, **given))
+
+
+def test_newtons_cradle_strikes_in_sequence_or_at_once() -> None:
+    """By a sequence of pairs as many balls leave as come, with their speed; Newton's law at once has another answer."""
+    in_pairs = row_of_balls(1.0)
+    for coming in (1, 2):
+        q, v = np.where(np.arange(5) < coming, -0.05, 0.0), np.where(np.arange(5) < coming, 1.0, 0.0)
+        run = sf.simulate(in_pairs, q, v, t_end=0.1, **FINE)
+        assert run.outcome.ok and run.events[-1].t == pytest.approx(0.05, abs=1e-12)
+        assert run.v[-1] == pytest.approx(v[::-1], abs=1e-14)
+        assert run.events[-1].energy_lost == pytest.approx(0.0, abs=1e-14)
+    # With losses the first blow has ((1 + e)/2)^4 for the last one, and those behind it meet again.
+    e, start = 0.9, [-0.05, 0, 0, 0, 0]
+    run = sf.simulate(row_of_balls(e), start, [1.0, 0, 0, 0, 0], t_end=0.1, **FINE)
+    assert run.v[-1].sum() == pytest.approx(1.0, abs=1e-14) and (np.diff(run.v[-1]) > -1e-12).all()
+    assert run.v[-1, -1] >= ((1 + e) / 2) ** 4 - 1e-14
+    # At once: v+ = (1 + e) v_p - e v-, of which v_p is one fifth.
+    hit = sf.Event("x1 - x0", "falling", action={"hit": 1.0}, restitution=1.0)
+    run = sf.simulate(row_of_balls(None), start, [1.0, 0, 0, 0, 0], t_end=0.1, events={"hit": hit}, **FINE)
+    assert run.v[-1] == pytest.approx([-0.6, 0.4, 0.4, 0.4, 0.4], abs=1e-14)
