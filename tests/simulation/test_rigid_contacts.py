@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import ForwardDynamics
 from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, box, point, rested, rod
 
 
@@ -309,14 +308,10 @@ def test_what_is_refused(tmp_path: Path) -> None:
     inside = rested(ball(), 0.09)
     assert sf.simulate(ball(), inside, t_end=0.1).outcome.kind == "input failed"
     model, system = ball(), ball_system()
-    diagram = sf.Diagram("falls")
-    diagram.add_model("m", system)
-    diagram.add(ForwardDynamics(name="plant", model="m"))
     refused = {
         "rodas4": lambda: sf.simulate(model, rested(model, 0.3), t_end=0.1, method="rodas4"),
         "equilibrium": lambda: sf.equilibrium(model),
         "export": lambda: sf.export(system, "wasm", tmp_path / "wasm"),
-        "diagram": lambda: sf.Simulation(diagram).run(0.1),
     }
     for call in refused.values():
         with pytest.raises(sf.SymofrosError, match="is rigid"):

@@ -162,6 +162,5 @@ class _Places(NamedTuple):
         """A ball of a rigid contact, in the part's numbers."""
         pushes, way = tuple(map(self.par, of.pushes)), tuple(map(self.par, of.way))
         rows, name = tuple(self.row + row for row in of.rows), f"{self.block}.{of.name}"
-        return of._replace(
-            name=name, mode=self.par(of.mode), pushes=pushes, way=way, apart=self.par(of.apart), rows=rows
-        )
+        apart, pole = self.par(of.apart), -1 if of.pole < 0 else self.par(of.pole)
+        return of._replace(name=name, mode=self.par(of.mode), pushes=pushes, way=way, apart=apart, pole=pole, rows=rows)

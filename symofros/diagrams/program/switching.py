@@ -90,7 +90,7 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     for switch in record.switches:
         kept |= {*switch.rotation, *(place for _, place in switch.offsets)}
     for ball in record.rigid_contacts:
-        kept |= {ball.mode, ball.apart, *ball.pushes, *ball.way}
+        kept |= {ball.mode, ball.apart, *ball.pushes, *ball.way} | ({ball.pole} - {-1})
     return Switching(record, events, stated, values, effects, poses, contacts, tuple(sorted(kept)))
 
 

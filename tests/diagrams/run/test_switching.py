@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.blocks import Constant, ForwardDynamics, Hold, Sequence
 from symofros.diagrams.block import Crossing
 from tests.simulation.mechanisms import loop, slide
-from tests.simulation.rigid_scenes import ball_system, box_system
+from tests.simulation.rigid_scenes import ball_system, box_system, in_shell
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,13 @@ def _slab() -> Case:
     return Case(system, events, 1.3, {"free.pz": 0.1, "free.vx": 1.0})
 
 
+def _bowl() -> Case:
+    """A ball in a spherical shell strikes it, slides and rolls around, past the pole of its axes."""
+    return Case(in_shell(0.4), {}, 1.0, {"ball.px": 0.3, "ball.vy": 2.0, "ball.vz": 3.0})
+
+
 CASES = {
+    "bowl": _bowl(),
     "backspin": _backspin(),
     "slab": _slab(),
     "grasp": _grasp(),
