@@ -37,7 +37,7 @@ def ball(e: float = 0.5, friction: float = 0.5) -> sf.Model:
     return sf.compile(ball_system(e, friction))
 
 
-def rod_system(friction: float, e: float = 0.0) -> sf.System:
+def rod_system(friction: Any, e: float = 0.0) -> sf.System:
     """A rod of 1 kg and 2 m in a plane, whose lower tip touches the ground: Painleve's."""
     x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
     z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"))

@@ -265,21 +265,15 @@ static int fmu_note_bending(fmu *f) {
 
 /* One communication step, to time t. */
 static int fmu_step(fmu *f, double t) {
+    int32_t status;
+    const char *reason;
     f->rates_valid = 0;
-    switch (sym_instance_advance(f->instance, t, 0.0)) {
-    case SYM_FINISHED: return FMU_OK;
-    case SYM_BEYOND_THEORY: return fmu_note_bending(f), FMU_BEYOND_THEORY;
-    case SYM_NO_ROTATION: return FMU_INPUT_NO_ROTATION;
-    case SYM_ENGAGED_APART: return strcpy(f->message, "constraints engage while they are apart"), FMU_BEYOND_THEORY;
-    case SYM_WRONG_CONTACT: return strcpy(f->message, "a contact that rests is penetrated, or holds by a force that draws"), FMU_BEYOND_THEORY;
-    case SYM_ACTION_REFUSED: return strcpy(f->message, "what an event sets is refused"), FMU_BEYOND_THEORY;
-    case SYM_ACTS_WITHOUT_END:
-        return strcpy(f->message, "an event acts again and again at the same instant, or leaves bodies at rest on each other"), FMU_BEYOND_THEORY;
-    case SYM_NO_CONTACT_FORCE: return strcpy(f->message, "no forces of rigid contacts were found that agree with Coulomb's law (Painleve's paradox)"), FMU_BEYOND_THEORY;
-    case SYM_CONTACTS_AMBIGUOUS:
-        return strcpy(f->message, "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox)"), FMU_BEYOND_THEORY;
-    default: return FMU_SINGULAR;
-    }
+    status = sym_instance_advance(f->instance, t, 0.0);
+    if (status == SYM_FINISHED) return FMU_OK;
+    if (status == SYM_BEYOND_THEORY) return fmu_note_bending(f), FMU_BEYOND_THEORY;
+    if (status == SYM_NO_ROTATION) return FMU_INPUT_NO_ROTATION;
+    reason = fmu_reason(status);
+    return reason == NULL ? FMU_SINGULAR : (strcpy(f->message, reason), FMU_BEYOND_THEORY);
 }
 
 /* The derivative of a frame's coordinate along f->dq and f->du. */

@@ -10,3 +10,20 @@ enum {
     FMU_PARAMETERS /* and beyond: by the number of the condition that the parameters do not meet */
 };
 
+/* Why a motion ended there, which f->message says; NULL: said by a code. */
+static const char *fmu_reason(int32_t status) {
+    switch (status) {
+    case SYM_ENGAGED_APART: return "constraints engage while they are apart";
+    case SYM_ACTION_REFUSED: return "what an event sets is refused";
+    case SYM_ACTS_WITHOUT_END: return "an event acts again and again at the same instant, or leaves bodies at rest on each other";
+    case SYM_MODES_UNDECIDED: return "no modes of friction that sticks agree with the motion that they bring about";
+    case SYM_HELD_TWICE: return "friction holds joints that others or constraints hold already";
+    case SYM_WRONG_CONTACT:
+        return "a contact that rests is penetrated, holds by a force that draws, or is one of nine rigid ones that touch at once";
+    case SYM_NO_CONTACT_FORCE:
+        return "no forces of rigid contacts were found that agree with Coulomb's law (Painleve's paradox)";
+    case SYM_CONTACTS_AMBIGUOUS:
+        return "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox)";
+    default: return NULL;
+    }
+}

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
+from dataclasses import replace
+from math import cos
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +19,13 @@ import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
 from tests.diagrams.run.test_states_of_forces import driven
-from tests.diagrams.run.test_switching import CASES
+from tests.diagrams.run.test_switching import CASES, Case
 from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import Unit
 from tests.exports.test_controller import conditional, inside, machine, rates
 from tests.exports.test_diagram import switching
+from tests.simulation.rigid_scenes import rod_system
 
 STEPS = 20
 
@@ -178,6 +182,17 @@ def test_a_unit_does_the_actions_of_the_run(version: int, case: str, tmp_path: P
         np.testing.assert_allclose(found, wanted, rtol=1e-9, atol=1e-10)
         if attempt == 0:
             (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(saved)
+
+
+def test_importers_are_told_why_a_motion_has_ended(tmp_path: Path) -> None:
+    """A rod that leans against its slide, with too much friction from an instant on."""
+    rod = replace(rod_system(sf.formula("mu")), parameters=(sf.Parameter("mu", 0.1),))
+    rough = {"rough": sf.Event("t - 0.02", action={"mu": 1.6})}
+    of = alone(Case(rod, rough, 0.1, {"z": cos(0.5), "angle": 0.5, "dx": -2.0}))
+    path = sf.export(of, "fmu2", tmp_path / "fmu", outputs=["plant.q"], dt=1e-3).files[0]
+    with heard() as (logger, log), suppress(FMICallException):
+        fmpy.simulate_fmu(str(path), stop_time=1.0, output_interval=0.01, logger=logger)
+    assert "Painleve's paradox" in "".join(log), log
 
 
 @pytest.mark.parametrize("version", [2, 3])
