@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -129,7 +131,8 @@ def _small_turns() -> list[Tree]:
     ]
 
 
-def trees() -> dict[str, Tree]:
+@cache
+def trees() -> Mapping[str, Tree]:
     """The hostile set, by name."""
     draw = np.random.default_rng(7)
     heavy, light = _chain("heavy"), _chain("light")

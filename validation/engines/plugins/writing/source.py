@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, NamedTuple
 
@@ -198,6 +199,15 @@ def identifiers(code: str) -> set[str]:
     return set("".join(letter if letter.isalnum() or letter == "_" else " " for letter in code).split())
 
 
+@cache
+def _installed(package: str) -> str:
+    """Version of a package; "" where it is not installed. Its record is read once: it takes some milliseconds."""
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return ""
+
+
 @dataclass(frozen=True)
 class SourcePlugin:
     """A plug-in made of text (`interface.EnginePlugin`).
@@ -246,12 +256,7 @@ class SourcePlugin:
 
     def version(self) -> str:
         """Version of the engine; "" where it is not installed."""
-        if self.find is not None:
-            return self.find()
-        try:
-            return version(self.package)
-        except PackageNotFoundError:
-            return ""
+        return self.find() if self.find is not None else _installed(self.package)
 
     def build(self, tree: Tree) -> EngineModel | Unsupported:
         """The tree by the engine's API."""
