@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from symofros.errors import Problem, ShapeError
 
 Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
 
 # Of NumPy's search for an element that two arrays share: of rows or columns of one array it takes a few steps.
 _OVERLAP_WORK = 100_000

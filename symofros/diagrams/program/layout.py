@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.base.arrays import Array
+from symofros.base.arrays import Array, Mask
 from symofros.base.measures import Measures
 from symofros.diagrams.block import Shape
 from symofros.diagrams.inlets import Inlet
@@ -210,6 +210,14 @@ class Layout:
         blocks = tuple(name for part in self.parts for name in part.blocks)
         sizes = (len(self.q0), len(self.v0), len(self.condition_names))
         return Part(blocks, *(slice(0, size) for size in sizes))
+
+    @property
+    def moving(self) -> Mask:
+        """Whether each speed is one of a mechanism (nv), and no state of a force or a block."""
+        moving = np.zeros(len(self.v0), dtype=bool)
+        for block in self.v:
+            moving[self.moved(block)[1].slice] = True
+        return moving
 
     def moved(self, block: str) -> tuple[Place, Place]:
         """Places of configuration and speeds of the mechanism that a block moves.

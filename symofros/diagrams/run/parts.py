@@ -73,6 +73,7 @@ def place_parts(
         inputs, switching = InputPlan(begin.u.copy(), list(layout.signals)), resolved.switching(part)
         events: Sequence[Event] = resolved.crossings if switching is None else switching.events
         stepper = Stepper(model, settings.method, inputs, events, par, lambda *_, acting=acting: acting)
+        stepper.moving = layout.moving[part.v]
         stepper.set_span(settings.span)
         stepper.recall(begin.met)
         replace(settings, t0=begin.t).apply(stepper)

@@ -1,6 +1,7 @@
 /* What a step of length h sees of the spectrum: a Krylov subspace of the derivative of the slope by the state
  * (docs/theory/simulation.md, section 8). States are scaled, x = (theta, h (v - v_0)), so that the eigenvalues are those
- * of h times the linearised motion. */
+ * of h times the linearised motion. A speed that is a state of a force or a block has a scale of its own in place of h,
+ * and its integral, the idle coordinate beside it, stays: neither has the units of the motion. */
 
 /* Whether changes are brought back onto the constraints, as a motion has none that leave them. The way by which gains pull
  * it back is known without looking. */
@@ -32,15 +33,33 @@ static int32_t sym_start_on_constraints(sym_run *r, double *y) {
     return 0;
 }
 
-/* slope = (h theta', h^2 v') at x, (16a). y: work (2 nv). Returns 0 or a status. */
-static int32_t sym_scaled_slope(sym_run *r, double h, const double *x, double *y, double *slope) {
+/* slope = h scale (theta', v') at x, (16a). y: work (2 nv). Returns 0 or a status. */
+static int32_t sym_scaled_slope(sym_run *r, double h, const double *scale, const double *x, double *y, double *slope) {
     const int32_t nv = r->system->nv;
     int32_t i, status;
-    for (i = 0; i < nv; ++i) y[i] = x[i], y[nv + i] = r->v[i] + x[nv + i] / h;
+    for (i = 0; i < nv; ++i) y[i] = scale[i] * x[i], y[nv + i] = r->v[i] + x[nv + i] / scale[nv + i];
     if (sym_keeps_to_constraints(r->system) && (status = sym_project_chart_state(r, y)) != 0) return status;
     status = sym_evaluate_slope(r, r->t, y, slope);
-    for (i = 0; i < nv; ++i) slope[i] *= h, slope[nv + i] *= h * h;
+    for (i = 0; i < 2 * nv; ++i) slope[i] *= h * scale[i];
     return status;
+}
+
+/* scale (2 nv) <- that of theta and v, and slope <- that at the state, by these. Of the speeds that are states, none is to
+ * change by more in a step than the motion does, as what is differenced has its size. y: work (2 nv). Returns 0 or a status. */
+static int32_t sym_scales(sym_run *r, double h, const int32_t *moving, double *scale, double *y, double *slope) {
+    const int32_t nv = r->system->nv;
+    double size = 0.0;
+    int32_t i, status;
+    for (i = 0; i < nv; ++i) scale[i] = moving[i] ? 1.0 : 0.0, scale[nv + i] = moving[i] ? h : 1.0;
+    memset(y + 2 * nv, 0, 2 * (size_t)nv * sizeof *y);
+    status = sym_scaled_slope(r, h, scale, y + 2 * nv, y, slope);
+    if (status != 0) return status;
+    for (i = 0; i < nv; ++i)
+        if (moving[i]) size += slope[i] * slope[i] + slope[nv + i] * slope[nv + i];
+    size = sqrt(size);
+    for (i = nv; i < 2 * nv && size > 0.0; ++i)
+        if (!moving[i - nv] && fabs(slope[i]) > size) scale[i] = size / fabs(slope[i]), slope[i] *= scale[i];
+    return 0;
 }
 
 /* The components of x (n) along the rows of an orthonormal basis, taken out of x; twice for the sake of rounding. */
@@ -94,19 +113,20 @@ static double sym_first_direction(const sym_run *r, int32_t n, const double *slo
     return size > SYM_SPECTRUM_LEAST_CHANGE * largest ? size : SYM_SPECTRUM_LEAST_CHANGE * largest;
 }
 
-SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, int32_t dimension, double *basis, double *matrix, double *motion) {
+SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, const int32_t *moving, int32_t dimension, double *basis,
+                                    double *matrix, double *motion) {
     const int32_t n = 2 * r->system->nv;
-    double *slope = basis + (size_t)dimension * (size_t)n, *x = slope + n, *next = x + n, *y = next + n, change, length;
+    double *slope = basis + (size_t)dimension * (size_t)n, *scale = slope + n, *next = scale + n, *y = next + n, *x = y + n;
+    double change, length;
     int32_t i, j, k, status;
     memset(matrix, 0, (size_t)dimension * (size_t)dimension * sizeof *matrix);
-    memset(x, 0, (size_t)n * sizeof *x);
     status = sym_keeps_to_constraints(r->system) ? sym_start_on_constraints(r, y) : 0;
-    if (status == 0) status = sym_scaled_slope(r, h, x, y, slope);
+    if (status == 0) status = sym_scales(r, h, moving, scale, y, slope);
     if (status != 0) return status;
     change = sym_first_direction(r, n, slope, basis);
     for (j = 0; j < dimension; ++j) {
         for (i = 0; i < n; ++i) x[i] = change * basis[SYM_INDEX(j, n, i)];
-        status = sym_scaled_slope(r, h, x, y, next);
+        status = sym_scaled_slope(r, h, scale, x, y, next);
         if (status != 0) return status;
         for (i = 0; i < n; ++i) next[i] = (next[i] - slope[i]) / change;
         sym_orthogonalize(n, j + 1, basis, next, motion); /* motion: work until the end */

@@ -397,10 +397,12 @@ int32_t sym_event_is_met(const sym_event_search *search, int32_t i, double x, do
 /* Rate N(q) w (nq) at the evaluation point, which is at the same configuration q. */
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
 /* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by
- * differences of the size of a step of length h. basis: (dimension + 4, 2 nv), of which the first rows become an orthonormal
- * basis of changes (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension):
- * components of the motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
-int32_t sym_run_spectrum(sym_run *run, double h, int32_t dimension, double *basis, double *matrix, double *motion);
+ * differences of the size of a step of length h. moving (nv): 0 at speeds that are states of forces or blocks, which have
+ * scales of their own; basis: (dimension + 5, 2 nv), of which the first rows become an orthonormal basis of changes
+ * (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension): components of the
+ * motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
+int32_t sym_run_spectrum(sym_run *run, double h, const int32_t *moving, int32_t dimension, double *basis, double *matrix,
+                         double *motion);
 /* Inputs u (n, nu) and accelerations a (n, nv) at n states of the motion, each projected first where the run projects; NaN
  * where there are none. Returns 0, or SYM_CALLBACK_FAILED. */
 int32_t sym_run_accelerations(sym_run *run, int64_t n, const double *t, const double *q, const double *v, double *u,

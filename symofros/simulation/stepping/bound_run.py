@@ -43,6 +43,7 @@ class BoundRun:
         system: The sym_system: the model's functions and the evaluation point.
         run: The sym_run: settings, present state, counters.
         inputs: Inputs by how they are evaluated.
+        moving: Whether each speed is one of the motion (nv), and no state of a force or, of a diagram's part, a block.
         same_inputs_again: Whether an input function gives the run's inputs once more; None: not asked yet.
         kernels: Slot of the system, such as "forward_dynamics" -> the function bound to it.
         beams: Elastic beams at the parameters.
@@ -66,7 +67,7 @@ class BoundRun:
         self.native, self.memory = native_library(), NativeMemory()
         self.ffi = self.memory.ffi
         self.model, self.method, self.events, self.par = model, method, events, par
-        self.inputs = inputs
+        self.inputs, self.moving = inputs, np.arange(model.nv) < model.nv - model.nz
         self.same_inputs_again: bool | None = None
         self.failure: BaseException | None = None
         self.beams = model.beams(par)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.arrays import Array
+from symofros.base.arrays import Array, Mask
 from symofros.base.names import TIME
 from symofros.native import native_number
 from symofros.runtime.beams import BeamBending, worst_bendings
@@ -246,7 +246,7 @@ class Stepper(BoundRun):
             run.t, run.evaluations, self.failure = t, evaluations, failure
 
     def spectrum(
-        self, t: float, q: Array, v: Array, u: Array, h: float, dimension: int
+        self, t: float, q: Array, v: Array, u: Array, h: float, dimension: int, moving: Mask | None = None
     ) -> tuple[Array, Array, Array] | None:
         """The linearised motion about a state, in a subspace of its first directions; within `preserved`.
 
@@ -257,17 +257,20 @@ class Stepper(BoundRun):
             u: Inputs (nu); those that are held stay so about the state.
             h: Step [s].
             dimension: Most directions m, at most 2 nv.
+            moving: Whether each speed is one of the motion (nv), and no state of a force or a block; all by default.
 
         Returns:
             Orthonormal basis (m, 2 nv) of changes (theta, h v), h times the derivative in that basis (m, m), components
             of the motion of one step (m); None where the accelerations or inputs near the state do not exist.
         """
-        basis, matrix = np.zeros((dimension + 4, 2 * self.model.nv)), np.zeros((dimension, dimension))
+        basis, matrix = np.zeros((dimension + 5, 2 * self.model.nv)), np.zeros((dimension, dimension))
         motion, m = np.zeros(dimension), int(Status.DIVERGED)
         self.memory.view(self.system.u_constant, self.model.nu)[:] = u
         if self.place(t, np.concatenate([q, v])) == Status.RUNNING:
             arrays = (self._pointer(basis), self._pointer(matrix), self._pointer(motion))
-            m = int(self.native.sym_run_spectrum(self.run, h, dimension, *arrays))
+            counted = np.ones(self.model.nv, np.int32) if moving is None else moving.astype(np.int32)
+            of_motion = self.ffi.from_buffer("int32_t[]", counted)
+            m = int(self.native.sym_run_spectrum(self.run, h, of_motion, dimension, *arrays))
         return (basis[:m], matrix[:m, :m], motion[:m]) if m > 0 else None
 
     def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:

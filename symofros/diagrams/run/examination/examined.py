@@ -19,7 +19,7 @@ from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.energy_balance import EXPLODED
-from symofros.simulation.results.examination.finer_steps import HALVINGS, HeldRun, Part, States
+from symofros.simulation.results.examination.finer_steps import HALVINGS, HeldRun, Part, States, change_of_states
 from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import Window
@@ -237,7 +237,7 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
         fine: Records by half of it, at the same times.
         norm: What counts of the records.
     """
-    at = layout.v[block].slice
+    at = layout.moved(block)[1].slice  # Speeds of the motion: states of forces have other units.
     with np.errstate(all="ignore"):  # What has exploded overflows.
         q, v, q_half, v_half = (*coarse[1:3], *fine[1:3])
         moved = difference(layout.segments, np.broadcast_to(q_half[0], q_half.shape), q_half)[:, at]
@@ -254,4 +254,7 @@ def _change(layout: Layout, block: str, run: States | None, coarse: States, fine
             wide = norm(difference(layout.segments, np.broadcast_to(run[1][0], run[1].shape), run[1])[:, at])
             # What goes to and fro comes no farther, however long the window is.
             fastest, reach = max(fastest, largest), max(reach, min(largest * span, wide))
-        return max(faster / max(fastest, STILL), norm(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS)
+        of_forces = slice(at.stop, layout.v[block].slice.stop)
+        whole = v_half if run is None else run[2]
+        states = change_of_states(*(x[:, of_forces] for x in (whole, v, v_half)))
+        return max(faster / max(fastest, STILL), norm(apart) / max(reach, STILL * span, 1e-300) / _POSITIONS, states)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
-from symofros.base.arrays import Array
+from symofros.base.arrays import Array, Mask
 from symofros.base.options import Options
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.examined import Energies, Examined
@@ -84,8 +85,9 @@ class _Revisited:
         if wanted < 1 or not len(run.t):
             return Resolution(None, evident=False)
         rows = np.unique(np.linspace(0, len(run.t) - 1, wanted).astype(int))
-        sizes = np.linalg.norm(run.v, axis=1)
-        metric = np.broadcast_to(np.eye(nv), (len(rows), nv, nv))
+        moving = self._moving
+        sizes = np.linalg.norm(run.v[:, moving], axis=1)
+        metric = np.broadcast_to(np.diag(moving.astype(float)), (len(rows), nv, nv))
         with np.errstate(all="ignore"):  # States that have exploded overflow.
             return resolution(
                 method,
@@ -100,23 +102,35 @@ class _Revisited:
 
     def _spectrum(self, i: int, h: float) -> Spectrum | None:
         """The linearised motion about a record, by differences of the size of one step's motion."""
-        nv = self._run.v.shape[1]
-        motion = self._scaled_slope(i, h, np.zeros(2 * nv))
-        change = float(np.linalg.norm(motion)) or 1e-6
+        nv, moving = self._run.v.shape[1], self._moving
+        # States have scales of their own, by which none changes by more in a step than the motion does.
+        scale, none = np.concatenate([moving.astype(float), np.where(moving, h, 1.0)]), np.zeros(2 * nv)
+        motion, of_motion = self._scaled_slope(i, h, scale, none), np.tile(moving, 2)
+        change = float(np.linalg.norm(motion[of_motion])) or 1e-6
+        scale *= np.where(of_motion | (np.abs(motion) <= change), 1.0, change / np.maximum(np.abs(motion), change))
+        motion = self._scaled_slope(i, h, scale, none)
         matrix = np.empty((2 * nv, 2 * nv))
         for k in range(2 * nv):
-            moved = self._scaled_slope(i, h, change * np.eye(2 * nv)[k])
+            moved = self._scaled_slope(i, h, scale, change * np.eye(2 * nv)[k])
             matrix[:, k] = (moved - motion) / change
         return (np.eye(2 * nv), matrix, motion) if np.isfinite(matrix).all() else None
 
-    def _scaled_slope(self, i: int, h: float, x: Array) -> Array:
-        """H (theta', h v') at changes x = (theta, h v) of a record."""
+    @cached_property
+    def _moving(self) -> Mask:
+        """Whether each speed counts as one of the motion (nv): states do where nothing else moves."""
+        moving = self._run.resolved.layout.moving
+        return moving if np.any(self._run.v[:, moving]) else np.ones_like(moving)
+
+    def _scaled_slope(self, i: int, h: float, scale: Array, x: Array) -> Array:
+        """H scale (theta', v') at changes x = scale (theta, v) of a record; a scale of 0 is of what stays."""
         blocks, nv, segments = self._blocks, len(self._blocks.v), self._run.resolved.layout.segments
         self._place(i)
-        blocks.q[:], blocks.v[:] = retract(segments, blocks.q.copy(), x[:nv]), blocks.v + x[nv:] / h
+        theta = scale[:nv] * x[:nv]
+        blocks.q[:], blocks.v[:] = retract(segments, blocks.q.copy(), theta), blocks.v + x[nv:] / scale[nv:]
         blocks.signals()
         blocks.accelerate()
-        return h * np.concatenate([chart_rate(segments, x[:nv], blocks.v), h * blocks.a])
+        rate: Array = np.concatenate([chart_rate(segments, theta, blocks.v), blocks.a])
+        return h * scale * rate
 
     def _accelerations(self, rows: Numbers) -> Array:
         a = np.empty((len(rows), self._run.v.shape[1]))

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
+import numpy as np
+
 from symofros.base.arrays import Array
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import WHOLE, Window, windows
@@ -23,6 +25,8 @@ FRACTIONS = ("all", "half", "a quarter", "an eighth", "a sixteenth")
 _GROWTH, _LONGER, _LONGEST, _COMPARED, _LEAST = 2.0, 8.0, 20_000, 256, 1e-300
 # Share of TOLERANCE below which what is to come is left at that.
 _SURE = 0.3
+# Share of a state that is rounding.
+_ROUNDING = 1e-11
 # What the change in a window may grow to where external blocks answer to the motion, so that no part is made once more.
 _ADDS_UP = 0.3
 
@@ -162,6 +166,23 @@ class HeldRun(ABC):
                 break
             before = changed
         return worst
+
+
+def change_of_states(run: Array, coarse: Array, fine: Array) -> float:
+    """Mean difference of a state of a force or a block, relative to half of its range in the run, of the worst.
+
+    Means: where a state jumps, as that of bristles which turn over, an instant earlier or later is no other motion.
+
+    Args:
+        run: States at the records of the run (n, k).
+        coarse: States in a part of it (m, k).
+        fine: The same by finer steps.
+    """
+    if not coarse.size:
+        return 0.0
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        far = np.maximum(0.5 * np.ptp(run, axis=0), _ROUNDING * np.abs(run).max(axis=0))
+        return float((np.abs(coarse - fine).mean(axis=0) / np.maximum(far, _LEAST)).max())
 
 
 def finer_steps_note(run: HeldRun) -> str:

@@ -58,7 +58,7 @@ def tolerance_note(run: ExaminedRun) -> str:
     status, tight = run.repeated(begin, float(t[-1]), 0.0, max_steps=MOST_STEPS, atol=atol)
     if status == Status.FINISHED and not run.whole_change([x[-1:] for x in run.states], tight) > TOLERANCE:
         return ""
-    fastest = float(np.abs(v).max())
+    fastest = float(np.abs(v[:, run.moving]).max())
     return (
         f"atol = {settings.atol:.3g} bounds no error of speeds that reach {fastest:.3g} only: a tighter bound leads"
         f" elsewhere; atol below {1e-3 * fastest:.1g}"

@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.base.arrays import Array
+from symofros.base.arrays import Array, Mask
 from symofros.errors import SymofrosError
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
 from symofros.simulation.inputs import Callback
-from symofros.simulation.results.examination.finer_steps import HeldRun, Part, States
+from symofros.simulation.results.examination.finer_steps import HeldRun, Part, States, change_of_states
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded, run_own
 from symofros.simulation.stepping.methods import METHODS, Method
@@ -88,14 +88,25 @@ class ExaminedRun(HeldRun):
         """Time between the first record and the last [s]."""
         return float(self.states[0][-1] - self.states[0][0])
 
+    @cached_property
+    def moving(self) -> Mask:
+        """Whether each speed counts as motion (nv): states of forces and blocks do where nothing else moves."""
+        moving = self.stepper.moving
+        moves = bool(np.any(self.start[1][moving]) or np.any(self.states[2][:, moving]))
+        return moving if moves else np.ones_like(moving)
+
     def metrics(self, q: Array, u: Array) -> Array:
-        """Mass matrices (n, nv, nv) at configurations (n, nq); units where the model has no mass matrix."""
+        """Mass matrices (n, nv, nv) at configurations (n, nq), states left out; units where there is no mass matrix."""
         nv = self.model.nv
         try:  # What every model is compiled with, but for Options.functions.
             M: Array = self.model.dynamics(q, np.zeros(nv), u, par=self.stepper.par)[0]
         except SymofrosError:
             M = np.broadcast_to(np.eye(nv), (len(q), nv, nv))
-        return M
+        return self._of_motion(M)
+
+    def _of_motion(self, M: Array) -> Array:
+        """Metrics (n, nv, nv) in which speeds that are no motion have no size: theirs has other units."""
+        return M if self.moving.all() else M * (self.moving[:, np.newaxis] & self.moving)
 
     def norms(self, q: Array, u: Array, v: Array) -> Array:
         """The root of v^T M v for each row of speeds (n, nv): in it metres and radians a second have one unit."""
@@ -129,6 +140,7 @@ class ExaminedRun(HeldRun):
             alone = np.asarray(np.linalg.solve(M, np.stack([h, Q], axis=-1)), dtype=np.float64)
         except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
             return self.metrics(q, u), 0.0
+        M = self._of_motion(M)
         return M, max(float(np.nan_to_num(norms_in(M, alone[..., k])).max(initial=0.0)) for k in range(2))
 
     @property
@@ -272,11 +284,15 @@ class ExaminedRun(HeldRun):
         return max(1, round((window.t_end - float(self.states[0][window.first])) / self.h))
 
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
-        """In the norm of the kinetic energy."""
-        if part == "run":
-            return self.whole_change(coarse, fine), ""
+        """In the norm of the kinetic energy; states of forces and blocks by themselves."""
         rows = slice(min(len(coarse[0]), len(fine[0])))  # One of them may end with a part of `every` steps.
-        return self.change_in_part([x[rows] for x in coarse], [x[rows] for x in fine]), ""
+        if part == "run":
+            change = self.whole_change(coarse, fine)
+            rows = rows if len(coarse[0]) == len(fine[0]) else slice(-1, None)
+        else:
+            change = self.change_in_part([x[rows] for x in coarse], [x[rows] for x in fine])
+        ends = (x[2][rows] for x in (coarse, fine))
+        return max(change, change_of_states(*(v[:, ~self.moving] for v in (self.states[2], *ends)))), ""
 
     def change_in_part(self, coarse: States, fine: States) -> float:
         """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""

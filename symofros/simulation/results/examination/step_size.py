@@ -86,7 +86,9 @@ def examine_steps(run: ExaminedRun) -> Resolution:
     good = _finite_rows(q, v)
     stride = max(1, good // _SPEEDS)
     rows = np.arange(0, good, stride)
-    q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(run.start, (q, v), strict=True))
+    q = _without_integrals(run, q)
+    begin = _without_integrals(run, run.start[0]), run.start[1]
+    q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(begin, (q, v), strict=True))
     metric = run.metrics(q_all, np.concatenate([u[:1], u[rows]]))
     norms = norms_in(metric, v_all)
     # The start, and the fastest state of equal parts of the run: modes are fast where the motion is.
@@ -94,17 +96,26 @@ def examine_steps(run: ExaminedRun) -> Resolution:
     parts = [part for part in np.array_split(np.arange(1, len(norms)), wanted - 1) if len(part)]
     chosen = [0, *(int(part[np.argmax(norms[part])]) for part in parts)]
     later = [(float(t[i]), q[i], v[i], u[i]) for i in (rows[k - 1] for k in chosen[1:])]
-    examined = [(settings.t0, *run.start, u[0]), *later]
+    examined = [(settings.t0, *begin, u[0]), *later]
     speeds = [_speed_of_motion(norms, k + 1) for k in chosen]
 
     def spectrum(i: int) -> Spectrum | None:
-        return stepper.spectrum(*examined[i], settings.dt, directions(run.model.nv))
+        return stepper.spectrum(*examined[i], settings.dt, directions(run.model.nv), run.moving)
 
     with stepper.preserved(), np.errstate(all="ignore"):  # States that have exploded overflow.
         times = [when for when, *_ in examined]
         pull = _pull(stepper, settings, examined)
         reach = float(np.abs(q_all).max(initial=0.0))
         return resolution(stepper.method, settings.dt, run.steps, times, spectrum, speeds, metric[chosen], pull, reach)
+
+
+def _without_integrals(run: ExaminedRun, q: Array) -> Array:
+    """Configurations (..., nq) with zeros for the integrals of states, idle coordinates: they may be large."""
+    idle = np.zeros(run.model.nq, dtype=bool)
+    for segment in run.model.record.segments:
+        if segment.kind == "linear":
+            idle[segment.q : segment.q + segment.size] = ~run.moving[segment.v : segment.v + segment.size]
+    return np.where(idle, 0.0, q) if idle.any() else q
 
 
 def _pull(stepper: Stepper, settings: Settings, examined: Sequence[tuple[float, Array, Array, Array]]) -> Pull:

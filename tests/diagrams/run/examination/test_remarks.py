@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import Formula, PythonBlock
+from symofros.diagrams.program.layout import Place
 from symofros.diagrams.run.examination.examined import _change, _largest
 from symofros.runtime.record import Segment
 from tests.diagrams.parts import moving
@@ -48,7 +49,9 @@ def bounce(law: str, damping: float) -> sf.Simulation:
 @pytest.mark.parametrize(("first", "whole", "size"), [(0, False, 1.4), (0, True, 5.0), (5, True, 3.4)])
 def test_a_change_is_relative_to_the_motion_until_then(first: int, whole: bool, size: float) -> None:
     """A window at the start is beside all of the run, which gets faster; a later one beside what led to it."""
-    layout: Any = SimpleNamespace(v={"arm": SimpleNamespace(slice=slice(0, 1))}, segments=(Segment("linear", 0, 0, 1),))
+    place = Place(0, (1,))
+    segments = (Segment("linear", 0, 0, 1),)
+    layout: Any = SimpleNamespace(v={"arm": place}, moved=lambda block: (place, place), segments=segments)
     t, still = np.arange(11.0), np.zeros((11, 1))
     v = 1.0 + 0.4 * t[:, np.newaxis]
     rows = slice(first, first + 2)
