@@ -275,11 +275,6 @@ class Functions(Arguments):
             raise SymofrosError(f"model '{self.record.name}': a model without its description compiles no formulas")
         return self._build_formulas(tuple(formulas), derivatives, reactions).kernels["formulas", ""]
 
-    def contact_state(self) -> Kernel:
-        """State of the balls of rigid contacts: distance, velocity (3), friction, restitution of each."""
-        own = self._kernels.get(("contact_state", ""))
-        return own or self.formulas([x for ball in self.record.rigid_contacts for x in ball.state], derivatives=False)
-
     # How a call is made.
 
     def _one(self, name: str, given: Mapping[str, ArrayLike | None], par: ArrayLike | None) -> Numbers:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.errors import Problem, ShapeError
-from symofros.runtime.calls.kernel import Array
+from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.functions import ArrayLike
 from symofros.runtime.methods.constraints import ConstraintFunctions
 from symofros.runtime.methods.states import StateFunctions
@@ -143,6 +143,11 @@ class ReactionFunctions(ConstraintFunctions, StateFunctions):
                 parts = [self.closure_wrench(name, q, lam, u=u, par=par, t=t) for name in ball.constraints]
                 push[..., k], force[..., k, :] = np.asarray(lam)[..., ball.rows[2]], np.sum(parts, axis=0)[..., :3]
         return found._replace(push=push, force=force)
+
+    def contact_state(self) -> Kernel:
+        """States of the balls of rigid contacts, one after the other: each as of `RigidContactRecord.state`."""
+        own = self._kernels.get(("contact_state", ""))
+        return own or self.formulas([x for ball in self.record.rigid_contacts for x in ball.state], derivatives=False)
 
     def _reactions(
         self,

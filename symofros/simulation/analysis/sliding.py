@@ -50,7 +50,7 @@ def contact_dynamics(
 
 
 def _states_of_balls(model: Model, states: tuple[Array, Array, Array, Array], rows: Array, z: Array | None) -> Array:
-    """State of each ball (n, number of balls, 6), as of `Model.contact_state`."""
+    """State of each ball (n, number of balls, entries), as of `Model.contact_state`."""
     t, q, v, u = states
     kernel = model.carried.contact_state()
     given: dict[str, Any] = {**dict(zip("qv", model.carry(q, v, z), strict=True)), "t": t[:, np.newaxis], "u": u}
