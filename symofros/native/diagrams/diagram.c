@@ -311,6 +311,16 @@ SYM_EXPORT int32_t sym_diagram_start(sym_diagram *d) {
     return 0;
 }
 
+/* The end is recorded: what was recorded there, but for rounding of its time, is the end's, on both sides of an event. */
+static void sym_record_end(sym_diagram *d, double slack) {
+    int64_t n = d->n_records;
+    if (n == 0 || d->record_t[n - 1] < d->t_end - slack) {
+        sym_gather_states(d, d->t_end), sym_diagram_record(d);
+        return;
+    }
+    while (n > 0 && d->record_t[n - 1] >= d->t_end - slack) d->record_t[--n] = d->t_end;
+}
+
 SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
     int64_t i;
     for (i = 0; i < instants; ++i) {
@@ -329,8 +339,7 @@ SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
             if (due < d->t_end - slack) continue;
         }
         d->finished = 1;
-        if (d->n_records > 0 && d->record_t[d->n_records - 1] >= d->t_end - slack) d->record_t[d->n_records - 1] = d->t_end;
-        else sym_gather_states(d, d->t_end), sym_diagram_record(d);
+        sym_record_end(d, slack);
     }
     return d->finished ? SYM_FINISHED : SYM_RUNNING;
 }

@@ -11,6 +11,7 @@ from symofros.diagrams.program.compiled import resolve
 from symofros.simulation.events import CONTACT_WORDS, FRICTION_WORDS, ModeEvent
 from tests.diagrams.run.test_switching import CASES, Thrown, diagram, simulated
 from tests.simulation.rigid_scenes import G, box_system
+from tests.simulation.test_landing import BOX, DISC
 
 
 def hopper() -> sf.Diagram:
@@ -119,6 +120,22 @@ def test_a_crossing_throws_what_stands_on_the_ground(speed: float) -> None:
     since = run.t[flying] - 1.0
     np.testing.assert_allclose(run["plant.q"][flying, 0], leaves * since - 0.5 * G * since**2, atol=1e-9)
     assert np.abs(run["plant.q"][run.t < 1.0]).max() < 1e-12 and flying.sum() > 100
+
+
+@pytest.mark.parametrize(("feet", "restitution", "seed"), [(DISC, 0.5, 3), (BOX, 0.0, 2)])
+def test_strikes_are_no_errors_of_steps(feet: list[tuple[float, float, float]], restitution: float, seed: int) -> None:
+    """Finer steps strike a little earlier, or end by rounding after what the records end with: no note says so."""
+    sole = sf.Contact("sole", ("thing", None), ("world", None), restitution=restitution, friction=1.1, points=feet)
+    thing = sf.RigidBody("thing", sf.Joint("free", "free"), sf.Inertia(2.0, moments=(0.02, 0.03, 0.04)))
+    draw = np.random.default_rng(seed)
+    speeds = [*draw.normal(size=3), *3.0 * draw.normal(size=3)]
+    start = dict(zip(("vx", "vy", "vz", "wx", "wy", "wz"), speeds, strict=True)) | {"pz": 0.35}
+    of = sf.Diagram("thrown")
+    of.add_model("m", sf.System("thrown", (thing,), connections=(sole,)), {f"free.{k}": x for k, x in start.items()})
+    of.add(ForwardDynamics(name="plant", model="m"))
+    run = sf.Simulation(of).run(0.8, record=0.8, dt=1e-3, method="rk4")
+    assert len(run.events["plant"]) >= 4 and run.outcome.ok
+    assert all("persists" in note for note in run.outcome.notes), run.outcome.notes
 
 
 def test_a_start_below_the_ground_is_refused() -> None:

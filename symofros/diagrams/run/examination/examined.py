@@ -158,6 +158,11 @@ class Examined(HeldRun):
         return (_UNANSWERED if self.external else 1.0) * TOLERANCE
 
     @cached_property
+    def _jumps(self) -> Numbers:
+        """Numbers of the records after which something has jumped."""
+        return jumps_at(self.states)
+
+    @cached_property
     def sides(self) -> tuple[Numbers, Numbers]:
         """The first record and the last one at each instant at which events have acted (k), by number."""
         t = self.states[0]
@@ -172,8 +177,18 @@ class Examined(HeldRun):
         return self.repeat(first, window.t_end, 0)
 
     def fine(self, window: Window, refinements: int, every: int) -> States | None:
-        """The window's records by steps that are refined so many times; None where these do not get there."""
-        return self.repeat(window.first, window.t_end, refinements)
+        """The window's records by steps that are refined so many times; None where these do not get there.
+
+        A window that ends as something jumps is compared up to there: finer steps may jump a little earlier.
+        """
+        states, jumps = self.repeat(window.first, window.t_end, refinements), self._jumps
+        if states is None or window.last is None or window.last not in jumps:
+            return states
+        within, earlier = np.sum((window.first <= jumps) & (jumps < window.last)), jumps_at(states)
+        if len(earlier) <= within:
+            return states
+        t, *others = (x[: earlier[within] + 1] for x in states)
+        return [np.append(t[:-1], window.t_end), *others]
 
     def halvings(self, part: Part) -> int:
         """Number of halvings: more for windows of fixed steps, which may all err in the same way over a contact."""
