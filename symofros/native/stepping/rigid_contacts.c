@@ -240,7 +240,8 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
         at->of[n] = i, at->problem.mu[n] = state[4];
-        at->apart[n] = met != NULL && met[i] > 0.0 ? fmin(fmax(SYM_GRAZES, 2.0 * par[s->contacts[i].apart]), SYM_TOUCHING) : 0.0;
+        at->apart[n] = met == NULL ? 0.0 : par[s->contacts[i].apart]; /* as it has become, where others are met */
+        if (met != NULL && met[i] > 0.0) at->apart[n] = fmin(fmax(SYM_GRAZES, 2.0 * at->apart[n]), SYM_TOUCHING);
         at->gap[n] = state[0];
         for (k = 0; k < 3; ++k) at->u[3 * n + k] = state[1 + k];
         ++n;
@@ -338,6 +339,16 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     return sym_solve_returning(r, at, par);
 }
 
+/* Whether an open ball stays on its surface without a force: neither its speed nor its acceleration takes it away or presses it. */
+static int32_t sym_is_idle(const sym_contact_problem *p, int32_t ball) {
+    const int32_t n = 3 * p->n, row = 3 * ball + 2;
+    double c = p->b[row], size = fabs(c);
+    int32_t j;
+    if (p->mode[ball] != SYM_OPEN || p->parts[ball]) return 0;
+    for (j = 0; j < n; ++j) c += p->W[n * row + j] * p->f[j], size += fabs(p->W[n * row + j] * p->f[j]);
+    return fabs(c) <= SYM_FORCE_ROUNDING * size;
+}
+
 /* Impacts and modes of rigid contacts at the present state, as of sym_settle_contacts. *again: whether speeds of balls have been
  * taken, after which slips are others. */
 static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, int32_t *again) {
@@ -369,6 +380,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
         double *known = sym_ball_memory(s, at.of[i]);
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
+        if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_GRAZES, at.apart[i]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
         if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(SYM_GRAZES, at.apart[i]) - at.gap[i];
         par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
