@@ -124,6 +124,7 @@ typedef struct sym_touching {
     double u[SYM_MOST_FORCES];     /* velocities */
     double gap[SYM_MOST_CONTACTS];
     double apart[SYM_MOST_CONTACTS]; /* how far one may go below that, or the plane, by rounding, if it is open */
+    int32_t struck[SYM_MOST_CONTACTS]; /* whether they have done so now: deeper strikes from bounce to bounce would give energy */
     int32_t returns; /* whether one that moves away would come back within an instant, and is held */
     sym_contact_problem problem;
 } sym_touching;
@@ -326,7 +327,8 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
         e[i] = opened && since > SYM_ACCUMULATION * r->actions->at_once ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
         if (!opened || approaches) at->apart[i] = 0.0;
-        if (opened && approaches) sym_ball_memory(s, at->of[i])[3] = r->t;
+        at->struck[i] = opened && approaches;
+        if (at->struck[i]) sym_ball_memory(s, at->of[i])[3] = r->t;
         strikes |= approaches;
     }
     if (status == 0 && strikes) {
@@ -382,7 +384,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
         if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_GRAZES, at.apart[i]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
-        if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(SYM_GRAZES, at.apart[i]) - at.gap[i];
+        if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(at.struck[i] ? 0.0 : SYM_GRAZES, at.apart[i]) - at.gap[i];
         par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
         par[of->way[2]] = at.problem.slides[i] ? hypot(at.u[3 * i], at.u[3 * i + 1]) : 0.0;
     }
