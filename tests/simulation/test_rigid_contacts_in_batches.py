@@ -80,6 +80,18 @@ def braked(n: int) -> tuple[sf.Model, Any, Any, Any]:
     return model, np.stack([speed, 0 * speed], axis=1), mu, par
 
 
+def test_contacts_that_hold_from_the_start_have_forces() -> None:
+    """A ball that rests, slides or rolls as it begins, without an event there: its forces are those of a single run."""
+    model, q = ball(), [rested(ball(), 0.1)] * 3
+    v = np.zeros((3, 6))
+    v[1:, 0], v[2, 4] = 1.0, 10.0
+    grid = np.linspace(0, 0.1, 5)
+    many = sf.simulate_batch(model, q, v, t_end=0.1, output=grid, method="rk4", dt=1e-3)
+    for i, speeds in enumerate(v):
+        run = sf.simulate(model, q[i], speeds, t_end=0.1, output=grid, method="rk4", dt=1e-3)
+        assert many[i].lam == pytest.approx(run.lam, abs=1e-12) and run.lam[:, 0] == pytest.approx(0.4 * G, rel=1e-9)
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_each_motion_has_its_own_friction(threads: int) -> None:
     """More motions than slots: each stops after v^2/(2 mu g), at v/(mu g), in batches and in steppers of many."""

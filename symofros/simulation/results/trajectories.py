@@ -153,6 +153,8 @@ class Trajectories(BatchResults):
         """One run, as far as it was recorded; `index` addresses all batch dimensions."""
         reached = self._reached(index)
         par = self.par[index] if self.par.ndim > 1 else self.par
+        if self.examination is not None and (self.model.record.rigid_contacts or self.model.record.sticking):
+            par = self.examination.first_parameters(self._number(index))
         statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
         return Trajectory(
             self.model,

@@ -90,6 +90,10 @@ class BatchExamination:
         run = self._made_again(self._run(i, states, steps), failed=False)
         return examine_run(run, ended_well=True, failed=False)[1]
 
+    def first_parameters(self, i: int) -> Array:
+        """Run-time parameters of run i where it begins, with its modes of contacts and of friction that sticks."""
+        return np.array(self._single(i).par)
+
     def _run(self, i: int, states: tuple[Array, ...], steps: int) -> ExaminedRun:
         """A single run in the place of run i."""
         start = _row(self.initial.q, i), _row(self.initial.v, i)
