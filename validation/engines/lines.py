@@ -154,3 +154,16 @@ class Actuator:
     muscle: Muscle | None = None
     is_disabled: bool = False
     activation: Activation | None = None
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether it is a force along a joint, or a servo of place and speed there, and no more; limits apart."""
+        _, by_place, by_speed = self.bias
+        is_servo = by_place < 0.0 >= by_speed
+        beyond = self.muscle or self.activation or self.control_limits or self.is_disabled
+        return bool(self.link) and self.gear == 1.0 and not beyond and (is_servo or self.bias == ORIGIN)
+
+    def fed(self, place: float, speed: float) -> float:
+        """What a plain one adds to the force of its gains, of a place and a speed that it is to hold."""
+        constant, by_place, by_speed = self.bias
+        return self.gain * self.control + constant + by_place * place + by_speed * speed

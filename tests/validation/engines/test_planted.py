@@ -54,7 +54,16 @@ FAULTS = [
         "inverse_dynamics(np.r_[q[:7], q[6:-1]],",
     ),
     ("pybullet", "revolute x", "joint_wrenches_from_rest", "force=force", "force=2 * force"),
-    ("sapien", "revolute x", "joint_wrenches_driven", "tau[place]", "50 * tau[place]"),
+    ("sapien", "servo along a hinge", "step_stiffness_implicit", "tau +", "tau + 0.5 +"),
+    ("newton", "servos along joints", "step_semi_implicit_normalized", "(tau + fed)", "(tau + 2 * fed)"),
+    (
+        "newton",
+        "servo before a force against the order of joints",
+        "step_semi_implicit_normalized",
+        "assign(places",
+        "assign(0 * places",
+    ),
+    ("sapien", "revolute x", "joint_wrenches_driven", "(tau)", "(50 * tau)"),
     ("dart", "revolute x", "joint_wrenches_driven", "setForces(tau)", "setForces(2 * tau)"),
     (
         "symofros",

@@ -207,6 +207,7 @@ def _servos_along_joints() -> list[Tree]:
         )
     )
     return [
+        Tree("servo along a hinge", links[:1], actuators=servos[:1]),
         Tree("servos along joints", links, actuators=servos),
         Tree("servos along damped joints", damped, actuators=servos),
         Tree("servos against the order of joints", links, actuators=servos[::-1]),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,10 +47,12 @@ _FORCE = (
 )
 _MATRIX = "def matrix(pose): return pose.to_transformation_matrix()\n"
 _POSES = "value = [[*T[:3, 3], *T[:3, :3].flat] for T in ({of} for {each})]"
+# Where servos are to hold their joints, and at what speed.
+_PLACE, _SPEED = 0.25, -0.5
 _AS_MADE = (("; joint.set_friction(0.0)", ""),)
 _STEP = f"""scene.set_timestep({STEP})
 put(q, v)
-robot.set_qf(tau[place].astype(np.float32))
+robot.set_qf((tau)[place].astype(np.float32))
 scene.step()
 value = [*parts(robot.get_qpos()), *parts(robot.get_qvel())]"""
 _SHORT = 2.0**-60
@@ -72,6 +75,7 @@ for link in links:
     value.append([*(link.linear_velocity - np.cross(w, arm)), *w])""",
     ),
     "step_semi_implicit": Way("Scene.step", _STEP),
+    "step_stiffness_implicit": Way("Scene.step, set_drive_properties", _STEP),
     # In the joint's frame on the child, with speeds that are those at the end of the step.
     "joint_wrenches_driven": Way(
         "link_incoming_joint_forces",
@@ -181,7 +185,24 @@ def write(tree: Tree) -> Source | Unsupported:
         if any(armature):
             after.append(f"robot.find_joint_by_name({link.name!r}).set_armature({list(armature)!r})")
     moving = [link.name for link, own in zip(tree.links, slots, strict=True) if own]
-    return _source(tree, [*lines, "robot = builder.build(fix_root_link=True)", *after], slots, moving)
+    if not all(one.is_plain and not one.force_limits for one in tree.actuators):
+        return Unsupported("forces and servos along joints, without bounds", offered=False)
+    if any(joint.force_limits for link in tree.links for joint in link.joints):
+        return Unsupported("bounds of joints' forces are those of drives", offered=False)
+    fed = dict.fromkeys(moving, 0.0)
+    for one in tree.actuators:
+        joint = f"robot.find_joint_by_name({one.link!r})"
+        fed[one.link] = one.fed(_PLACE, _SPEED)
+        after.append(f"{joint}.set_drive_properties({-one.bias[1]!r}, {-one.bias[2]!r})")
+        after.append(f"{joint}.set_drive_target({_PLACE}); {joint}.set_drive_velocity_target({_SPEED})")
+    has_servos = any(any(one.bias) for one in tree.actuators)
+    if has_servos and len(moving) > 1:
+        return Unsupported("how drives of several joints are solved for is not documented", offered=False)
+    source = _source(tree, [*lines, "robot = builder.build(fix_root_link=True)", *after], slots, moving)
+    # Its model of Pinocchio has no actuators.
+    lacks = ("forward_dynamics", "step_semi_implicit:set_joint_properties") if tree.actuators else ()
+    lacks = (*lacks, "step_semi_implicit" if has_servos else "step_stiffness_implicit")
+    return replace(source, lacks=lacks, spelling={"(tau)": f"(tau + {list(fed.values())!r})"} if tree.actuators else {})
 
 
 def _source(tree: Tree, lines: Sequence[str], slots: tuple[tuple[Slot, ...], ...], moving: Sequence[str]) -> Source:
@@ -221,6 +242,7 @@ PLUGIN = SourcePlugin(
         Convention("axes", "the first of a joint's frame"),
         Convention("friction of joints", "a coefficient of PhysX, 0.05 unless set_friction says otherwise"),
         Convention("order of joints", "its own; found by names"),
+        Convention("drives", "taken at the end of a step, with the coordinate there; asked of one joint alone"),
         Convention("velocities of links", "of the mass centre"),
         Convention("compute_passive_force", "forces that hold against gravity, Coriolis and centrifugal forces"),
         Convention("PinocchioModel", "of the package pin where that is installed, of a copy in SAPIEN where not"),
@@ -239,7 +261,7 @@ PLUGIN = SourcePlugin(
     formats=("urdf",),
     write_reading=write_reading,
     refusals=("failed to find a rendering device",),
-    demands={"turns": "rotations and placements"},
+    demands={"turns": "rotations and placements", "actuators": "set_qf, set_drive_properties"},
     statements=(UNIT_AXIS,),
     roundoff=SINGLE,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...interface import ORIGIN, STEP, Actuator, Tree, Unsupported
+from ...interface import STEP, Actuator, Tree, Unsupported
 from ...truth.derived import WRENCH
 from ..writing.source import Way
 
@@ -39,9 +39,7 @@ def driven(tree: Tree) -> dict[str, Actuator] | Unsupported:
     """Links whose joints are driven -> actuator, in the order of these: forces, or servos of gains, with one bound."""
     for one in tree.actuators:
         limits = one.force_limits or (0.0, 0.0)
-        is_servo = one.bias[1] < 0.0 >= one.bias[2]
-        is_plain = one.link and one.gear == 1.0 and limits[0] == -limits[1] and (is_servo or one.bias == ORIGIN)
-        if not is_plain or one.muscle or one.activation or one.control_limits or one.is_disabled:
+        if not one.is_plain or limits[0] != -limits[1]:
             return Unsupported("actuators are forces or servos along joints, with one bound either way", offered=False)
     if any(joint.force_limits for link in tree.links for joint in link.joints):
         return Unsupported("joints have no bounds of forces of their own", offered=False)
@@ -77,7 +75,7 @@ def spelling(tree: Tree) -> dict[str, str]:
         return {}
     rotors = [link for link in tree.links if any(link.joints[-1].armature)]
     alone = len({link.name for link in rotors} - {one.link for one in tree.actuators})
-    inputs = [_input(one) for one in tree.actuators] + [0.0] * alone
+    inputs = [one.fed(_PLACE, _SPEED) for one in tree.actuators] + [0.0] * alone
     ports = {"get_actuation_input_port()": inputs}
     if _servos(tree):
         held = [_PLACE] * len(inputs) + [_SPEED] * len(inputs)
@@ -90,12 +88,6 @@ def spelling(tree: Tree) -> dict[str, str]:
         for port, values in ports.items()
     )
     return {SPEEDS: f"{SPEEDS}{fixed}", "ad.SetVelocities(d, v_)": f"ad.SetVelocities(d, v_){many}"}
-
-
-def _input(one: Actuator) -> float:
-    """What is fed forward: the force beside that of a servo's gains."""
-    constant, by_place, by_speed = one.bias
-    return one.gain * one.control + constant + by_place * _PLACE + by_speed * _SPEED
 
 
 def lacks(tree: Tree) -> tuple[str, ...]:

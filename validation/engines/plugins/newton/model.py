@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ...interface import Array, Joint, Link, Slot, Tree, Unsupported
+from ...interface import Actuator, Array, Joint, Link, Slot, Tree, Unsupported
 from ..writing.source import Source, series
-from .ways import AXIS, CENTRES, IMPORTS, ROTATION
+from .ways import AXIS, CENTRES, DRIVEN, IMPORTS, ROTATION
 
 
 def _array(values: object) -> str:
@@ -58,7 +58,9 @@ def _axes(joint: Joint) -> tuple[list[str], list[str], str] | None:
     return None
 
 
-def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[str, list[tuple[str, int, int]]] | str:
+def _call(
+    link: Link, steps: tuple[tuple[Array, Array, Joint], ...], drive: Actuator | None
+) -> tuple[str, list[tuple[str, int, int]]] | str:
     """The joint of a link as a call, and chart, coordinates, speeds of each part; a reason where there is none."""
     if not steps:
         return "b.add_joint_fixed({ends})", []
@@ -86,9 +88,26 @@ def _call(link: Link, steps: tuple[tuple[Array, Array, Joint], ...]) -> tuple[st
         armature = joint.armature[0] if joint.armature else 0.0
         about = f"axis={_array(joint.axis)}, armature={armature!r}"
         forces = {"damping": joint.damping, "stiffness": joint.stiffness, "rest_q": joint.rest}
+        if drive is not None:
+            forces |= {"target_ke": -drive.bias[1], "target_kd": -drive.bias[2]}
         about += "".join(f", {name}={value!r}" for name, value in forces.items() if value)
         return f"b.add_joint_{joint.kind}({{ends}}, {about})", parts
     return f"b.add_joint_d6({{ends}}, linear_axes=[{', '.join(linear)}], angular_axes=[{', '.join(angular)}])", parts
+
+
+# Where servos are to hold their joints, and at what speed.
+_PLACE, _SPEED = 0.25, -0.5
+
+
+def _driven(tree: Tree, slots: list[tuple[Slot, ...]]) -> tuple[str, ...]:
+    """What the controls of a step are besides the forces: added to these, places and speeds that servos hold."""
+    fed, places, speeds = ([0.0] * sum(len(slot.v) for own in slots for slot in own) for _ in range(3))
+    for k, link in enumerate(tree.links):
+        for one in tree.actuators:
+            if one.link == link.name:
+                (at,) = slots[k][0].v
+                fed[at], places[at], speeds[at] = one.fed(_PLACE, _SPEED), _PLACE, _SPEED
+    return (f"fed, places, speeds = np.array({fed}), np.array({places}), np.array({speeds})",)
 
 
 def builder(tree: Tree) -> str:
@@ -105,6 +124,11 @@ def has_tiny_moments(tree: Tree, text: str) -> bool:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds an articulation."""
+    drives = {one.link: one for one in tree.actuators}
+    if not all(one.is_plain and not one.force_limits for one in tree.actuators):
+        return Unsupported("forces and servos along joints, without bounds", offered=False)
+    if any(joint.force_limits for link in tree.links for joint in link.joints):
+        return Unsupported("bounds of joints' forces are none of its solvers'", offered=False)
     lines = [*IMPORTS, builder(tree)]
     slots: list[tuple[Slot, ...]] = []
     nq = nv = 0
@@ -114,7 +138,7 @@ def write(tree: Tree) -> Source | Unsupported:
     joints = []
     for k, link in enumerate(tree.links):
         steps, (R_end, p_end) = series(link.joints)
-        made: Any = _call(link, steps)
+        made: Any = _call(link, steps, drives.get(link.name))
         if isinstance(made, str):
             return Unsupported(made, offered=False)
         call, parts = made
@@ -135,4 +159,7 @@ def write(tree: Tree) -> Source | Unsupported:
             nq, nv = nq + coordinates, nv + speeds
         slots.append(tuple(own))
     lines += [f"b.add_articulation([{', '.join(joints)}])", 'm = b.finalize(device="cpu")']
-    return Source(tuple(lines), tuple(slots), nq, nv, {"rotation": ROTATION, "centres": CENTRES})
+    optional = {"rotation": ROTATION, "centres": CENTRES} | ({"fed": _driven(tree, slots)} if drives else {})
+    # What it keeps of arms is that of files.
+    lacks, spelling = (("actuator_arms",), DRIVEN) if drives else ((), {})
+    return Source(tuple(lines), tuple(slots), nq, nv, optional, lacks, spelling=spelling)

@@ -30,6 +30,7 @@ PLUGIN = SourcePlugin(
         Convention("ball joint", "angular velocity along the axes before the joint"),
         Convention("twists and Jacobians of links", "linear velocity of the mass centre, then angular, in the world"),
         Convention("step", "quaternions along their rate at the beginning, then brought to unit length"),
+        Convention("targets of joints", "forces at the beginning of SolverFeatherstone's step"),
         Convention("armature", "an argument of the joint; 0.01 unless stated"),
         Convention(
             "free joint", "linear velocity of the mass centre: a speed that depends on the body; not asked here"
@@ -59,6 +60,7 @@ PLUGIN = SourcePlugin(
     demands={
         "dampers": "damping",
         "springs": "stiffness, rest_q",
+        "actuators": "joint_f, target_ke, target_kd",
         "wheels": "SolverXPBD, SolverSemiImplicit, SolverFeatherstone",
         "held distances": "add_joint_distance",
     },

@@ -53,11 +53,19 @@ WAYS = {
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
     ),
 }
+_FORCES = "control.joint_f.assign(tau.astype(np.float32))\n"
+# Where there are actuators; targets had another name before.
+DRIVEN = {
+    _FORCES: """control.joint_f.assign((tau + fed).astype(np.float32))
+newer = hasattr(control, 'joint_target_q')
+(control.joint_target_q if newer else control.joint_target_pos).assign(places.astype(np.float32))
+(control.joint_target_qd if newer else control.joint_target_vel).assign(speeds.astype(np.float32))
+"""
+}
 WAYS["step_semi_implicit_normalized"] = Way(
     "SolverFeatherstone",
     f"""solver, after, control = newton.solvers.SolverFeatherstone(m, angular_damping=0.0), m.state(), m.control()
-{QV}control.joint_f.assign(tau.astype(np.float32))
-solver.step(s, after, control, None, {STEP})
+{QV}{_FORCES}solver.step(s, after, control, None, {STEP})
 value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]""",
 )
 
