@@ -240,6 +240,9 @@ def write(tree: Tree) -> Source | Unsupported:
         lines = [line.replace("Plant(0.0)", f"Plant({STEP})") for line in lines]
         lines += _bound(tree)
     lines.append("p.Finalize()")
+    if forces.has_servos(tree):
+        for general, own in forces.DISCRETE.items():
+            lines = [line.replace(general, own) for line in lines]
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
     slots, nq, nv = _slots(tree, chosen)
     optional: dict[str, tuple[str, ...]] = {"links": (links,)}
@@ -350,7 +353,7 @@ PLUGIN = SourcePlugin(
         "free between links": "QuaternionFloatingJoint",
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
-    ways=WAYS | gradients.WAYS | forces.WAYS | turning.WAYS,
+    ways=forces.continuous(WAYS | gradients.WAYS | forces.WAYS | turning.WAYS),
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+
 from ...interface import STEP, Actuator, Tree, Unsupported
 from ...truth.derived import WRENCH
 from ..writing.source import Way
@@ -62,10 +65,23 @@ def actuators(tree: Tree) -> list[str]:
         if any(one.bias):
             gains = f"drake.PdControllerGains(p={-one.bias[1]!r}, d={-one.bias[2]!r})"
             lines.append(f"motor.set_controller_gains({gains})")
-    return [*lines, *(SAP if _servos(tree) else ())]
+    return [*lines, *(SAP if has_servos(tree) else ())]
 
 
-def _servos(tree: Tree) -> bool:
+# Plants with gains of controllers are discrete, as those of old releases must be; what is not asked of a step is asked
+# of continuous ones.
+DISCRETE = {"Plant(0.0)": f"Plant({STEP})", "p.Finalize()": "sap(p); p.Finalize()"}
+_OF_CONTINUOUS = re.compile("forward_dynamics.*|step_(semi_implicit_straight|euler|rk.)|actuat(or|ed)_forces")
+
+
+def continuous(ways: Mapping[str, Way]) -> dict[str, Way]:
+    """Ways with the plants that they are for."""
+    built = tuple((own, general) for general, own in DISCRETE.items())
+    return {name: one._replace(built=built) if _OF_CONTINUOUS.fullmatch(name) else one for name, one in ways.items()}
+
+
+def has_servos(tree: Tree) -> bool:
+    """Whether an actuator has gains."""
     return any(any(one.bias) for one in tree.actuators)
 
 
@@ -77,7 +93,7 @@ def spelling(tree: Tree) -> dict[str, str]:
     alone = len({link.name for link in rotors} - {one.link for one in tree.actuators})
     inputs = [one.fed(_PLACE, _SPEED) for one in tree.actuators] + [0.0] * alone
     ports = {"get_actuation_input_port()": inputs}
-    if _servos(tree):
+    if has_servos(tree):
         held = [_PLACE] * len(inputs) + [_SPEED] * len(inputs)
         ports["get_desired_state_input_port(drake.default_model_instance())"] = held
     fixed = "".join(f"p.{port}.FixValue(c, {values!r})\n" for port, values in ports.items())
@@ -93,7 +109,7 @@ def spelling(tree: Tree) -> dict[str, str]:
 def lacks(tree: Tree) -> tuple[str, ...]:
     """Discrete steps have servos, as dampers, at their end, springs not; controllers want all joints driven."""
     joints = [joint for link in tree.links for joint in link.joints]
-    is_stiff = _servos(tree) and not tree.tendons and not any(joint.stiffness for joint in joints)
+    is_stiff = has_servos(tree) and not tree.tendons and not any(joint.stiffness for joint in joints)
     of_dampers, of_servos = "step_dampers_implicit_straight", "step_stiffness_implicit_straight"
     is_whole = len(tree.actuators) == sum(joint.kind != "fixed" for joint in joints)
     return (of_dampers if is_stiff else of_servos, *(() if is_whole else ("controlled_forces",)))
@@ -106,10 +122,7 @@ def _integrated(name: str) -> Way:
 
 WAYS: dict[str, Way] = {
     "step_stiffness_implicit_straight": Way(
-        "JointActuator.set_controller_gains",
-        _SIMULATION.replace("INTEGRATOR", ""),
-        0.0,
-        (("Plant(0.0)", f"Plant({STEP})"), ("p.Finalize()", "sap(p); p.Finalize()")),
+        "JointActuator.set_controller_gains", _SIMULATION.replace("INTEGRATOR", "")
     ),
     "controlled_forces": Way(
         "InverseDynamicsController",

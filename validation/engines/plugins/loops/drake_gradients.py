@@ -12,7 +12,7 @@ def _gradient(result: str, seeds: str) -> str:
 ad = p.ToAutoDiffXd()
 d = ad.CreateDefaultContext()
 d.SetTimeStateAndParametersFrom(c)
-{QV}N = p.MakeVelocityToQDotMap(c).toarray()
+{QV}N = np.stack([p.MapVelocityToQDot(c, one) for one in np.eye(len(v))], axis=1)
 {seeds}
 ad.SetPositions(d, q_)
 ad.SetVelocities(d, v_)
