@@ -149,6 +149,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     if isinstance(described, Unsupported):
         return described
     free = described.floating
+    if 'type="floating"' in text:
+        return Unsupported("floating joints of files are made fixed, with a warning", offered=False)
     if free and not tree.links[0].mass:
         return Unsupported("bases without mass stand still", offered=False)
     setup = _SETUP.format(text=text, form=form.split()[0], load=_LOADS[form].replace("=True", f"={not free}", 1))
