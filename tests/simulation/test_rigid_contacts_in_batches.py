@@ -135,3 +135,21 @@ def test_steppers_of_many_are_saved_and_begin_anew() -> None:
         assert np.array_equal(steppers.q, ends)
     known = sf.simulate_batch(model, q, v, t_end=0.048, dt=2e-3, method="rk4")
     assert ends == pytest.approx(known.q[:, -1], abs=1e-12)
+
+
+def test_balls_that_are_restored_to_a_time_before_a_strike_rebound() -> None:
+    """The instant of their last strike is that of the state: one that is to come would take the rebound from it."""
+    model = ball(0.7, 0.5)
+    q, v = np.array([rested(model, h) for h in (0.2, 0.25, 0.3)]), np.zeros((3, 6))
+    steppers = sf.Steppers(model, 3, dt=2e-3, method="rk4")
+    steppers.reset(q, v)
+    steppers.step(steps=20)
+    kept = steppers.save()
+    steppers.step(steps=100)
+    ends = steppers.q.copy(), steppers.v.copy()
+    steppers.restore(kept)
+    steppers.step(steps=100)
+    assert np.array_equal(steppers.q, ends[0]) and np.array_equal(steppers.v, ends[1])
+    known = sf.simulate_batch(model, q, v, t_end=0.24, dt=2e-3, method="rk4")
+    assert all(known.events(i) for i in range(3))
+    assert ends[0] == pytest.approx(known.q[:, -1], abs=1e-12)

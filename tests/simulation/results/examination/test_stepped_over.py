@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.generator.codegen import interpreted
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
-from symofros.simulation.results.examination import stepped_over
+from symofros.simulation.results.examination import diagnosis, stepped_over
 from symofros.simulation.results.examination.paths import _cubic, path_within
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.stepped_over import _bounds_of_sums, _largest_sums
@@ -23,6 +23,7 @@ from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 from tests.models import compiled
 from tests.simulation.mechanisms import slide
+from tests.simulation.rigid_scenes import G, point
 
 ADAPTIVE = ("dopri5", "dop853", "rodas4")
 CART = slide(actuated=True)
@@ -203,6 +204,29 @@ def test_what_is_made_once_more_is_the_run(stabilisation: Any) -> None:
     assert status == Status.FINISHED
     np.testing.assert_allclose(t, made.t[4:15:2], rtol=1e-14)
     np.testing.assert_array_equal(np.hstack([q, v]), np.hstack([made.q, made.v])[4:15:2])
+
+
+@pytest.mark.parametrize("wind", [0.0, 0.8])
+def test_a_slide_that_is_made_once_more_is_the_run(wind: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Up to rest: the direction of friction where the slip is slow is remembered, too."""
+    found = list[Any]()
+
+    def repeat(run: ExaminedRun) -> tuple[str, ...]:
+        """While the run stands at the end of the slide."""
+        t = run.states[0]
+        if not found:
+            found.extend(run.repeated([x[i] for x in run.states[:3]], float(t[-1]), 1e-2) for i in (0, 3, len(t) - 3))
+            found.append(run.states)
+        return ()
+
+    monkeypatch.setattr(diagnosis, "constraint_notes", repeat)
+    sf.simulate(point(0.3, (0.0, wind, -G)), None, [1.0, 0.5, 0.0], 1.0, method="rk4", dt=1e-2)
+    (t, q, v, _), ends = found.pop(), found
+    assert 0.3 < t[-1] < 0.6
+    for status, (times, *again, _) in ends:
+        first = len(t) - len(times)
+        assert status == Status.FINISHED and times == pytest.approx(t[first:], abs=1e-15)
+        np.testing.assert_allclose(np.hstack(again), np.hstack([q, v])[first:], rtol=0, atol=1e-15)
 
 
 def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
