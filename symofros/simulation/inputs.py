@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, wraps
 from typing import Any, Literal
 
 import numpy as np
@@ -14,8 +14,9 @@ import numpy.typing as npt
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.arrays import Array, numeric
 from symofros.base.names import coordinate_of
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ArgumentError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model, Rate
+from symofros.simulation.user_functions import check_called_with, named_function
 
 Indices = npt.NDArray[np.intp]
 
@@ -162,6 +163,7 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
     Raises:
         ShapeError: An array does not fit.
         UnknownNameError: No such input.
+        ArgumentError: A function takes other arguments.
     """
     names = model.names.u
     constant = np.array(model.record.u_default, dtype=np.float64)
@@ -172,6 +174,7 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
     if isinstance(u, Mapping):
         return _by_name(model, u, constant)
     if callable(u):
+        check_called_with(f"model '{model.record.name}': the function of inputs", u, "t", "q", "v")
         return InputPlan(constant, callback=u if model.carried is model else _of_stated(u, model.nq, model.nv))
     array = numeric("u", u)
     if array.shape == (len(names),):
@@ -191,7 +194,7 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
 
 def _of_stated(u: Callback, nq: int, nv: int) -> Callback:
     """A function of the coordinates and speeds alone, where states of forces are carried behind them."""
-    return lambda t, q, v: u(t, q[:nq], v[:nv])
+    return wraps(u)(lambda t, q, v: u(t, q[:nq], v[:nv]))  # Messages name the user's.
 
 
 def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
@@ -239,6 +242,10 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
         elif isinstance(value, (int, float, np.floating)):
             _refuse_infinite(name, float(value))
             plan.constant[i] = value
+        elif callable(value):
+            rule = "a function gives all inputs at once; one input takes a number, a formula text or a Signal"
+            remedy = f"u=lambda t, q, v: [...], of {', '.join(names[:8])}"
+            raise ArgumentError(Problem(f"input '{name}' is a function", named_function(value), rule, remedy))
         else:
             plan.formulas[i] = value
     _complete_motions(model, given, plan)

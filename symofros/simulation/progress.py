@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from symofros.simulation.user_functions import check_called_with
+
 
 @contextmanager
 def bar(wanted: bool | Callable[[float], None], t0: float, t_end: float) -> Iterator[Callable[[float], None]]:
     """A function that shows how far a run has come; it does nothing unless wanted, or is the caller's own."""
     if callable(wanted):
+        check_called_with("simulate: the function of progress", wanted, "t")
         yield wanted
         return
     if not wanted:

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import inspect
 import traceback
 from collections.abc import Callable
 from pathlib import Path
 from types import CodeType
 from typing import Any
 
+from symofros.errors import ArgumentError, Problem
+
 _PACKAGE = str(Path(__file__).parents[1])
 
 
 def named_function(function: Callable[..., Any]) -> str:
     """A function by its name, file and line, "law (controller.py:12)"; by its text where Python knows no more."""
+    function = inspect.unwrap(function)
     code = getattr(function, "__code__", None)
     if not isinstance(code, CodeType):
         code = getattr(vars(type(function)).get("__call__"), "__code__", None)
@@ -20,6 +24,32 @@ def named_function(function: Callable[..., Any]) -> str:
         return repr(function)[:80]
     name = getattr(function, "__qualname__", type(function).__qualname__)
     return f"{name} ({Path(code.co_filename).name}:{code.co_firstlineno})"
+
+
+def check_called_with(what: str, function: Callable[..., Any], *arguments: str) -> None:
+    """Refuse a function that does not take what it is called with, in order; of some in C nobody knows.
+
+    Args:
+        what: What the function is, in words.
+        function: The user's function.
+        arguments: Names of what it is called with.
+
+    Raises:
+        ArgumentError: It takes other arguments.
+    """
+    try:
+        signature = inspect.signature(function, follow_wrapped=False)
+    except (TypeError, ValueError):
+        return
+    try:
+        signature.bind(*arguments)
+    except TypeError as error:
+        called = ", ".join(arguments)
+        found = f"{named_function(function)} takes {signature}: {error}"
+        remedy = f"lambda {called}: ..., whether it needs all of them or not"
+        raise ArgumentError(
+            Problem(f"{what} takes other arguments", found, f"it is called with ({called})", remedy)
+        ) from None
 
 
 def raised_where(error: BaseException) -> str:

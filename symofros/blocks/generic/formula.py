@@ -19,6 +19,7 @@ from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError
 from symofros.expr import Edge, Expression, NoValueError, lower
+from symofros.simulation.user_functions import check_called_with
 
 _ENTRY = re.compile(r"(?P<name>\w+)\[(?P<index>\d+)\]$", re.ASCII)
 _NAME = re.compile(r"[A-Za-z]\w*$", re.ASCII)
@@ -149,6 +150,7 @@ class PythonBlock(ExternalBlock):
         """A function, an output or more, a sample time."""
         if not callable(self.function):
             raise refuse(self.name, "nothing to call", repr(self.function), "function takes (t, inputs)", "give one")
+        check_called_with(f"block '{self.name}': its function", self.function, "t", "inputs")
         if not dict(self.outputs or {}):
             raise refuse(
                 self.name, "no outputs", "none", "an output or more, with their shapes", 'write for example {"y": (3,)}'
