@@ -12,6 +12,8 @@ from symofros.mechanics.topology import Numbers, SpanningTree, beam_mass
 
 # Frames of a model that are named; the rest are counted.
 _FRAMES = 20
+# Limits of a coordinate: of where it is, and sizes, of its speed and effort.
+_BOUNDS, _SIZES = ("lower", "upper"), ("velocity", "effort")
 
 
 def details(tree: SpanningTree) -> dict[str, Any]:
@@ -35,9 +37,9 @@ def details(tree: SpanningTree) -> dict[str, Any]:
     coordinates = []
     for name in tree.coordinates.q:
         bound = limits.get(name)
-        coordinates.append(
-            {"name": name, "lower": bound.lower if bound else None, "upper": bound.upper if bound else None}
-        )
+        # Zero is no limit of speed or effort, as in files that leave it open.
+        sizes = {label: getattr(bound, label, None) or None for label in _SIZES}
+        coordinates.append({"name": name, **{label: getattr(bound, label, None) for label in _BOUNDS}, **sizes})
     parameters = [
         {"name": item.name, "value": item.value, "unit": item.unit, "constant": item.constant}
         for item in system.parameters
@@ -53,10 +55,11 @@ def tables(facts: dict[str, Any]) -> list[Table]:
         if body["mass"] is not None:
             center = ", ".join(map(_number, body.get("center_of_mass", ())))
             masses.add_row(body["name"], _number(body["mass"]), center or "(beam)")
-    bounds = Table("coordinate", "lower", "upper", title="Limits [rad, m]")
+    stated = [label for label in (*_BOUNDS, *_SIZES) if any(item[label] is not None for item in facts["coordinates"])]
+    bounds = Table("coordinate", *stated, title="Limits [rad, m; N m, N]" if "effort" in stated else "Limits [rad, m]")
     for item in facts["coordinates"]:
-        if item["lower"] is not None or item["upper"] is not None:
-            bounds.add_row(item["name"], _number(item["lower"]), _number(item["upper"]))
+        if any(item[label] is not None for label in stated):
+            bounds.add_row(item["name"], *(_number(item[label]) for label in stated))
     parameters = Table("parameter", "value", "unit", "", title="Parameters")
     for item in facts["parameters"]:
         parameters.add_row(item["name"], _number(item["value"]), item["unit"], "constant" if item["constant"] else "")

@@ -112,6 +112,18 @@ def test_info_lists_masses_limits_parameters_and_frames(tmp_path: Path) -> None:
     assert any(item["lower"] is not None for item in limits.values())
 
 
+def test_info_lists_limits_of_speed_and_effort(tmp_path: Path) -> None:
+    """Of a joint without limits of travel, too; zero is none, and a column that would be empty is not there."""
+    joint = sf.Joint("q", "continuous", limits=sf.Limits(velocity=3.2, effort=0.0))
+    sf.save(
+        sf.System("wheel", (sf.RigidBody("wheel", joint, sf.Inertia(1.0, moments=(1, 1, 1))),)), tmp_path / "a.yaml"
+    )
+    (found,) = json.loads(invoke("info", tmp_path / "a.yaml", "--json").output)["coordinates"]
+    assert found == {"name": "q", "lower": None, "upper": None, "velocity": 3.2, "effort": None}
+    shown = invoke("info", tmp_path / "a.yaml").output
+    assert "velocity" in shown and "3.2" in shown and "effort" not in shown and "lower" not in shown
+
+
 def test_info_lists_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
     beam = sf.Beam("boom", sf.Joint("slew", "revolute"), "L", "3 - x", EI_z=1.0, bend_y=1)
     sf.save(sf.System("crane", (beam,), (sf.Parameter("L", 2.0),)), tmp_path / "crane.yaml")
