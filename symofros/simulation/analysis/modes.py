@@ -21,6 +21,8 @@ from symofros.simulation.analysis.states import given_configuration, given_input
 
 # Share of its states of forces below which a mode's coordinates are rounding.
 _STILL = 1e-12
+# Damping by rounding.
+_UNDAMPED = 1e-9
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,7 @@ class Modes:
 
     Attributes:
         eigenvalues: s of each mode, with Im(s) >= 0 [1/s] (k); exactly 0 of rigid motions, which come first.
-        frequencies: |s| [rad/s] (k).
+        frequencies: |s| [rad/s] (k), of motions without oscillation, too: `print(modes)` says which those are.
         damping: -Re(s)/|s|: positive decays, negative grows; a rigid motion (s = 0) counts 0 (k).
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
@@ -50,6 +52,24 @@ class Modes:
     bendings: tuple[BeamBending, ...] = ()
     notes: tuple[str, ...] = ()
     z_shapes: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
+
+    def __str__(self) -> str:
+        """A line a mode, in words: what decays or grows without oscillation has no frequency in Hz; then the notes."""
+        rates = [f"mode {k}: {_in_words(s)}" for k, s in enumerate(self.eigenvalues.tolist())]
+        return "\n".join([*rates, *(f"note: {note}" for note in self.notes)]) or "no modes: nothing moves"
+
+
+def _in_words(s: complex) -> str:
+    """A mode exp(s t) [1/s]."""
+    if s == 0.0:
+        return "rigid motion"
+    if s.imag == 0.0:
+        return f"{'grows' if s.real > 0.0 else 'decays'} at {abs(s.real):.6g} 1/s"
+    damping = -s.real / abs(s)
+    damped = (
+        "" if abs(damping) <= _UNDAMPED else f", {'damping' if damping > 0.0 else 'growing, damping'} {damping:.4g}"
+    )
+    return f"oscillates at {s.imag:.6g} rad/s = {s.imag / (2.0 * np.pi):.6g} Hz{damped}"
 
 
 @checked

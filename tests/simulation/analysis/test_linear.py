@@ -71,6 +71,19 @@ class TestEquilibrium:
 
 
 class TestModes:
+    def test_modes_in_words(self) -> None:
+        """What topples has no frequency in Hz, though |s| is a number as of what swings; a free slide is rigid."""
+        joint = sf.Joint("q", "revolute", axis=(0, 1, 0), elements=(sf.Damper("c"),))
+        bar = sf.RigidBody("bar", joint, sf.Inertia(1.0, (0, 0, -1.0)))
+        cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0))
+        model = sf.compile(sf.System("two", (bar, cart), (sf.Parameter("c", 0.0),)))
+        w = np.sqrt(9.81)
+        swings, topples = (str(sf.modes(model, {"q": q})).splitlines() for q in (0.0, np.pi))
+        assert swings == ["mode 0: rigid motion", f"mode 1: oscillates at {w:.6g} rad/s = {w / 2 / np.pi:.6g} Hz"]
+        assert sorted(line[8:] for line in topples[1:]) == [f"decays at {w:.6g} 1/s", f"grows at {w:.6g} 1/s"]
+        damped = str(sf.modes(model, [0.0, 0.0], par=[0.2])).splitlines()[1]
+        assert damped.endswith(f"Hz, damping {0.1 / w:.4g}")
+
     @pytest.mark.parametrize(("eta", "first"), [(0.0, 3.5160152685), (6.0, 4.2632254202)])
     def test_spinning_beam_frequency_matches_the_benchmark(self, eta: float, first: float) -> None:
         """First frequency in the plane of rotation, of the rotating cantilever (benchmark A1, hub ratio 0)."""
