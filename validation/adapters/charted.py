@@ -224,8 +224,16 @@ class ChartedEngine(SolvedEngine):
         """The engine's own object, for those who step or time it."""
         return self.names["m"]
 
-    def asked(self, function: str, states: States, model: EngineModel | None = None) -> Array:
+    def asked(
+        self, function: str, states: States, model: EngineModel | None = None, links: Sequence[int] | None = None
+    ) -> Array:
         """A function of the matrix at N states, in the engine's own coordinates and speeds (N, ...).
+
+        Args:
+            function: Its name.
+            states: The states.
+            model: Model to ask in place of `answers`.
+            links: The links that a function of links is wanted of; all, if not given.
 
         Raises:
             NotOffered: The engine does not have it for this tree.
@@ -235,13 +243,13 @@ class ChartedEngine(SolvedEngine):
         q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
         a, tau = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
         asked = [State(*row, none, row[0]) for row in zip(q, v, a, tau, strict=True)]
-        values = _each(model or self.answers, function, asked)
+        values = _each(model or self.answers, function, asked, links)
         if isinstance(values, Unsupported):
             raise (ValueError if values.offered else NotOffered)(values.reason)
         return values
 
     def _of_frames(self, function: str, states: States) -> Array:
-        return self.asked(function, states)[:, list(self.frames)]
+        return self.asked(function, states, links=self.frames)
 
     def _jacobians(self, function: str, states: States) -> Array:
         """Of frames (N, F, 6, nv): some bindings turn a matrix of one column into a vector."""
@@ -316,17 +324,19 @@ class ChartedEngine(SolvedEngine):
         return self.chart.jacobian_rate(states.q, states.v, self._jacobians("link_jacobians", states), J_rate)
 
 
-def _each(model: EngineModel, function: str, states: Iterable[State]) -> Array | Unsupported:
-    """Values of a function at N states (N, ...), one state after the other."""
+def _each(
+    model: EngineModel, function: str, states: Iterable[State], links: Sequence[int] | None
+) -> Array | Unsupported:
+    """Values of a function at N states (N, ...), one state after the other; of links, at those that are wanted."""
     if isinstance(model, SourceModel):
-        return model.each(function, states)
+        return model.each(function, states, links)
     values = []
     for state in states:
         value = model.call(function, State(*(part.copy() for part in vars(state).values())))
         if isinstance(value, Unsupported):
             return value
         values.append(np.array(value, dtype=float))
-    return np.array(values)
+    return np.array(values) if links is None else np.array(values)[:, list(links)]
 
 
 def offered(functions: Collection[str], subject: Subject) -> frozenset[str]:

@@ -65,7 +65,7 @@ def write(tree: Tree) -> Source | Unsupported:
     spelling = beside.spelling(tree) if tree.constraints else {}
     # What is attached already is not made in other ways.
     lacks = (*rebuilt.SENSED, *rebuilt.ways(_WAYS)) if own else ()
-    return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling)
+    return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling, of_links="bs")
 
 
 def _compiled(tree: Tree, xml: str) -> list[str]:

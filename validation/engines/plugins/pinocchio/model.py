@@ -189,7 +189,7 @@ class _ModelText:
             stated = (text.format(*self.place(end)) for text, end in zip(made, tree.sensors, strict=True))
             optional["sensed"] = (f"sensed = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constraints.optional(tree.constraints, self.place)
-        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING)
+        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING, of_links="fs")
 
 
 def _changing(tree: Tree) -> list[str]:

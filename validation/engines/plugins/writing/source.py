@@ -66,6 +66,7 @@ class Source:
         lacks: Functions that the engine doesn't offer for this tree.
         closing: Statements after all of these, run anew for each call: nothing is left of what others wrote there.
         spelling: Text of functions' code -> what it is for this tree.
+        of_links: Name of a list of one thing a link, in the tree's order, which functions of links go through.
     """
 
     lines: tuple[str, ...]
@@ -76,6 +77,7 @@ class Source:
     lacks: tuple[str, ...] = ()
     closing: tuple[str, ...] = ()
     spelling: Mapping[str, str] = field(default_factory=dict)
+    of_links: str = ""
 
     def spelled(self, code: str) -> str:
         """Code as it is for this tree."""
@@ -139,16 +141,31 @@ class SourceModel:
         values = self.each(function, (state,))
         return values if isinstance(values, Unsupported) else np.asarray(values[0])
 
-    def each(self, function: str, states: Iterable[State]) -> Array | Unsupported:
-        """Values of a function at N states (N, ...), one state after the other."""
+    def each(self, function: str, states: Iterable[State], links: Sequence[int] | None = None) -> Array | Unsupported:
+        """Values of a function at N states (N, ...), one state after the other.
+
+        Args:
+            function: Its name.
+            states: The states.
+            links: The links that a function of links is wanted of; all, if not given.
+        """
         try:
-            ask = self.kept(function)
-            return ask if isinstance(ask, Unsupported) else np.array([ask(state) for state in states])
+            ask = self.kept(function, links)
+            if isinstance(ask, Unsupported):
+                return ask
+            values = np.array([ask(state) for state in states])
         except Exception as error:
             return refusal(error, self._refusals)
+        is_of_all = links is not None and values.ndim > 1 and values.shape[1] != len(links)
+        return np.asarray(values[:, list(links or ())]) if is_of_all else values
 
-    def kept(self, function: str) -> Callable[[State], Array] | Unsupported:
-        """A function whose calls share what the text makes: the engine's data are those that the last call left."""
+    def kept(self, function: str, links: Sequence[int] | None = None) -> Callable[[State], Array] | Unsupported:
+        """A function whose calls share what the text makes: the engine's data are those that the last call left.
+
+        Args:
+            function: Its name.
+            links: The links that the list of `Source.of_links` is cut to, where the text has it; all, if not given.
+        """
         if function not in self._ways or function in self._source.lacks:
             return Unsupported(f"no {function}", offered=False)
         text = self._source.spelled(self._ways[function].code)
@@ -156,9 +173,13 @@ class SourceModel:
             return Unsupported(OPTIONAL[name], offered=False)
         code, names = compile(text, TEXT, "exec"), dict(self._names_of(self._ways[function]))
         _run("\n".join(self._source.own(self._ways[function], self._source.closing)), names)
+        if links is not None and self._source.of_links in names:
+            names[self._source.of_links] = [names[self._source.of_links][k] for k in links]
+        used = [name for name in _INPUTS if name in identifiers(text)]  # As in `Source.script`.
 
         def ask(state: State) -> Array:
-            names.update({name: getattr(state, name).copy() for name in _INPUTS})
+            for name in used:
+                names[name] = getattr(state, name).copy()
             exec(code, names)
             return np.array(names["value"], dtype=float)
 
