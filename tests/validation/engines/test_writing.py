@@ -30,3 +30,17 @@ def test_ways_that_build_the_same_share_it_and_what_closes_runs_for_each() -> No
     assert [float(np.asarray(model.call(name, nothing))) for name in "pqrs"] == [0.0, 1.0, 2.0, 3.0]
     assert made == ["tree", *["closed"] * 3, "own", *["closed own"] * 2]
     assert source.built(ways["s"]) == ("made.append('own')", "made.append('closed own')")
+
+
+def test_functions_of_links_are_evaluated_for_those_that_are_wanted() -> None:
+    """By the list that the text goes through, or chosen from what it gives of all; the next call has all again."""
+    ways = {"cut": Way("cut", "seen.append(len(bs))\nvalue = [b + q for b in bs]")}
+    ways["whole"] = Way("whole", "seen.append(0)\nvalue = [b + q for b in (3.0, 1.0, 4.0)]")
+    seen: list[int] = []
+    source = Source((), (), 1, 1, {"bs": ("bs = [3.0, 1.0, 4.0]",)}, of_links="bs")
+    model = SourceModel(source, ways, {"seen": seen})
+    states = [State(np.array([q]), *[np.zeros(1)] * 5) for q in (0.5, 0.25)]
+    for name in ways:
+        assert np.array_equal(model.each(name, states, (2, 0)), [[[4.5], [3.5]], [[4.25], [3.25]]])
+        assert np.array_equal(model.each(name, states), [[[3.5], [1.5], [4.5]], [[3.25], [1.25], [4.25]]])
+    assert seen == [2, 2, 3, 3, 0, 0, 0, 0]
