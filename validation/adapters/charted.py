@@ -15,6 +15,7 @@ import numpy as np
 
 from ..contract.conventions import Chart, Slot
 from ..contract.interface import NotOffered, SolvedEngine, States, Subject, Unsupported
+from ..contract.memory import LatestResults
 from ..contract.quantities import ROUNDING
 from ..engines.interface import (
     ORIGIN,
@@ -212,6 +213,7 @@ class ChartedEngine(SolvedEngine):
     weights: Array = field(default_factory=lambda: np.zeros((0, 4)))
     gravity: Array = field(default_factory=lambda: np.zeros(3))
     accuracy: Mapping[str, float] = field(default_factory=dict)
+    _converted: LatestResults[list[State]] = field(default_factory=LatestResults)
 
     @property
     def names(self) -> dict[str, Any]:
@@ -239,14 +241,18 @@ class ChartedEngine(SolvedEngine):
             NotOffered: The engine does not have it for this tree.
             ValueError: The engine refuses.
         """
-        chart, none = self.chart, np.zeros(self.chart.nv)
-        q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
-        a, tau = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
-        asked = [State(*row, none, row[0]) for row in zip(q, v, a, tau, strict=True)]
-        values = _each(model or self.answers, function, asked, links)
+        given = states.q, states.v, states.a, states.applied
+        values = _each(model or self.answers, function, self._converted.get(given, lambda: self._own(states)), links)
         if isinstance(values, Unsupported):
             raise (ValueError if values.offered else NotOffered)(values.reason)
         return values
+
+    def _own(self, states: States) -> list[State]:
+        """The states in the engine's own coordinates and speeds, which its calls get copies of."""
+        chart, none = self.chart, np.zeros(self.chart.nv)
+        q, v = chart.coordinates(states.q), chart.speeds(states.q, states.v)
+        a, tau = chart.accelerations(states.q, states.v, states.a), chart.forces(states.q, states.applied)
+        return [State(*row, none, row[0]) for row in zip(q, v, a, tau, strict=True)]
 
     def _of_frames(self, function: str, states: States) -> Array:
         return self.asked(function, states, links=self.frames)
