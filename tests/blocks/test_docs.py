@@ -56,7 +56,7 @@ def test_every_block_is_documented_with_its_ports(name: str) -> None:
     if name == "FMU":  # Its example needs a unit: docs/howto/fmu.md makes one.
         return
     ports = ports_seen().get(name)
-    assert ports, f"docs/blocks.md has no example of '{name}'"
+    assert ports is not None, f"docs/blocks.md has no example of '{name}'"
     if name in (
         "Formula",
         "PythonBlock",
