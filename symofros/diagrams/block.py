@@ -7,7 +7,7 @@ name in the `__init__` there and of `symofros/blocks/`, a section of docs/blocks
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Literal, Protocol
 
@@ -101,6 +101,10 @@ class Environment(Protocol):
 
     def linear(self, name: str, u: Array) -> StateSpace:
         """A model linearised about its first state and inputs u (nu), on its constraints."""
+        ...
+
+    def imbalance(self, name: str, u: Array) -> str:
+        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
         ...
 
     def momentum(self, name: str) -> Array:
@@ -253,6 +257,10 @@ class Block(metaclass=CheckedCalls):
     def memory_at_start(self, context: EvaluationContext) -> Values:
         """Memory that begins by what signals are -> its value at the start, after the first samples."""
         return {}
+
+    def notes(self, environment: Environment) -> Iterable[str]:
+        """What the block takes for granted and the diagram does not have, in words: notes of each run."""
+        return ()
 
     def keeps_instants(self) -> bool:
         """Whether its memory holds instants, from which time passes whether it runs or not."""

@@ -5,7 +5,7 @@ What of them is continuous: `enabled.py`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -140,6 +140,10 @@ class OnCondition(Block):
     def samples(self) -> Mapping[str, Signal]:
         """Those of the block."""
         return self.block.samples()
+
+    def notes(self, environment: Environment) -> Iterable[str]:
+        """Those of the block."""
+        return self.block.notes(environment)
 
     def lock_inputs(self) -> tuple[str, ...]:
         """Those of the block."""

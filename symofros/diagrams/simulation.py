@@ -179,7 +179,7 @@ class Simulation:
         notes += contact_notes(resolved, par, (run.t, run.q, run.v), run.values.__getitem__)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
-        return replace(run, outcome=replace(run.outcome, notes=(*closing, *run.outcome.notes, *notes)))
+        return replace(run, outcome=replace(run.outcome, notes=(*closing, *resolved.notes, *run.outcome.notes, *notes)))
 
 
 def _end(diagram: Diagram, t_end: float | None) -> float:

@@ -55,6 +55,10 @@ class Surroundings:
         """A model linearised about its first state and inputs u (nu)."""
         return self._models.linear(name, u)
 
+    def imbalance(self, name: str, u: Array) -> str:
+        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
+        return self._models.imbalance(name, u)
+
     def momentum(self, name: str) -> Array:
         """The momentum M v (nv) of a model at its first state."""
         return self._models.momentum(name)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +26,7 @@ class LQR(Block):
     change K.
 
     Attributes:
-        model: The model; at its first state with inputs u_0 it should be at rest.
+        model: The model; at its first state with inputs u_0 it should be at rest, else runs say so.
         state_weights: Q: one, one an entry of x (2 nv), or a matrix.
         input_weights: R: one, one an input (nu), or a matrix, positive.
         nominal: u_0 (nu); None: the model's default inputs.
@@ -91,6 +92,15 @@ class LQR(Block):
                 "actuate more joints, damp what is out of reach, weigh all states",
             )
         return K @ linear.basis.T
+
+    def notes(self, environment: Environment) -> Iterator[str]:
+        """On a first state that is no rest: the gain is one about it, and holds the model beside what is asked for."""
+        moves = environment.imbalance(self.model, self._nominal(environment))
+        if moves:
+            yield (
+                f"model '{self.model}' is not at rest in its first state with the nominal inputs: {moves}; the gain is"
+                " one about a state that does not stay; start from sf.equilibrium, or state the inputs that hold it"
+            )
 
     def compute(self, context: EvaluationContext) -> Values:
         """The gain on the state's error."""

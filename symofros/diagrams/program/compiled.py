@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from symofros.diagrams.program.lowered_block import Piece, piece_of, watched
 from symofros.diagrams.program.part_switching import CrossingEvent, PartSwitching, part_switching
 from symofros.diagrams.program.point import reads
 from symofros.diagrams.rates import Schedule, schedule
-from symofros.diagrams.wiring import Source, Wired, located, wire
+from symofros.diagrams.wiring import Source, Wired, located, surroundings, wire
 from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr import Program
 from symofros.generator import FormulaInstants, InterpretedUnit, model_source, run_passes
@@ -62,6 +62,15 @@ class Resolved:
             CrossingEvent(name, self.pieces[block].crossings[which].direction, name=name)
             for block, which in watched(self.pieces)
             for name in (f"{block}.{which}",)
+        )
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What blocks take for granted and the diagram does not have."""
+        return tuple(
+            f"block '{name}': {note}"
+            for name, piece in self.pieces.items()
+            for note in piece.block.notes(surroundings(self.wired, name))
         )
 
     def switching(self, part: Part) -> PartSwitching | None:

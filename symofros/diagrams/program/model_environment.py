@@ -23,6 +23,7 @@ from symofros.expr import Edge, Factors, Graph, Program, copy_into, needed_nodes
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
+from symofros.simulation.analysis.imbalance import imbalance
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.analysis.state_space import StateSpace, state_space
 
@@ -46,6 +47,7 @@ class Models:
         self._compilations: dict[str, Compilation] = {}
         self._models: dict[tuple[str, str, tuple[str, ...]], Model] = {}
         self._constraints: dict[str, Model] = {}
+        self._linear: dict[str, Model] = {}
         self._records: dict[str, ModelRecord] = {}
         self._programs: dict[tuple[str, str, str], Program] = {}
 
@@ -180,13 +182,23 @@ class Models:
         Raises:
             AssemblyError: The first state can't be brought onto the constraints.
         """
-        # Evaluated once: interpreted, it needs no compiler.
-        model = compile_system(self.system(name), Options(backend="interpreter"))
-        model.record.refuse_states(f"diagram '{self._diagram}': a linearised model")
-        (q, v), par = self.start(name), self.parameters(name)
+        model, q, v = self._about(name, u)
+        return state_space(model, q, v, u, par=self.parameters(name))
+
+    def imbalance(self, name: str, u: Array) -> str:
+        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
+        model, q, v = self._about(name, u)
+        return imbalance(model, (q, v, u, np.zeros(0)), self.parameters(name), 0.0)
+
+    def _about(self, name: str, u: Array) -> tuple[Model, Array, Array]:
+        """A model, and its first state on its constraints; interpreted, since it is asked once."""
+        if name not in self._linear:
+            self._linear[name] = compile_system(self.system(name), Options(backend="interpreter"))
+            self._linear[name].record.refuse_states(f"diagram '{self._diagram}': a linearised model")
+        model, (q, v) = self._linear[name], self.start(name)
         stated = stated_names(model.names.q, model.names.v, self.setup(name).start)
-        start = closed_start(model, q, v, *stated, u=u, par=par)
-        return state_space(model, start.q, start.v, u, par=par)
+        start = closed_start(model, q, v, *stated, u=u, par=self.parameters(name))
+        return model, start.q, start.v
 
     def momentum(self, name: str) -> Array:
         """The momentum M v (nv) of a model at its first state."""

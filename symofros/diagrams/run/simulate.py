@@ -113,7 +113,7 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
 
     again = _rerun(task, ended, given)
     outcome, modes = diagnose(ended, bendings, again)
-    outcome = replace(outcome, notes=(*ended.start_notes, *outcome.notes))
+    outcome = replace(outcome, notes=(*ended.start_notes, *resolved.notes, *outcome.notes))
     if outcome.kind in ("finished", "event") and not options.realtime:
         notes = remarks(_examined(task, ended, given), modes, signal)
         outcome = replace(outcome, notes=(*outcome.notes, *notes))

@@ -40,12 +40,7 @@ def imbalance_notes(
     """
     (q, v, u, states), nv = state, model.nv
     z = states if model.nz else None
-    try:
-        a = np.asarray(model.forward_dynamics(q, v, u, par=par, t=t, z=z))
-        M, h, Q = model.dynamics(q, v, u, par=par, t=t, z=z)
-        alone = float(np.abs(np.linalg.solve(M, np.stack([h, Q], axis=-1))).max(initial=0.0))
-    except (SymofrosError, np.linalg.LinAlgError):  # Functions that were left out; what moves no mass.
-        return ()
+    a, alone = _accelerations(model, state, par, t)
     most = float(np.abs(a).max(initial=0.0))
     if not most > _BALANCED * alone:
         return ()
@@ -69,13 +64,38 @@ def imbalance_notes(
         change = max(change, _change(here, known(there, v + onwards / slowest if np.any(v) else v)))
     if not change > _NOTED:
         return ()
-    worst = int(np.argmax(np.abs(a)))
     note = (
-        f"the state is neither an equilibrium nor a steady motion: '{model.names.v[worst]}' accelerates by"
-        f" {a[worst]:.3g}, which changes eigenvalues by {min(100.0 * change, 100.0):.2g} %: these modes are of the"
-        " instant alone; sf.equilibrium finds a rest"
+        f"the state is neither an equilibrium nor a steady motion: {_fastest(model, a)}, which changes eigenvalues by"
+        f" {min(100.0 * change, 100.0):.2g} %: these modes are of the instant alone; sf.equilibrium finds a rest"
     )
     return (note,)
+
+
+def imbalance(model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float) -> str:
+    """What accelerates most at a state, in words; "" where it is an equilibrium or a steady motion.
+
+    Arguments as of `imbalance_notes`.
+    """
+    a, alone = _accelerations(model, state, par, t)
+    return _fastest(model, a) if np.abs(a).max(initial=0.0) > _BALANCED * alone else ""
+
+
+def _fastest(model: Model, a: Array) -> str:
+    worst = int(np.argmax(np.abs(a)))
+    return f"'{model.names.v[worst]}' accelerates by {a[worst]:.3g}"
+
+
+def _accelerations(
+    model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float
+) -> tuple[Array, float]:
+    """Accelerations (nv) and the largest that forces alone would give; (0), 0 where they are not known."""
+    (q, v, u, _), z = state, state[3] if model.nz else None
+    try:
+        a = np.asarray(model.forward_dynamics(q, v, u, par=par, t=t, z=z))
+        M, h, Q = model.dynamics(q, v, u, par=par, t=t, z=z)
+        return a, float(np.abs(np.linalg.solve(M, np.stack([h, Q], axis=-1))).max(initial=0.0))
+    except (SymofrosError, np.linalg.LinAlgError):  # Functions that were left out; what moves no mass.
+        return np.zeros(0), 0.0
 
 
 def _towards_balance(stiffness: Array, a: Array) -> tuple[Array, Array]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -70,6 +71,27 @@ def test_an_inverted_pendulum_is_held_up(period: float | None) -> None:
     distance = held_up("cart_pole", {pole: upright}, {pole: upright + 0.2}, block, 12.0)
     assert distance[0] == pytest.approx(0.2)
     assert distance[-1] < 1e-3
+
+
+def test_a_first_state_that_does_not_stay_is_noted(tmp_path: Path) -> None:
+    """About a pole that leans it holds the cart elsewhere: said by runs, compiled and not, and by exports."""
+    model = sf.compile(MODELS["cart_pole"])
+    pole = model.names.q[1]
+    upright = max((0.0, np.pi), key=lambda x: model.potential_energy(np.array([0.0, x])))
+    said = {}
+    for lean in (0.0, 0.05):
+        diagram = sf.Diagram("hold")
+        diagram.add_model("m", MODELS["cart_pole"], {pole: upright + lean})
+        diagram.add(LQR(name="lqr", model="m", period=0.01), q="plant.q", v="plant.v")
+        diagram.add(ForwardDynamics(name="plant", model="m"), u="lqr.u")
+        runs = sf.Simulation(diagram)
+        notes = runs.run(0.1).outcome.notes, runs.interpret(0.1, dt=1e-3).outcome.notes
+        exported = sf.export(diagram, "c", tmp_path / f"{lean}", outputs=["lqr.u"]).notes
+        said[lean] = [
+            [note for note in every if "'lqr': model 'm' is not at rest" in note] for every in (*notes, exported)
+        ]
+    assert said[0.0] == [[], [], []]
+    assert all(len(found) == 1 and "' accelerates by" in found[0] for found in said[0.05]), said
 
 
 def test_a_floating_arm_is_regulated_along_its_manifold() -> None:
