@@ -105,7 +105,7 @@ class ExaminedRun(HeldRun):
         return self._of_motion(M)
 
     def _of_motion(self, M: Array) -> Array:
-        """Metrics (n, nv, nv) in which speeds that are no motion have no size: theirs has other units."""
+        """Metrics (n, nv, nv) in which speeds that are no motion, of other units, have no size."""
         return M if self.moving.all() else M * (self.moving[:, np.newaxis] & self.moving)
 
     def norms(self, q: Array, u: Array, v: Array) -> Array:
