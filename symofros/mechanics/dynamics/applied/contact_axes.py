@@ -19,19 +19,19 @@ class ContactAxes(NamedTuple):
     """Axes of contact of a rigid ball, in world axes.
 
     Attributes:
-        R: Tangents t_x and t_y, then the normal n, from the surface to the ball.
+        R_WC: Tangents t_x and t_y, then the normal n, from the surface to the ball: the axes of contact C.
         normal_rate: Rate of n [1/s].
-        spin: Angular velocity of the axes [rad/s].
+        w_WC_W: Their angular velocity [rad/s].
     """
 
-    R: Mat3
+    R_WC: Mat3
     normal_rate: Vec3
-    spin: Vec3
+    w_WC_W: Vec3
 
 
-def fixed_axes(R_WS: Mat3, w_WS: Vec3) -> ContactAxes:
-    """Those of a plane: the axes of its frame S, which turns by w_WS."""
-    return ContactAxes(R_WS, w_WS.cross(R_WS.column(2)), w_WS)
+def fixed_axes(R_WS: Mat3, w_WS_W: Vec3) -> ContactAxes:
+    """Those of a plane: the axes of its frame S, which turns by w_WS_W."""
+    return ContactAxes(R_WS, w_WS_W.cross(R_WS.column(2)), w_WS_W)
 
 
 def sphere_normal(g: Graph, d: Vec3, inside: bool) -> tuple[Edge, Vec3]:
@@ -41,14 +41,14 @@ def sphere_normal(g: Graph, d: Vec3, inside: bool) -> tuple[Edge, Vec3]:
     return size, -normal if inside else normal
 
 
-def sphere_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS: Vec3, d: Vec3, d_rate: Vec3) -> ContactAxes:
+def sphere_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS_W: Vec3, d: Vec3, d_rate: Vec3) -> ContactAxes:
     """Those of a sphere: the axes of its frame S, turned the shortest way from its pole to the normal: (38c), (38d).
 
     Args:
         lowering: Edges of the ball's pole.
         ball: The ball.
         R_WS: Axes of S.
-        w_WS: Its angular velocity [rad/s].
+        w_WS_W: Its angular velocity [rad/s].
         d: From the centre of the sphere to that of the ball [m].
         d_rate: Its rate [m/s].
     """
@@ -57,9 +57,9 @@ def sphere_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS: Vec3, d: 
     R = tangents(lowering, ball, R_WS, n)
     per_size = g.div(-ONE if inside else ONE, size)
     n_rate = (d_rate - n.scaled(n.dot(d_rate))).scaled(per_size)
-    turning = n.cross(n_rate - w_WS.cross(n))
+    turning = n.cross(n_rate - w_WS_W.cross(n))
     Z, share = _pole(lowering, ball, R_WS, n)
-    return ContactAxes(R, n_rate, w_WS + turning - n.scaled(g.mul(turning.dot(Z), share)))
+    return ContactAxes(R, n_rate, w_WS_W + turning - n.scaled(g.mul(turning.dot(Z), share)))
 
 
 def tangents(lowering: Lowering, ball: RigidBall, R_WS: Mat3, n: Vec3) -> Mat3:

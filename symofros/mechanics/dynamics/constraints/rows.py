@@ -261,7 +261,7 @@ class Constraints:
         S, B = self._state(touching.first), self._state(touching.second)
         arm, radius = B.R.times(lowering.vector(contact.points[touching.ball])), lowering.value(contact.radius)
         axes = self._axes(touching, S, B, arm)
-        n = axes.R.column(2)
+        n = axes.R_WC.column(2)
         rho = arm - n.scaled(radius)  # From the origins of the two frames to the point of contact.
         sigma = B.p + rho - S.p
         rho_rate = B.w.cross(arm) - axes.normal_rate.scaled(radius)
@@ -269,9 +269,9 @@ class Constraints:
         slip = B.v + B.w.cross(rho) - S.v - S.w.cross(sigma)
         drift = B.a + B.alpha.cross(rho) + B.w.cross(rho_rate) - S.a - S.alpha.cross(sigma) - S.w.cross(sigma_rate)
         for axis in touching.axes:
-            t = axes.R.column(axis)
+            t = axes.R_WC.column(axis)
             phi = g.add(sigma.dot(n), self._lift(contact)) if axis == 2 else ZERO
-            turned = g.add(drift.dot(t), slip.dot(axes.spin.cross(t)))
+            turned = g.add(drift.dot(t), slip.dot(axes.w_WC_W.cross(t)))
             parts = [(B, t, rho.cross(t), 1), (S, t, sigma.cross(t), -1)]
             yield self._row(phi, slip.dot(t), -turned, parts)
 
