@@ -132,7 +132,7 @@ def test_each_note_of_a_run_is_of_a_kind_and_each_kind_is_said() -> None:
     kinds = {
         note: [name for name, pattern in patterns.items() if pattern.search(note)]
         for note, file in register().items()
-        if file.startswith(("symofros/simulation/", "symofros/diagrams/", "symofros/runtime/"))
+        if file.startswith(tuple(f"symofros/{folder}/" for folder in ("simulation", "diagrams", "runtime", "blocks")))
     }
     unlike = [f"{register()[note]}: {note}: {names or 'no kind'}" for note, names in kinds.items() if len(names) != 1]
     assert not unlike, "notes of no kind, or of several:\n" + "\n".join(unlike)

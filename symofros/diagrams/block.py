@@ -103,8 +103,8 @@ class Environment(Protocol):
         """A model linearised about its first state and inputs u (nu), on its constraints."""
         ...
 
-    def imbalance(self, name: str, u: Array) -> str:
-        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
+    def imbalance(self, name: str, u: Array) -> tuple[str, float]:
+        """The speed that changes most where `linear` linearises, and its acceleration; "" and 0 at a rest."""
         ...
 
     def momentum(self, name: str) -> Array:

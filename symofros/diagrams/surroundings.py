@@ -55,8 +55,8 @@ class Surroundings:
         """A model linearised about its first state and inputs u (nu)."""
         return self._models.linear(name, u)
 
-    def imbalance(self, name: str, u: Array) -> str:
-        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
+    def imbalance(self, name: str, u: Array) -> tuple[str, float]:
+        """The speed that changes most where `linear` linearises, and its acceleration; "" and 0 at a rest."""
         return self._models.imbalance(name, u)
 
     def momentum(self, name: str) -> Array:

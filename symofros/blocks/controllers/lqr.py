@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,14 +92,15 @@ class LQR(Block):
             )
         return K @ linear.basis.T
 
-    def notes(self, environment: Environment) -> Iterator[str]:
+    def notes(self, environment: Environment) -> tuple[str, ...]:
         """On a first state that is no rest: the gain is one about it, and holds the model beside what is asked for."""
-        moves = environment.imbalance(self.model, self._nominal(environment))
-        if moves:
-            yield (
-                f"model '{self.model}' is not at rest in its first state with the nominal inputs: {moves}; the gain is"
-                " one about a state that does not stay; start from sf.equilibrium, or state the inputs that hold it"
-            )
+        speed, a = environment.imbalance(self.model, self._nominal(environment))
+        note = (
+            f"model '{self.model}' is not at rest in its first state with the nominal inputs: '{speed}' accelerates by"
+            f" {a:.3g}; the gain is about a state that does not stay; start from sf.equilibrium, or state the inputs"
+            " that hold it"
+        )
+        return (note,) if speed else ()
 
     def compute(self, context: EvaluationContext) -> Values:
         """The gain on the state's error."""

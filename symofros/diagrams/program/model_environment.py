@@ -185,8 +185,8 @@ class Models:
         model, q, v = self._about(name, u)
         return state_space(model, q, v, u, par=self.parameters(name))
 
-    def imbalance(self, name: str, u: Array) -> str:
-        """What accelerates most where `linear` linearises, in words; "" at a rest or in a steady motion."""
+    def imbalance(self, name: str, u: Array) -> tuple[str, float]:
+        """The speed that changes most where `linear` linearises, and its acceleration; "" and 0 at a rest."""
         model, q, v = self._about(name, u)
         return imbalance(model, (q, v, u, np.zeros(0)), self.parameters(name), 0.0)
 

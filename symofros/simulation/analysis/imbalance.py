@@ -64,25 +64,27 @@ def imbalance_notes(
         change = max(change, _change(here, known(there, v + onwards / slowest if np.any(v) else v)))
     if not change > _NOTED:
         return ()
+    worst = int(np.argmax(np.abs(a)))
     note = (
-        f"the state is neither an equilibrium nor a steady motion: {_fastest(model, a)}, which changes eigenvalues by"
-        f" {min(100.0 * change, 100.0):.2g} %: these modes are of the instant alone; sf.equilibrium finds a rest"
+        f"the state is neither an equilibrium nor a steady motion: '{model.names.v[worst]}' accelerates by"
+        f" {a[worst]:.3g}, which changes eigenvalues by {min(100.0 * change, 100.0):.2g} %: these modes are of the"
+        " instant alone; sf.equilibrium finds a rest"
     )
     return (note,)
 
 
-def imbalance(model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float) -> str:
-    """What accelerates most at a state, in words; "" where it is an equilibrium or a steady motion.
+def imbalance(
+    model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float
+) -> tuple[str, float]:
+    """The speed that changes most at a state, and its acceleration; "" and 0 at an equilibrium or in a steady motion.
 
     Arguments as of `imbalance_notes`.
     """
     a, alone = _accelerations(model, state, par, t)
-    return _fastest(model, a) if np.abs(a).max(initial=0.0) > _BALANCED * alone else ""
-
-
-def _fastest(model: Model, a: Array) -> str:
+    if not np.abs(a).max(initial=0.0) > _BALANCED * alone:
+        return "", 0.0
     worst = int(np.argmax(np.abs(a)))
-    return f"'{model.names.v[worst]}' accelerates by {a[worst]:.3g}"
+    return model.names.v[worst], float(a[worst])
 
 
 def _accelerations(

@@ -168,6 +168,11 @@ NOTES: Mapping[str, NoteKind] = {
         "modes are asked for at a state that moves on, to where the linearised equations are others",
         "the state that `sf.equilibrium` finds",
     ),
+    "regulated motion": NoteKind(
+        "model '…' is not at rest in its first state with the nominal inputs: '…' accelerates by …",
+        "a regulator (`LQR`) is about a state in which its model does not stay",
+        "a first state that `sf.equilibrium` finds, or nominal inputs that hold it",
+    ),
     "critical load": NoteKind(
         "beam '…' is loaded past its critical load",
         "axial loads leave a beam no stiffness, so that a rest is unstable or a run has no bent rest",
