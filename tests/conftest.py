@@ -130,7 +130,7 @@ def _draw(config: pytest.Config, items: list[pytest.Item]) -> None:
         return
     cases = [item.nodeid for item in items if "slow" not in item.keywords]
     seconds = draw.read(draw.FILE.read_text())
-    gone = draw.left_out(cases, seconds, config.getoption("--draw"), least=0 if _folders(config) else 1)
+    gone = draw.left_out(cases, seconds, config.getoption("--draw"), named=not _folders(config))
     for item in items:
         if item.nodeid in gone:
             item.add_marker("slow")

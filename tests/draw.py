@@ -1,9 +1,9 @@
-"""What a plain run takes of tests that take long: on average half a second of each, another draw each day.
+"""What a plain run takes of tests that take long: on average a fifth of a second of each, another draw each day.
 
 `tests/seconds.txt` has what a case of such a test takes; `python -m pytest --update-seconds` measures it anew. A test
-of twenty cases of a quarter of a second has two of them in each run; one of three seconds runs every sixth day, or
-whenever its file is named. What is not drawn is slow: it runs with --slow, or as a part of that. `--draw WORD` repeats
-the draw of another run, and the flags of its compiler.
+of twenty cases of a tenth of a second has two of them in each run; one of three seconds runs every fifteenth day. Of a
+file that is named each test takes half a second, and at least a case. What is not drawn is slow: it runs with --slow,
+or as a part of that. `--draw WORD` repeats the draw of another run, and the flags of its compiler.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from typing import Any
 
 FILE = Path(__file__).with_name("seconds.txt")
 HEAD = "# Seconds that a case of a test takes, of tests that take more than {} s: written by --update-seconds.\n"
-SHARE = 0.5  # Of a test in a plain run, on average [s].
+SHARE = 0.2  # Of a test in a plain run, on average [s].
+NAMED = 0.5  # The same where its file is named: by someone who works on it, or for a planted fault.
 # Of all files, those whose models compile with the flags that users get.
 OPTIMISED = 1 / 8
 
@@ -32,23 +33,24 @@ def read(text: str) -> dict[str, float]:
     return {test: float(seconds) for seconds, test in rows}
 
 
-def left_out(cases: Iterable[str], seconds: Mapping[str, float], draw: str, least: int = 0) -> set[str]:
+def left_out(cases: Iterable[str], seconds: Mapping[str, float], draw: str, named: bool = False) -> set[str]:
     """The cases that a plain run does not take: ids.
 
     Args:
         cases: Ids of all cases that are not slow by themselves.
         seconds: Test -> seconds of a case; tests that are not named run whole.
         draw: Word that the others are drawn by.
-        least: Cases of each test that are taken, whatever they take.
+        named: Whether the files are named, so that at least a case of each test is taken, whatever it takes.
     """
     tests: dict[str, list[str]] = defaultdict(list)
     for case in cases:
         tests[test_of(case)].append(case)
+    share, least = (NAMED, 1) if named else (SHARE, 0)
     gone: set[str] = set()
     for test, own in tests.items():
         if test in seconds:
             chance = random.Random(f"{draw} {test}")
-            count = max(least, int(SHARE / seconds[test] + chance.random()))  # On average the share, exactly.
+            count = max(least, int(share / seconds[test] + chance.random()))  # On average the share, exactly.
             gone |= set(own) - set(chance.sample(sorted(own), min(count, len(own))))
     return gone
 
