@@ -1,18 +1,16 @@
-"""The matrix measured in parts, some engines at a time: stored parts are taken over if they answer the same question.
+"""The matrix measured in parts, some engines at a time: of stored parts is taken over what still answers what is asked.
 
 Cells and identities are stored as nested tables, which say names once: a fifth of the text of rows that repeat them.
-What an interrupted run has finished is a part, too: the next one of the same sources and packages takes it over.
+What an interrupted run has finished is a part, too: of it is taken over likewise.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import pickle
 import shutil
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import cache
 from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
@@ -21,6 +19,7 @@ from symofros import SymofrosError
 from symofros.tools import cache_folder, create_cache_folder, write_atomically
 
 from ..reporting.record import Data
+from .digests import digest
 from .matrix import Judged
 from .verdicts import Cell
 from .workers import Crashed
@@ -29,33 +28,20 @@ Row = dict[str, Any]
 # What rows of a stored table are found by, in its nesting, and what is kept of each.
 CELLS = ("engine", "function", "model"), ("verdict", "error", "tolerance", "words")
 IDENTITIES = ("engine", "identity", "model"), ("error", "ok")
-# Nested tables, of engines first.
-TABLES = "cells", "corrected", "identities"
+# What the cells of an engine on a tree are answers to (`digests`), and where that was measured: the place in "origins"
+# of a report; "" for the report's own run.
+ASKED = ("engine", "model"), ("digest", "origin")
+TABLES = {"cells": CELLS, "corrected": CELLS, "identities": IDENTITIES, "asked": ASKED}
 # Whoever measured says when, of which source, and by which versions.
 ORIGIN = ("revision", "date", "versions", "digest")
-# What an answer is held to: trees, truths, tolerances. Parts by other plug-ins or proofs answer the same question.
-_ASKED = tuple("functions/*.py identities.py matrix.py scales.py states.py verdicts.py models/*.py truth/*.py".split())
+# Engine and tree -> what its cells are answers to.
+Digests = Mapping[tuple[str, str], str]
 # The most that an interrupted run leaves [bytes].
 _LEFT = 1_000_000_000
 
 
-class PartsDisagree(ValueError):
-    """Stored parts can't be one report."""
-
-
-@cache
-def question() -> str:
-    """Digest of what engines are asked and held to."""
-    return _digest(*_ASKED)
-
-
-def _digest(*patterns: str) -> str:
-    """Digest of files of this folder."""
-    folder = Path(__file__).parent
-    digest = hashlib.sha256()
-    for path in sorted(path for pattern in patterns for path in folder.glob(pattern)):
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:16]
+class NoPart(ValueError):
+    """A file is no stored report."""
 
 
 def nested(rows: Iterable[Row], layout: tuple[Sequence[str], Sequence[str]]) -> Data:
@@ -89,119 +75,132 @@ def cells(data: Data, table: str = "cells") -> list[Cell]:
 
 
 def load(paths: Iterable[Path]) -> list[Data]:
-    """Stored parts, none of which has an engine of another.
+    """Stored reports.
 
     Raises:
-        PartsDisagree: A file is no part, was asked something else, or has an engine that another has, too.
+        NoPart: A file is none.
     """
     parts: list[Data] = []
-    owners: dict[str, Path] = {}
     for path in paths:
         try:
             part = json.loads(path.read_text(encoding="utf-8"))
-            names = [engine["name"] for engine in part["engines"]]
+            engines_of([part]), part["cells"], part["proofs"]
         except (OSError, ValueError, KeyError, TypeError) as error:
-            raise PartsDisagree(f"{path} is no stored engines.json: {type(error).__name__}: {error}") from None
-        if part.get("question") != question():
-            stated = f"question {part['question']}" if "question" in part else "no question: it is of an older version"
-            raise PartsDisagree(f"{path} was held to other trees or truths: it states {stated}, now it is {question()}")
-        for name in names:
-            if name in owners:
-                raise PartsDisagree(f"engine '{name}' is in {owners[name]} and in {path}: leave one out")
-            owners[name] = path
+            raise NoPart(f"{path} is no stored engines.json: {type(error).__name__}: {error}") from None
         parts.append(part)
     return parts
 
 
-def others(path: Path, engines: Collection[str], versions: Mapping[str, str]) -> Data:
-    """What a stored report has of other engines than those that are asked anew.
+def engines_of(parts: Iterable[Data]) -> dict[str, str]:
+    """The engines of stored parts, with their releases."""
+    return {engine["name"]: engine["version"] for part in parts for engine in part["engines"]}
+
+
+def places(data: Data) -> list[tuple[str, str]]:
+    """The engines and trees that a report has cells of."""
+    return [(row["engine"], row["model"]) for row in unnested(data.get("asked", {}), ASKED)]
+
+
+def taken_over(parts: Iterable[Data], asked: Digests) -> list[Data]:
+    """What stored parts have that is an answer to what is asked; of several that have it, the first.
 
     Args:
-        path: The report.
-        engines: Names of those that are asked anew.
-        versions: Versions of all engines that are here.
-
-    Raises:
-        PartsDisagree: It is no such report, was asked something else, or an engine of it has another version here.
+        parts: Stored parts; one that does not say what it answers has nothing.
+        asked: What is asked.
     """
-    (part,) = load([path])
-    for one in part["engines"]:
-        name, here = one["name"], versions.get(one["name"])
-        if name not in engines and here is not None and here != one["version"]:
-            raise PartsDisagree(
-                f"{path} has {name} {one['version']}, here it is {here}: ask it anew, too, by --engine {name}"
-            )
-    kept = {name for name in engines_of([part]) if name not in engines}
-    left = {table: {name: rows for name, rows in part[table].items() if name in kept} for table in TABLES}
-    # Numbers that it took over bear their own origin already.
-    return (
-        dict(part)
-        | left
-        | {
-            "engines": [one for one in part["engines"] if one["name"] in kept],
-            "proofs": [one for one in part["proofs"] if one["engine"] in kept],
-            "ours": [name for name in part.get("ours", ()) if name in kept],
-        }
-    )
-
-
-def engines_of(parts: Iterable[Data]) -> set[str]:
-    """Names of the engines of stored parts."""
-    return {engine["name"] for part in parts for engine in part["engines"]}
-
-
-def merged(own: Data, parts: Sequence[Data]) -> Data:
-    """What was measured now with what stored parts have; each engine of theirs bears the origin of its numbers.
-
-    Args:
-        own: What was measured now.
-        parts: Stored parts (`load`).
-
-    Raises:
-        PartsDisagree: A part was asked about other trees than the others.
-    """
-    models = [own["models"]] if own["engines"] else []
-    models += [part["models"] for part in parts]
-    if any(set(one) != set(models[0]) for one in models):
-        raise PartsDisagree("the parts were asked about different trees: --kinds must be the same for all")
-    result = dict(own) | {"models": models[0]}
+    left, result = dict(asked), []
     for part in parts:
-        origin = {name: part[name] for name in ORIGIN if name in part}
-        result["engines"] = [*result["engines"], *({"measured": origin} | engine for engine in part["engines"])]
-        result["functions"] = part["functions"] | result["functions"]
-        result["absent"] = result["absent"] | part["absent"]
-        result["ours"] = [*result.get("ours", ()), *part.get("ours", ())]
-        result["proofs"] = [*result["proofs"], *part["proofs"]]
-        for table in TABLES:
-            result[table] = result[table] | part[table]
-    # Each part's sources are to be those of now.
-    result["digests"] = sorted({one for part in parts for one in (part.get("digest", ""), *part.get("digests", ()))})
-    present = {engine["name"] for engine in result["engines"]}
-    result["absent"] = {name: why for name, why in result["absent"].items() if name not in present}
+        rows = unnested(part.get("asked", {}), ASKED)
+        kept = {place for row in rows if left.get(place := (row["engine"], row["model"])) == row["digest"]}
+        left = {place: one for place, one in left.items() if place not in kept}
+        result.append(only(part, kept))
     return result
 
 
+def only(part: Data, kept: Collection[tuple[str, str]]) -> Data:
+    """What a part has of some engines and trees."""
+    engines = {engine for engine, _ in kept}
+
+    def own(rows: Iterable[Row]) -> Iterator[Row]:
+        return (row for row in rows if (row["engine"], row["model"]) in kept)
+
+    tables = {name: nested(own(unnested(part.get(name, {}), layout)), layout) for name, layout in TABLES.items()}
+    listed = {
+        "engines": [one for one in part["engines"] if one["name"] in engines],
+        "proofs": list(own(part["proofs"])),
+        "ours": [name for name in part.get("ours", ()) if name in engines],
+    }
+    return dict(part) | tables | listed
+
+
+def merged(own: Data, parts: Sequence[Data]) -> Data:
+    """What was measured now with what stored parts have; what they have bears its origin.
+
+    Args:
+        own: What was measured now; its proofs are those of all.
+        parts: What is taken over (`taken_over`): no two have the same.
+    """
+    result: dict[str, Any] = dict(own)
+    rows = {name: unnested(own.get(name, {}), layout) for name, layout in TABLES.items()}
+    origins: list[Data] = []
+    for part in parts:
+        there = [{name: part[name] for name in ORIGIN if name in part}, *part.get("origins", ())]
+        theirs = {name: unnested(part.get(name, {}), layout) for name, layout in TABLES.items()}
+        for row in theirs["asked"]:
+            origin = there[0 if row["origin"] == "" else row["origin"] + 1]
+            origins += [origin] if origin not in origins else []
+            row["origin"] = origins.index(origin)
+        for name, more in theirs.items():
+            rows[name] += more
+        known = engines_of([result])
+        result["engines"] = [*result["engines"], *(one for one in part["engines"] if one["name"] not in known)]
+        result["functions"] = result["functions"] | part["functions"] | own["functions"]
+        result["ours"] = list(dict.fromkeys([*result.get("ours", ()), *part.get("ours", ())]))
+    # What no engine offers any more is left out.
+    offered = {name for engine in result["engines"] for name in engine["functions"]}
+    kept = {name: text for name, text in result["functions"].items() if name in offered or name in own["functions"]}
+    absent = {name: why for name, why in own["absent"].items() if name not in engines_of([result])}
+    result |= {"functions": kept, "absent": absent}
+    return {**_in_order(result, rows), **({"origins": origins} if origins else {})}
+
+
+def _in_order(report: Data, rows: Mapping[str, list[Row]]) -> Data:
+    """A report with the rows of its tables in the order of its engines, functions and trees."""
+    listed = {"engine": engines_of([report]), "function": report["functions"], "model": report["models"]}
+    order = {name: {one: k for k, one in enumerate(names)} for name, names in listed.items()}
+
+    def rank(row: Row) -> list[int]:
+        return [place.get(row[key], -1) for key, place in order.items() if key in row]
+
+    return {**report, **{name: nested(sorted(rows[name], key=rank), layout) for name, layout in TABLES.items()}}
+
+
 def write_scripts(proofs: Iterable[Mapping[str, Any]], folder: Path) -> None:
-    """The scripts of stored proofs, beside those that were written now."""
+    """The scripts of proofs in a folder, and no others."""
     folder.mkdir(parents=True, exist_ok=True)
-    for proof in (one for one in proofs if one["text"]):
-        (folder / Path(proof["file"]).name).write_text(proof["text"], encoding="utf-8")
+    texts = {Path(proof["file"]).name: proof["text"] for proof in proofs if proof["text"]}
+    for path in folder.glob("*.py"):
+        if path.name not in texts:
+            path.unlink()
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 class Finished:
-    """What a run has finished, question by question, for the next one if it is interrupted.
+    """What a run has finished, question by question and engine by engine, for the next one if it is interrupted.
 
-    The files lie in the cache folder, which is this user's alone; those of another key are removed.
+    The files lie in the cache folder, which is this user's alone; those of other packages are removed.
 
     Args:
-        key: What the answers depend on (`finished_key`); "" to keep nothing.
+        keeps: Whether anything is kept.
     """
 
-    def __init__(self, key: str) -> None:
+    def __init__(self, keeps: bool = True) -> None:
         self._folder: Path | None = None
         self._size = 0
-        if not key:
+        if not keeps:
             return
+        key = digest(*sorted(f"{one.name}=={one.version}" for one in distributions()))
         with suppress(OSError, SymofrosError):
             above = cache_folder() / "asked"
             create_cache_folder(above / key)
@@ -211,21 +210,24 @@ class Finished:
             self._folder = above / key
             self._size = sum(path.stat().st_size for path in self._folder.iterdir())
 
-    def of(self, name: str) -> list[Judged] | None:
-        """The cells of a question; None where it was not finished."""
+    def of(self, name: str, asked: Mapping[str, str]) -> dict[str, list[Judged]]:
+        """The cells of engines on a question that were finished and answer what is asked (engine -> digest)."""
         if self._folder is None:
-            return None
+            return {}
         try:
-            stored, cells = pickle.loads(self._path(self._folder, name).read_bytes())
+            stored, answered = pickle.loads(self._path(self._folder, name).read_bytes())
+            found = {engine: cells for engine, (of, cells) in answered.items() if of == asked.get(engine)}
         except Exception:  # No file, or one that is damaged, which may raise whatever it likes.
-            return None
-        return cells if stored == name else None
+            return {}
+        return found if stored == name else {}
 
-    def keep(self, name: str, cells: list[Judged]) -> None:
-        """Keep the cells of a question, unless an engine crashed: on a busy machine one may have been too slow."""
-        if self._folder is None or any(isinstance(one.answer.value, Crashed) for one in cells):
+    def keep(self, name: str, asked: Mapping[str, str], cells: Sequence[Judged]) -> None:
+        """Keep the cells of a question, but for engines that crashed: on a busy machine one may have been too slow."""
+        if self._folder is None:
             return
-        content = pickle.dumps((name, cells))
+        crashed = {one.cell.engine for one in cells if isinstance(one.answer.value, Crashed)}
+        own = {name: [one for one in cells if one.cell.engine == name] for name in asked if name not in crashed}
+        content = pickle.dumps((name, {engine: (asked[engine], found) for engine, found in own.items()}))
         if self._size + len(content) > _LEFT:
             return
         with suppress(OSError):
@@ -239,16 +241,4 @@ class Finished:
 
     @staticmethod
     def _path(folder: Path, name: str) -> Path:
-        return folder / f"{hashlib.sha256(name.encode()).hexdigest()[:24]}.pickle"
-
-
-def finished_key(engines: Iterable[str], sources: str) -> str:
-    """What the answers of engines depend on: which they are, the sources, and every package of the environment.
-
-    Args:
-        engines: Names of the engines that are asked.
-        sources: Digest of the sources of the report.
-    """
-    packages = sorted(f"{one.name}=={one.version}" for one in distributions())
-    stated = json.dumps([sorted(engines), sources, _digest("**/*.py"), packages])
-    return hashlib.sha256(stated.encode()).hexdigest()[:24]
+        return folder / f"{digest(name)}.pickle"

@@ -67,6 +67,7 @@ def compose(data: Data) -> Report:
         **data,
         "cells": parts.unnested(data["cells"], parts.CELLS),
         "identities": parts.unnested(data["identities"], parts.IDENTITIES),
+        "asked": parts.unnested(data.get("asked", {}), parts.ASKED),
     }
     proofs = data["proofs"]
     tally = Counter(cell["verdict"] for cell in data["cells"])
@@ -91,7 +92,7 @@ def compose(data: Data) -> Report:
         (
             *changes.shown(data),
             *(_engine(engine, data, found) for engine in sorted(data["engines"], key=itemgetter("name"))),
-            Section("Engines", (overview, *_missing(data), *_releases(data)), "overview"),
+            Section("Engines", (overview, *_earlier(data), *_missing(data), *_releases(data)), "overview"),
             Section("Cells withdrawn, and why", (Bullets(tuple(found.withdrawn)),), "withdrawn"),
             Section(
                 "Functions", tuple(_functions(engine, data) for engine in data["engines"]), "functions", page_only=True
@@ -231,8 +232,6 @@ def _tally(engine: Row, data: Data, found: _Found) -> tuple[str, ...]:
     proofs = (f"{sum(own)} of {len(own)}" if not all(own) else str(len(own))) if any(tally[red] for red in RED) else ""
     verdicts = ("imprecise", "crashes", "raises", "refuses", "precondition", "repairs", "plug-in")
     counts = verdict(tally["wrong"] or "", not tally["wrong"]), *(str(tally[name] or "") for name in verdicts)
-    measured = {name: data.get(name, "") for name in parts.ORIGIN} | engine.get("measured", {})
-    when = f"{measured['date']}, {measured['revision'][:8]}"
     causes = str(len(found.by(name)) or "")
     return (
         f"[{name}](#{'engine' if causes else 'functions'}-{name})",
@@ -241,8 +240,25 @@ def _tally(engine: Row, data: Data, found: _Found) -> tuple[str, ...]:
         str(tally["right"]),
         *counts,
         proofs,
-        when,
+        _measured([row for row in data["asked"] if row["engine"] == name], data),
     )
+
+
+def _measured(asked: list[Row], data: Data) -> str:
+    """When and of which commit something was measured; on how many trees, where that differs."""
+    counts = Counter(row["origin"] for row in asked) or Counter({"": 1})
+    origins = {origin: data if origin == "" else data["origins"][origin] for origin in counts}
+    said = {origin: f"{one.get('date', '')}, {one.get('revision', '')[:8]}" for origin, one in origins.items()}
+    return "; ".join(said[k] + (f": {counts[k]}" if len(counts) > 1 else "") for k in sorted(counts, key=str))
+
+
+def _earlier(data: Data) -> Iterator[Text]:
+    """Which cells are of earlier commits."""
+    earlier = [row for row in data["asked"] if row["origin"] != ""]
+    if earlier:
+        why = "the same question was put to the same release by the same code"
+        said = f"{counted(len(earlier), 'pair')} of an engine and a tree, of {len(data['asked'])}"
+        yield Text(f"Taken over from earlier commits, where {why}: {said}. {_measured(earlier, data)}.", "soft")
 
 
 def _identities(data: Data) -> Table:

@@ -10,10 +10,10 @@ from typing import Annotated, Any
 
 import typer
 
+from ..engines.asking import SMOKE, about, in_turn, questions
 from ..engines.causes.cause import stated as causes
 from ..engines.causes.grouping import Group
 from ..engines.releases import Release, opened, plugins_of
-from ..engines.study import SMOKE, about, in_turn, questions
 from ..engines.verdicts import Cell
 from ..faults.entry import Fault, faults, frozen
 from ..faults.environment import NotAskedError, default_folder, kept, size_of

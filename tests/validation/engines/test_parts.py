@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.engines import parts
+from validation.reporting.record import Data
 
 NAMES = st.sampled_from(("a", "b b", "c:d"))
 ROWS = st.dictionaries(
@@ -26,87 +27,105 @@ def test_nested_tables_keep_every_row(rows: dict[tuple[str, ...], tuple[Any, ...
     assert sorted(map(repr, parts.unnested(stored, parts.CELLS))) == sorted(map(repr, stated))
 
 
-def part(engine: str, **changes: Any) -> dict[str, Any]:
-    cells = {engine: {"bias": {"ball": ["right", 1e-16, 1e-12]}}}
-    proof = {"engine": engine, "file": f"{engine}.py", "text": "assert False\n"}
-    stated = {"question": parts.question(), "models": ["ball"], "engines": [{"name": engine}], "absent": {}}
-    stated |= {
+def part(engine: str, *models: str, **changes: Any) -> dict[str, Any]:
+    """A stored report of one engine; the digest of what a tree's cells answer is the tree's name."""
+    models = models or ("ball",)
+    cells = {engine: {"bias": {model: ["right", 1e-16, 1e-12] for model in models}}}
+    proof = {"engine": engine, "model": models[0], "function": "bias", "file": f"{engine}.py", "text": "assert False\n"}
+    return {
+        "models": list(models),
+        "engines": [{"name": engine, "version": "1", "functions": {"bias": "h"}}],
+        "absent": {},
         "functions": {"bias": "h"},
         "cells": cells,
         "corrected": {},
-        "identities": {engine: {}},
+        "identities": {engine: {"C v + g = h": {model: [0.0, True] for model in models}}},
+        "asked": {engine: {model: [model] for model in models}},
         "proofs": [proof],
+        "ours": [engine],
+        **{"revision": "abc", "date": "now", "versions": {"numpy": "2"}},
+        **changes,
     }
-    return stated | {"revision": "abc", "date": "now", "versions": {"numpy": "2"}} | changes
 
 
-def stored(folder: Path, *stated: dict[str, Any]) -> list[Path]:
-    paths = [folder / f"{i}.json" for i in range(len(stated))]
-    for path, one in zip(paths, stated, strict=True):
-        path.write_text(json.dumps(one))
-    return paths
+def asked(*pairs: str) -> dict[tuple[str, str], str]:
+    """What is asked, of "engine tree" pairs."""
+    return {(engine, model): model for engine, _, model in (pair.partition(" ") for pair in pairs)}
 
 
-def test_parts_merge_into_one_report_with_their_origin(tmp_path: Path) -> None:
-    own = part("mine", absent={"theirs": "pip install theirs"})
-    whole = parts.merged(own, parts.load(stored(tmp_path, part("theirs"), part("third"))))
-    assert [engine["name"] for engine in whole["engines"]] == ["mine", "theirs", "third"]
-    origin = {"revision": "abc", "date": "now", "versions": {"numpy": "2"}}
-    assert [engine.get("measured") for engine in whole["engines"]] == [None, origin, origin]
-    assert set(whole["cells"]) == {"mine", "theirs", "third"} and len(whole["proofs"]) == 3
-    assert whole["absent"] == {}
-    again = parts.merged(part("fourth"), parts.load(stored(tmp_path, dict(whole) | {"revision": "later"})))
-    assert [e["measured"]["revision"] for e in again["engines"][1:]] == ["later", "abc", "abc"]
-    parts.write_scripts(whole["proofs"], tmp_path / "engines")
-    assert {path.name for path in (tmp_path / "engines").iterdir()} == {"mine.py", "theirs.py", "third.py"}
+def models_of(report: Data, table: str = "cells") -> dict[str, list[str]]:
+    """The trees that a report's table has of each engine."""
+    found: dict[str, list[str]] = {}
+    for row in parts.unnested(report[table], parts.TABLES[table]):
+        found.setdefault(row["engine"], []).append(row["model"])
+    return found
 
 
-@pytest.mark.parametrize(
-    ("stated", "word"),
-    [
-        ((part("a"), part("a")), "engine 'a' is in .*0.json and in .*1.json"),
-        ((part("a", question="other"),), "other trees or truths.*question other"),
-        (({k: v for k, v in part("a").items() if k != "question"},), "no question: it is of an older version"),
-        (({"cells": []},), "no stored engines.json"),
-    ],
-)
-def test_parts_that_disagree_are_refused(tmp_path: Path, stated: tuple[dict[str, Any], ...], word: str) -> None:
-    with pytest.raises(parts.PartsDisagree, match=word):
-        parts.load(stored(tmp_path, *stated))
+def test_what_is_taken_over_answers_what_is_asked() -> None:
+    stored = part("mine", "ball", "free", "helical")
+    (kept,) = parts.taken_over([stored], asked("mine ball", "mine helical") | {("mine", "free"): "another"})
+    for table in ("cells", "identities", "asked"):
+        assert models_of(kept, table) == {"mine": ["ball", "helical"]}
+    assert parts.places(kept) == [("mine", "ball"), ("mine", "helical")]
+    assert kept["proofs"] == stored["proofs"] and kept["ours"] == ["mine"]
+    (left,) = parts.taken_over([stored], asked("mine free", "yours ball"))
+    assert models_of(left) == {"mine": ["free"]} and left["proofs"] == []
 
 
-def test_parts_of_different_trees_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(parts.PartsDisagree, match="different trees"):
-        parts.merged(part("a"), parts.load(stored(tmp_path, part("b", models=["free"]))))
+def test_of_two_parts_that_have_it_the_first_is_taken_and_of_one_that_does_not_say_what_it_answers_none() -> None:
+    one, two = part("mine", "ball"), part("mine", "ball", "free")
+    kept = parts.taken_over([one, two], asked("mine ball", "mine free"))
+    assert [parts.places(each) for each in kept] == [[("mine", "ball")], [("mine", "free")]]
+    older = {name: value for name, value in two.items() if name != "asked"}
+    (none,) = parts.taken_over([older], asked("mine ball", "mine free"))
+    assert none["cells"] == {} and none["engines"] == [] and none["proofs"] == []
 
 
-def _stored(path: Path, **changed: object) -> Path:
-    engines = [{"name": name, "version": "1"} for name in ("mine", "yours")]
-    table = {name: {"bias": {"ball": ["right", 0.0, 0.0]}} for name in ("mine", "yours")}
-    data: dict[str, object] = {"question": parts.question(), "engines": engines, "models": ["ball"], "ours": ["mine"]}
-    data.update(dict.fromkeys(parts.TABLES, table), proofs=[{"engine": "mine"}], revision="old")
-    path.write_text(json.dumps(data | changed))
-    return path
+def test_a_report_has_what_is_taken_over_with_its_origin() -> None:
+    own = part("mine", "free", models=["ball", "free"], absent={"theirs": "pip install theirs", "no": "none"})
+    stored = [
+        part("theirs", "ball", "free"),
+        part("mine", "ball", revision="def", functions={"bias": "h", "gone": "x"}),
+    ]
+    whole = parts.merged(own, stored)
+    assert parts.engines_of([whole]) == {"mine": "1", "theirs": "1"} and whole["absent"] == {"no": "none"}
+    assert models_of(whole) == {"mine": ["ball", "free"], "theirs": ["ball", "free"]}
+    assert [one["revision"] for one in whole["origins"]] == ["abc", "def"]
+    assert whole["asked"] == {
+        "mine": {"ball": ["ball", 1], "free": ["free"]},
+        "theirs": {"ball": ["ball", 0], "free": ["free", 0]},
+    }
+    assert set(whole["functions"]) == {"bias"} and whole["ours"] == ["mine", "theirs"]
+    later = json.loads(json.dumps(dict(whole) | {"revision": "later"}))
+    again = parts.merged(part("mine", "helical", models=["ball", "free", "helical"]), [later])
+    rows = parts.unnested(again["asked"], parts.ASKED)
+    origins = {
+        (row["engine"], row["model"]): again["origins"][row["origin"]]["revision"]
+        for row in rows
+        if row["origin"] != ""
+    }
+    assert origins == {
+        ("mine", "ball"): "def",
+        ("mine", "free"): "later",
+        ("theirs", "ball"): "abc",
+        ("theirs", "free"): "abc",
+    }
+    assert "origins" not in parts.merged(part("mine"), [])
 
 
-def test_a_report_gives_what_it_has_of_engines_that_are_not_asked_anew(tmp_path: Path) -> None:
-    path = _stored(tmp_path / "engines.json")
-    kept = parts.others(path, ["mine"], {"mine": "2", "yours": "1"})
-    assert parts.engines_of([kept]) == {"yours"} and not kept["proofs"] and not kept["ours"]
-    assert [set(kept[table]) for table in parts.TABLES] == [{"yours"}] * 3 and kept["revision"] == "old"
-    assert parts.engines_of([parts.others(path, ["yours"], {"mine": "1"})]) == {"mine"}
+def test_what_is_no_report_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "stored.json"
+    for text in (json.dumps({"cells": []}), "{", ""):
+        path.write_text(text)
+        with pytest.raises(parts.NoPart, match="no stored engines.json"):
+            parts.load([path])
+    path.write_text(json.dumps(part("mine")))
+    assert parts.load([path]) == [part("mine")]
 
 
-@pytest.mark.parametrize(
-    ("changed", "said"),
-    [
-        ({}, "has yours 1, here it is 2: ask it anew, too, by --engine yours"),
-        ({"question": "x"}, "held to other trees"),
-    ],
-)
-def test_a_report_of_other_versions_or_questions_is_not_taken_over(
-    changed: dict[str, object], said: str, tmp_path: Path
-) -> None:
-    path = _stored(tmp_path / "engines.json", **changed)
-    with pytest.raises(parts.PartsDisagree, match=said):
-        parts.others(path, ["mine"], {"mine": "1", "yours": "2"})
+def test_a_folder_has_the_scripts_of_proofs_alone(tmp_path: Path) -> None:
+    (tmp_path / "gone.py").write_text("assert False\n")
+    (tmp_path / "notes.txt").write_text("mine")
+    without = {"file": "silent.py", "text": ""}
+    parts.write_scripts([*part("theirs")["proofs"], without], tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"theirs.py", "notes.txt"}

@@ -15,12 +15,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.engines import changes, releases
+from validation.engines.asking import about
 from validation.engines.bisection import Search, has_fault, same_fault
 from validation.engines.interface import EnginePlugin
 from validation.engines.models.kinds import tree_of
 from validation.engines.parts import CELLS, nested
 from validation.engines.releases import CRASHES, Opened, Release, opened
-from validation.engines.study import about
 from validation.engines.verdicts import Cell, Verdict
 from validation.faults.environment import kept
 

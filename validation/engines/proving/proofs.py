@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
+from ...reporting.record import Data
 from ...worker_process import WorkerProcess
 from ..causes.grouping import by_function, causes_of
 from ..interface import EnginePlugin
 from ..matrix import Judged
+from ..verdicts import Cell
 from ..workers import Worker, registry
 from .scripts import Proof, Prover
 from .shrink import TRIES
@@ -26,11 +28,42 @@ class Fault(NamedTuple):
 Proven = tuple[Proof, tuple[str, ...]]
 
 
-def faults(cells: Sequence[Judged]) -> list[Fault]:
-    """What one script stands for: red cells of a function of an engine, on the trees that one cause shows it on."""
+class Faults(NamedTuple):
+    """What red cells are for their proofs.
+
+    Attributes:
+        open: Faults that are to be proven.
+        proven: Stored proofs of the others, with the names of all trees that show each now.
+        unasked: Engines and trees of stored cells that show a fault without a proof, which no answer is here of.
+    """
+
+    open: list[Fault]
+    proven: list[Data]
+    unasked: set[tuple[str, str]]
+
+
+def faults(cells: Sequence[Judged], others: Iterable[Cell] = (), stored: Iterable[Data] = ()) -> Faults:
+    """What one script stands for: red cells of a function of an engine, on the trees that one cause shows it on.
+
+    Args:
+        cells: Cells that were asked now.
+        others: Stored cells.
+        stored: Proofs of these.
+    """
     judged_cells = {one.cell: one for one in cells}
-    groups = (lot for group in causes_of(judged_cells) for lot in by_function(group.cells))
-    return [Fault(judged_cells[lot[0]], tuple(cell.model for cell in lot)) for lot in groups]
+    proofs = {(one["engine"], one["function"], one["model"]): one for one in stored}
+    found = Faults([], [], set())
+    groups = causes_of([*judged_cells, *others])
+    for lot in (lot for group in groups for lot in by_function(group.cells)):
+        models = tuple(cell.model for cell in lot)
+        known = (proofs.get((cell.engine, cell.function, cell.model)) for cell in lot)
+        if proof := next(filter(None, known), None):
+            found.proven.append({**proof, "models": models})
+        elif first := next((judged_cells[cell] for cell in lot if cell in judged_cells), None):
+            found.open.append(Fault(first, models))
+        else:
+            found.unasked.add((lot[0].engine, lot[0].model))
+    return found
 
 
 def dealt(found: Sequence[Fault]) -> tuple[list[Fault], list[Fault]]:
