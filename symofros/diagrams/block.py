@@ -218,7 +218,7 @@ class Block(metaclass=CheckedCalls):
     Attributes:
         name: Unique in its diagram: letters, digits and underscores.
         period: Seconds between samples; None: continuous.
-        offset: Time of the first sample [s].
+        offset: Time of the first sample [s]; until then outputs are zero.
     """
 
     name: str

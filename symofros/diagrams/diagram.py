@@ -181,7 +181,7 @@ class Diagram(metaclass=CheckedCalls):
             DescriptionError: An inlet is unknown, a name is taken, or a block can't run on a condition.
         """
         self._refuse_name("part", name, {block.split(INSIDE)[0] for block in self.blocks})
-        outlets = part._sources_of_outlets()
+        outlets = part.outlet_sources()
         inside = dict(part.blocks)
         if condition is not None:
             inside = self._conditional(name, inside, condition, outlets)
@@ -253,12 +253,17 @@ class Diagram(metaclass=CheckedCalls):
                 inputs.append(target)
         return inputs
 
-    def _sources_of_outlets(self) -> dict[str, str]:
-        """Outlet -> "block.port" or "block", of those that read outlets of parts, too."""
+    def outlet_sources(self) -> dict[str, str]:
+        """Outlet -> "block.port" or "block", of its own and of all parts, whether `outlets` names these or not."""
+        of_parts = {
+            f"{name}.{outlet}": f"{name}{INSIDE}{source}"
+            for name, part in self.parts.items()
+            for outlet, source in part.diagram.outlet_sources().items()
+        }
         sources: dict[str, str] = {}
         for name, source in self.outlets.items():
-            sources[name] = sources.get(source, source)
-        return sources
+            sources[name] = sources.get(source, of_parts.get(source, source))
+        return {**sources, **{name: source for name, source in of_parts.items() if name not in sources}}
 
     @checked
     def with_model(self, name: str, setup: ModelSetup) -> Diagram:

@@ -129,6 +129,9 @@ class Simulation:
     ) -> InterpretedRun:
         """Run it block by block from Python: the reference of `run`, and some hundred times slower.
 
+        Its steps do not end where formulas of t jump, such as a Step that moves a filter: there it errs by a share of a
+        step, where `run` does not.
+
         Args:
             t_end: End time [s].
             inputs: Inlet -> numbers, a Signal, or formulas of t, as of `run`.

@@ -131,7 +131,7 @@ def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
     ports = _first_ports(diagram, models, problems)
     silent = {*unread, *(diagram.blocks.keys() - ports.keys())}
     outlets: dict[str, Source] = {}
-    for name, text in diagram.outlets.items():
+    for name, text in diagram.outlet_sources().items():
         if _block_of(text) not in silent:
             where = diagram.origin.get(("outlet", name), "")
             source = _collected(problems, where, diagram.name, text, diagram.blocks, ports, outlets)

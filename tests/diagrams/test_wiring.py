@@ -107,6 +107,20 @@ def test_a_part_runs_like_its_blocks_in_the_diagram() -> None:
     assert (together["control.effort"] == together["control/pd.effort"]).all()
 
 
+def test_outlets_of_parts_stay_where_outlets_are_assigned_anew() -> None:
+    """As the pages do, `outlets = {...}` after parts came in: of a part of a part, too, and for signals of a run."""
+    innermost, inner, diagram = sf.Diagram("innermost"), sf.Diagram("inner"), sf.Diagram("outer")
+    innermost.add(Counter(name="ticks", period=0.1))
+    innermost.outlets = {"n": "ticks.n"}
+    inner.include("count", innermost)
+    inner.outlets = {"told": "count.n"}
+    diagram.include("part", inner)
+    diagram.outlets = {"all": "part.told"}
+    run = sf.Simulation(diagram).run(0.5, dt=0.1, record=0.1)
+    for signal in ("all", "part.told", "part.count.n", "part/count/ticks.n"):
+        assert run[signal].tolist() == [0, 1, 2, 3, 4, 5], signal
+
+
 @dataclass(frozen=True, kw_only=True)
 class Odd(Counter):
     """It updates what it does not remember."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.blocks.checks import numbers, refuse, weights
-from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
+from symofros.blocks.controllers.riccati import continuous_gain, held_gain
 from symofros.blocks.manifold import difference
 from symofros.blocks.quantities import entry_units, motion_port, with_units
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
@@ -20,9 +20,9 @@ from symofros.diagrams.tensor import joined
 class LQR(Block):
     """u = u_0 - K x, x = (difference of q along the manifold, v - v_d), K least in int x^T Q x + u^T R u.
 
-    The model is linearised about its first state, exactly, once, as the block is written out; sampled, with inputs held
-    over the period. On constraints x is taken along the motions that they leave. Parameters changed for a run do not
-    change K.
+    The model is linearised about its first state, exactly, once, as the block is written out. Sampled, K is the least
+    of that integral with inputs held over the period, whatever x does between samples. On constraints x is taken along
+    the motions that they leave. Parameters changed for a run do not change K.
 
     Attributes:
         model: The model; at its first state with inputs u_0 it should be at rest, else runs say so.
@@ -81,7 +81,7 @@ class LQR(Block):
         if self.period is None:
             K = continuous_gain(linear.A, linear.B, Q, R)
         else:
-            K = sampled_gain(*held_inputs(linear.A, linear.B, self.period), Q, R)
+            K = held_gain(linear.A, linear.B, Q, R, self.period)
         if K is None:
             raise refuse(
                 self.name,

@@ -36,14 +36,20 @@ def continuous_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
     return K if bool(np.all(np.linalg.eigvals(A - B @ K).real < 0.0)) else None
 
 
-def sampled_gain(A: Array, B: Array, Q: Array, R: Array) -> Array | None:
-    """K (m, n) that minimises sum x^T Q x + u^T R u of x[k + 1] = A x[k] + B u[k]; None where nothing stabilises it."""
+def sampled_gain(A: Array, B: Array, Q: Array, R: Array, N: Array | None = None) -> Array | None:
+    """K (m, n) that minimises sum x^T Q x + u^T R u + 2 x^T N u of x[k + 1] = A x[k] + B u[k].
+
+    Returns:
+        None where nothing stabilises the system.
+    """
+    own = np.zeros(B.T.shape) if N is None else np.linalg.solve(R, N.T)  # With u = w - own x no product x^T w is left.
+    A, Q = A - B @ own, Q if N is None else Q - N @ own
     try:
         X = _doubled(A, B @ np.linalg.solve(R, B.T), Q)
     except np.linalg.LinAlgError:
         return None
     K = np.asarray(np.linalg.solve(R + B.T @ X @ B, B.T @ X @ A), dtype=np.float64)
-    return K if bool(np.all(np.abs(np.linalg.eigvals(A - B @ K)) < 1.0)) else None
+    return K + own if bool(np.all(np.abs(np.linalg.eigvals(A - B @ K)) < 1.0)) else None
 
 
 def filter_gain(A: Array, C: Array, Q: Array, R: Array) -> Array | None:
@@ -83,16 +89,38 @@ def _doubled(A: Array, G: Array, H: Array) -> Array:
 
 def held_inputs(A: Array, B: Array, period: float) -> tuple[Array, Array]:
     """x[k + 1] = A_d x[k] + B_d u[k] of x' = A x + B u where u is held over each period [s]."""
+    n = len(A)
+    moved, _ = _held(A, B, np.zeros((n + B.shape[1],) * 2), period)
+    return moved[:n, :n], moved[:n, n:]
+
+
+def held_gain(A: Array, B: Array, Q: Array, R: Array, period: float) -> Array | None:
+    """K (m, n) of the least int x^T Q x + u^T R u dt of x' = A x + B u where u = -K x[k] is held over each period [s].
+
+    Returns:
+        None where nothing stabilises the system.
+    """
+    n, m = B.shape
+    weights = np.block([[Q, np.zeros((n, m))], [np.zeros((m, n)), R]])
+    moved, cost = _held(A, B, weights, period)
+    return sampled_gain(moved[:n, :n], moved[:n, n:], cost[:n, :n], cost[n:, n:], cost[:n, n:])
+
+
+def _held(A: Array, B: Array, weights: Array, period: float) -> tuple[Array, Array]:
+    """E = exp(F T) of (x; u)' = F (x; u) = (A x + B u; 0), and (1 / T) int_0^T exp(F t)^T weights exp(F t) dt."""
     n, m = B.shape
     whole = np.zeros((n + m, n + m))
     whole[:n, :n], whole[:n, n:] = A * period, B * period
     halvings = max(0, math.ceil(math.log2(max(1e-300, float(np.linalg.norm(whole, 1))))) + 1)
     small = whole / 2.0**halvings
     # The norm is at most a half: 18 terms of the series are exact to rounding.
-    total, term = np.eye(n + m), np.eye(n + m)
+    moved, term = np.eye(n + m), np.eye(n + m)
+    mean, part = weights, weights
     for k in range(1, 19):
         term = term @ small / k
-        total = total + term
+        part = (small.T @ part + part @ small) / (k + 1)
+        moved, mean = moved + term, mean + part
     for _ in range(halvings):
-        total = total @ total
-    return total[:n, :n], total[:n, n:]
+        mean = 0.5 * (mean + moved.T @ mean @ moved)
+        moved = moved @ moved
+    return moved, mean

@@ -157,7 +157,7 @@ class Switch(Block):
 
 @dataclass(frozen=True, kw_only=True)
 class LookupTable(Block):
-    """y(u) by straight lines between points: y_0 + sum slope_i clip(u - x_i, 0, h_i).
+    """y(u) by straight lines between points: sum y_i (a_i-1 - a_i), a_i the share of u along interval i, a_-1 = 1.
 
     Attributes:
         x: Positions of the points (n), increasing.
@@ -191,33 +191,32 @@ class LookupTable(Block):
         return Ports((Port("u", (), self.unit_in),), (Port("y", np.shape(self.y)[1:], self.unit_out),))
 
     def compute(self, context: EvaluationContext) -> Values:
-        """Piecewise linear interpolation: the first value plus the increment over each interval."""
+        """Piecewise linear interpolation: values at the points, each by its weight."""
         x, y = np.asarray(self.x, dtype=np.float64), np.asarray(self.y, dtype=np.float64)
-        total = context.numbers(y[0])
-        for i, along in enumerate(_along(context.inputs["u"], x, self.outside)):
-            total = total + along * ((y[i + 1] - y[i]) / float(x[i + 1] - x[i]))
+        total = context.numbers(np.zeros(y.shape[1:]))
+        for weight, value in zip(_weights(context, context.inputs["u"], x, self.outside), y, strict=True):
+            total = total + weight * value
         return {"y": total}
 
 
-def _along(u: Tensor, x: Array, outside: str) -> list[Tensor]:
-    """How far a scalar has come along each interval between points (n - 1)."""
-    parts = []
+def _weights(context: EvaluationContext, u: Tensor, x: Array, outside: str) -> list[Tensor]:
+    """Weights of the points (n), of sum 1: zero but beside u, so that large values elsewhere cost no digits."""
+    shares = [context.numbers(1.0)]
     for i in range(len(x) - 1):
-        along = u - float(x[i])
+        along = (u - float(x[i])) / float(x[i + 1] - x[i])
         if outside == "hold" or i > 0:
             along = along.apply("max", 0.0)
         if outside == "hold" or i < len(x) - 2:
-            along = along.apply("min", float(x[i + 1] - x[i]))
-        parts.append(along)
-    return parts
+            along = along.apply("min", 1.0)
+        shares.append(along)
+    return [*(before - after for before, after in zip(shares, shares[1:], strict=False)), shares[-1]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class LookupTable2D(Block):
     """y(u1, u2), linear in each of both between the points of a grid.
 
-    With the shares a_i of u1 along intervals of x1, a_0 = 1, and b_k of u2 alike, y = sum a_i D_ik b_k: D are first
-    values, differences along an edge, and second differences within.
+    With weights a_i of the points along u1, as of a LookupTable, and b_k along u2, y = sum a_i y_ik b_k.
 
     Attributes:
         x1: Positions along u1 (n), increasing.
@@ -249,13 +248,9 @@ class LookupTable2D(Block):
 
     def compute(self, context: EvaluationContext) -> Values:
         """Interpolation, linear in each input."""
-        shares = []
-        for key, field in (("u1", "x1"), ("u2", "x2")):
-            x = np.asarray(getattr(self, field), dtype=np.float64)
-            along = _along(context.inputs[key], x, self.outside)
-            shares.append([part * (1.0 / h) for part, h in zip(along, np.diff(x).tolist(), strict=True)])
-        y = np.asarray(self.y, dtype=np.float64)
-        rows = np.vstack([y[:1], np.diff(y, axis=0)])
-        D = np.hstack([rows[:, :1], np.diff(rows, axis=1)])
-        a, b = (joined([context.numbers(1.0), *parts]) for parts in shares)
-        return {"y": a @ (context.numbers(D) @ b)}
+        grid = [np.asarray(x, dtype=np.float64) for x in (self.x1, self.x2)]
+        a, b = (
+            joined(_weights(context, context.inputs[key], x, self.outside))
+            for key, x in zip(("u1", "u2"), grid, strict=True)
+        )
+        return {"y": a @ (context.numbers(np.asarray(self.y, dtype=np.float64)) @ b)}

@@ -18,6 +18,15 @@ def _rates(unit: str) -> tuple[str, str, str]:
     return (unit, f"{unit}/s", f"{unit}/s^2") if unit else ("", "", "")
 
 
+# Share of times by which a flank comes early: more than all roundings of an instant and of the time stated for it.
+_ROUNDING = 2.0**-50
+
+
+def _since(context: EvaluationContext, time: Tensor) -> Tensor:
+    """Time since one that is stated; not below zero, by rounding, at a sample that falls on it."""
+    return (context.t - time) + _ROUNDING * (context.t.apply("abs") + time.apply("abs"))
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Wave(Block):
     """Base class of the wave blocks: parameters that broadcast, a unit and the output y."""
@@ -71,7 +80,7 @@ class Step(_Wave):
     def compute(self, context: EvaluationContext) -> Values:
         """One or the other."""
         time, before, after = (context.parameters[key] for key in self.tunable)
-        on = (context.t - time).apply("step")
+        on = _since(context, time).apply("step")
         return {"y": self._whole(context, before * (1.0 - on) + after * on)}
 
 
@@ -101,9 +110,9 @@ class Ramp(_Wave):
     def compute(self, context: EvaluationContext) -> Values:
         """Value and rate of the ramp; the rate is zero before `time` and after `duration`."""
         time, slope, start, duration = (context.parameters[key] for key in self.tunable)
-        rising = context.t - time
-        rises = rising.apply("step") * (1.0 - (rising - duration).apply("step"))
-        risen = rising.apply("max", 0.0).apply("min", duration)
+        since = _since(context, time)
+        rises = since.apply("step") * (1.0 - (since - duration).apply("step"))
+        risen = (context.t - time).apply("max", 0.0).apply("min", duration)
         return {"y": self._whole(context, start + slope * risen), "rate": self._whole(context, slope * rises)}
 
 
@@ -136,7 +145,7 @@ class Pulse(_Wave):
     def compute(self, context: EvaluationContext) -> Values:
         """High or low level, by the position within the current period; low before `time`."""
         time, every, width, high, low = (context.parameters[key] for key in self.tunable)
-        turns = (context.t - time) / every
+        turns = _since(context, time) / every
         place = turns - turns.apply("floor")
         on = turns.apply("step") * (1.0 - (place - width).apply("step"))
         return {"y": self._whole(context, low + (high - low) * on)}

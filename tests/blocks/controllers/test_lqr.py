@@ -14,7 +14,7 @@ from scipy import linalg
 import symofros as sf
 from reference_models import MODELS
 from symofros.blocks import LQR, Constant, ForwardDynamics
-from symofros.blocks.controllers.riccati import continuous_gain, held_inputs, sampled_gain
+from symofros.blocks.controllers.riccati import continuous_gain, held_gain, held_inputs, sampled_gain
 from symofros.diagrams.program.compiled import resolve
 from symofros.diagrams.wiring import surroundings
 from tests.blocks.support import refused
@@ -40,10 +40,49 @@ def test_gains_match_scipy(size: int, scale: float, rng: np.random.Generator) ->
         np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize(("size", "scale", "period"), [(1, 1.0, 0.5), (4, 1.0, 0.3), (4, 30.0, 0.05)])
+def test_a_sampled_gain_is_of_what_happens_between_samples(
+    size: int, scale: float, period: float, rng: np.random.Generator
+) -> None:
+    """Against SciPy: the integral over a period by quadrature, the sum of them by its Riccati equation."""
+    A, B = scale * rng.normal(size=(size, size)), scale * rng.normal(size=(size, 2))
+    weights = linalg.block_diag(np.diag(rng.uniform(0.5, 2, size)), [[2.0, 0.3], [0.3, 1.0]])
+    F = np.vstack([np.hstack([A, B]), np.zeros((2, size + 2))])
+    nodes, shares = np.polynomial.legendre.leggauss(60)
+    moved = [linalg.expm(0.5 * period * (1.0 + node) * F) for node in nodes]
+    cost = 0.5 * period * sum(share * E.T @ weights @ E for share, E in zip(shares, moved, strict=True))
+    (Q, N), R = np.hsplit(cost[:size], [size]), cost[size:, size:]
+    E = linalg.expm(period * F)
+    Ad, Bd = E[:size, :size], E[:size, size:]
+    X = linalg.solve_discrete_are(Ad, Bd, Q, R, s=N)
+    expected = np.linalg.solve(R + Bd.T @ X @ Bd, Bd.T @ X @ Ad + N.T)
+    found = held_gain(A, B, weights[:size, :size], weights[size:, size:], period)
+    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-8 * np.abs(expected).max())
+
+
+def test_the_block_has_the_gain_of_its_period() -> None:
+    model = sf.compile(MODELS["cart_pole"])
+    diagram = sf.Diagram("sampled")
+    diagram.add_model("m", MODELS["cart_pole"], {"q": 0.0})
+    for name in "qv":
+        diagram.add(Constant(name=name, value=np.zeros(2)))
+    block = LQR(name="lqr", model="m", state_weights=[1, 2, 3, 4], input_weights=0.1, period=0.2)
+    diagram.add(block, q="q.y", v="v.y")
+    K = block.gain(surroundings(resolve(diagram).wired, "lqr"))
+    linear = sf.state_space(model, model.neutral())
+    Q = linear.basis.T @ np.diag([1.0, 2.0, 3.0, 4.0]) @ linear.basis
+    expected = held_gain(linear.A, linear.B, Q, np.array([[0.1]]), 0.2)
+    assert expected is not None
+    np.testing.assert_allclose(K @ linear.basis, expected, rtol=1e-9)
+    cost = sampled_gain(*held_inputs(linear.A, linear.B, 0.2), Q, np.array([[0.1]]))
+    assert np.abs(K @ linear.basis - cost).max() > 1e-2 * np.abs(K).max()  # That of samples alone is another one.
+
+
 def test_an_unstable_state_that_no_input_reaches_gives_no_gain() -> None:
     A, B = np.diag([1.0, -1.0]), np.array([[0.0], [1.0]])
     assert continuous_gain(A, B, np.eye(2), np.eye(1)) is None
     assert sampled_gain(*held_inputs(A, B, 0.1), np.eye(2), np.eye(1)) is None
+    assert held_gain(A, B, np.eye(2), np.eye(1), 0.1) is None
 
 
 def held_up(name: str, start: dict[str, float], away: dict[str, float], block: LQR, t_end: float) -> np.ndarray:

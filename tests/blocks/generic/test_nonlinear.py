@@ -77,3 +77,15 @@ def test_a_table_of_two_is_linear_in_each_input(outside: str) -> None:
     np.testing.assert_allclose(found, wanted, atol=1e-12)
     with pytest.raises(sf.DescriptionError, match=r"y has the wrong shape"):
         LookupTable2D(name="b", x1=x1, x2=x2, y=y.T)
+
+
+@pytest.mark.parametrize("outside", ["hold", "extend"])
+def test_tables_over_many_decades_keep_the_digits_of_each_value(outside: str) -> None:
+    """As of a resistance: beside a value of 1e16 / 3 the others once kept no digits, in two dimensions 1e-16 of it."""
+    x, y, u = [0.0, 0.3, 49.0, 98.0], np.array([1e16, 1e6, 1.0, 1e-6]) / 3.0, np.linspace(0.0, 98.0, 197)
+    wanted = np.interp(u, x, y)
+    found = run(LookupTable(name="b", x=x, y=np.stack([y, y[::-1]], axis=1), outside=outside), {"u": u})["y"]
+    np.testing.assert_allclose(found[:, 0], wanted, rtol=1e-14)
+    np.testing.assert_allclose(found[:, 1], np.interp(u, x, y[::-1]), rtol=1e-14)
+    table = LookupTable2D(name="b", x1=x, x2=x, y=np.outer(y, y), outside=outside)
+    np.testing.assert_allclose(run(table, {"u1": u, "u2": u})["y"], wanted * wanted, rtol=1e-13)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import symofros as sf
 from symofros.blocks import Chirp, Pulse, Ramp, Sine, Step
 from tests.blocks.support import run
 from tests.late import late
@@ -26,6 +27,26 @@ def test_pulses_start_at_their_intervals() -> None:
     found = run(Pulse(name="p", time=0.205, every=0.5, width=0.25, high=3.0, low=1.0), t_end=2.0)["y"]
     place = (T - 0.205) % 0.5
     np.testing.assert_array_equal(found, np.where((T >= 0.205) & (place < 0.125), 3.0, 1.0))
+
+
+@pytest.mark.parametrize("period", [None, 0.01])
+def test_flanks_that_fall_on_a_sample_are_seen_by_it(period: float | None) -> None:
+    """Whole numbers say which are: of 100 pulses of 0.1 s, some flanks were a sample late by rounding alone."""
+    k = np.arange(1001)
+    found = run(Pulse(name="p", time=0.05, every=0.1, width=0.3, period=period), t_end=10.0)["y"]
+    np.testing.assert_array_equal(found, (k >= 5) & ((k - 5) % 10 < 3))
+    found = run(Step(name="s", time=[3 * 0.1, 7 * 0.1], period=period), t_end=1.0)["y"]
+    np.testing.assert_array_equal(found, k[:101, None] >= [30, 70])
+    found = run(Ramp(name="r", time=3 * 0.1, duration=0.4 + 1e-16, period=period), t_end=1.0)["rate"]
+    np.testing.assert_array_equal(found, (k[:101] >= 30) & (k[:101] < 70))
+
+
+def test_samples_that_begin_late_see_flanks_at_their_instants() -> None:
+    times = [round(0.05 + 0.1 * k, 2) for k in range(1, 30)]
+    diagram = sf.Diagram("late")
+    diagram.add(Step(name="s", time=times, period=0.1))
+    found = sf.Simulation(diagram).run(3.0, t0=0.05, dt=0.05, record=0.05)["s.y"]
+    np.testing.assert_array_equal(np.argmax(found > 0.5, axis=0), 2 * np.arange(1, 30))
 
 
 def test_a_sine_outputs_its_derivatives() -> None:
