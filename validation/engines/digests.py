@@ -11,6 +11,7 @@ import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import Field, fields, is_dataclass
+from decimal import Decimal
 from functools import cache, partial
 from importlib.metadata import entry_points
 from inspect import unwrap
@@ -136,7 +137,7 @@ class _Walk:
         left = [root]
         while left:
             one = left.pop()
-            if isinstance(one, str | bytes | int | float | complex | bool | None | type(Ellipsis)):
+            if isinstance(one, str | bytes | int | float | complex | Decimal | None | type(Ellipsis)):
                 yield repr(one)
                 continue
             if id(one) in self._seen:
@@ -159,7 +160,7 @@ class _Walk:
         if isinstance(one, Mapping):
             return f"mapping {len(one)}", [part for pair in one.items() for part in pair]
         if isinstance(one, np.ndarray):
-            return f"array {one.shape} {one.tobytes().hex()}", []
+            return f"array {one.shape}", one.ravel().tolist()
         if isinstance(one, re.Pattern):
             return f"pattern {one.pattern} {one.flags}", []
         if isinstance(one, partial):
