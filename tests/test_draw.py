@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from fnmatch import fnmatch
 from pathlib import Path
 from types import SimpleNamespace
+
+import pytest
 
 from tests import draw
 
@@ -37,3 +40,9 @@ def test_times_are_measured_of_tests_that_take_more_than_their_share(tmp_path: P
     measurement.pytest_runtest_logreport(SimpleNamespace(nodeid=CASES[-1], duration=0.2, skipped=False))
     measurement.pytest_sessionfinish()
     assert draw.read(file.read_text()) == {"a.py::gone": 0.5, "a.py::many": 0.3}
+
+
+def test_no_folder_of_tests_has_a_name_that_pytest_leaves_out(request: pytest.FixtureRequest) -> None:
+    root = Path(__file__).parent
+    names = {name for file in root.rglob("test_*.py") for name in file.relative_to(root).parts[:-1]}
+    assert not [name for name in names for glob in request.config.getini("norecursedirs") if fnmatch(name, glob)]
