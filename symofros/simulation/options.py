@@ -16,7 +16,7 @@ from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
 # What the functions that take these options by name call their own arguments; those of runs of diagrams.
-_CALL = ("q0", "v0", "t_end", "u", "par")
+_CALL = ("q0", "v0", "t_end", "z0", "u", "par")
 DIAGRAM_CALL = ("t_end", "parameters", "threads")
 # What runs of diagrams, their files and the command line call an option.
 _ALIASES = {"record": "output"}
@@ -28,6 +28,7 @@ _OTHER_NAMES = {
     "method": "solver integrator scheme algorithm",
     "q0": "x0 y0 q initial initial_state",
     "v0": "v dq dq0 qd qd0 qdot qdot0",
+    "z0": "z states",
     "u": "tau input inputs control controls controller torques",
     "par": "p params parameter parameters args",
     "rtol": "tol tolerance reltol",

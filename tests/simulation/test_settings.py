@@ -29,6 +29,7 @@ def test_invalid_quaternions_are_refused(top: sf.Model, length: float) -> None:
     [
         *(("t", "t_end"), ("T", "t_end"), ("duration", "t_end"), ("tmax", "t_end"), ("t_ends", "t_end")),
         *(("step", "dt"), ("solver", "method"), ("x0", "q0"), ("params", "par"), ("inputs", "u"), ("metod", "method")),
+        *(("z", "z0"), ("states", "z0")),
     ],
 )
 def test_option_names_of_other_tools_are_answered_with_ours(top: sf.Model, written: str, meant: str) -> None:

@@ -24,7 +24,7 @@ from symofros.simulation.analysis.force_states import rest_with_states
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
-from symofros.simulation.analysis.rest_search import Balance, Search
+from symofros.simulation.analysis.rest_search import Balance, Search, leaving
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
@@ -47,7 +47,8 @@ class Equilibrium:
         residual: Largest imbalance, relative to the largest force.
         iterations: Steps taken.
         bendings: Bending of each beam, with the error of its theory.
-        notes: Remarks: beams whose theory errs by more than a per cent, or that are loaded beyond their critical load.
+        notes: Remarks: a rest that is unstable, where forces have a potential; beams whose theory errs by more than a
+            per cent, or that are loaded beyond their critical load.
         efforts: Effort on each held coordinate by the name of its speed [N m or N].
         inputs: Inputs by name under which the state stays by itself, no coordinate held, those that are no prescribed
             motions of least norm; None where no inputs do. With nothing held, those that were given.
@@ -136,7 +137,7 @@ def equilibrium(
     efforts = {model.names.v[i]: float(effort[i]) for i in held_rows}
     q, v, z = q[: model.nq], v[: model.nv], model.states_of(v)
     inputs = _holding_inputs(model, (q, v, u, lam, z), effort, par, t)
-    notes = unstable + bending_notes(bendings) + remarks
+    notes = (unstable or _unstable_notes(balance, end)) + bending_notes(bendings) + remarks
     return Equilibrium(q, v, u, lam, effort, left, end.count, bendings, notes, efforts, inputs, z)
 
 
@@ -208,6 +209,18 @@ def _bendings(balance: Balance, end: Search) -> tuple[tuple[BeamBending, ...], t
         for name in beyond_critical_load(beams, q, K)
     )
     return bendings_at_rest(balance.model, q, K, balance.par), notes
+
+
+def _unstable_notes(balance: Balance, end: Search) -> tuple[str, ...]:
+    """A note on a rest that does not stay: an upright pendulum's, not a hanging one's."""
+    found = leaving(balance, end)
+    if found is None:
+        return ()
+    name = balance.model.names.v[found[0]]
+    return (
+        f"this rest is unstable: moved by a little, '{name}' leaves it at {found[1]:.3g} 1/s without damping; guess"
+        " nearer to the rest that is meant, or hold it",
+    )
 
 
 def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count: int) -> None:

@@ -23,6 +23,10 @@ _ROUNDING = 8 * float(np.finfo(float).eps)
 _NEAR = 1e-6
 # Stiffness, of the largest, that is neutral: an axis of symmetry leaves rounding.
 _NEUTRAL = 1e-9
+# Rate at which an unstable rest is left, without damping [1/s], below which it is rounding of a neutral one.
+_SLOWEST_LEAVING = 1e-3
+# Asymmetry of the stiffness, of the largest entry, from which forces have no potential.
+_NO_POTENTIAL = 1e-6
 # Mass that the relaxation adds to every motion, of their mean: bodies without mass have none.
 _ADDED_MASS = 1e-9
 # By how much the damping of the relaxation may change from step to step.
@@ -244,6 +248,8 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
     for count in range(iterations):
         forces, largest = balance.forces(q, v)
         jacobian = balance.jacobian(q)
+        if not np.all(np.isfinite(jacobian)):  # As of a disc that lies flat, which touches the ground everywhere.
+            return None
         G = jacobian[:, free]
         inverse, Z = pseudo_inverse(G, measures), null_space(G, measures)
         lam = inverse.T @ forces[free]
@@ -279,6 +285,30 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         step[free] -= inverse @ R[model.nv :]
         q, v = balance.moved(q, v, step)
     return None
+
+
+def leaving(balance: Balance, end: Search) -> tuple[int, float] | None:
+    """How an unstable rest is left by forces with a potential: along the least of the k_i of (7b).
+
+    Returns:
+        Speed that takes part most, by its reach, and sqrt(-k_i), the rate without damping [1/s]; None of a rest that is
+        not unstable so, and of steady motions.
+    """
+    model, free = balance.model, balance.free
+    K, M = balance.stiffness(end.q, end.v, end.lam), balance.mass(end.q)[np.ix_(free, free)]
+    if np.any(end.v[: balance.n]) or not (np.all(np.isfinite(K)) and np.all(np.isfinite(M))):
+        return None
+    Z = null_space(balance.jacobian(end.q)[:, free], model.record.measures.of_speeds(free))
+    K = K[np.ix_(free, free)] + K[np.ix_(free, balance.searched)] @ _following(K, end.R, balance).by_q
+    Y = Z @ _unit_mass(Z.T @ M @ Z)
+    own = Y.T @ K @ Y
+    if not own.size or np.abs(own - own.T).max() > _NO_POTENTIAL * np.abs(own).max():
+        return None
+    x = Y @ np.linalg.eigh(own)[1][:, 0]
+    k = float(x @ K @ x)
+    if not k < -max(_SLOWEST_LEAVING**2, _NEUTRAL * float(np.abs(x) @ np.abs(K) @ np.abs(x))):
+        return None
+    return int(free[np.argmax(np.abs(x) / _reach(model, balance.par)[free])]), float(np.sqrt(-k))
 
 
 class _Following(NamedTuple):

@@ -178,6 +178,11 @@ NOTES: Mapping[str, NoteKind] = {
         "axial loads leave a beam no stiffness, so that a rest is unstable or a run has no bent rest",
         "less load, or theory: strain",
     ),
+    "unstable rest": NoteKind(
+        "this rest is unstable: moved by a little, '…' leaves it at … 1/s without damping",
+        "a rest that `sf.equilibrium` found is one from which forces with a potential drive the mechanism away",
+        "a guess nearer to the rest that is meant, or held coordinates",
+    ),
     "many rests": NoteKind(
         "… may rest at other values, too: of many equilibria this is the one of the least change of the guess",
         "states of forces rest whatever they are, as bristles that stick",

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros.simulation.analysis.rest_search import _downhill, _unit_mass
 from tests.models import interpreted, model
 
@@ -98,3 +100,73 @@ def test_a_guess_of_infinite_stiffness_is_no_rest(force: str) -> None:
     with pytest.raises(sf.EquilibriumError, match="x"):
         sf.equilibrium(made, [0.0])
     assert sf.equilibrium(made, [0.5]).q == pytest.approx([1.0], abs=1e-9)
+
+
+def test_a_guess_without_finite_constraints_is_refused_in_words() -> None:
+    """A disc that lies flat touches the ground everywhere: no LinAlgError of a decomposition."""
+    disc = sf.compile(MODELS["rolling_disc"])
+    with pytest.raises(sf.EquilibriumError, match="no equilibrium was found"):
+        sf.equilibrium(disc, disc.neutral())
+
+
+LEAVES = r"this rest is unstable: moved by a little, '{}' leaves it at ([\d.]+) 1/s without damping; guess nearer to"
+
+
+def rate_of(rest: object, name: str) -> float:
+    """The rate that the note on an unstable rest states, of a speed by its name."""
+    (note,) = rest.notes  # type: ignore[attr-defined]
+    found = re.match(LEAVES.format(name), note)
+    assert found, note
+    return float(found[1])
+
+
+def test_an_upright_rest_is_told_from_a_hanging_one() -> None:
+    """At sqrt(m g L / J); what is held does not leave."""
+    rod = sf.Inertia(1.5, (0.4, 0.0, 0.0), (0.0, 0.02, 0.02))
+    arm = sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), rod)
+    made = interpreted(sf.System("arm", (arm,)))
+    upright = sf.equilibrium(made, [-1.5])
+    assert rate_of(upright, "q") == pytest.approx(math.sqrt(1.5 * 9.81 * 0.4 / (0.02 + 1.5 * 0.16)), rel=5e-3)
+    assert sf.equilibrium(made, [1.5]).notes == sf.equilibrium(made, [-1.5], held=["q"]).notes == ()
+
+
+@pytest.mark.parametrize("stiffness", [1e3, 1e9])
+def test_a_stiff_beam_does_not_hide_that_it_falls(stiffness: float) -> None:
+    """Its own stiffness is 1e12 times that of gravity; a rod about its end: sqrt(3 g / (2 L))."""
+    beam = sf.Beam("b", sf.Joint("q", "revolute", axis=(0, 1, 0)), 1.0, 1.0, EI_y=stiffness, bend_z=2)
+    made = interpreted(sf.System("beam", (beam,)))
+    assert rate_of(sf.equilibrium(made, [-1.57, 0, 0]), "q") == pytest.approx(math.sqrt(1.5 * 9.81), rel=5e-3)
+    assert sf.equilibrium(made, [1.57, 0, 0]).notes == ()
+
+
+def test_a_loop_is_left_along_its_closures() -> None:
+    """A gear's arms between minima, by the potential -3 sin q - sin 3 q and masses 1, of 9 the second's part."""
+    made = geared(3.0)
+    assert sf.equilibrium(made).notes == ()
+    rest = sf.equilibrium(made, [np.pi / 2 - 0.02, 3 * np.pi / 2 - 0.06])
+    assert rest.q[0] == pytest.approx(np.pi / 2, abs=1e-9)
+    inertia = [float(np.diag(made.mass_matrix(rest.q))[k]) for k in (0, 1)]
+    # V'' = (m0 sin q + 9 m1 sin 3 q) 0.3 g = (3 - 9) 0.3 g
+    rate = math.sqrt(6.0 * 0.3 * 9.81 / (inertia[0] + 9.0 * inertia[1]))
+    assert rate_of(rest, "q1") == pytest.approx(rate, rel=5e-3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.0, 2.0])
+def test_neutral_rests_and_forces_without_a_potential_bear_no_note(angle: float) -> None:
+    """A seesaw in balance stays wherever it is; a force that follows its body is not judged."""
+    seesaw = sf.RigidBody("see", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0.7, 0, 0), (0.1,) * 3))
+    far = sf.RigidBody("far", sf.Joint("f", "fixed", "see", position=(-0.35, 0, 0)), sf.Inertia(2.0))
+    assert sf.equilibrium(interpreted(sf.System("seesaw", (seesaw, far))), [angle]).notes == ()
+    pair = [sf.RigidBody(n, sf.Joint(n, "prismatic", axis=(1, 0, 0), effort=f), sf.Inertia(1.0)) for n, f in FOLLOWING]
+    assert sf.equilibrium(interpreted(sf.System("pair", tuple(pair), gravity=(0, 0, 0))), [angle, 0.0]).notes == ()
+
+
+FOLLOWING = (("x", "3*y - x"), ("y", "2*x - y"))
+
+
+def test_a_top_that_spins_is_not_judged_by_stiffness_alone() -> None:
+    shaft = sf.RigidBody("shaft", sf.Joint("turn", "revolute", axis=(0, 0, 1)), sf.Inertia(1.0, moments=(1, 1, 1)))
+    bob = sf.RigidBody("bob", sf.Joint("q", "revolute", "shaft", axis=(0, 1, 0)), sf.Inertia(2.0, (0, 0, 1.0)))
+    made = interpreted(sf.System("upright", (shaft, bob)))
+    assert rate_of(sf.equilibrium(made, [0.0, 0.1]), "q") == pytest.approx(math.sqrt(9.81), rel=5e-3)
+    assert sf.equilibrium(made, [0.0, 0.0], [1.0, 0.0], held=["turn"]).notes == ()
