@@ -11,6 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from validation.engines import parts
+from validation.engines.report import compose
+from validation.reporting import markdown
+from validation.reporting.provenance import Provenance
 from validation.reporting.record import Data
 
 NAMES = st.sampled_from(("a", "b b", "c:d"))
@@ -111,6 +114,19 @@ def test_a_report_has_what_is_taken_over_with_its_origin() -> None:
         ("theirs", "free"): "abc",
     }
     assert "origins" not in parts.merged(part("mine"), [])
+
+
+def test_a_report_says_which_cells_are_of_which_commit() -> None:
+    def shown(data: Data) -> str:
+        return markdown.page(compose(data), Provenance.of(data), "")
+
+    functions = {"version": "1", "functions": {"bias": "h"}, "conventions": []}
+    own = part("mine", "free", models=["ball", "free"], engines=[{"name": "mine", **functions}], proofs=[])
+    stored = part("mine", "ball", revision="defdefdefdef", date="then", proofs=[])
+    whole = {**parts.merged(own, [stored]), "revision": "fedfedfedfed"}
+    assert "1 pair of an engine and a tree, of 2. then, defdefde." in shown(whole)
+    assert "now, fedfedfe: 1; then, defdefde: 1" in shown(whole)
+    assert "Taken over" not in shown({**own, "revision": "fedfedfedfed"})
 
 
 def test_what_is_no_report_is_refused(tmp_path: Path) -> None:
