@@ -26,7 +26,6 @@ COLLECTED, RETURNED = ("notes", "remarks"), re.compile(r"note|_lost$|_remark")
 # The same where names differ: a beam's bending, a run that ends otherwise, starts that change, blocks in Python.
 ELSEWHERE = {
     "beams.py": re.compile(r"^__str__$"),
-    "finer_steps.py": re.compile(r"note|^_unlike$"),
     "starts.py": re.compile(r"^changes$|^singular_start$"),
     "python_blocks.py": re.compile(r"^fault$"),
 }

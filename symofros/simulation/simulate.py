@@ -23,6 +23,7 @@ from symofros.simulation.prescribed_motions import contradiction, recorded_notes
 from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
 from symofros.simulation.results.examination.diagnosis import diagnose
+from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
 from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
@@ -30,6 +31,9 @@ from symofros.simulation.settings import Settings, check_fit, check_start, first
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
+
+# How notes on the steps of a part begin.
+_OF_STEPS = ("step", "the step", "the tolerances")
 
 
 @checked
@@ -120,7 +124,7 @@ def run_to_its_end(
         v: First speeds (nv).
         show: Called with the time reached [s], now and then.
     """
-    phases, whole, ended = list[_Phase](), settings, False
+    phases, whole, ended, start = list[_Phase](), settings, False, (q, v, stepper.par)
     while not ended:
         phase, which = _phase(stepper, settings, q, v, show)
         repeats = settings.every and phases and not phases[-1].acted
@@ -135,7 +139,29 @@ def run_to_its_end(
         steps, records = (sum(counts) for counts in zip(*(phase.counts for phase in phases), strict=True))
         settings = whole.onwards(t, steps, records)
         settings.apply(stepper)
-    return _joined(stepper, phases)
+    return _held_as_a_whole(_joined(stepper, phases), stepper, phases, whole, start)
+
+
+def _held_as_a_whole(
+    run: Trajectory, stepper: Stepper, phases: Sequence[_Phase], settings: Settings, start: tuple[Array, Array, Array]
+) -> Trajectory:
+    """A run with the note on what its events make of the errors of its parts, where nothing is said of steps.
+
+    Args:
+        run: The run.
+        stepper: Its stepper.
+        phases: Its parts.
+        settings: Settings of the whole.
+        start: Initial q, v, and the run-time parameters (npar).
+    """
+    acted, outcome = sum(phase.acted for phase in phases), run.outcome
+    if stepper.actions is None or not outcome.ok or any(note.startswith(_OF_STEPS) for note in outcome.notes):
+        return run
+    left_out = int(acted > 0 and not phases[-1].statistics.steps)  # What the actions of a terminal event leave.
+    states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]
+    told: dict[str, Any] = {"par": start[2], "parts": 1 + acted, "stopped": outcome.kind == "event"}
+    note = switched_run_note(SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **told))
+    return replace(run, outcome=replace(outcome, notes=(*outcome.notes, note))) if note else run
 
 
 def _act(stepper: Stepper, phases: list[_Phase]) -> bool:

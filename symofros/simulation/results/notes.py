@@ -45,7 +45,7 @@ NOTES: Mapping[str, NoteKind] = {
     ),
     "steps decide": NoteKind(
         "… do not determine the motion…: … changes it by …",
-        "half the step, or tighter tolerances, give another motion",
+        "half the step, or tighter tolerances, give another motion, of a part or over all events",
         "a smaller dt, or tighter tolerances",
     ),
     "other end": NoteKind(

@@ -44,7 +44,7 @@ def diagnose(
     """
     if settings.every != 1 and not stepper.method.family.multistep:
         kept = stepper.diagnostic_states()
-        states = kept if len(kept[0]) > 1 else states
+        states = kept if len(kept[0]) > min(1, len(states[0])) else states
     bendings = amplified_in_motion(stepper.bendings, stepper.amplified_bendings, stepper.model, states, stepper.par)
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))

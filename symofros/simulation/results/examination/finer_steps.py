@@ -198,37 +198,46 @@ def finer_steps_note(run: HeldRun) -> str:
     for window in windows(t, run.states[2], run.mean_step, run.steps if short else max(run.steps, WHOLE + 1)):
         changed = run.changed(window, "run" if short else "window")
         if not changed.arrived:
-            return _unlike(run, changed, "" if short else f" from t = {changed.t:.6g} s", stepping, cure)
+            return other_end_note(run, changed, "" if short else f" from t = {changed.t:.6g} s", stepping, cure)
         worst = max(worst, changed, key=lambda one: one.size)
     if not (short or worst.size > run.tolerance) and run.external:
         if not run.may_add_up_to(worst) > _ADDS_UP:
             return ""
         return (
-            f"{stepping} are not held against {_finer(run, worst)} over all of the run, as '{run.external}' is not"
+            f"{stepping} are not held against {finer_words(run, worst)} over all of the run, as '{run.external}' is not"
             f" called again: {worst.steps * run.mean_step:.3g} s of the motion of '{worst.name}' change by"
             f" {100.0 * worst.share:.2g} % (seen at t = {worst.t:.4g} s), which adds up; compare with {cure}"
         )
     if not short:
         worst = run.added_up(worst)
         if not worst.arrived:
-            return _unlike(run, worst, "", stepping, cure)
+            return other_end_note(run, worst, "", stepping, cure)
     if not worst.size > run.tolerance:
         return ""
     of = f" of '{worst.name}'" if worst.name else ""
     seen = "" if short else f" (seen at t = {worst.t:.4g} s)"
     same = ", even where external blocks answer as they did" if run.external else ""
     return (
-        f"{stepping} do not determine the motion{of}: {_finer(run, worst)} changes it by {percent(worst.share)}"
+        f"{stepping} do not determine the motion{of}: {finer_words(run, worst)} changes it by {percent(worst.share)}"
         f"{seen}{same}; {cure}"
     )
 
 
-def _unlike(run: HeldRun, changed: Changed, begin: str, stepping: str, cure: str) -> str:
-    unlike = f"with {_finer(run, changed)} it does not come to this end{begin}"
+def other_end_note(run: HeldRun, changed: Changed, begin: str, stepping: str, cure: str) -> str:
+    """Note on finer steps that do not come to the end of a part.
+
+    Args:
+        run: The run.
+        changed: The part.
+        begin: What is said of where it begins.
+        stepping: Its steps, in words.
+        cure: What to try.
+    """
+    unlike = f"with {finer_words(run, changed)} it does not come to this end{begin}"
     return f"{stepping} do not show the motion: {unlike}; {cure}"
 
 
-def _finer(run: HeldRun, changed: Changed) -> str:
+def finer_words(run: HeldRun, changed: Changed) -> str:
     """The finest steps that a part was held against, in words."""
     return f"{FRACTIONS[changed.refinements]} of that" if run.h else "a hundredth of them"
 

@@ -303,7 +303,7 @@ class ExaminedRun(HeldRun):
         span, rounding = float(t[-1] - t[0]), self.rounding(fine)
         largest = max(self.fastest, rounding)
         reach = min(largest * span, max(self.reach, rounding * span))  # To and fro comes no farther.
-        return max(_share(faster, largest), _share(apart, reach) / _POSITIONS)
+        return max(share_of(faster, largest), share_of(apart, reach) / _POSITIONS)
 
     def whole_change(self, states: States, finer: States) -> float:
         """Largest difference of speeds, displacements and energies, relative to the largest of each (17), (17a).
@@ -320,15 +320,18 @@ class ExaminedRun(HeldRun):
             moved, fastest = (float(self.norms(q_finer, u, x).max()) for x in (displacements, v_finer))
             apart, faster = (float(self.norms(q_finer[rows], u[rows], x).max()) for x in changes)
             rounding, span = self.rounding(finer), float(t[-1] - t[0])
-            change = [_share(faster, max(fastest, rounding)), _share(apart, max(moved, rounding * span)) / _POSITIONS]
+            change = [
+                share_of(faster, max(fastest, rounding)),
+                share_of(apart, max(moved, rounding * span)) / _POSITIONS,
+            ]
             energies = self.energies(finer)
             others = self.energies((t[rows], q[rows], v[rows], u[rows]))
             if energies is not None and others is not None:
                 largest = float(np.abs(energies[1] - energies[0]).max() + energies[0].max())
                 spread = max(float(energies[0].max()), float(np.ptp(energies[1])), AT_REST * largest)
-                change.append(_share(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _ENERGIES)
+                change.append(share_of(float(np.abs(others[1] - energies[1][rows]).max()), spread) / _ENERGIES)
                 bent = self._potential_norms((t[rows], q_finer[rows], u[rows]), changes[0])
-                change.append(_share(float(bent.max()), math.sqrt(2.0 * spread)))
+                change.append(share_of(float(bent.max()), math.sqrt(2.0 * spread)))
         return max(change)
 
     def _potential_norms(self, states: Sequence[Array], changes: Array) -> Array:
@@ -368,6 +371,6 @@ def _gives_again(function: Callback, states: States) -> bool:
     return all(row.shape == u[i].shape and np.abs(row - u[i]).max() <= _SAME * size for i, row in enumerate(again))
 
 
-def _share(part: float, whole: float) -> float:
+def share_of(part: float, whole: float) -> float:
     """Part of a whole; none of nothing."""
     return part / whole if whole > 0.0 else 0.0

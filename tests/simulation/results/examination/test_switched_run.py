@@ -1,0 +1,262 @@
+"""What finer steps make of runs over events: what is wrong by a tenth says so, what is right is quiet."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.simulation.results.examination.switched_run import SwitchedRun
+from symofros.simulation.settings import Settings
+from tests.simulation.mechanisms import slide
+
+FINE: dict[str, Any] = {"method": "dop853", "rtol": 1e-12, "atol": 1e-13}
+Motion = tuple[sf.Model, np.ndarray, np.ndarray, dict[str, Any]]
+PARAMETERS = {"k": 20.0, "F": 1.0, "A": 3.0, "w": 5.0, "a": 0.4, "e": 0.8, "side": 1.0, "on": 0.0}
+
+
+f = sf.formula
+
+
+@cache
+def double_pendulum(kind: str) -> sf.Model:
+    """Two links, the first with a spring; what events do depends on the kind."""
+    elements: Any = (sf.Spring(f("k")), *([sf.Friction(f("F"), f("1.2*F"), sticks=True)] if kind == "sticks" else []))
+    side = sf.Inertia(1.0, (0.3, 0, 0), (0.01, 0.05, 0.05))
+    first = sf.Joint("q0", "revolute", axis=(0, 1, 0), elements=elements, actuated=True)
+    second = sf.Joint("q1", "revolute", "b0", axis=(0, 1, 0), frame="end")
+    bodies = (sf.RigidBody("b0", first, side, (sf.Frame("end", (0.6, 0, 0)),)), sf.RigidBody("b1", second, side))
+    locks: dict[str, Any] = {}
+    if kind == "locks":
+        locks = {"constraints": (sf.Coupling("lock", f("q1")),), "switches": (sf.Switch("lock", f("on"), "moment"),)}
+    return sf.compile(
+        sf.System(kind, bodies, tuple(sf.Parameter(*item) for item in PARAMETERS.items()), gravity=(0, 0, 0), **locks)
+    )
+
+
+EVENTS = {
+    "sticks": {},
+    "locks": {
+        "on": sf.Event("sin(w*t + 0.1)", "falling", action={"on": 1}),
+        "off": sf.Event("sin(w*t + 0.1)", "rising", action={"on": 0}),
+    },
+    "relay": {
+        "up": sf.Event("q0 - 0.05", "rising", action={"side": -1}),
+        "down": sf.Event("q0 + 0.05", "falling", action={"side": 1}),
+    },
+    "walls": {
+        "high": sf.Event("q0 - a", "rising", action={"dq0": "-e*dq0"}),
+        "low": sf.Event("q0 + a", "falling", action={"dq0": "-e*dq0"}),
+    },
+}
+DRIVES = {"sticks": "A*sin(w*t)", "locks": "A*sin(w*t)", "relay": "A*side", "walls": "A*sin(w*t)"}
+
+
+def drawn(kind: str, rng: np.random.Generator) -> Motion:
+    """A motion over events."""
+    if kind == "contact":
+        v = rng.uniform(-2, 2, 2)
+        return mass_over_floor(), np.array([0.0, rng.uniform(0.05, 0.4)]), v, {"t_end": rng.uniform(0.4, 1.0)}
+    ranges = {"k": (0, 30), "F": (0.5, 3), "A": (2, 8), "w": (3, 12), "a": (0.3, 0.6), "e": (0.4, 1)}
+    par = {**PARAMETERS, **{name: float(rng.uniform(*span)) for name, span in ranges.items()}}
+    given = {"par": par, "events": EVENTS[kind], "u": {"q0": DRIVES[kind]}, "t_end": rng.uniform(1.0, 2.0)}
+    q = np.array([0.9 * rng.uniform(-par["a"], par["a"]), rng.uniform(-1, 1)])
+    return double_pendulum(kind), q, rng.uniform(-3, 3, 2), given
+
+
+@cache
+def mass_over_floor() -> sf.Model:
+    """A mass that bounces on rough ground."""
+    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0)))
+    z = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="x"), sf.Inertia(2.0))
+    foot = sf.Contact("foot", ("z", None), ("world", None), restitution=0.4, friction=0.4)
+    return sf.compile(sf.System("mass", (x, z), connections=(foot,)))
+
+
+def settings_of(kind: str, rng: np.random.Generator, t_end: float) -> dict[str, Any]:
+    """A method, with steps or tolerances from coarse to fine."""
+    if rng.random() < 0.3:
+        loose = {"rtol": 10 ** rng.uniform(-6, -1.5), "atol": 10 ** rng.uniform(-6, -3)}
+        return {"method": str(rng.choice(["dopri5", "dop853"])), **loose}
+    names = ["euler", "semi_implicit_euler", "rk4", "dopri5"]
+    names += ["generalized_alpha", "implicit_euler", "rodas4"] if kind != "contact" else []
+    names += ["variational"] if kind in ("relay", "walls") else []
+    method = str(rng.choice(names))
+    fixed = {"adaptive": False} if method in ("dopri5", "rodas4") else {}
+    return {"method": method, "dt": float(t_end / 10 ** rng.uniform(1.2, 3.0)), **fixed}
+
+
+def norm(model: sf.Model, q: np.ndarray, par: Any, x: np.ndarray) -> float:
+    """Root of x^T M x."""
+    return float(np.sqrt(x @ model.mass_matrix(q, par=par) @ x))
+
+
+def off(run: sf.Trajectory, right: sf.Trajectory, par: Any) -> float:
+    """Error of the last state, of displacements and of speeds, relative to the largest of each."""
+    model, end = run.model, right.q[-1]
+    some = slice(None, None, max(1, len(right.q) // 100))
+    far = max(norm(model, q, par, model.difference(right.q[0], q)) for q in right.q[some])
+    fast = max(norm(model, q, par, v) for q, v in zip(right.q[some], right.v[some], strict=True))
+    apart, faster = model.difference(end, run.q[-1]), run.v[-1] - right.v[-1]
+    return max(norm(model, end, par, apart) / far, norm(model, end, par, faster) / fast)
+
+
+@pytest.mark.parametrize("kind", [*EVENTS, "contact"])
+def test_what_is_wrong_by_a_tenth_bears_a_note_and_what_is_right_none(kind: str) -> None:
+    """Random motions, methods and steps; against tolerances of 1e-12."""
+    rng = np.random.default_rng(len(kind))
+    judged = 0
+    for _ in range(8):
+        model, q, v, given = drawn(kind, rng)
+        options = settings_of(kind, rng, given["t_end"])
+        right, run = (sf.simulate(model, q, v, **given, **one) for one in (FINE, options))
+        par = given.get("par", model.parameters)
+        if not (right.outcome.ok and run.outcome.ok):
+            continue
+        error = off(run, right, model.checked_parameters(par))
+        if error > 0.11:
+            assert run.outcome.notes, (error, options, q, v, given)
+        if error < 1e-9:
+            assert not [note for note in run.outcome.notes if "persists" not in note], (error, options, run.outcome)
+        judged += 1
+    assert judged >= 4
+
+
+def relay() -> Motion:
+    """A link that a relay drives to and fro."""
+    given = {"par": {**PARAMETERS, "A": 6.0}, "events": EVENTS["relay"], "u": {"q0": "A*side"}, "t_end": 2.0}
+    return double_pendulum("relay"), np.array([0.0, 0.5]), np.array([1.0, -1.0]), given
+
+
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "generalized_alpha"])
+def test_errors_that_parts_of_a_run_add_up_are_stated(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a note of the whole run where no part has one, with the error to a third of what it is."""
+    model, q, v, given = relay()
+    right = sf.simulate(model, q, v, **given, **FINE)
+    said = list[float]()
+    monkeypatch.setattr(SwitchedRun, "error", _noting(SwitchedRun.error, said))
+    quiet, errors = 0, list[tuple[float, float]]()
+    for n in (120, 270, 600, 3000) if method == "semi_implicit_euler" else (40, 60, 80, 400):
+        said.clear()
+        run = sf.simulate(model, q, v, **given, method=method, dt=given["t_end"] / n)
+        error = off(run, right, model.checked_parameters(given["par"]))
+        assert run.outcome.notes or error < 0.11, (n, error)
+        if said and error < 0.5:
+            errors.append((said[0], error))
+        quiet += not run.outcome.notes
+    assert quiet and errors, (quiet, errors)
+    assert all(0.6 * error < stated < 1.6 * error + 0.01 for stated, error in errors), errors
+
+
+def _noting(function: Any, said: list[float]) -> Any:
+    def noted(*given: Any) -> float:
+        said.append(function(*given))
+        return said[-1]
+
+    return noted
+
+
+@pytest.mark.parametrize(
+    ("method", "order"),
+    [("euler", 1), ("semi_implicit_euler", 1), ("generalized_alpha", 2), ("variational", 2), ("rk4", 4), ("dopri5", 5)],
+)
+def test_events_take_no_order_from_a_method(method: str, order: int) -> None:
+    model, q, v, given = relay()
+    given["t_end"] = 1.0
+    right = sf.simulate(model, q, v, **given, **FINE)
+    par = model.checked_parameters(given["par"])
+    options: dict[str, Any] = {"adaptive": False} if method == "dopri5" else {}
+    steps = (400, 800) if order < 5 else (50, 100)
+    errors = [off(sf.simulate(model, q, v, **given, **options, method=method, dt=1.0 / n), right, par) for n in steps]
+    assert len(right.events) > 3 and np.log2(errors[0] / errors[1]) > order - 0.4, errors
+
+
+def mass_between_walls() -> tuple[sf.Model, dict[str, Any]]:
+    """A mass that is thrown to and fro, on a soft spring."""
+    model = sf.compile(slide(sf.Spring(1.0)))
+    back = {"dx": "-dx"}
+    hits = {"right": sf.Event("x - 0.3", "rising", action=back), "left": sf.Event("x + 0.3", "falling", action=back)}
+    return model, {"q0": [0.0], "v0": [1.0], "t_end": 2.0, "events": hits}
+
+
+@pytest.mark.parametrize(
+    ("options", "made"),
+    [
+        ({"method": "rk4", "dt": 0.02}, [1]),  # Parts of 25 steps.
+        ({"method": "rk4", "dt": 5e-4}, [-2]),  # Of 1000: steps four times as long say enough.
+        ({"method": "semi_implicit_euler", "dt": 5e-4}, [-2]),
+        ({"method": "dopri5"}, [-2]),
+        ({"method": "dopri5", "rtol": 1e-3}, [1]),
+    ],
+)
+def test_what_a_right_run_costs(options: dict[str, Any], made: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is made once more one time: short ones by half the step, longer ones by four times the step."""
+    model, given = mass_between_walls()
+    asked, fine = list[int](), SwitchedRun.fine
+
+    def noted(run: SwitchedRun, window: Any, refinements: int, every: int) -> Any:
+        asked.append(refinements)
+        return fine(run, window, refinements, every)
+
+    monkeypatch.setattr(SwitchedRun, "fine", noted)
+    run = sf.simulate(model, **given, **options)
+    assert asked == made and not run.outcome.notes and len(run.events) == 3
+
+
+def test_the_coarser_and_the_finer_run_have_four_times_and_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, given = mass_between_walls()
+    found = list[Any]()
+    apply = Settings.apply
+
+    def noted(settings: Settings, stepper: Any) -> None:
+        found.append(settings)
+        apply(settings, stepper)
+
+    monkeypatch.setattr(Settings, "apply", noted)
+    every: Any = ({"dt": 5e-4}, {"dt": 0.02}, {"method": "dopri5"}, {"method": "dopri5", "rtol": 1e-3, "atol": 1e-5})
+    for options in every:
+        sf.simulate(model, **given, **options)
+        last = found[-1]
+        wanted = {5e-4: 2e-3, 0.02: 0.01}.get(float(options.get("dt", 0.0)), 0.0)
+        assert last.dt == pytest.approx(wanted) and last.t_end == given["t_end"] and len(last.grid) > 5
+        tolerances = (1e-4, 1e-7) if last.adaptive and "rtol" not in options else (1e-5, 1e-7)
+        assert not last.adaptive or (last.rtol, last.atol) == pytest.approx(tolerances)
+
+
+@pytest.mark.parametrize("options", [{}, {"output": 0.1}, {"output": [2.0]}, {"every": 7}, {"output": [0.1, 1.7]}])
+@pytest.mark.parametrize("n", [10, 400])
+def test_the_note_does_not_depend_on_what_is_recorded(options: dict[str, Any], n: int) -> None:
+    model, q, v, given = relay()
+    run = sf.simulate(model, q, v, **given, method="semi_implicit_euler", dt=2.0 / n, **options)
+    assert run.outcome.ok and bool(run.outcome.notes)
+    assert any("actions of events: " in note and "errs by" in note for note in run.outcome.notes) or n == 10
+
+
+def test_runs_that_an_event_ends_are_compared_at_their_end() -> None:
+    """By the state before what it does, of steps that would have come there a little earlier or later."""
+    actions: Any = ({}, {"action": {"dx": 0.0}})
+    for action in actions:
+        model, given = mass_between_walls()
+        given["events"] |= {"end": sf.Event("t - 1.51", "rising", terminal=True, **action)}
+        run = sf.simulate(model, **given, method="rk4", dt=0.02)
+        assert run.outcome.kind == "event" and not run.outcome.notes and len(run.events) >= 3, run.outcome
+
+
+def test_events_that_finer_steps_meet_are_noted() -> None:
+    """A link whose coarse steps turn back before the relay's level."""
+    model, q, v, given = relay()
+    given["events"] = {"up": sf.Event("q0 - level", "rising", action={"side": -30})}
+    right = sf.simulate(model, q, v, **(given | {"events": {}}), **FINE)
+    given["events"] = {"up": sf.Event(f"q0 - {right.q[:, 0].max() - 1e-3}", "rising", action={"side": -30})}
+    run = sf.simulate(model, q, v, **given, method="implicit_euler", dt=0.02)
+    assert not run.events and run.outcome.notes
+
+
+def test_a_run_in_real_time_is_not_made_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, given = mass_between_walls()
+    monkeypatch.setattr(SwitchedRun, "fine", None)
+    run = sf.simulate(model, **(given | {"t_end": 0.4}), method="rk4", dt=0.02, realtime=10.0)
+    assert len(run.events) == 1 and run.outcome.ok
