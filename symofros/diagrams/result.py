@@ -14,6 +14,7 @@ from symofros.diagrams.run.recording import Cost, Crossed, Records
 from symofros.diagrams.run.saving import columns, spread
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.signals import split
+from symofros.errors import DescriptionError
 from symofros.runtime.beams import BeamBending
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw, show_windows, window_figure
@@ -53,6 +54,17 @@ class DiagramRun(Records, Mapping[str, Array]):
         """Names "block.port" of all outputs."""
         wired = self.compiled.resolved.wired
         return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a name is that of an output, as `run[name]` takes it: also of an outlet, or a block with one output."""
+        try:
+            return isinstance(name, str) and bool(self.compiled.resolved.wired.output(name))
+        except DescriptionError:
+            return False
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """A signal over time; `default` where there is no such output."""
+        return self[name] if name in self else default
 
     def __len__(self) -> int:
         """Number of outputs of all blocks of the diagram."""

@@ -54,6 +54,10 @@ class Simulation:
         if not diagram.inlets:
             self.resolved  # noqa: B018 - checks it
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Copy and pickle by the diagram: what it becomes is made again where it is asked for."""
+        return {"diagram": self.diagram, "options": self.options}
+
     @cached_property
     def resolved(self) -> Resolved:
         """The diagram, checked; of one with inlets, with these open."""

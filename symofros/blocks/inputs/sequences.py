@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -22,13 +23,16 @@ from symofros.simulation.results.npz import TooLargeError, read_npz
 # A file is read whole.
 MAX_BYTES = 256_000_000
 MAX_NUMBERS = 20_000_000
+# A column of a saved run: name and unit.
+_STATED_UNIT = re.compile(r"(.+) \[([^\[\]]*)\]")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sequence(Block):
     """Outputs given by samples over time; beyond their ends the first and last value hold.
 
-    A CSV file has a line of names, one of them t, then numbers. An NPZ file has arrays by name, one of them t (n), the
+    A CSV file has a line of names, one of them t, then numbers; of one that a run was saved to, whose times are called
+    "t [s]", names stand without units, and outputs take these. An NPZ file has arrays by name, one of them t (n), the
     others (n) or (n, m).
 
     Attributes:
@@ -65,7 +69,7 @@ class Sequence(Block):
     @cached_property
     def _signals(self) -> dict[str, Signal]:
         """Output -> samples."""
-        arrays = self._arrays()
+        arrays = dict(self._columns[0])
         if "t" not in arrays or len(arrays) < 2:
             raise refuse(
                 self.name,
@@ -104,6 +108,28 @@ class Sequence(Block):
             )
         return values
 
+    @cached_property
+    def _columns(self) -> tuple[dict[str, Any], dict[str, str]]:
+        """Arrays by name, and units of those of a saved run, whose columns are called "t [s]" and the like."""
+        arrays = self._arrays()
+        if not self.file or "t" in arrays or "t [s]" not in arrays:
+            return arrays, {}
+        parts = {name: _STATED_UNIT.fullmatch(name) for name in arrays}
+        names = {name: match[1] if match else name for name, match in parts.items()}
+        if len({*names.values()}) < len(names):
+            return arrays, {}
+        units = {match[1]: match[2] for match in parts.values() if match}
+        return {names[name]: values for name, values in arrays.items()}, units
+
+    def _output_units(self) -> dict[str, str]:
+        """Output -> unit that is stated, or that all its columns have."""
+        arrays, of_columns = self._columns
+        found = {}
+        for output, names in self._chosen([name for name in arrays if name != "t"]).items():
+            units = {of_columns.get(name, "") for name in ([names] if isinstance(names, str) else names)}
+            found[output] = units.pop() if len(units) == 1 else ""
+        return {**found, **dict(self.units or {})}
+
     def _arrays(self) -> dict[str, Any]:
         if self.file:
             return _read(self.name, Path(self.file))
@@ -112,7 +138,7 @@ class Sequence(Block):
 
     def ports(self, environment: Environment) -> Ports:
         """The outputs."""
-        units = dict(self.units or {})
+        units = self._output_units()
         return Ports(
             (),
             tuple(Port(name, signal.values.shape[1:], units.get(name, "")) for name, signal in self._signals.items()),

@@ -47,6 +47,8 @@ class Resolved:
         order: All outputs, each after what it depends on.
         layout: Layout of states and signals in memory.
         schedule: Schedule of the blocks that are due at each instant.
+        diagram: What was read, as it was then.
+        inputs: What was given for its inlets.
     """
 
     wired: Wired
@@ -54,6 +56,8 @@ class Resolved:
     order: Sequence[Source]
     layout: Layout
     schedule: Schedule
+    diagram: Diagram
+    inputs: Mapping[str, Any] | None
 
     @property
     def crossings(self) -> tuple[CrossingEvent, ...]:
@@ -97,6 +101,9 @@ def resolve(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Resolv
     Raises:
         DescriptionError: With what is wrong: names, shapes, units, sample times, algebraic loops.
     """
+    names = ("models", "blocks", "wires", "inlets", "outlets", "inlet_ports", "parts", "origin")
+    present: dict[str, Any] = {name: dict(getattr(diagram, name)) for name in names}
+    diagram = replace(diagram, **present)
     wired = wire(with_inlets(diagram, inputs))
     pieces: dict[str, Piece] = {}
     problems: list[Problem] = []
@@ -109,7 +116,7 @@ def resolve(diagram: Diagram, inputs: Mapping[str, Any] | None = None) -> Resolv
         raise DescriptionError(problems)
     order = order_of(wired, {name: piece.needs for name, piece in pieces.items()})
     layout = lay_out(wired, pieces, groups_in_motion(wired, pieces))
-    return Resolved(wired, pieces, order, layout, schedule(rates_of(pieces), wired.name))
+    return Resolved(wired, pieces, order, layout, schedule(rates_of(pieces), wired.name), diagram, inputs)
 
 
 def lowered(wired: Wired, name: str) -> Piece:
@@ -161,6 +168,14 @@ class CompiledDiagram:
     sources: tuple[str, ...] = ()
     _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> CompiledDiagram:
+        """Itself: nothing of it can be changed."""
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle by the diagram, so that another process compiles it, or finds it in the cache."""
+        return _compiled, (self.resolved.diagram, self.resolved.inputs, self.options)
+
     def energies(self, name: str) -> Model:
         """A model of a mechanism that has its energies only."""
         return self.resolved.wired.models.energies(name, self.options)
@@ -177,6 +192,10 @@ class CompiledDiagram:
             unit, _ = unit_of(program, record_of(self.resolved, None), self.toolchain, self.options)
             self._signals[key] = unit.kernels["signals", ""]
         return self._signals[key]
+
+
+def _compiled(diagram: Diagram, inputs: Mapping[str, Any] | None, options: Options) -> CompiledDiagram:
+    return compile_diagram(resolve(diagram, inputs), options)
 
 
 def fuser(resolved: Resolved) -> Fuser:

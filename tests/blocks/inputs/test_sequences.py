@@ -46,6 +46,25 @@ def test_a_trajectory_file_can_have_several_outputs(csv: Path, tmp_path: Path) -
     np.testing.assert_allclose(run(Sequence(name="s", file=str(csv)), t_end=0.2)["y"], lines(found["t"]), atol=1e-15)
 
 
+def test_a_saved_run_is_read_as_it_was_written(tmp_path: Path) -> None:
+    """Names without units, which outputs have; columns of several units make an output without."""
+    diagram = sf.Diagram("first")
+    diagram.add(sf.blocks.Sine(name="wave", amplitude=[1.0, 2.0], unit="rad"))
+    first = sf.Simulation(diagram).run(1.0, dt=0.1, record=0.1)
+    first.save(tmp_path / "run.csv", "wave.y", "wave.rate")
+    outputs = {"y": ["wave.y[0]", "wave.y[1]"], "one": "wave.rate[1]", "mixed": ["wave.y[0]", "wave.rate[0]"]}
+    diagram.add(Sequence(name="read", file=str(tmp_path / "run.csv"), outputs=outputs))
+    again = sf.Simulation(diagram).run(1.0, dt=0.1, record=0.1)
+    np.testing.assert_array_equal(again["read.y"], again["wave.y"])
+    np.testing.assert_array_equal(again["read.one"], again["wave.rate"][:, 1])
+    assert [again.unit(f"read.{name}") for name in outputs] == ["rad", "rad/s", ""]
+    # A column that the file's author called so keeps its name.
+    (tmp_path / "own.csv").write_text("t,F [N]\n0,1\n1,2\n")
+    assert Sequence(name="s", file=str(tmp_path / "own.csv"), outputs={"F": "F [N]"}).samples()["F"].values.shape == (
+        2,
+    )
+
+
 @pytest.mark.parametrize(
     ("text", "found", "where"),
     [

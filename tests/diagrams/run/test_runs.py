@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -337,3 +340,31 @@ def test_a_loop_moves_beside_what_has_no_constraints() -> None:
     exact = solve_ivp(slope, (0.0, 0.5), [0.4, 0.0, 0.1, 0.0, 0.0], t_eval=run.t, rtol=1e-11, atol=1e-13).y.T
     found = np.column_stack([run["loop.q"][:, 0], run["loop.v"][:, 0], run["cart.q"], run["cart.v"], run["lag.y"]])
     np.testing.assert_allclose(found, exact, atol=1e-8)
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda made: pickle.loads(pickle.dumps(made))])
+def test_runs_and_simulations_are_copied_and_sent_to_other_processes(copied: Callable[[Any], Any]) -> None:
+    """By their diagram, with what was given for inlets, as it was when it was run."""
+    diagram = sf.Diagram("sent")
+    diagram.add(Lag(name="lag", tau=0.1))
+    diagram.add_inlet("goal", "lag.x")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(0.2, dt=0.01, record=0.01, inputs={"goal": 2.0})
+    again = copied(simulation).run(0.2, dt=0.01, record=0.01, inputs={"goal": 2.0})
+    diagram.add(blocks.Constant(name="later", value=1.0))
+    sent = copied(run)
+    for other in (again, sent):
+        np.testing.assert_array_equal(other["lag.y"], run["lag.y"])
+        assert "later.y" not in other and str(other.outcome) == str(run.outcome)
+    np.testing.assert_array_equal(sent["goal.value"], np.full(21, 2.0))
+
+
+def test_a_run_says_which_signals_it_has() -> None:
+    """As a mapping does: by a name of an output, of an outlet, of a block with one; other names raise nothing."""
+    diagram = sf.Diagram("named")
+    diagram.add(Counter(name="ticks", period=0.1))
+    diagram.outlets = {"told": "ticks.n"}
+    run = sf.Simulation(diagram).run(0.2, dt=0.1, record=0.1)
+    assert all(name in run and run.get(name).tolist() == [0, 1, 2] for name in ("ticks.n", "ticks", "told"))
+    for name in ("ticks.m", "later.y", "", 3):
+        assert name not in run and run.get(name, "none") == "none"  # type: ignore[arg-type]
