@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field
@@ -101,11 +102,13 @@ def report_of(found: Found, absent: Mapping[str, str]) -> Data:
     chosen, cells = found.reach.plugins, found.cells
     kept = {place for part in found.kept for place in parts.places(part)}
     own = [place for place in found.digests if place not in kept and place[0] in chosen]
+    left = Counter(engine for engine, model in found.digests if (engine, model) not in kept and engine not in chosen)
     asked = ({"engine": place[0], "model": place[1], "digest": found.digests[place], "origin": ""} for place in own)
     whole = parts.merged(
         {
             "engines": [{**_engine(plugin), **found.reach.stated(name)} for name, plugin in chosen.items()],
             "absent": absent,
+            "left": dict(left),
             "models": list(found.questions),
             "functions": {name: FUNCTIONS[name.partition(":")[0]].text for name in names(chosen)},
             # Exceptions inside plug-ins that come with this package are faults of ours, with whatever release.

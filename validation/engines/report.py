@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import Any
 
+from ..program import PROGRAM
 from ..reporting.numbers import counted
 from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from . import changes, parts
@@ -253,7 +254,11 @@ def _measured(asked: list[Row], data: Data) -> str:
 
 
 def _earlier(data: Data) -> Iterator[Text]:
-    """Which cells are of earlier commits."""
+    """Which cells are of earlier commits, and how much was not asked: of engines that are not here, what changed."""
+    if left := data.get("left"):
+        engines = ", ".join(f"{name} {number}" for name, number in left.items())
+        said = f"{counted(sum(left.values()), 'pair')} of an engine and a tree ({engines})"
+        yield Text(f"Not asked anew: {said}; `{PROGRAM} engines --update` asks them where the engines are.", "bad")
     earlier = [row for row in data["asked"] if row["origin"] != ""]
     if earlier:
         why = "the same question was put to the same release by the same code"

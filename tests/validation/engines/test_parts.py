@@ -126,7 +126,10 @@ def test_a_report_says_which_cells_are_of_which_commit() -> None:
     whole = {**parts.merged(own, [stored]), "revision": "fedfedfedfed"}
     assert "1 pair of an engine and a tree, of 2. then, defdefde." in shown(whole)
     assert "now, fedfedfe: 1; then, defdefde: 1" in shown(whole)
-    assert "Taken over" not in shown({**own, "revision": "fedfedfedfed"})
+    assert (
+        "Taken over" not in (all_asked := shown({**own, "revision": "fedfedfedfed"})) and "Not asked" not in all_asked
+    )
+    assert "Not asked anew: 3 pairs of an engine and a tree (a 2, b 1)" in shown({**own, "left": {"a": 2, "b": 1}})
 
 
 def test_what_is_no_report_is_refused(tmp_path: Path) -> None:

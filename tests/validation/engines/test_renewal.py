@@ -137,3 +137,12 @@ def test_a_stored_fault_without_a_proof_is_asked_about_anew(tmp_path: Path, monk
         renewal._prove(Run(TOPIC, tmp_path), found, 0)
     assert found.cells == [again] and found.proofs == []
     assert [parts.places(one) for one in found.kept] == [[("mujoco", "free")]]
+
+
+def test_a_report_counts_what_was_not_asked_of_engines_that_are_not_here() -> None:
+    asked = {("mujoco", "ball"): "1", ("away", "ball"): "2", ("away", "free"): "3", ("kept", "ball"): "4"}
+    part = {"asked": {"kept": {"ball": ["4"]}}, "engines": [], "functions": {}, "proofs": []}
+    found = renewal.Found(Opened({"mujoco": OWN["mujoco"]}), {"ball": tree_of("ball")}, [], [part], asked)
+    whole = renewal.report_of(found, {})
+    assert whole["left"] == {"away": 2}
+    assert parts.places(whole) == [("kept", "ball"), ("mujoco", "ball")]
