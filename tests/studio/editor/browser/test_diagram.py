@@ -258,3 +258,28 @@ def test_comments_stand_on_the_canvas_and_in_the_file(opened: Serve, page: Page,
     assert server.file.read_text()[len(DRAWN) :] == (
         words + "  comment2: {kind: comment, text: 'Speed of a joint', heading: true}\n"
     )
+
+
+@pytest.mark.parametrize("later", [0, 1])
+def test_wires_of_a_new_block_are_drawn_when_it_is_measured_late(
+    serve: Serve, page: Page, tmp_path: Path, later: int
+) -> None:
+    """A browser that is busy says how large a block is only after the block has changed again."""
+    page.add_init_script(f"""
+        const Observer = window.ResizeObserver;
+        window.ResizeObserver = class extends Observer {{
+          constructor(act) {{ super((entries, observer) => setTimeout(() => act(entries, observer), {later})); }}
+        }};
+    """)
+    shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
+    page.goto(serve("held.yaml", content=HELD).url)
+    page.get_by_role("button", name="Arrange the blocks").click()
+    at_rest(steps.block(page, "blocks/where"))
+    steps.block(page, "blocks/where").locator(".block-title").click()
+    page.keyboard.down("Control")
+    steps.block(page, "blocks/pd").locator(".block-title").click()
+    page.keyboard.up("Control")
+    steps.block(page, "blocks/pd").locator(".block-title").click(button="right")
+    page.get_by_role("menuitem", name="Group into a subsystem").click()
+    for wire in ("parts/subsystem/inputs/q", "parts/subsystem/inputs/v", "blocks/plant/inputs/u"):
+        expect(steps.wire(page, wire)).to_have_count(1)

@@ -49,6 +49,8 @@ export function blocks(
       return previous;
     const [width, height] = size(node);
     return {
+      // Where no size is stated, a block that changes while React Flow measures it is never measured: no wire is drawn.
+      measured: { width, height },
       ...previous,
       id: node.id,
       type: "block" as const,

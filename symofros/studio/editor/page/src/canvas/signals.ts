@@ -36,6 +36,8 @@ export function signalBlocks(
       return previous;
     const [width, height] = blockSize(node);
     return {
+      // Where no size is stated, a block that changes while React Flow measures it is never measured: no wire is drawn.
+      measured: { width, height },
       ...previous,
       id: node.id,
       type: "signal" as const,
