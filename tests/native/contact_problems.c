@@ -71,24 +71,26 @@ static double residual(const sym_contact_problem *p, const double *f) {
 
 /* Whether modes agree with a motion after all, from many directions in which balls may begin to slide, drawn at random. */
 static int32_t sought(sym_contact_problem *p, int32_t times) {
-    int32_t code, sets = 1, i, k;
+    const uint64_t before = state; /* problems are the same whatever becomes of them */
+    int32_t code, sets = 1, found = 0, i, k;
     for (i = 0; i < p->n; ++i) sets *= 3;
-    for (code = 0; code < sets; ++code) {
+    for (code = 0; code < sets && !found; ++code) {
         int32_t left = code, fits = 1, turns = 0;
         for (i = 0; i < p->n; ++i, left /= 3) {
             p->mode[i] = (double)(left % 3);
             fits &= !(p->parts[i] && left % 3 > 0) && !((p->slides[i] || p->mu[i] == 0.0) && left % 3 == 2);
             turns |= p->mode[i] == SYM_SLIDES && !p->slides[i] && p->mu[i] > 0.0;
         }
-        for (k = 0; fits && k < (turns ? times : 1); ++k) {
+        for (k = 0; fits && !found && k < (turns ? times : 1); ++k) {
             for (i = 0; i < p->n; ++i) {
                 const double angle = 6.283185307179586 * uniform();
                 if (!p->slides[i]) p->d[2 * i] = cos(angle), p->d[2 * i + 1] = sin(angle);
             }
-            if (sym_try_modes(p)) return 1;
+            found = sym_try_modes(p);
         }
     }
-    return 0;
+    state = before;
+    return found;
 }
 
 /* Forces of the same motion within all cones, if balls that stick share a load: f moves between the cones and what changes

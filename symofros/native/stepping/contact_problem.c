@@ -1,22 +1,15 @@
-/* Forces of several balls on planes by Coulomb's law: a small problem with cones, at the level of accelerations or of speeds
- * (docs/theory/constraints.md, section 15, (46) to (48)). */
+/* Forces of several balls on surfaces by Coulomb's law: a small problem with cones, at the level of accelerations or of speeds
+ * (docs/theory/constraints.md, section 15, (46) and (47)). */
 
-enum { SYM_MOST_CONTACTS = 8, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS, SYM_MOST_SWEEPS = 60, SYM_UNIQUE_UP_TO = 4, SYM_DIRECT_TURNS = 25, SYM_MOST_REFINEMENTS = 12 };
+enum { SYM_DIRECT_TURNS = 25, SYM_MOST_REFINEMENTS = 12 };
 /* Difference of angles by which rates are taken; angle that is rounding [rad]. */
 #define SYM_ANGLE_STEP 1e-7
 #define SYM_ANGLE_ROUNDING 1e-15
-/* Shares that are rounding: of singular values, of a normal force, of what a ball's point does; by which two motions differ;
- * of what cones have left where several balls share a load. */
-#define SYM_SINGULAR_VALUE 1e-11
-#define SYM_NO_COLUMN 1e-27 /* the square of one, of two columns */
-/* Share of the largest pivot down to which a system is solved as it is, with no thought of its rank. */
-#define SYM_REGULAR 1e-5
+/* Shares that are rounding: of a normal force, of what a ball's point does, of what cones have left where several balls share a
+ * load. */
 #define SYM_FORCE_ROUNDING 1e-12
 #define SYM_CONTACT_ROUNDING 1e-10
-#define SYM_DIFFERENT 1e-6
 #define SYM_MARGIN_ROUNDING 1e-9
-/* Share of the load that is so much that how else it may be shared does not matter. */
-#define SYM_AMPLE 0.05
 
 typedef struct sym_contact_problem { /* c = W f + b, of n balls: x, y and normal of each */
     int32_t n;
@@ -25,195 +18,11 @@ typedef struct sym_contact_problem { /* c = W f + b, of n balls: x, y and normal
     int32_t slides[SYM_MOST_CONTACTS];  /* whether one slides in a direction that is known: */
     double d[2 * SYM_MOST_CONTACTS];
     double size;                        /* of b */
+    double last[SYM_MOST_CONTACTS];     /* modes of the motion before: a guess */
     /* The solution: modes, forces, c, and the motion that follows. */
     double mode[SYM_MOST_CONTACTS], f[SYM_MOST_FORCES], c[SYM_MOST_FORCES];
     int32_t shared;                     /* whether balls that stick share their load in more than one way */
 } sym_contact_problem;
-
-/* Singular values of A (n x n, row by row) by rotations of its columns: A becomes U S, column by column orthogonal, V (n x n)
- * has A_before = U S V^T. Returns the largest. */
-static double sym_singular_values(int32_t n, double *A, double *V, double *values) {
-    double largest = 0.0, total = 0.0;
-    int32_t i, j, k, sweep, turned = 1;
-    for (i = 0; i < n * n; ++i) V[i] = i % (n + 1) == 0, total += A[i] * A[i];
-    for (sweep = 0; sweep < SYM_MOST_SWEEPS && turned; ++sweep) {
-        turned = 0;
-        for (j = 0; j < n; ++j)
-            for (k = j + 1; k < n; ++k) {
-                double a = 0.0, b = 0.0, along = 0.0, zeta, t, cosine, sine;
-                for (i = 0; i < n; ++i) {
-                    const double x = A[n * i + j], y = A[n * i + k];
-                    a += x * x, b += y * y, along += x * y;
-                }
-                if (fabs(along) <= 1e-15 * sqrt(a * b) || a + b <= SYM_NO_COLUMN * total) continue;
-                turned = 1;
-                zeta = (b - a) / (2.0 * along);
-                t = copysign(1.0, zeta) / (fabs(zeta) + hypot(1.0, zeta));
-                cosine = 1.0 / hypot(1.0, t), sine = t * cosine;
-                for (i = 0; i < n; ++i) {
-                    const double x = A[n * i + j], y = A[n * i + k], p = V[n * i + j], q = V[n * i + k];
-                    A[n * i + j] = cosine * x - sine * y, A[n * i + k] = sine * x + cosine * y;
-                    V[n * i + j] = cosine * p - sine * q, V[n * i + k] = sine * p + cosine * q;
-                }
-            }
-    }
-    for (j = 0; j < n; ++j) {
-        double square = 0.0;
-        for (i = 0; i < n; ++i) square += A[n * i + j] * A[n * i + j];
-        values[j] = sqrt(square);
-        if (values[j] > largest) largest = values[j];
-    }
-    return largest;
-}
-
-/* x of least norm with A x = y as far as that can be (n x n; A is lost); null (n x the number returned): directions of x that
- * change nothing. */
-static int32_t sym_least_norm(int32_t n, double *A, const double *y, double *x, double *null) {
-    double V[SYM_MOST_FORCES * SYM_MOST_FORCES], values[SYM_MOST_FORCES];
-    const double largest = sym_singular_values(n, A, V, values);
-    int32_t i, j, count = 0;
-    for (i = 0; i < n; ++i) x[i] = 0.0;
-    for (j = 0; j < n; ++j) {
-        double along = 0.0;
-        if (!(values[j] > SYM_SINGULAR_VALUE * largest)) {
-            if (null != NULL)
-                for (i = 0; i < n; ++i) null[n * count + i] = V[n * i + j];
-            ++count;
-            continue;
-        }
-        for (i = 0; i < n; ++i) along += A[n * i + j] * y[i];
-        along /= values[j] * values[j];
-        for (i = 0; i < n; ++i) x[i] += V[n * i + j] * along;
-    }
-    return count;
-}
-
-/* x (n) with A x = y by elimination with complete pivoting, A being lost. Returns 0 where a pivot says that A is near to a
- * matrix of lower rank. */
-static int32_t sym_solve_regular(int32_t n, double *A, const double *y, double *x) {
-    double b[SYM_MOST_FORCES], first = 0.0;
-    int32_t column[SYM_MOST_FORCES], i, j, k;
-    for (i = 0; i < n; ++i) b[i] = y[i], column[i] = i;
-    for (k = 0; k < n; ++k) {
-        int32_t row = k, across = k;
-        for (i = k; i < n; ++i)
-            for (j = k; j < n; ++j)
-                if (fabs(A[n * i + j]) > fabs(A[n * row + across])) row = i, across = j;
-        if (k == 0) first = fabs(A[n * row + across]);
-        if (!(fabs(A[n * row + across]) > SYM_REGULAR * first)) return 0;
-        for (j = 0; j < n; ++j) {
-            const double entry = A[n * k + j];
-            A[n * k + j] = A[n * row + j], A[n * row + j] = entry;
-        }
-        for (i = 0; i < n; ++i) {
-            const double entry = A[n * i + k];
-            A[n * i + k] = A[n * i + across], A[n * i + across] = entry;
-        }
-        i = column[k], column[k] = column[across], column[across] = i;
-        x[0] = b[k], b[k] = b[row], b[row] = x[0];
-        for (i = k + 1; i < n; ++i) {
-            const double factor = A[n * i + k] / A[n * k + k];
-            for (j = k + 1; j < n; ++j) A[n * i + j] -= factor * A[n * k + j];
-            b[i] -= factor * b[k];
-        }
-    }
-    for (k = n - 1; k >= 0; --k) {
-        for (j = k + 1; j < n; ++j) b[k] -= A[n * k + j] * b[j];
-        b[k] /= A[n * k + k];
-    }
-    for (k = 0; k < n; ++k) x[column[k]] = b[k];
-    return 1;
-}
-
-/* The barrier of sym_shared_margin at x = (y, s): its value, HUGE_VAL outside, and gradient and Hessian where they are wanted. */
-static double sym_margin_barrier(int32_t n, int32_t k, const double *mu, const double *f, const double *null, double load, double weight,
-                                 const double *x, double *gradient, double *hessian) {
-    const double s = x[k], left = load - s;
-    double value = -weight * s;
-    int32_t i, j, l, m = k + 1;
-    if (!(left > 0.0)) return HUGE_VAL;
-    value -= log(left);
-    if (gradient != NULL) {
-        for (j = 0; j < m * m; ++j) hessian[j] = 0.0;
-        for (j = 0; j < k; ++j) gradient[j] = 0.0;
-        gradient[k] = -weight + 1.0 / left, hessian[m * m - 1] = 1.0 / (left * left);
-    }
-    for (i = 0; i < n; ++i) {
-        double z[3], rows[3][SYM_MOST_FORCES + 1], g[SYM_MOST_FORCES + 1], square;
-        for (l = 0; l < 3; ++l) {
-            z[l] = f[3 * i + l];
-            for (j = 0; j < k; ++j) rows[l][j] = null[3 * n * j + 3 * i + l], z[l] += rows[l][j] * x[j];
-            rows[l][k] = 0.0;
-        }
-        for (j = 0; j < k; ++j) rows[2][j] *= mu[i];
-        rows[2][k] = -1.0;
-        z[2] = mu[i] * z[2] - s;
-        square = z[2] * z[2] - z[0] * z[0] - z[1] * z[1];
-        if (!(z[2] > 0.0 && square > 0.0)) return HUGE_VAL;
-        value -= log(square);
-        if (gradient == NULL) continue;
-        for (j = 0; j < m; ++j) {
-            g[j] = 2.0 * (z[2] * rows[2][j] - z[0] * rows[0][j] - z[1] * rows[1][j]) / square;
-            gradient[j] -= g[j];
-        }
-        for (j = 0; j < m; ++j)
-            for (l = 0; l < m; ++l) {
-                const double across = rows[0][j] * rows[0][l] + rows[1][j] * rows[1][l];
-                hessian[m * j + l] += g[j] * g[l] - 2.0 * (rows[2][j] * rows[2][l] - across) / square;
-            }
-    }
-    return value;
-}
-
-/* What the cones of n balls that stick have left, over their load, where it is shared as well as can be: the largest share s of
- * the load with |f_t| <= mu f_n - s for all, over forces f + null y (3 n, and k directions), by Newton's method with a
- * logarithmic barrier, (48). */
-static double sym_shared_margin(int32_t n, int32_t k, const double *mu, const double *f, const double *null) {
-    double x[SYM_MOST_FORCES + 1], next[SYM_MOST_FORCES + 1], gradient[SYM_MOST_FORCES + 1], step[SYM_MOST_FORCES + 1];
-    double hessian[(SYM_MOST_FORCES + 1) * (SYM_MOST_FORCES + 1)], load = 0.0, least = HUGE_VAL, weight;
-    int32_t i, j, round, m = k + 1;
-    for (i = 0; i < n; ++i) {
-        load += fabs(f[3 * i]) + fabs(f[3 * i + 1]) + fabs(f[3 * i + 2]);
-        least = fmin(least, mu[i] * f[3 * i + 2] - hypot(f[3 * i], f[3 * i + 1]));
-    }
-    if (load == 0.0) return 0.0;
-    if (k == 0 || least > SYM_AMPLE * load) return least / load;
-    for (j = 0; j < k; ++j) x[j] = 0.0;
-    x[k] = fmin(least, 0.5 * load) - load;
-    for (weight = 1.0 / load; weight < 1e12 / load; weight *= 20.0)
-        for (round = 0; round < 50; ++round) {
-            const double value = sym_margin_barrier(n, k, mu, f, null, load, weight, x, gradient, hessian);
-            double decrease = 0.0, part = 1.0;
-            for (j = 0; j < m; ++j) hessian[m * j + j] *= 1.0 + 1e-14;
-            { /* Cholesky's factors; the barrier is convex */
-                int32_t a, b, c;
-                for (a = 0; a < m; ++a)
-                    for (b = 0; b <= a; ++b) {
-                        double sum = hessian[m * a + b];
-                        for (c = 0; c < b; ++c) sum -= hessian[m * a + c] * hessian[m * b + c];
-                        hessian[m * a + b] = a == b ? sqrt(sum > 0.0 ? sum : 1e-300) : sum / hessian[m * b + b];
-                    }
-                for (a = 0; a < m; ++a) {
-                    step[a] = -gradient[a];
-                    for (c = 0; c < a; ++c) step[a] -= hessian[m * a + c] * step[c];
-                    step[a] /= hessian[m * a + a];
-                }
-                for (a = m - 1; a >= 0; --a) {
-                    for (c = a + 1; c < m; ++c) step[a] -= hessian[m * c + a] * step[c];
-                    step[a] /= hessian[m * a + a];
-                }
-            }
-            for (j = 0; j < m; ++j) decrease -= gradient[j] * step[j];
-            if (!(decrease > 1e-12)) break;
-            for (; part > 1e-10; part *= 0.5) {
-                for (j = 0; j < m; ++j) next[j] = x[j] + part * step[j];
-                if (sym_margin_barrier(n, k, mu, f, null, load, weight, next, NULL, NULL) <= value - 0.1 * part * decrease) break;
-            }
-            if (!(part > 1e-10)) break;
-            for (j = 0; j < m; ++j) x[j] = next[j];
-        }
-    return x[k] / load;
-}
 
 /* What balls that stick have left of their cones with the forces f (3 n), over their load; *shared: whether they share it in
  * more than one way. */
@@ -311,8 +120,76 @@ static int32_t sym_modes_agree(sym_contact_problem *p) {
     return margin > (p->shared ? SYM_MARGIN_ROUNDING : SYM_FORCE_ROUNDING);
 }
 
+/* What balls that slide do with forces on them alone, c = R f + r, those that stick not moving: for many directions of one set
+ * of modes, (47a). */
+typedef struct sym_sliding_problem {
+    int32_t n, ball[SYM_MOST_CONTACTS];
+    int32_t regular; /* whether forces on the balls that stick are determined; if not, there is no R */
+    double R[SYM_MOST_FORCES * SYM_MOST_FORCES], r[SYM_MOST_FORCES];
+} sym_sliding_problem;
+
+/* That of the problem's modes. */
+static void sym_reduce_to_sliding(const sym_contact_problem *p, sym_sliding_problem *at) {
+    double A[SYM_MOST_FORCES * SYM_MOST_FORCES], copy[SYM_MOST_FORCES * SYM_MOST_FORCES], y[SYM_MOST_FORCES], x[SYM_MOST_FORCES];
+    int32_t sticks[SYM_MOST_FORCES], m = 0, rows, i, j, k;
+    const int32_t n = 3 * p->n;
+    at->n = 0, at->regular = 1;
+    for (i = 0; i < p->n; ++i) {
+        if (p->mode[i] == SYM_SLIDES) at->ball[at->n++] = i;
+        for (k = 0; k < 3 && p->mode[i] == SYM_STICKS; ++k) sticks[m++] = 3 * i + k;
+    }
+    rows = 3 * at->n;
+    for (i = 0; i < m; ++i)
+        for (j = 0; j < m; ++j) A[m * i + j] = p->W[n * sticks[i] + sticks[j]];
+    for (j = 0; j <= rows; ++j) { /* the last column is r */
+        const int32_t from = j < rows ? 3 * at->ball[j / 3] + j % 3 : -1;
+        for (i = 0; i < m; ++i) y[i] = from < 0 ? p->b[sticks[i]] : p->W[n * sticks[i] + from];
+        memcpy(copy, A, (size_t)(m * m) * sizeof *A);
+        if (m > 0 && !sym_solve_regular(m, copy, y, x)) {
+            at->regular = 0;
+            return;
+        }
+        for (i = 0; i < rows; ++i) {
+            const int32_t row = 3 * at->ball[i / 3] + i % 3;
+            double c = from < 0 ? p->b[row] : p->W[n * row + from];
+            for (k = 0; k < m; ++k) c -= p->W[n * row + sticks[k]] * x[k];
+            if (from < 0) at->r[i] = c;
+            else at->R[rows * i + j] = c;
+        }
+    }
+}
+
+/* Forces and c of the balls that slide, in the directions of the problem, and of no others; at: NULL, or no R: of all. */
+static void sym_motion_of_sliding(sym_contact_problem *p, const sym_sliding_problem *at) {
+    double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], y[SYM_MOST_CONTACTS], x[SYM_MOST_CONTACTS], f[SYM_MOST_FORCES];
+    const int32_t n = at != NULL ? at->n : 0, rows = 3 * n;
+    int32_t i, j;
+    for (i = 0; i < n && at->regular; ++i) {
+        const double *row = at->R + rows * (3 * i + 2);
+        y[i] = -at->r[3 * i + 2];
+        for (j = 0; j < n; ++j) {
+            const double *d = p->d + 2 * at->ball[j];
+            A[n * i + j] = row[3 * j + 2] - p->mu[at->ball[j]] * (row[3 * j] * d[0] + row[3 * j + 1] * d[1]);
+        }
+    }
+    if (at == NULL || !at->regular || !sym_solve_regular(n, A, y, x)) {
+        sym_forces_of_modes(p);
+        return;
+    }
+    for (i = 0; i < n; ++i) {
+        const double *d = p->d + 2 * at->ball[i], drag = p->mu[at->ball[i]] * x[i];
+        f[3 * i] = -drag * d[0], f[3 * i + 1] = -drag * d[1], f[3 * i + 2] = x[i];
+        memcpy(p->f + 3 * at->ball[i], f + 3 * i, 3 * sizeof *f);
+    }
+    for (i = 0; i < rows; ++i) {
+        double *c = p->c + 3 * at->ball[i / 3] + i % 3;
+        for (j = 0, *c = at->r[i]; j < rows; ++j) *c += at->R[rows * i + j] * f[j];
+    }
+}
+
 typedef struct sym_ball_in_problem { /* a ball that begins to slide, the others staying */
     sym_contact_problem *problem;
+    const sym_sliding_problem *sliding;
     int32_t ball;
 } sym_ball_in_problem;
 
@@ -321,7 +198,7 @@ static double sym_c_of_direction(void *data, const double *d, double *along) {
     const sym_ball_in_problem *of = (const sym_ball_in_problem *)data;
     const double *c = of->problem->c + 3 * of->ball;
     memcpy(of->problem->d + 2 * of->ball, d, 2 * sizeof *d);
-    sym_forces_of_modes(of->problem);
+    sym_motion_of_sliding(of->problem, of->sliding);
     *along = of->problem->f[3 * of->ball + 2] > 0.0 ? c[0] * d[0] + c[1] * d[1] : -1.0; /* planes do not draw */
     return c[0] * d[1] - c[1] * d[0];
 }
@@ -340,110 +217,81 @@ static void sym_turn_direction(double *d, double angle) {
 
 /* Turn balls that begin to slide, in number order, so that friction opposes what they leave, by Newton's method with differences:
  * the angle by which each is off falls to rounding. */
-static void sym_refine_directions(sym_contact_problem *p, int32_t count, const int32_t *which) {
+static void sym_refine_directions(sym_contact_problem *p, const sym_sliding_problem *at, int32_t count, const int32_t *which) {
     double J[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], off[SYM_MOST_CONTACTS], turn[SYM_MOST_CONTACTS], d[2 * SYM_MOST_CONTACTS];
     int32_t round, i, j;
     for (round = 0; round < SYM_MOST_REFINEMENTS; ++round) {
         double largest = 0.0;
-        sym_forces_of_modes(p);
+        sym_motion_of_sliding(p, at);
         for (i = 0; i < count; ++i) off[i] = sym_off_direction(p, which[i]), largest = fmax(largest, fabs(off[i]));
         if (!(largest > SYM_ANGLE_ROUNDING) || (round > 0 && largest > 0.5)) return;
         memcpy(d, p->d, sizeof d);
         for (j = 0; j < count; ++j) {
             sym_turn_direction(p->d + 2 * which[j], SYM_ANGLE_STEP);
-            sym_forces_of_modes(p);
+            sym_motion_of_sliding(p, at);
             for (i = 0; i < count; ++i) J[count * i + j] = (sym_off_direction(p, which[i]) - off[i]) / SYM_ANGLE_STEP;
             memcpy(p->d, d, sizeof d);
         }
         (void)sym_least_norm(count, J, off, turn, NULL);
         for (i = 0; i < count; ++i) sym_turn_direction(p->d + 2 * which[i], -fmax(-0.5, fmin(0.5, turn[i])));
     }
-    sym_forces_of_modes(p);
+    sym_motion_of_sliding(p, at);
 }
 
 /* Whether modes agree, as they are or, better, once directions are refined. */
 static int32_t sym_agree_refined(sym_contact_problem *p, int32_t count, const int32_t *which) {
     sym_contact_problem first;
+    sym_forces_of_modes(p);
     if (!sym_modes_agree(p)) return 0;
     first = *p;
-    if (count > 0) sym_refine_directions(p, count, which);
+    if (count > 0) sym_refine_directions(p, NULL, count, which);
     if (!sym_modes_agree(p)) *p = first;
+    return 1;
+}
+
+/* Turn balls that begin to slide to what they leave. Returns whether one turns. */
+static int32_t sym_turn_directions(sym_contact_problem *p, int32_t count, const int32_t *which) {
+    int32_t i, turns = 0;
+    for (i = 0; i < count; ++i) {
+        const double *c = p->c + 3 * which[i], size = hypot(c[0], c[1]);
+        double *d = p->d + 2 * which[i], was[2] = {d[0], d[1]};
+        if (!(size > SYM_CONTACT_ROUNDING * p->size)) continue;
+        d[0] = c[0] / size, d[1] = c[1] / size;
+        turns |= hypot(d[0] - was[0], d[1] - was[1]) > SYM_CONTACT_ROUNDING;
+    }
+    return turns;
+}
+
+/* Whether friction opposes what balls that begin to slide leave. */
+static int32_t sym_directions_agree(const sym_contact_problem *p, int32_t count, const int32_t *which) {
+    const double tolerance = 2.0 * SYM_CONTACT_ROUNDING * p->size;
+    int32_t i;
+    for (i = 0; i < count; ++i) {
+        const double *c = p->c + 3 * which[i], *d = p->d + 2 * which[i];
+        if (c[0] * d[0] + c[1] * d[1] < -tolerance || fabs(c[0] * d[1] - c[1] * d[0]) > tolerance) return 0;
+    }
     return 1;
 }
 
 /* Whether modes agree once balls that begin to slide do so against their friction, found by iteration. */
 static int32_t sym_try_modes(sym_contact_problem *p) {
-    int32_t which[SYM_MOST_CONTACTS], count = 0, i, round;
+    int32_t which[SYM_MOST_CONTACTS], count = 0, i, round, turns = 1;
+    sym_sliding_problem at;
     for (i = 0; i < p->n; ++i)
         if (p->mode[i] == SYM_SLIDES && !p->slides[i] && p->mu[i] > 0.0) which[count++] = i;
-    for (round = 0; round < SYM_DIRECT_TURNS; ++round) {
-        int32_t turns = 0;
-        sym_forces_of_modes(p);
-        if (sym_agree_refined(p, count, which)) return 1;
-        for (i = 0; i < count; ++i) {
-            const double *c = p->c + 3 * which[i], size = hypot(c[0], c[1]);
-            double *d = p->d + 2 * which[i], was[2] = {d[0], d[1]};
-            if (!(size > SYM_CONTACT_ROUNDING * p->size)) continue;
-            d[0] = c[0] / size, d[1] = c[1] / size;
-            turns |= hypot(d[0] - was[0], d[1] - was[1]) > SYM_CONTACT_ROUNDING;
-        }
-        if (!turns && count > 1) return 0;
-        if (!turns) break;
+    if (count == 0) return sym_agree_refined(p, 0, which);
+    sym_reduce_to_sliding(p, &at);
+    for (round = 0; round < SYM_DIRECT_TURNS && turns; ++round) {
+        sym_motion_of_sliding(p, &at);
+        if (sym_directions_agree(p, count, which) && sym_agree_refined(p, count, which)) return 1;
+        turns = sym_turn_directions(p, count, which);
     }
+    if (!turns && count > 1) return 0;
     if (count == 1) {
-        sym_ball_in_problem ball = {p, which[0]};
-        (void)sym_find_direction(sym_c_of_direction, &ball, p->d + 2 * which[0]);
-        sym_forces_of_modes(p);
+        sym_ball_in_problem ball = {p, &at, which[0]};
+        if (!sym_find_direction(sym_c_of_direction, &ball, p->d + 2 * which[0])) return 0;
     } else {
-        sym_refine_directions(p, count, which);
+        sym_refine_directions(p, &at, count, which);
     }
     return sym_agree_refined(p, count, which);
-}
-
-/* Whether normal forces on the balls that do not part are determined, by the other forces. */
-static int32_t sym_normals_are_determined(const sym_contact_problem *p) {
-    double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], x[SYM_MOST_CONTACTS];
-    const double none[SYM_MOST_CONTACTS] = {0.0};
-    int32_t which[SYM_MOST_CONTACTS], m = 0, i, j;
-    for (i = 0; i < p->n; ++i)
-        if (!p->parts[i]) which[m++] = i;
-    for (i = 0; i < m; ++i)
-        for (j = 0; j < m; ++j) A[m * i + j] = p->W[3 * p->n * (3 * which[i] + 2) + 3 * which[j] + 2];
-    return m < 2 || sym_least_norm(m, A, none, x, NULL) == 0;
-}
-
-/* Modes that agree with Coulomb's law, those with more contact first. Where only one motion may do so all are tried: of up to
- * SYM_UNIQUE_UP_TO balls whose normal forces are determined. Returns 0 or a status. */
-static int32_t sym_solve_contacts(sym_contact_problem *p, int32_t unique) {
-    const int32_t n = 3 * p->n;
-    double d[2 * SYM_MOST_CONTACTS];
-    int32_t choices[SYM_MOST_CONTACTS], count = 1, code, i, found = 0;
-    sym_contact_problem first;
-    for (i = 0, p->size = 0.0; i < n; ++i) p->size = fmax(p->size, fabs(p->b[i]));
-    for (i = 0; i < p->n; ++i) p->mode[i] = p->parts[i] ? SYM_OPEN : p->slides[i] || p->mu[i] == 0.0 ? SYM_SLIDES : SYM_STICKS;
-    sym_forces_of_modes(p); /* friction that keeps a ball from sliding shows where it begins to */
-    for (i = 0; i < p->n; ++i) {
-        const double x = p->f[3 * i], y = p->f[3 * i + 1], drag = hypot(x, y);
-        choices[i] = p->parts[i] ? 1 : p->slides[i] || p->mu[i] == 0.0 ? 2 : 3;
-        count *= choices[i];
-        if (!p->slides[i]) p->d[2 * i] = drag > 0.0 ? -x / drag : 1.0, p->d[2 * i + 1] = drag > 0.0 ? -y / drag : 0.0;
-    }
-    memcpy(d, p->d, sizeof d);
-    unique = unique && p->n <= SYM_UNIQUE_UP_TO && sym_normals_are_determined(p);
-    for (code = 0; code < count; ++code) {
-        int32_t left = code, different = 0;
-        for (i = p->n - 1; i >= 0; --i) p->mode[i] = (double)(choices[i] - 1 - left % choices[i]), left /= choices[i];
-        memcpy(p->d, d, sizeof d);
-        if (!sym_try_modes(p)) continue;
-        if (!found) {
-            found = 1, first = *p;
-            if (!unique) return 0;
-            continue;
-        }
-        for (i = 0; i < n; ++i) different |= fabs(p->c[i] - first.c[i]) > SYM_DIFFERENT * p->size;
-        if (different) return SYM_CONTACTS_AMBIGUOUS;
-    }
-    if (!found) return SYM_NO_CONTACT_FORCE;
-    *p = first;
-    return 0;
 }

@@ -1,5 +1,4 @@
-/* Rigid contacts with friction: forces while balls slide, impacts, and which mode each takes (docs/theory/constraints.md,
- * section 15). */
+/* Rigid contacts with friction: impacts, and which mode each takes (docs/theory/constraints.md, section 15). */
 
 enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a ball's state */
 /* Slip up to which adaptive steps do not follow how its direction turns [m/s]. */
@@ -12,111 +11,6 @@ enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a bal
 #define SYM_POLE_STAYS -0.25
 /* Twice the acceleration towards a plane below which a ball is taken to rise above it from where rounding has put it [m/s^2]. */
 #define SYM_STEEP 1e3
-
-/* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
-static double sym_friction_of(const sym_system *s, int32_t ball) {
-    return s->contact_state.out[0][SYM_CONTACT_ENTRIES * ball + 4];
-}
-
-/* What a slip has along the way in which the ball has begun to slide. */
-static double sym_along_way(const double *par, const sym_rigid_contact *of, const double *slip) {
-    return par[of->way[0]] * slip[0] + par[of->way[1]] * slip[1];
-}
-
-/* Direction (2) in which a ball slides by its slip u: the last known one where the slip is so small that a step of this length
- * can't follow how it turns, and opposite to the slip where this has passed rest since it began, so that a step beyond the end
- * of a mode is as smooth as the one before, (41b). */
-static void sym_slip_direction(const double *par, const sym_rigid_contact *of, const double *u, const double *known, double *d) {
-    const double slip = hypot(u[0], u[1]);
-    memcpy(d, known, 2 * sizeof *d);
-    if (slip <= SYM_RESTS_AT || slip <= known[2]) return;
-    d[0] = u[0] / slip, d[1] = u[1] / slip;
-    if (sym_along_way(par, of, d) < 0.0) d[0] = -d[0], d[1] = -d[1];
-}
-
-/* At the end of a step: the directions of balls that slide. */
-static void sym_keep_directions(sym_run *r) {
-    const sym_system *s = r->system;
-    int32_t i, sliding = 0;
-    for (i = 0; i < s->n_contacts; ++i) sliding |= r->par[s->contacts[i].mode] == SYM_SLIDES;
-    if (!sliding) return;
-    sym_load_state(r);
-    sym_evaluate(&s->contact_state);
-    for (i = 0; i < s->n_contacts; ++i) {
-        const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i, slip = hypot(state[1], state[2]);
-        double *known = sym_ball_memory(s, i);
-        if (r->par[s->contacts[i].mode] != SYM_SLIDES) continue;
-        if (slip > SYM_RESTS_AT && slip > known[2] && sym_along_way(r->par, s->contacts + i, state + 1) > 0.0)
-            known[0] = state[1] / slip, known[1] = state[2] / slip;
-    }
-}
-
-/* x with A x = b (n x n, n <= SYM_MOST_CONTACTS), in place of b, without changes of rows: whether all leading minors are
- * positive. */
-static int32_t sym_solve_sliding(int32_t n, double *A, double *b) {
-    int32_t i, j, k;
-    for (k = 0; k < n; ++k) {
-        if (!(A[n * k + k] > SYM_FORCE_ROUNDING)) return 0;
-        for (i = k + 1; i < n; ++i) {
-            const double factor = A[n * i + k] / A[n * k + k];
-            for (j = k; j < n; ++j) A[n * i + j] -= factor * A[n * k + j];
-            b[i] -= factor * b[k];
-        }
-    }
-    for (k = n - 1; k >= 0; --k) {
-        for (j = k + 1; j < n; ++j) b[k] -= A[n * k + j] * b[j];
-        b[k] /= A[n * k + k];
-    }
-    return 1;
-}
-
-/* Accelerations and multipliers at the evaluation point, those without sliding friction, become those with it, (41); the
- * multipliers across the normals of balls that slide become their friction. The inputs are known. Returns 0 or a status. */
-static int32_t sym_add_sliding(sym_run *r, const double *par) {
-    const sym_system *s = r->system;
-    const size_t nv = (size_t)s->nv, nc = (size_t)s->nc;
-    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
-    double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], f[SYM_MOST_CONTACTS], d[SYM_MOST_CONTACTS][2];
-    int32_t which[SYM_MOST_CONTACTS], n = 0, i, j, status = 0;
-    size_t l;
-    for (i = 0; i < s->n_contacts; ++i)
-        if (par[s->contacts[i].mode] == SYM_SLIDES) which[n++] = i;
-    if (n == 0) return 0;
-    sym_evaluate(&s->contact_state);
-    for (j = 0; j < n; ++j) {
-        const double *slip = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * which[j] + 1;
-        sym_slip_direction(par, s->contacts + which[j], slip, sym_ball_memory(s, which[j]), d[j]);
-    }
-    memcpy(scratch.par, par, (size_t)s->npar * sizeof *par);
-    memcpy(scratch.a, s->a, nv * sizeof *s->a), memcpy(scratch.lam, s->lam, nc * sizeof *s->lam);
-    for (j = 0; j < n && status == 0; ++j) {
-        const sym_rigid_contact *of = s->contacts + which[j];
-        double *a = scratch.change_a + (size_t)j * nv, *lam = scratch.change_lam + (size_t)j * nc;
-        for (i = 0; i < 2; ++i) scratch.par[of->push[i]] = -sym_friction_of(s, which[j]) * d[j][i];
-        sym_prepare_call(&s->forward_dynamics, scratch.par);
-        sym_evaluate(&s->forward_dynamics);
-        for (i = 0; i < 2; ++i) scratch.par[of->push[i]] = par[of->push[i]];
-        if (*s->rank < 0.0) status = SYM_SINGULAR;
-        for (l = 0; l < nv; ++l) a[l] = s->a[l] - scratch.a[l];
-        for (l = 0; l < nc; ++l) lam[l] = s->lam[l] - scratch.lam[l];
-    }
-    sym_prepare_call(&s->forward_dynamics, par);
-    if (status != 0) return status;
-    for (i = 0; i < n; ++i) {
-        const int32_t row = s->contacts[which[i]].row[2];
-        f[i] = scratch.lam[row];
-        for (j = 0; j < n; ++j) A[n * i + j] = (i == j) - scratch.change_lam[(size_t)j * nc + (size_t)row];
-    }
-    if (!sym_solve_sliding(n, A, f)) return SYM_NO_CONTACT_FORCE;
-    memcpy(s->a, scratch.a, nv * sizeof *s->a), memcpy(s->lam, scratch.lam, nc * sizeof *s->lam);
-    for (j = 0; j < n; ++j) {
-        for (l = 0; l < nv; ++l) s->a[l] += scratch.change_a[(size_t)j * nv + l] * f[j];
-        for (l = 0; l < nc; ++l) s->lam[l] += scratch.change_lam[(size_t)j * nc + l] * f[j];
-    }
-    for (j = 0; j < n; ++j)
-        for (i = 0; i < 2; ++i) s->lam[s->contacts[which[j]].row[i]] = -sym_friction_of(s, which[j]) * d[j][i] * f[j];
-    return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
-}
 
 /* Balls that touch, at one instant. */
 typedef struct sym_touching {
@@ -326,6 +220,7 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
         const double since = r->t - sym_ball_memory(s, at->of[i])[3];
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
         e[i] = opened && since > SYM_ACCUMULATION * r->actions->at_once ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
+        p->last[i] = was[s->contacts[at->of[i]].mode];
         if (!opened || approaches) at->apart[i] = 0.0;
         at->struck[i] = opened && approaches;
         if (at->struck[i]) sym_ball_memory(s, at->of[i])[3] = r->t;

@@ -1,0 +1,220 @@
+/* Which modes the balls of a contact problem take: by parts that do not act on each other, from guesses on
+ * (docs/theory/constraints.md, section 15, (46), (47b)). */
+
+enum { SYM_UNIQUE_UP_TO = 4, SYM_GUESS_SWEEPS = 200 };
+/* Share by which two motions differ; shares down to which a guess tells forces and motions from none. */
+#define SYM_DIFFERENT 1e-6
+#define SYM_GUESSED 1e-6
+/* Share of two balls' own inverse inertias that is no coupling between them. */
+#define SYM_UNCOUPLED 1e-14
+
+/* Whether normal forces on the balls that do not part are determined, by the other forces. */
+static int32_t sym_normals_are_determined(const sym_contact_problem *p) {
+    double A[SYM_MOST_CONTACTS * SYM_MOST_CONTACTS], x[SYM_MOST_CONTACTS];
+    const double none[SYM_MOST_CONTACTS] = {0.0};
+    int32_t which[SYM_MOST_CONTACTS], m = 0, i, j;
+    for (i = 0; i < p->n; ++i)
+        if (!p->parts[i]) which[m++] = i;
+    for (i = 0; i < m; ++i)
+        for (j = 0; j < m; ++j) A[m * i + j] = p->W[3 * p->n * (3 * which[i] + 2) + 3 * which[j] + 2];
+    return m < 2 || sym_least_norm(m, A, none, x, NULL) == 0;
+}
+
+/* Most of contact that a ball may have. */
+static int32_t sym_most_contact(const sym_contact_problem *p, int32_t i) {
+    return p->parts[i] ? SYM_OPEN : p->slides[i] || p->mu[i] == 0.0 ? SYM_SLIDES : SYM_STICKS;
+}
+
+/* Motion c of a ball by forces f on all. */
+static void sym_motion_of_ball(const sym_contact_problem *p, const double *f, int32_t ball, double *c) {
+    int32_t j, k;
+    for (k = 0; k < 3; ++k) {
+        const double *row = p->W + 3 * p->n * (3 * ball + k);
+        for (j = 0, c[k] = p->b[3 * ball + k]; j < 3 * p->n; ++j) c[k] += row[j] * f[j];
+    }
+}
+
+/* The force f (3) of a ball with the motion c becomes one nearer to its law, (47b). Returns by how much it changes. */
+static double sym_relax_ball(const sym_contact_problem *p, int32_t i, const double *c, double *f) {
+    const double *W = p->W + 9 * i * p->n + 3 * i, *d = p->d + 2 * i, mu = p->mu[i], was[3] = {f[0], f[1], f[2]};
+    const int32_t n = 3 * p->n;
+    const double own = W[2 * n + 2], along = p->slides[i] ? own - mu * (W[2 * n] * d[0] + W[2 * n + 1] * d[1]) : own;
+    double across = W[0] + W[n + 1], size;
+    f[2] = fmax(0.0, f[2] - c[2] / (along > 0.1 * own ? along : own));
+    if (p->slides[i]) {
+        f[0] = -mu * f[2] * d[0], f[1] = -mu * f[2] * d[1];
+    } else if (across > 0.0) {
+        f[0] -= (c[0] + W[2] * (f[2] - was[2])) / across, f[1] -= (c[1] + W[n + 2] * (f[2] - was[2])) / across;
+        size = hypot(f[0], f[1]);
+        if (size > mu * f[2]) f[0] *= mu * f[2] / size, f[1] *= mu * f[2] / size;
+    }
+    return fabs(f[0] - was[0]) + fabs(f[1] - was[1]) + fabs(f[2] - was[2]);
+}
+
+/* Guess of the modes, and of the directions of balls that begin to slide: ball by ball, (47b), until forces rest. */
+static void sym_guess_modes(const sym_contact_problem *p, double *mode, double *d) {
+    double f[SYM_MOST_FORCES] = {0.0}, c[3], largest = 0.0;
+    int32_t sweep, i;
+    for (sweep = 0; sweep < SYM_GUESS_SWEEPS; ++sweep) {
+        double change = 0.0;
+        for (i = 0, largest = 0.0; i < p->n; ++i) {
+            if (p->parts[i] || !(p->W[(3 * p->n + 1) * (3 * i + 2)] > 0.0)) continue;
+            sym_motion_of_ball(p, f, i, c);
+            change = fmax(change, sym_relax_ball(p, i, c, f + 3 * i));
+            largest = fmax(largest, f[3 * i + 2]);
+        }
+        if (!(change > 1e-3 * SYM_GUESSED * largest) || !(largest < HUGE_VAL)) break;
+    }
+    for (i = 0; i < p->n; ++i) {
+        const double *force = f + 3 * i, drag = hypot(force[0], force[1]);
+        mode[i] = sym_most_contact(p, i);
+        sym_motion_of_ball(p, f, i, c);
+        if (!(force[2] > SYM_GUESSED * largest)) {
+            if (c[2] > SYM_GUESSED * p->size) mode[i] = SYM_OPEN;
+        } else if (mode[i] == SYM_STICKS && drag >= (1.0 - SYM_GUESSED) * p->mu[i] * force[2] && hypot(c[0], c[1]) > SYM_GUESSED * p->size) {
+            mode[i] = SYM_SLIDES, d[2 * i] = -force[0] / drag, d[2 * i + 1] = -force[1] / drag;
+        }
+    }
+}
+
+/* Number of a set of modes, and its modes: those with more contact have lower numbers. */
+static int32_t sym_number_of_modes(const sym_contact_problem *p, const double *mode) {
+    int32_t number = 0, i;
+    for (i = 0; i < p->n; ++i) {
+        const int32_t most = sym_most_contact(p, i), of = mode[i] < (double)most ? (int32_t)mode[i] : most;
+        number = number * (most + 1) + most - of;
+    }
+    return number;
+}
+static void sym_modes_of_number(const sym_contact_problem *p, int32_t number, double *mode) {
+    int32_t i;
+    for (i = p->n - 1; i >= 0; --i) {
+        const int32_t most = sym_most_contact(p, i);
+        mode[i] = (double)(most - number % (most + 1)), number /= most + 1;
+    }
+}
+
+/* Numbers of sets of modes in the order in which they are tried: most contact, the last modes, the guess, then by how many balls
+ * differ from the guess. next: how many have been given; at: a state of the order. Returns -1 at the end. */
+typedef struct sym_order_of_modes {
+    int32_t sets, first[3], given, differing, number;
+    double guess[SYM_MOST_CONTACTS];
+} sym_order_of_modes;
+
+static int32_t sym_next_modes(const sym_contact_problem *p, sym_order_of_modes *at) {
+    double mode[SYM_MOST_CONTACTS];
+    int32_t i;
+    while (at->given < 3) {
+        const int32_t number = at->first[at->given++];
+        for (i = 0; i < at->given - 1 && at->first[i] != number; ++i) {}
+        if (i == at->given - 1) return number;
+    }
+    for (; at->differing <= p->n; ++at->differing, at->number = 0)
+        while (at->number < at->sets) {
+            const int32_t number = at->number++;
+            int32_t differing = 0;
+            if (number == at->first[0] || number == at->first[1] || number == at->first[2]) continue;
+            sym_modes_of_number(p, number, mode);
+            for (i = 0; i < p->n; ++i) differing += mode[i] != at->guess[i];
+            if (differing == at->differing) return number;
+        }
+    return -1;
+}
+
+/* Forces and modes of balls of which each acts on another, with the size of the whole problem. Where only one motion may agree all
+ * sets are tried: of up to SYM_UNIQUE_UP_TO balls whose normal forces are determined. Returns 0 or a status. */
+static int32_t sym_solve_coupled(sym_contact_problem *p, int32_t unique) {
+    const int32_t n = 3 * p->n;
+    double d[2][2 * SYM_MOST_CONTACTS]; /* from which directions are sought: by friction where all stick, and the guess's */
+    int32_t i, number, from, found = 0;
+    sym_order_of_modes order = {1, {0, 0, 0}, 0, 1, 0, {0.0}};
+    sym_contact_problem first;
+    for (i = 0; i < p->n; ++i) p->mode[i] = sym_most_contact(p, i), order.sets *= sym_most_contact(p, i) + 1;
+    sym_forces_of_modes(p); /* friction that keeps a ball from sliding shows where it begins to */
+    for (i = 0; i < p->n; ++i) {
+        const double x = p->f[3 * i], y = p->f[3 * i + 1], drag = hypot(x, y);
+        if (!p->slides[i]) p->d[2 * i] = drag > 0.0 ? -x / drag : 1.0, p->d[2 * i + 1] = drag > 0.0 ? -y / drag : 0.0;
+    }
+    memcpy(d[0], p->d, sizeof d[0]), memcpy(d[1], p->d, sizeof d[1]);
+    if (order.sets > 1) sym_guess_modes(p, order.guess, d[1]);
+    order.first[1] = sym_number_of_modes(p, p->last), order.first[2] = sym_number_of_modes(p, order.guess);
+    unique = unique && p->n <= SYM_UNIQUE_UP_TO && sym_normals_are_determined(p);
+    while ((number = sym_next_modes(p, &order)) >= 0)
+        for (from = 0; from < 2; ++from) {
+            int32_t different = 0;
+            sym_modes_of_number(p, number, p->mode);
+            for (i = 0; i < p->n; ++i) different |= p->mode[i] == SYM_SLIDES && memcmp(d[0] + 2 * i, d[1] + 2 * i, 2 * sizeof **d) != 0;
+            if (from > 0 && !different) continue;
+            memcpy(p->d, d[from], sizeof d[from]);
+            if (!sym_try_modes(p)) continue;
+            if (!found) {
+                found = 1, first = *p;
+                if (!unique) return 0;
+                continue;
+            }
+            for (i = 0, different = 0; i < n; ++i) different |= fabs(p->c[i] - first.c[i]) > SYM_DIFFERENT * p->size;
+            if (different) return SYM_CONTACTS_AMBIGUOUS;
+        }
+    if (!found) return SYM_NO_CONTACT_FORCE;
+    *p = first;
+    return 0;
+}
+
+/* Whether forces on two balls act on each other's. */
+static int32_t sym_are_coupled(const sym_contact_problem *p, int32_t a, int32_t b) {
+    const int32_t n = 3 * p->n;
+    int32_t i, j;
+    if (p->parts[a] || p->parts[b]) return 0;
+    for (i = 3 * a; i < 3 * a + 3; ++i)
+        for (j = 3 * b; j < 3 * b + 3; ++j) {
+            const double across = fmax(fabs(p->W[n * i + j]), fabs(p->W[n * j + i]));
+            if (across * across > SYM_UNCOUPLED * SYM_UNCOUPLED * p->W[(n + 1) * i] * p->W[(n + 1) * j]) return 1;
+        }
+    return 0;
+}
+
+/* The balls that belong to one (part: whose first ball they have) make a problem of their own, is solved, and goes back. */
+static int32_t sym_solve_part(sym_contact_problem *p, const int32_t *part, int32_t first, int32_t unique) {
+    const int32_t n = 3 * p->n;
+    int32_t which[SYM_MOST_CONTACTS], m = 0, i, j, k, l, status;
+    sym_contact_problem own;
+    for (i = 0; i < p->n; ++i)
+        if (part[i] == first) which[m++] = i;
+    own.n = m, own.size = p->size, own.shared = 0;
+    for (i = 0; i < m; ++i) {
+        const int32_t ball = which[i];
+        own.mu[i] = p->mu[ball], own.parts[i] = p->parts[ball], own.slides[i] = p->slides[ball], own.last[i] = p->last[ball];
+        own.d[2 * i] = p->slides[ball] ? p->d[2 * ball] : 1.0, own.d[2 * i + 1] = p->slides[ball] ? p->d[2 * ball + 1] : 0.0;
+        memcpy(own.b + 3 * i, p->b + 3 * ball, 3 * sizeof *own.b);
+        for (j = 0; j < m; ++j)
+            for (k = 0; k < 3; ++k)
+                for (l = 0; l < 3; ++l) own.W[3 * m * (3 * i + k) + 3 * j + l] = p->W[n * (3 * ball + k) + 3 * which[j] + l];
+    }
+    status = sym_solve_coupled(&own, unique);
+    for (i = 0; i < m; ++i) {
+        const int32_t ball = which[i];
+        p->mode[ball] = own.mode[i];
+        memcpy(p->d + 2 * ball, own.d + 2 * i, 2 * sizeof *own.d), memcpy(p->f + 3 * ball, own.f + 3 * i, 3 * sizeof *own.f);
+    }
+    p->shared |= own.shared;
+    return status;
+}
+
+/* Forces and modes that agree with Coulomb's law, part by part. Returns 0 or a status. */
+static int32_t sym_solve_contacts(sym_contact_problem *p, int32_t unique) {
+    int32_t part[SYM_MOST_CONTACTS], i, j, k, status = 0;
+    for (i = 0, p->size = 0.0; i < 3 * p->n; ++i) p->size = fmax(p->size, fabs(p->b[i]));
+    for (i = 0, p->shared = 0; i < p->n; ++i) {
+        part[i] = i;
+        for (j = 0; j < i; ++j) {
+            const int32_t joins = part[j];
+            if (part[i] == joins || !sym_are_coupled(p, i, j)) continue;
+            for (k = 0; k < i; ++k)
+                if (part[k] == joins) part[k] = part[i];
+        }
+    }
+    for (i = 0; i < p->n && status == 0; ++i)
+        if (part[i] == i) status = sym_solve_part(p, part, i, unique);
+    for (i = 0; i < p->n && status == 0; ++i) sym_motion_of_ball(p, p->f, i, p->c + 3 * i);
+    return status;
+}
