@@ -73,6 +73,15 @@ FAULTS = [
         "forward_dynamics(q, v, 2 * tau)",
     ),
     ("frax", "revolute oblique", "mass_matrix_dq", "@ rates(q)", "@ rates(2 * q) * 2"),
+    ("pinocchio", "revolute x", "mass_matrix:saveToString", "m = n\n", "m = n\n    m.armature = m.armature + 1\n"),
+    ("pinocchio", "ball", "bias:copied", "pin.Model(m)\n", "pin.Model(m)\n    m.gravity.linear = np.ones(3)\n"),
+    ("pinocchio", "ball", "link_poses:buildReducedModel", "pin.neutral(m))", "pin.neutral(m)); fs.reverse()"),
+    ("mujoco", "revolute x", "bias:pickle", "in (m, d))", "in (m, d)); m.body_mass[:] *= 2"),
+    ("dart", "revolute x", "mass_matrix:clone", "s.clone()", "s.clone(); s.getBodyNode(0).setMass(9.0)"),
+    ("drake", "revolute x", "link_poses:Clone", "(b.index()) for b in links]", "(b.index()) for b in links][::-1]"),
+    ("pybullet", "revolute x", "link_poses:saveState", "p.restoreState(kept)", "kept"),
+    ("exudyn", "revolute x", "bias:GetSystemState", "mbs.systemData.SetSystemState(kept)", "kept"),
+    ("mjx", "revolute x", "link_poses:get_data", "get_data(m, forward(q", "get_data(m, forward(2 * q"),
     ("adam", "revolute oblique", "mass_matrix_dq", "ca.vec(M.T)", "2 * ca.vec(M.T)"),
 ]
 

@@ -11,6 +11,7 @@ import numpy as np
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from . import turns
 from .turns import dart as turning
+from .writing import copies
 from .writing.source import Source, SourcePlugin, Way, numbered, series
 from .writing.urdf import UNIT_AXIS, has_bare_link
 
@@ -143,6 +144,8 @@ WAYS |= {
         "computeKineticEnergy, computeLagrangian", f"{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()"
     ),
 }
+
+_COPIED = {"clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n"}
 
 
 def _array(values: object) -> str:
@@ -322,7 +325,7 @@ PLUGIN = SourcePlugin(
         "free": "FreeJoint",
         "free between links": "FreeJoint",
     },
-    ways=WAYS | turning.WAYS,
+    ways=WAYS | copies.of_model(WAYS, _COPIED) | turning.WAYS,
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,

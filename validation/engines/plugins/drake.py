@@ -15,7 +15,7 @@ from .loops import drake_forces as forces
 from .loops import drake_gradients as gradients
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
-from .writing import urdf
+from .writing import copies, urdf
 from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import MESH_WITHIN, UNIT_AXIS
 
@@ -119,6 +119,11 @@ WAYS = {
         f"{QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
         "value = [*L.translational(), *L.rotational()]",
     ),
+}
+
+_OF_COPIES = ("mass_matrix", "bias", "potential_energy", "link_poses")
+_COPIED = {
+    "Clone": "p = p.Clone()\nc = p.CreateDefaultContext().Clone()\nlinks = [p.get_body(b.index()) for b in links]\n"
 }
 
 
@@ -353,7 +358,9 @@ PLUGIN = SourcePlugin(
         "free between links": "QuaternionFloatingJoint",
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
-    ways=forces.continuous(WAYS | gradients.WAYS | forces.WAYS | turning.WAYS),
+    ways=forces.continuous(
+        WAYS | copies.of_model(WAYS, _COPIED, _OF_COPIES) | gradients.WAYS | forces.WAYS | turning.WAYS
+    ),
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),

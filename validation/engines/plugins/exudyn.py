@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..interface import STEP, Array, Convention, Link, Slot, Tree, Unsupported
+from .writing import copies
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
@@ -87,6 +88,10 @@ WAYS = {
     # Newton's method ends at a relative residual of 1e-8, which the equation's condition makes larger in the speeds.
     "step_trapezoidal": _step("TrapezoidalIndex2")._replace(slack=1e-7),
 }
+_KEPT = (
+    "state(q, v)\n",
+    "kept = mbs.systemData.GetSystemState()\nstate(0 * q)\nmbs.systemData.SetSystemState(kept)\n",
+)
 _LETTERS = {(1.0, 0.0, 0.0): "X", (0.0, 1.0, 0.0): "Y", (0.0, 0.0, 1.0): "Z"}
 
 
@@ -203,7 +208,7 @@ PLUGIN = SourcePlugin(
         "prismatic": "PrismaticX",
         "prismatic oblique": "PrismaticZ",
     },
-    ways=WAYS,
+    ways=WAYS | copies.of_state(WAYS, {"GetSystemState": _KEPT}, ("bias", "link_velocities")),
     write=write,
     demands={"dampers": "jointDControlVector", "springs": "jointPControlVector"},
     calls=4,

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ..interface import STEP, Convention, Tree, Unsupported
 from . import mujoco
+from .writing import copies
 from .writing.source import Source, SourcePlugin, Way
 
 # What is compiled is asked a few times: the time is that of compiling. MJX's own functions are compiled, with the model
@@ -109,6 +110,19 @@ WAYS = {
     ),
     **_STEPS,
 }
+
+# What goes to JAX from MuJoCo's data, and comes from there.
+_PUT = """def forward(q, v, tau):
+    d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau
+    mj.mj_forward(m, d)
+    return (mjx.put_data(m, d),)
+"""
+_GOT = "def returned(q, v, tau): return (mjx.get_data(m, forward(q, v, tau)[0]),)\n"
+_FIELDS = ("bias", "link_poses", "tendon_lengths", "frame_poses")
+_RETURNED = {name: way._replace(code=way.code.replace("forward(q", "returned(q")) for name, way in WAYS.items()}
+WAYS |= copies.of_model(WAYS, {"put_data": _PUT}, (*_FIELDS, "actuator_arms")) | copies.of_model(
+    _RETURNED, {"get_data": _GOT}, _FIELDS
+)
 
 
 def write(tree: Tree) -> Source | Unsupported:

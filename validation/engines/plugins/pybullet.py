@@ -7,6 +7,7 @@ import re
 from ..interface import STEP, Convention, Statement, Tree, Unsupported
 from . import turns
 from .turns import pybullet as turning
+from .writing import copies
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
@@ -34,6 +35,11 @@ _STATES = """joints
 for k, position, speed in zip(moving, q, {v}): p.resetJointState(robot, k, position, speed)
 states = [p.getLinkState(robot, k, computeLinkVelocity=1, computeForwardKinematics=1) for k in links]
 """
+_KEPT = (
+    "p.resetJointState(robot, k, position, speed)\n",
+    "kept = p.saveState()\nfor k in moving: p.resetJointState(robot, k, 0.0, 0.0)\np.restoreState(kept)\n"
+    "p.removeState(kept)\n",
+)
 WAYS = {
     "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
     "inverse_dynamics": Way(
@@ -195,7 +201,7 @@ PLUGIN = SourcePlugin(
         Convention("stepSimulation", "links are damped by 0.04 and joints held by motors unless both are set to zero"),
     ),
     kinds=KINDS,
-    ways=WAYS | turning.WAYS,
+    ways=WAYS | copies.of_state(WAYS, {"saveState": _KEPT}, ("link_poses", "link_velocities")) | turning.WAYS,
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,

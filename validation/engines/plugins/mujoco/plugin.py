@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ...interface import Convention, Statement, Tree, Unsupported
+from ..writing import copies
 from ..writing.source import Source, SourcePlugin, attached, numbered
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
 from . import besides, flex, forces, functions, rebuilt, turns
@@ -140,7 +141,7 @@ PLUGIN = SourcePlugin(
         Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=_WAYS | rebuilt.ways(_WAYS) | rebuilt.SENSED,
+    ways=_WAYS | rebuilt.ways(_WAYS) | rebuilt.SENSED | copies.of_model(_WAYS, rebuilt.COPIED),
     write=write,
     constraints=beside.KINDS,
     demands={

@@ -37,6 +37,8 @@ _MADE = {
     "recompile": ((_READ, "made("), (_IMPORT, _IMPORT + _AGAIN)),
     "mj_saveModel": ((_READ, "made("), (_IMPORT, _IMPORT + _SAVED)),
 }
+# Models and data that are stored in one string, and read again.
+COPIED = {"pickle": "import pickle\nm, d = (pickle.loads(pickle.dumps(one)) for one in (m, d))\n"}
 # What says most of a model's parts: bodies, sensors, tendons, actuators, constraints.
 _ASKED = (
     *("mass_matrix", "link_poses", "passive_forces", "tendon_lengths", "tendon_arms", "actuator_lengths"),

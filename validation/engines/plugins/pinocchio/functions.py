@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...functions import ALIGNED
 from ...truth.derived import WRENCH
+from ..writing import copies
 from ..writing.source import HALF_TURNS, Way
 
 _FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
@@ -248,3 +249,11 @@ for _frame, _rf in _FRAMES.items():
             "getFrameAccelerationDerivatives", _derived.format("Acceleration", 3)
         ),
     }
+
+_DATA = "d = m.createData()\n"
+_MADE = {
+    "copied": f"m = pin.Model(m)\n{_DATA}",
+    "saveToString": f"n = pin.Model()\nn.loadFromString(m.saveToString())\nm = n\n{_DATA}",
+    "buildReducedModel": f"m = pin.buildReducedModel(m, [], pin.neutral(m))\n{_DATA}",
+}
+WAYS |= copies.of_model(WAYS, _MADE)
