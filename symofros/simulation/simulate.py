@@ -22,7 +22,7 @@ from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
-from symofros.simulation.results.examination.diagnosis import diagnose
+from symofros.simulation.results.examination.diagnosis import diagnose, too_long
 from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
 from symofros.simulation.results.notes import distinct
 from symofros.simulation.results.outcome import Outcome
@@ -155,12 +155,15 @@ def _held_as_a_whole(
         start: Initial q, v, and the run-time parameters (npar).
     """
     acted, outcome = sum(phase.acted for phase in phases), run.outcome
-    if stepper.actions is None or not outcome.ok or any(note.startswith(_OF_STEPS) for note in outcome.notes):
+    if stepper.actions is None or outcome.kind not in ("finished", "event", "singular", "not converged"):
         return run
     left_out = int(acted > 0 and not phases[-1].statistics.steps)  # What the actions of a terminal event leave.
     states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]
     told: dict[str, Any] = {"par": start[2], "parts": 1 + acted, "stopped": outcome.kind == "event"}
-    note = switched_run_note(SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **told))
+    whole = SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **told)
+    if not outcome.ok:
+        return replace(run, outcome=too_long(whole, outcome)) if acted else run
+    note = "" if any(note.startswith(_OF_STEPS) for note in outcome.notes) else switched_run_note(whole)
     return replace(run, outcome=replace(outcome, notes=(*outcome.notes, note))) if note else run
 
 

@@ -16,6 +16,7 @@ from symofros.simulation.results.ends import ENDS, INTERRUPTED, beyond_theory, p
 from symofros.simulation.results.examination.constraint_faults import constraint_notes, jump, lost_energy, violation
 from symofros.simulation.results.examination.energy_balance import EXPLODED
 from symofros.simulation.results.examination.input_faults import input_failure, input_fault
+from symofros.simulation.results.examination.repetition import shorter_steps_that_go_on
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.state_notes import state_notes
 from symofros.simulation.results.examination.step_size import examine_run, remedy
@@ -179,7 +180,7 @@ def _grown(end: _End) -> Outcome | None:
         return None
     massless = _massless(end.stepper, end.run.start, q, v)
     if massless:
-        return end.outcome("singular", massless, ADVICE)
+        return too_long(end.run, end.outcome("singular", massless, ADVICE))
     return end.by_status(f"{ENDS[end.status].reason}; {_largest(end.stepper, q, v)}")
 
 
@@ -187,7 +188,7 @@ def _stuck(end: _End) -> Outcome | None:
     """Outcome of a run that ends singular, at too small a step, off its constraints or with energy lost; else None."""
     settings, stepper, (_, q, v) = end.settings, end.stepper, end.stepper.state
     if end.status in (Status.SINGULAR, Status.NO_CONVERGENCE):
-        return end.by_status()
+        return too_long(end.run, end.by_status())
     if end.status == Status.STEP_TOO_SMALL:
         bounds = f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below rounding"
         return end.by_status(f"{bounds}; {_largest(stepper, q, v)}")
@@ -199,6 +200,21 @@ def _stuck(end: _End) -> Outcome | None:
         return end.by_status(f"'{name}' is off by {abs(phi[worst]):.3g} and projection does not mend it")
     lost = lost_energy(stepper) if stepper.run.kinetic_energy > 0.0 else ""  # A run of a batch has not counted it.
     return end.by_status(lost) if end.status == Status.ENERGY_LOST else None
+
+
+def too_long(run: ExaminedRun, outcome: Outcome) -> Outcome:
+    """An outcome that says of fixed steps that they are too long, where shorter ones go on; else the same.
+
+    Args:
+        run: The run.
+        outcome: It ends as singular, or unsolved.
+    """
+    said = shorter_steps_that_go_on(run, outcome.t)
+    if not said:
+        return outcome
+    return replace(
+        outcome, kind="diverged", reason=f"{said}, where {outcome.reason}", advice=ENDS[Status.DIVERGED].advice
+    )
 
 
 def _beyond_theory(end: _End) -> Outcome | None:

@@ -5,6 +5,8 @@ docs/theory/simulation.md, section 8.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from symofros.simulation.results.examination.finer_steps import finer_steps_note
@@ -17,6 +19,8 @@ _RECORDS = 3
 # Share of the largest speed that the absolute tolerance may allow as the error of a step; displacements over it that
 # are a motion and not rest; share of the largest speed that is asked for instead.
 _ALLOWED, _MOTION, _TIGHT = 0.1, 100.0, 1e-3
+# A run that ends as singular is made once more by steps that are shorter by this, of which there are so many at most.
+_SHORTER, _MOST_SHORTER = {8: "an eighth", 64: "a 64th"}, 100_000
 
 
 def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
@@ -39,6 +43,21 @@ def halved_step_note(run: ExaminedRun, *, evident: bool) -> str:
         f"steps of {settings.dt:.4g} s were not held against half of that: the input function gives other inputs when"
         " it is asked again about a state; compare with a smaller dt"
     )
+
+
+def shorter_steps_that_go_on(run: ExaminedRun, t: float) -> str:
+    """Shorter steps that go on past the time at which a run with fixed steps ends [s], in words; "" where none do."""
+    settings = run.settings
+    if settings.adaptive or settings.realtime or not run.repeatable:
+        return ""
+    start, beyond = (settings.t0, *run.start), min(t + 2.0 * settings.dt, settings.t_end)
+    for parts, share in _SHORTER.items():
+        steps = parts * (run.steps + 2)
+        if steps > _MOST_SHORTER:
+            break
+        if run.repeated(start, beyond, settings.dt / parts, every=steps, beam_limit=math.inf)[0] >= 0:
+            return f"the step of {settings.dt:.4g} s is too long: {share} of that goes on past t = {t:.6g} s"
+    return ""
 
 
 def tolerance_note(run: ExaminedRun) -> str:

@@ -235,11 +235,16 @@ class ExaminedRun(HeldRun):
         once = {"max_steps": None, "realtime": 0.0, "grid": np.zeros(0)} | changes
         part = replace(self.settings, t0=float(t), t_end=t_end, dt=dt, every=every, method=method, **once)
         part = replace(part, project=part.project or (method != stepper.method and self.model.nc > 0))
-        again = Stepper(self.model, method, stepper.inputs, (), stepper.par)
-        if self.model.record.rigid_contacts:
-            again.contact_memory[:] = stepper.contact_memory
+        again = self._another(method)
         part.apply(again)
         return again, run_own(again, q, v, part, lambda _: None)
+
+    def _another(self, method: Method) -> Stepper:
+        """Another stepper for a part of the run, in which no event acts."""
+        again = Stepper(self.model, method, self.stepper.inputs, (), self.stepper.par)
+        if self.model.record.rigid_contacts:
+            again.contact_memory[:] = self.stepper.contact_memory
+        return again
 
     def in_short_steps(self, start: Sequence[Any], t_end: float, part: float) -> tuple[int, list[Array]]:
         """Status and states of a part of the run, made once more in steps that are no longer than `part` [s].

@@ -6,7 +6,7 @@ docs/theory/simulation.md, section 8, (18f) to (18i).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -22,8 +22,7 @@ from symofros.simulation.results.examination.finer_steps import (
     percent,
 )
 from symofros.simulation.results.examination.run import MOST_STEPS, ExaminedRun, share_of
-from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.loops import run_own
+from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.windows import WHOLE, Window
 
@@ -89,30 +88,30 @@ class SwitchedRun(ExaminedRun):
 
     def fine(self, window: Window, refinements: int, every: int) -> States | None:
         """The same by finer steps, over all events but one that has ended it; None where these do not come there."""
-        again = Stepper(self.model, self.settings.method, self.stepper.inputs, self.stepper.events, self.par)
+        instants, times = self.states[0][self._rows], 2.0**refinements
+        most = int(_PATIENCE * max(1.0, times) * self.steps) + MOST_STEPS
+        told = {"every": 0, "grid": instants, "max_steps": most, **({} if self.h else self._tolerances(refinements))}
+        begin = self.settings.t0, *self.start
+        status, states = self.repeated(
+            begin, float(instants[-1]), self.settings.dt / (times if self.h else 1.0), **told
+        )
+        return states if status >= 0 and len(states[0]) == len(instants) else None
+
+    def _another(self, method: Method) -> Stepper:
+        """Another stepper for the run, with all events but one that has ended it."""
+        again = Stepper(self.model, method, self.stepper.inputs, self.stepper.events, self.par)
         again.set_span(self.settings.span)
         for i, event in enumerate(again.events):
             if event.terminal and self.stopped:
                 again.ignore_event(i)
-        settings = self._refined(refinements)
-        settings.apply(again)
         again.run.acts = int(again.actions is not None)
-        recorded = run_own(again, *self.start, settings, lambda _: None)
-        states = recorded.arrays()
-        return states if recorded.status >= 0 and len(states[0]) == len(settings.grid) else None
+        return again
 
-    def _refined(self, refinements: int) -> Settings:
-        """Settings of a run by finer steps, which records at the instants that are compared."""
-        instants, times = self.states[0][self._rows], 2.0**refinements
-        most = int(_PATIENCE * max(1.0, times) * self.steps) + MOST_STEPS
-        settings = replace(
-            self.settings, t_end=float(instants[-1]), every=0, grid=instants, realtime=0.0, max_steps=most
-        )
-        if self.h:
-            return replace(settings, dt=self.h / times)
-        factor = 1.0 / _TIGHTER if refinements > 0 else _TIGHTER
-        rtol = min(settings.rtol, max(_TIGHTEST, factor * settings.rtol)) if factor < 1.0 else factor * settings.rtol
-        return replace(settings, rtol=rtol, atol=rtol / settings.rtol * settings.atol)
+    def _tolerances(self, refinements: int) -> dict[str, Any]:
+        """Tolerances of a run by finer steps, or by coarser ones."""
+        rtol = self.settings.rtol
+        refined = min(rtol, max(_TIGHTEST, rtol / _TIGHTER)) if refinements > 0 else rtol * _TIGHTER
+        return {"rtol": refined, "atol": refined / rtol * self.settings.atol}
 
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
         """Difference of displacements at any instant, of speeds at the end and in the mean (18g)."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import traceback
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -146,3 +148,30 @@ def test_steps_that_shrink_to_nothing_are_said_where_a_run_is_cut() -> None:
         end = sf.simulate(model, [1.0], max_steps=steps, **given).outcome
         assert end.kind == "interrupted" and end.reason.startswith(f"max_steps: {steps} steps are done")
         assert ("and the next would be" in end.reason) == ("force that has no bound" in end.advice) == noted
+
+
+@cache
+def hopper() -> sf.Model:
+    """A beam whose foot falls on a stiff floor, below a slide with dry friction."""
+    slide = sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(sf.Friction(1.0, sticks=True),))
+    hinge = sf.Joint("q", "revolute", "base", axis=(0, 1, 0))
+    bending: dict[str, Any] = {"EI_z": 10.0, "EI_y": 10.0, "bend_y": 1, "bend_z": 1}
+    leg = sf.Beam("leg", hinge, 1.0, 1.0, frames=(sf.Frame("foot", at=1.0),), **bending)
+    floor = sf.Contact("floor", ("leg", "foot"), ("world", None), 1e5, exponent=1.0, radius=0.05)
+    return sf.compile(sf.System("hopper", (sf.RigidBody("base", slide, sf.Inertia(1.0)), leg), connections=(floor,)))
+
+
+@pytest.mark.parametrize(
+    ("method", "dt", "events"),
+    [("rk4", 0.05, 0), ("rk4", 0.03373327929362365, 1), ("generalized_alpha", 0.022758682638032345, 1)],
+)
+def test_steps_that_are_too_long_are_not_said_to_be_a_singular_posture(method: str, dt: float, events: int) -> None:
+    """What bends a beam until its second-order mass matrix is singular, over events as well; shorter steps go on."""
+    model, start = hopper(), [1.0, 0.8, 0.0, 0.0]
+    run = sf.simulate(model, start, method=method, dt=dt, beam_limit=math.inf)
+    words = (
+        f"the step of {dt:.4g} s is too long: an eighth of that goes on past t = {run.outcome.t:.6g} s, where the mass"
+    )
+    assert run.outcome.kind == "diverged" and run.outcome.reason.startswith(words), run.outcome
+    assert "a smaller dt" in run.outcome.advice and len(run.events) == events
+    assert sf.simulate(model, start, t_end=run.outcome.t + dt, dt=dt / 8, beam_limit=math.inf).outcome.ok
