@@ -44,7 +44,7 @@ def check_fit(
                     f"diagram '{diagram.name}': the shape of '{block}.{unknown[0]}' is unknown",
                     "a loop of open shapes",
                     "the shape of a signal follows from one of its sources",
-                    "give a block of the loop a first value",
+                    "give a block of the loop a first value, or a sum in it a signal of that shape",
                     diagram.where(block),
                 )
             )

@@ -56,7 +56,7 @@ class DiagramRun(Records, Mapping[str, Array]):
         return (f"{block}.{port.name}" for block in wired.ports for port in wired.ports[block].outputs)
 
     def __contains__(self, name: object) -> bool:
-        """Whether a name is that of an output, as `run[name]` takes it: also of an outlet, or a block with one output."""
+        """Whether a name is that of an output, as `run[name]` takes it; also of an outlet, or of a block with one."""
         try:
             return isinstance(name, str) and bool(self.compiled.resolved.wired.output(name))
         except DescriptionError:

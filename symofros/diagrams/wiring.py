@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from symofros.diagrams.block import Block, Port, Ports, Shape
+from symofros.diagrams.conditional import unconditional
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.fit import check_fit
 from symofros.diagrams.inlets import Inlet, fed_ports, settled
@@ -143,6 +144,8 @@ def draft(diagram: Diagram, unread: Collection[str] = ()) -> Draft:
         for name, known in ports.items():
             block = settled(diagram.blocks[name], known)
             problems += located(block.misfit(), diagram.where(name)) if isinstance(block, Inlet) else ()
+    scalar = () if problems else _numbers_of_loops(diagram, ports)
+    ports = _settle(diagram, models, ports, sources, problems, scalar=scalar) if scalar else ports
     check_fit(diagram, ports, sources, problems)
     return Draft(models, ports, sources, outlets, problems)
 
@@ -335,6 +338,15 @@ def _output(
     return block, port
 
 
+def _numbers_of_loops(diagram: Diagram, ports: Mapping[str, Ports]) -> list[str]:
+    """Blocks of loops in which nothing says a shape, but whose first value is one number."""
+    blocks = {name: unconditional(diagram.blocks[name]) for name in ports}
+    unknown = [name for name, known in ports.items() if any(item.shape is None for item in known.outputs)]
+    if any(isinstance(blocks[name], Inlet) for name in unknown):
+        return []
+    return [name for name in unknown if np.ndim(getattr(blocks[name], "start", [])) == 0]
+
+
 def _settle(
     diagram: Diagram,
     models: Models,
@@ -342,8 +354,12 @@ def _settle(
     sources: Mapping[Source, Source],
     problems: list[Problem],
     last: bool = False,
+    scalar: Collection[str] = (),
 ) -> dict[str, Ports]:
-    """Carry shapes along the wires until nothing changes; in the last round inlets take those of what is given."""
+    """Carry shapes along the wires until nothing changes; in the last round inlets take those of what is given.
+
+    Of blocks in `scalar` inputs that nothing tells the shape of are scalars.
+    """
     for _ in range(len(ports) + 1):
         outputs = {(block, item.name): item for block, known in ports.items() for item in known.outputs}
         now = {}
@@ -353,6 +369,8 @@ def _settle(
                 source = sources.get((name, item.name))
                 given = outputs.get(source) if source else None
                 shape = (given.shape if given else None) if source else np.shape(item.default) or item.shape
+                if shape is None and name in scalar:
+                    shape = ()
                 if shape is not None:
                     inputs[item.name] = shape
                 if given is not None and any(given.entry_units):

@@ -107,6 +107,22 @@ def test_a_part_runs_like_its_blocks_in_the_diagram() -> None:
     assert (together["control.effort"] == together["control/pd.effort"]).all()
 
 
+def test_a_loop_whose_first_values_are_numbers_is_one_of_scalars() -> None:
+    """x' = -3 x by samples, late by four; a first value of two entries makes it one of two."""
+    for start in (1.0, [1.0, 2.0]):
+        diagram = sf.Diagram("decay")
+        diagram.add(blocks.Integrator(name="x", period=0.01, start=start))
+        diagram.add(blocks.TransportDelay(name="late", delay=0.04, period=0.01, start=1.0), u="x.y")
+        diagram.add(blocks.Gain(name="gain", gain=-3.0), u="late.y")
+        diagram.connect("gain.y", "x.u")
+        run = sf.Simulation(diagram).run(1.0, dt=0.01, record=0.01)
+        assert run["x.y"].shape[1:] == np.shape(start)
+        expected = [np.asarray(start)]
+        for k in range(100):
+            expected.append(expected[-1] - 0.03 * (expected[k - 4] if k >= 4 else 1.0))
+        np.testing.assert_allclose(run["x.y"], expected, atol=1e-12)
+
+
 def test_outlets_of_parts_stay_where_outlets_are_assigned_anew() -> None:
     """As the pages do, `outlets = {...}` after parts came in: of a part of a part, too, and for signals of a run."""
     innermost, inner, diagram = sf.Diagram("innermost"), sf.Diagram("inner"), sf.Diagram("outer")
