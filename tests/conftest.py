@@ -9,6 +9,7 @@ import shutil
 import sys
 import zlib
 from collections.abc import Iterator
+from contextlib import suppress
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
@@ -83,6 +84,20 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     gc.disable()
     if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
         session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection(session: pytest.Session) -> None:
+    """Workers import a share of the files first: at a first run, each would translate all of them at the same time."""
+    worker = getattr(session.config, "workerinput", None)
+    if worker is None or not _folders(session.config):
+        return
+    root = Path(__file__).parent
+    files = {file for argument in session.config.args for file in Path(argument).absolute().rglob("test_*.py")}
+    files -= {file for name in collect_ignore for file in (root / name).glob("*.py")}
+    for file in sorted(files)[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
+        with suppress(Exception, pytest.skip.Exception):  # Collecting it says what is wrong.
+            import_module(".".join(file.relative_to(root.parent).with_suffix("").parts))
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
