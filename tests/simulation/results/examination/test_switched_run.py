@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -186,6 +187,7 @@ def mass_between_walls() -> tuple[sf.Model, dict[str, Any]]:
     ("options", "made"),
     [
         ({"method": "rk4", "dt": 0.02}, [1]),  # Parts of 25 steps.
+        ({"method": "rk4", "dt": 0.004}, [1]),  # Of 125.
         ({"method": "rk4", "dt": 5e-4}, [-2]),  # Of 1000: steps four times as long say enough.
         ({"method": "semi_implicit_euler", "dt": 5e-4}, [-2]),
         ({"method": "dopri5"}, [-2]),
@@ -232,7 +234,8 @@ def test_the_note_does_not_depend_on_what_is_recorded(options: dict[str, Any], n
     model, q, v, given = relay()
     run = sf.simulate(model, q, v, **given, method="semi_implicit_euler", dt=2.0 / n, **options)
     assert run.outcome.ok and bool(run.outcome.notes)
-    assert any("actions of events: " in note and "errs by" in note for note in run.outcome.notes) or n == 10
+    over = f"over {len(run.events)} actions of events: "
+    assert any(over in note and "errs by" in note for note in run.outcome.notes) or n == 10
 
 
 def test_runs_that_an_event_ends_are_compared_at_their_end() -> None:
@@ -255,8 +258,50 @@ def test_events_that_finer_steps_meet_are_noted() -> None:
     assert not run.events and run.outcome.notes
 
 
+def test_an_event_by_which_finer_steps_end_is_noted() -> None:
+    model, q, v, given = relay()
+    given["t_end"], far = 0.2, {"far": sf.Event("q0 - 9", "rising", action={"side": -1})}
+    top, right = (
+        sf.simulate(model, q, v, **(given | {"events": {}}), **one).q[:, 0].max()
+        for one in ({"method": "implicit_euler", "dt": 2e-3}, FINE)
+    )
+    end = sf.Event(f"q0 - {0.7 * top + 0.3 * right}", "rising", terminal=True)
+    run = sf.simulate(model, q, v, **(given | {"events": far | {"end": end}}), method="implicit_euler", dt=2e-3)
+    assert top < right and run.outcome.kind == "finished" and not run.events
+    assert "with half of that it does not come to this end over what its events do" in run.outcome.notes[0]
+
+
 def test_a_run_in_real_time_is_not_made_once_more(monkeypatch: pytest.MonkeyPatch) -> None:
     model, given = mass_between_walls()
     monkeypatch.setattr(SwitchedRun, "fine", None)
     run = sf.simulate(model, **(given | {"t_end": 0.4}), method="rk4", dt=0.02, realtime=10.0)
     assert len(run.events) == 1 and run.outcome.ok
+
+
+def test_speeds_count_at_the_end_and_in_the_mean_displacements_at_any_instant(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Relative to the largest of each; what jumps is not compared where it does."""
+    model, given = mass_between_walls()
+    asked, fine = list[SwitchedRun](), SwitchedRun.fine
+
+    def noted(run: SwitchedRun, *of: Any) -> Any:
+        asked.append(run)
+        return fine(run, *of)
+
+    monkeypatch.setattr(SwitchedRun, "fine", noted)
+    made = sf.simulate(model, **given, method="rk4", dt=0.02)
+    run = asked[0]
+    t, q, v, u = run.coarse(run.window, 1)
+    assert not set(t) & {found.t for found in made.events} and t[0] == 0.0 and t[-1] == 2.0 and len(t) > 90
+
+    def change(q_finer: Any, v_finer: Any) -> float:
+        return run.change([t, q, v, u], [t, q_finer, v_finer, u], "run")[0]
+
+    last, fastest, far = np.arange(len(t))[:, np.newaxis] == len(t) - 1, np.abs(v).max(), np.abs(q).max()
+    assert change(q, v) == 0.0
+    assert change(q, v * (1 - 0.3 * last)) == pytest.approx(0.3 * abs(v[-1, 0]) / fastest)
+    assert change(q, v * (1 - 0.2 * ~last)) == pytest.approx(
+        0.2 * np.abs(v[:-1]).sum() / len(t) / np.abs(v[-1, 0]), rel=0.3
+    )
+    assert change(q + 0.05 * (t == t[7])[:, np.newaxis], v) == pytest.approx(0.05 / max(far, q[7, 0] + 0.05))
+    assert [run.error(0.1, k) for k in (1, 2)] == pytest.approx([0.1 * 16 / 15, 0.1 * 256 / 255])
+    assert run.halvings("run") == 4 and replace(run, steps=100_000).halvings("run") == 1
