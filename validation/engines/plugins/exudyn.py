@@ -57,8 +57,8 @@ s.SetODE2Coordinates(q, configuration=initial)
 s.SetODE2Coordinates_t(v, configuration=initial)
 settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 1, {STEP}
 settings.timeIntegration.verboseMode, settings.timeIntegration.adaptiveStep = 0, False
-mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.{kind})
-mbs.SetObjectParameter(tree, "jointForceVector", still)
+try: mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.{kind})
+finally: mbs.SetObjectParameter(tree, "jointForceVector", still)
 value = np.r_[s.GetODE2Coordinates(), s.GetODE2Coordinates_t()]""",
     )
 
