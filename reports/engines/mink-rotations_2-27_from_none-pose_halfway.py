@@ -1,0 +1,13 @@
+# mink 1.3.0, rotations, 2^-27 from none: SE3.interpolate is imprecise (a quarter of the way from X to Y, along the screw).
+import numpy as np
+import mink
+q = np.array([1.0, 4.706972265475104e-09, 5.46245368824376e-09, 1.2405513006850294e-09])
+a = np.array([-0.45902228709100545, -0.39625206603607555, -0.8533158648967247])
+tau = np.array([-6.666994525157017e-09, 4.581736450708939e-09, 4.668613311494632e-09])
+q2 = np.array([1.0, -2.5428705261084143e-09, -4.748220877582511e-09, -4.676746860152509e-09])
+X, Y = mink.SE3(np.r_[q, a]), mink.SE3(np.r_[q2, tau])
+T = (X.interpolate(Y, 0.25)).as_matrix()
+value = [*T[:3, 3], *T[:3, :3].flat]
+import numpy as np
+value, expected = np.reshape(value, (12,))[(0,)], -0.3442667157909673
+assert abs(value - expected) <= 1.3e-12, f"{value = }, {expected = }"
