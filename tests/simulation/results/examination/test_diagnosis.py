@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.results.examination.run import ExaminedRun
+from symofros.simulation.stepping.status import Status
 from tests.models import compiled
 from tests.simulation.mechanisms import turned
 from tests.simulation.oscillator import oscillator
@@ -175,3 +177,19 @@ def test_steps_that_are_too_long_are_not_said_to_be_a_singular_posture(method: s
     assert run.outcome.kind == "diverged" and run.outcome.reason.startswith(words), run.outcome
     assert "a smaller dt" in run.outcome.advice and len(run.events) == events
     assert sf.simulate(model, start, t_end=run.outcome.t + dt, dt=dt / 8, beam_limit=math.inf).outcome.ok
+
+
+def test_what_shorter_steps_do_not_pass_stays_singular(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They have to go on for two steps beyond where the run ends."""
+    asked = list[tuple[float, float]]()
+
+    def repeated(run: ExaminedRun, start: Any, t_end: float, dt: float, **options: Any) -> tuple[int, list[np.ndarray]]:
+        asked.append((t_end, dt))
+        return Status.SINGULAR, []
+
+    monkeypatch.setattr(ExaminedRun, "repeated", repeated)
+    run = sf.simulate(hopper(), [1.0, 0.8, 0.0, 0.0], dt=0.05, beam_limit=math.inf)
+    assert run.outcome.kind == "singular" and run.outcome.reason.startswith("the mass matrix is singular")
+    assert np.array(asked[-2:]) == pytest.approx(
+        np.array([(run.outcome.t + 0.1, 0.05 / 8), (run.outcome.t + 0.1, 0.05 / 64)])
+    )

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.simulation.results.examination.finer_steps import Changed
 from symofros.simulation.results.examination.switched_run import SwitchedRun
 from symofros.simulation.settings import Settings
 from tests.simulation.mechanisms import slide
@@ -305,3 +306,38 @@ def test_speeds_count_at_the_end_and_in_the_mean_displacements_at_any_instant(mo
     assert change(q + 0.05 * (t == t[7])[:, np.newaxis], v) == pytest.approx(0.05 / max(far, q[7, 0] + 0.05))
     assert [run.error(0.1, k) for k in (1, 2)] == pytest.approx([0.1 * 16 / 15, 0.1 * 256 / 255])
     assert run.halvings("run") == 4 and replace(run, steps=100_000).halvings("run") == 1
+
+
+@pytest.mark.parametrize(
+    ("method", "share", "order", "words"),
+    [
+        ("semi_implicit_euler", 0.04, 1.0, ""),
+        (
+            "semi_implicit_euler",
+            0.06,
+            1.0,
+            "half of that changes it by 6 %, so that it errs by about 12 %; a smaller dt",
+        ),
+        ("rk4", 0.12, 1.2, "errs by about 13 %, with the order 1.2 in place of 4; a smaller dt"),
+        ("rk4", 0.12, 3.8, "errs by about 13 %; a smaller dt"),
+        ("rk4", 0.6, 1.2, "errs by about 64 %; a smaller dt"),
+    ],
+)
+def test_the_error_is_that_of_the_order_and_a_lost_order_is_stated(
+    method: str, share: float, order: float, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a change by half the step that is known."""
+    model, given = mass_between_walls()
+    monkeypatch.setattr(SwitchedRun, "changed", lambda *_: Changed(share, 0.0, 100))
+    monkeypatch.setattr(SwitchedRun, "order", lambda _: order)
+    notes = sf.simulate(model, **given, method=method, dt=0.01).outcome.notes
+    assert len(notes) == bool(words) and all(note.endswith(words) for note in notes), notes
+
+
+def test_the_order_is_that_of_two_halvings() -> None:
+    model, given = mass_between_walls()
+    seen = list[float]()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(SwitchedRun, "error", _noting(lambda run, *_: run.order(), seen))
+        sf.simulate(model, **given, method="semi_implicit_euler", dt=0.01)
+    assert seen == [pytest.approx(1.0, abs=0.2)]
