@@ -141,7 +141,7 @@ PLUGIN = SourcePlugin(
         Convention("armature", "part of the mass matrix; mj_rne leaves it out"),
     ),
     kinds={},
-    ways=_WAYS | rebuilt.ways(_WAYS) | rebuilt.SENSED | copies.of_model(_WAYS, rebuilt.COPIED),
+    ways=_WAYS | rebuilt.ways(_WAYS) | rebuilt.SENSED | copies.of_model(_WAYS, rebuilt.COPIED, copies.OF_MODELS[:-1]),
     write=write,
     constraints=beside.KINDS,
     demands={
