@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -53,6 +54,9 @@ def measure(
         bool | None, typer.Option("--frozen/--working", help="The faults that judge the harness, or the others.")
     ] = None,
     smoke: Annotated[bool, typer.Option("--smoke", help="At most a minute for each release.")] = False,
+    update: Annotated[
+        bool, typer.Option("--update", help="Keep what the report that is there says of the other faults.")
+    ] = False,
     suite: Annotated[
         str, typer.Option(metavar="COMMAND", help="Score this test suite in place of ours: {python} is the release's.")
     ] = "",
@@ -70,11 +74,13 @@ def measure(
     for fault in chosen:
         by_engine.setdefault(fault.engine, []).append(fault)
     folder = environments or default_folder()
-    run.writes = run.asked or not (names or suite or smoke)
+    asked = {"suite": suite, "smoke": smoke, "half": {None: "all", True: "frozen", False: "working"}[half]}
+    earlier = _stored(run.folder / f"{run.topic.name}.json", asked, {fault.name for fault in chosen}) if update else []
+    run.writes = run.asked or update or not (names or suite or smoke)
 
     def data(done: Any) -> Data:
-        rows = [row for engine in done.results.values() for row in engine]
-        asked = {"suite": suite, "smoke": smoke, "half": {None: "all", True: "frozen", False: "working"}[half]}
+        rows = earlier + [row for engine in done.results.values() for row in engine]
+        rows = sorted(rows, key=lambda row: (row["engine"], row["name"]))
         return {"faults": rows, "failures": done.failures, "unfinished": list(done.unfinished), **asked}
 
     run.expect(len(chosen), "asking releases")
@@ -89,6 +95,26 @@ def measure(
         return rows
 
     return data(run.each(list(by_engine), of_engine, lambda done: run.save(data(done)) if run.writes else None))
+
+
+def _stored(path: Path, asked: Data, anew: Collection[str]) -> list[dict[str, Any]]:
+    """Rows of a stored report that are not asked anew, of faults that there still are; each with where it was measured.
+
+    Raises:
+        typer.BadParameter: There is none, or it was asked in another way.
+    """
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8"))
+        ways = [{name: one[name] for name in ("suite", "smoke")} for one in (stored, asked)]
+    except (OSError, ValueError, KeyError) as error:
+        raise typer.BadParameter(f"{path} can't be read: {error}; leave --update out", param_hint="--update") from None
+    if ways[0] != ways[1]:
+        raise typer.BadParameter(
+            f"{path} was asked with {ways[0]}, this is {ways[1]}: ask alike", param_hint="--update"
+        )
+    held, there = frozen(), {name: stored[name] for name in ("revision", "date")}
+    rows = [row for row in stored["faults"] if row["name"] in faults() and row["name"] not in anew]
+    return [{"origin": there, **row, "frozen": row["name"] in held} for row in rows]
 
 
 def _by_suite(command: str, wanted: Sequence[Release], folder: Path) -> dict[Release, Asked]:

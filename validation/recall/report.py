@@ -48,7 +48,7 @@ def compose(data: Data) -> Report:
         "Real faults of releases: which are seen",
         f"{who} hits {said}; {counted(alarms, 'false alarm')} on {counted(len(asked), 'right release')}.",
         all(met),
-        (_TEXT,),
+        (_TEXT, *_earlier(rows)),
         (
             Section("Sets", (overview, failures), "sets"),
             Section("Faults", (Table.of(_HEAD, map(_line, rows)), Text(_COLUMNS, "soft")), "faults", all(met)),
@@ -79,6 +79,16 @@ _HEAD = "fault | engine | wrong | right | class | score | seen by | new groups |
 _COLUMNS = """min: both releases, with the truths that they are held to. MB: the most that a release's process held. MB
 on disk: both environments."""
 _CLASSES = "faults | hit | half a hit | miss | not asked"
+
+
+def _earlier(rows: Sequence[Row]) -> Iterator[str]:
+    """Which rows an update has kept."""
+    origins = Counter((row["origin"]["date"], row["origin"]["revision"][:8]) for row in rows if "origin" in row)
+    if origins:
+        said = "; ".join(
+            f"{number} on {date} by the harness of {revision}" for (date, revision), number in origins.items()
+        )
+        yield f"Of the {len(rows)} faults, these were asked earlier: {said}."
 
 
 def _hits(rows: Sequence[Row]) -> int:

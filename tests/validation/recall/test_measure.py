@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -48,3 +49,41 @@ def test_releases_that_can_not_be_asked_are_no_misses(monkeypatch: pytest.Monkey
 def test_a_half_has_its_own_faults_alone() -> None:
     done = CliRunner().invoke(app, ["recall", NAME, "--frozen"])
     assert done.exit_code == 2 and NAME in done.output
+
+
+OTHER = "pinocchio_universal_coriolis"
+
+
+@pytest.fixture
+def report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a report of two faults, both missed."""
+    monkeypatch.setattr(measure, "kept", lambda folder, requirements: Path(sys.executable))
+    monkeypatch.setattr(measure, "size_of", lambda python: 0.0)
+    named(tmp_path, NAME, OTHER, "--suite", SUITE % "colours")
+    return tmp_path
+
+
+def named(folder: Path, *arguments: str) -> dict[str, Any]:
+    CliRunner().invoke(app, ["recall", *arguments, "--report", str(folder)])
+    return dict(json.loads((folder / "recall.json").read_text(encoding="utf-8")))
+
+
+def test_an_update_keeps_what_is_said_of_other_faults(report: Path) -> None:
+    before = {row["name"]: row for row in named(report, NAME, OTHER, "--suite", SUITE % "colours")["faults"]}
+    after = named(report, NAME, "--update", "--suite", SUITE % "colours")
+    rows = {row["name"]: row for row in after["faults"]}
+    assert rows.keys() == before.keys() == {NAME, OTHER} and "origin" not in rows[NAME]
+    assert rows[OTHER].pop("origin").keys() == {"revision", "date"} and rows[OTHER] == before[OTHER]
+    assert "Of the 2 faults, these were asked earlier: 1 on " in (report / "recall.md").read_text(encoding="utf-8")
+    after = named(report, OTHER, "--update", "--suite", SUITE % "colours")
+    assert [row["name"] for row in after["faults"] if "origin" in row] == [NAME]
+
+
+def test_a_report_of_another_way_of_asking_is_not_updated(report: Path) -> None:
+    text = (report / "recall.json").read_text(encoding="utf-8")
+    for arguments in (["--smoke"], ["--suite", "another"]):
+        done = CliRunner().invoke(app, ["recall", NAME, "--update", *arguments, "--report", str(report)])
+        assert done.exit_code == 2 and "ask alike" in done.output.replace("\n", " ")
+    assert (report / "recall.json").read_text(encoding="utf-8") == text
+    done = CliRunner().invoke(app, ["recall", NAME, "--update", "--report", str(report / "none")])
+    assert done.exit_code == 2 and "leave --update out" in " ".join(done.output.replace("│", " ").split())
