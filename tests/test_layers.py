@@ -111,7 +111,7 @@ HARNESS = table("""
     # Real faults of releases, and the environments that releases are asked in.
     faults:      program reporting
     # Engines in their own conventions, and the truth that they are held to: what a check asks them is turned into ours.
-    engines:     contract reporting worker_process faults
+    engines:     program contract reporting worker_process faults
     adapters:    engines contract mechanics
     comparison:  adapters contract mechanics
     procedures:  references comparison contract mechanics

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,14 +14,36 @@ from symofros.diagrams.block import Block, Crossing, Environment, EvaluationCont
 from symofros.diagrams.tensor import Tensor
 
 _DIRECTIONS = ("none", "rising", "falling", "both")
+# How far an integral comes from a limit until it has left it, of the size of limit and start.
+_LEFT = 1e-9
+
+
+class _Limit(NamedTuple):
+    """A limit of an integral.
+
+    Attributes:
+        name: "high" or "low".
+        value: Where it is.
+        sign: Sign of rates that push against it.
+        margin: How far from it an integral has left it.
+    """
+
+    name: str
+    value: float
+    sign: float
+    margin: float
+
+    def beyond(self, x: Any) -> Any:
+        """How far x is beyond it."""
+        return self.sign * (x - self.value)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Integrator(Block):
     """y' = u, y(0) = start; sampled, y[k + 1] = y[k] + T u[k]; entry by entry.
 
-    At a limit it stands still as long as u pushes against it. A reset takes y back to its start: continuous, where the
-    input "reset" crosses zero, located in time; sampled, at the first sample after.
+    At a limit, which is located in time, it stands still as long as u pushes against it. A reset takes y back to its
+    start: continuous, where the input "reset" crosses zero, located in time; sampled, at the first sample after.
 
     Attributes:
         start: First y, a number or one an entry, which also tells the shape inside loops.
@@ -64,9 +86,10 @@ class Integrator(Block):
         return {"x": self._first(environment)} if self.period is None else {}
 
     def memory(self, environment: Environment) -> dict[str, Any]:
-        """Sampled: y, and the reset signal at the sample before."""
+        """Sampled: y, and the reset signal at the sample before. Continuous: whether entries are at a limit."""
         if self.period is None:
-            return {}
+            first = self._first(environment)
+            return {name: np.asarray(one.beyond(first) >= 0.0, dtype=np.float64) for name, one in self._limits.items()}
         return {"x": self._first(environment)} | ({} if self.reset == "none" else {"before": 0.0})
 
     def _limited(self, x: Tensor) -> Tensor:
@@ -87,33 +110,74 @@ class Integrator(Block):
         """The integral, within limits."""
         return {"y": self._limited(context.states["x"]) if self.period is None else self._now(context)}
 
+    def memory_at_start(self, context: EvaluationContext) -> Values:
+        """Continuous: entries that begin at a limit."""
+        return {} if self.period is not None else self._at_limits(context.states["x"])
+
     def rates(self, context: EvaluationContext) -> Values:
         """U, unless it pushes against a limit."""
         if self.period is not None:
             return {}
-        x, rate = context.states["x"], context.inputs["u"]
-        if self.high < math.inf:
-            rate = rate * (1.0 - (x - self.high).apply("step") * rate.apply("step"))
-        if self.low > -math.inf:
-            rate = rate * (1.0 - (self.low - x).apply("step") * (-rate).apply("step"))
+        rate = context.inputs["u"]
+        for name, limit in self._limits.items():
+            rate = rate * (1.0 - context.memory[name] * (limit.sign * rate).apply("step"))
         return {"x": rate}
 
     def update(self, context: EvaluationContext) -> Values:
-        """One sample's share further."""
+        """Sampled: one sample's share further. What is kept in continuous time changes at crossings alone."""
         if self.period is None:
-            return {}
+            return {name: context.memory[name] for name in self._limits}
         memory = {"x": self._limited(self._now(context) + float(self.period) * context.inputs["u"])}
         return memory if self.reset == "none" else {**memory, "before": context.inputs["reset"]}
 
     def crossings(self, context: EvaluationContext) -> dict[str, Crossing]:
-        """Continuous: zeros of the reset signal."""
-        if self.period is not None or self.reset == "none":
+        """Continuous: limits that entries reach and leave, and zeros of the reset signal."""
+        if self.period is not None:
             return {}
-        return {"reset": Crossing(context.inputs["reset"], self.reset)}  # type: ignore[arg-type]
+        found = {}
+        for name, (limit, entry, leaves) in self._of_entries(context).items():
+            beyond = limit.beyond(context.states["x"][entry])
+            found[name] = Crossing(beyond + limit.margin, "falling") if leaves else Crossing(beyond, "rising")
+        if self.reset != "none":
+            found["reset"] = Crossing(context.inputs["reset"], self.reset)  # type: ignore[arg-type]
+        return found
 
     def crossed(self, context: EvaluationContext, which: str) -> Values:
-        """Back to the start."""
-        return {"x": context.states["x"] * 0.0 + np.asarray(self.start, dtype=np.float64)}
+        """Back to the start; at a limit, exactly; or away from it."""
+        x = context.states["x"]
+        if which == "reset":
+            first = x * 0.0 + np.asarray(self.start, dtype=np.float64)
+            return {"x": first, **self._at_limits(first)}
+        limit, entry, leaves = self._of_entries(context)[which]
+        own = np.zeros(x.shape)
+        own[entry] = 1.0
+        at_limit = context.memory[limit.name] * (1.0 - own)
+        return (
+            {limit.name: at_limit} if leaves else {limit.name: at_limit + own, "x": x * (1.0 - own) + limit.value * own}
+        )
+
+    @property
+    def _limits(self) -> dict[str, _Limit]:
+        """The limits that there are, by name."""
+        starts = np.asarray(self.start, dtype=np.float64)
+        stated = (("high", self.high, 1.0), ("low", self.low, -1.0))
+        return {
+            name: _Limit(name, value, sign, _LEFT * (max(abs(value), float(np.abs(starts - value).max())) or 1.0))
+            for name, value, sign in stated
+            if math.isfinite(value)
+        }
+
+    def _at_limits(self, x: Tensor) -> Values:
+        return {name: limit.beyond(x).apply("step") for name, limit in self._limits.items()}
+
+    def _of_entries(self, context: EvaluationContext) -> dict[str, tuple[_Limit, tuple[int, ...], bool]]:
+        """Name of a crossing -> limit, the entry that it is of, and whether the limit is left."""
+        return {
+            "_".join((*(["left"] if leaves else []), name, *map(str, entry))): (limit, entry, leaves)
+            for name, limit in self._limits.items()
+            for entry in np.ndindex(context.states["x"].shape)
+            for leaves in (False, True)
+        }
 
 
 def _rises(before: Tensor, now: Tensor) -> Tensor:

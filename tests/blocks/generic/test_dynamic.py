@@ -17,8 +17,10 @@ from symofros.blocks import (
     KalmanFilter,
     Notch,
     Ramp,
+    Sequence,
     Sine,
     StateSpace,
+    Step,
     TransferFunction,
     TransportDelay,
 )
@@ -86,11 +88,44 @@ def test_an_integrator_stops_at_its_limits_and_leaves_them_immediately() -> None
     # 1 - cos reaches 1 at 1/4 s, stays until the sine turns at 1/2 s, and falls from there.
     t = found.t
     assert y[(t > 0.26) & (t < 0.5)] == pytest.approx(1.0, abs=1e-12)
-    # The step that reaches the limit may pass it by what a step covers at most, 2 pi dt.
-    assert y[np.argmin(abs(t - 0.6))] == pytest.approx(1.0 - (1 + math.cos(2 * math.pi * 0.6)), abs=2e-3 * math.pi)
+    assert y[np.argmin(abs(t - 0.6))] == pytest.approx(1.0 - (1 + math.cos(2 * math.pi * 0.6)), abs=1e-9)
     assert y.min() == -0.5
     other = simulation.interpret(2.0, dt=1e-3, record=1e-3)["x.y"]
     np.testing.assert_allclose(other, y, atol=1e-12)
+
+
+@pytest.mark.parametrize("method", ["euler", "rk4", "dopri5"])
+def test_limits_are_located_entry_by_entry(method: str) -> None:
+    """Of rates 1, 2 and -1 up to 1 s, turned round after: no step passes a limit by, however long it is."""
+    diagram = sf.Diagram("limits")
+    rates = np.array([1.0, 2.0, -1.0])
+    diagram.add(Step(name="u", time=1.0, before=rates, after=-rates))
+    diagram.add(Integrator(name="x", high=0.73, low=-0.37), u="u.y")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(1.5, dt=0.25, method=method, record=0.25)
+    assert run["x.y"][-1] == pytest.approx([0.23, -0.27, 0.13], abs=1e-9)
+    assert [one.t for one in run.crossings] == pytest.approx([0.365, 0.37, 0.73, 1.0, 1.0, 1.0], abs=1e-9)
+    if method != "dopri5":
+        other = simulation.interpret(1.5, dt=0.25, method=method)
+        assert other["x.y"][-1] == pytest.approx([0.23, -0.27, 0.13], abs=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_limits_hold_whatever_the_rates(seed: int) -> None:
+    """Rates that are held: up, down, none, to and fro; starts at a limit too. y is each step's line, clipped."""
+    rng = np.random.default_rng(seed)
+    rates = rng.choice([-2.0, -0.3, -1e-11, 0.0, 0.0, 1e-11, 0.3, 2.0], (30, 2))
+    start = rng.choice([-0.05, 0.0, 0.1], 2)
+    diagram = sf.Diagram("limits")
+    diagram.add(Sequence(name="u", t=0.1 * np.arange(30), values=rates, kind="hold"))
+    diagram.add(Integrator(name="x", start=start, high=0.1, low=-0.05), u="u.y")
+    known = [start]
+    for rate in rates:
+        known.append(np.clip(known[-1] + 0.1 * rate, -0.05, 0.1))
+    simulation = sf.Simulation(diagram)
+    for found in (simulation.run(3.0, dt=0.1, record=0.1), simulation.interpret(3.0, dt=0.1, record=0.1)):
+        at = np.searchsorted(found.t, 0.1 * np.arange(31) - 1e-9)
+        assert found["x.y"][at] == pytest.approx(np.array(known), abs=3e-10)
 
 
 def test_a_reset_is_located_in_time() -> None:

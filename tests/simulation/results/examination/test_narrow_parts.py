@@ -24,7 +24,7 @@ def test_two_instants_of_a_step_are_looked_at_as_one_part_and_each_alone(
     """Alone where they are farther apart than nearby: from the end of the step that is nearer."""
     t, other = ends(seed), min(at + apart, 0.99)
     places = np.array([at, other])
-    assume(np.abs(places - 0.5).min() > 1e-9)
+    assume(min(*np.abs(places - 0.5), abs(other - at - _NEAR[0])) > 1e-9)
     parts = _parts(t, t[step] + places * (t[step + 1] - t[step]))
     assert {part.step for part in parts} == {step}
     wider = _BEYOND * (other - at)
