@@ -18,15 +18,19 @@ def settled(run: sf.Trajectory) -> None:
     assert np.diff(run.energy).max() < 1e-6 * run.energy[0]
 
 
-@pytest.mark.parametrize("method", ["dopri5", "rk4"])
-def test_a_box_that_rocks_from_edge_to_edge_comes_to_rest(method: str) -> None:
+@pytest.mark.parametrize(("method", "off"), [("dopri5", 5e-5), ("rk4", 5e-4)])  # Fixed steps blur how slow slips turn.
+def test_a_box_that_rocks_from_edge_to_edge_comes_to_rest(method: str, off: float) -> None:
     """(46a): its strikes without restitution follow each other at a constant ratio, some at speeds of rounding."""
     model = box(0.5, height=0.05)
     run = sf.simulate(model, rested(model, 0.3), [1.0, 0, 0, 2.0, -1.0, 0], t_end=0.6, method=method, dt=1e-3)
     settled(run)
     assert run.q[-1, 2] == pytest.approx(0.05, abs=1e-9) and np.abs(run.v[-1]).max() < 1e-9
-    # Where the strikes accumulate, less what is left of them within the threshold.
-    assert run.events[-1].t == pytest.approx(0.304027, abs=5e-5)
+    # Where the strikes accumulate, less what is left of them within the threshold; by dop853 with a tolerance of 1e-12.
+    assert run.events[-1].t == pytest.approx(0.306446, abs=off)
+    # Two edges strike while two feet touch, slipping: of all sets of modes one agrees with (46), found by enumeration.
+    assert [event.energy_lost for event in run.events if event.energy_lost > 1.5] == pytest.approx(
+        [2.8352, 1.6693], abs=3e-4
+    )
 
 
 DISC = [(0.2 * cos(angle), 0.2 * sin(angle), -0.06) for angle in (0, 2.1, 4.2)]

@@ -15,15 +15,18 @@ from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, bo
 
 @pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
 def test_a_mass_on_an_incline_stays_or_slides_as_coulomb_says(share: float) -> None:
-    """No creep, not by a bit, in 5000 steps; above its level the acceleration of the closed form to 1e-12 g."""
+    """No creep in 5000 steps; above its level the acceleration of the closed form to 1e-12 g.
+
+    Not by a bit, or, where a compiler fuses products and sums, by less than 1e-20 m.
+    """
     angle = 0.4
     model = point(tan(angle) * share, (G * sin(angle), 0, -G * cos(angle)))
     run = sf.simulate(model, t_end=0.5, dt=1e-4, method="rk4")
     assert run.outcome.ok and not run.events
     expected = G * (sin(angle) - tan(angle) * share * cos(angle)) if share < 1 else 0.0
     if share > 1:
-        assert not run.q.any() and not run.v.any()
-    assert abs(run.v[-1, 0] / 0.5 - expected) < 1e-12 * G and not run.v[:, 1:].any()
+        assert np.abs(run.q).max() < 1e-20 and np.abs(run.v).max() < 1e-19
+    assert abs(run.v[-1, 0] / 0.5 - expected) < 1e-12 * G and np.abs(run.v[:, 1:]).max() < 1e-19
     # Force along x: what holds it, or the share that friction has of the weight.
     assert run.lam[-1, 1] == pytest.approx(-2.0 * G * sin(angle) * min(1.0, share), rel=1e-12)
 

@@ -42,10 +42,13 @@ def incline(share: float) -> sf.Model:
 
 @pytest.mark.parametrize("options", [{"dt": 1e-3}, {"method": "dopri5"}, {"method": "rodas4"}])
 def test_a_block_on_an_incline_is_held_or_slides(options: dict[str, Any]) -> None:
-    """At mu = tan(alpha) (1 +- 1e-3): it stays to the last bit, or accelerates by the closed form to 1e-12 g."""
+    """At mu = tan(alpha) (1 +- 1e-3): it stays to the last bit, or accelerates by the closed form to 1e-12 g.
+
+    A compiler that fuses products and sums leaves a rounding of the acceleration, which no step adds to the speed.
+    """
     held = sf.simulate(incline(1.001), [0.7], t_end=5.0, **options)
     assert held.outcome.kind == "finished" and not held.outcome.notes and not held.events
-    assert (held.q == 0.7).all() and not held.v.any() and not held.a.any()
+    assert (held.q == 0.7).all() and not held.v.any() and np.abs(held.a).max() < 1e-15
     assert held.lam == pytest.approx(np.full_like(held.lam, -2.0 * _G * math.sin(0.3)), rel=1e-14)
     slides = sf.simulate(incline(0.999), [0.7], t_end=5.0, **options)
     a = 0.001 * _G * math.sin(0.3)

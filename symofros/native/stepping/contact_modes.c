@@ -1,7 +1,7 @@
 /* Which modes the balls of a contact problem take: by parts that do not act on each other, from guesses on
  * (docs/theory/constraints.md, section 15, (46), (47b)). */
 
-enum { SYM_UNIQUE_UP_TO = 4, SYM_GUESS_SWEEPS = 200 };
+enum { SYM_UNIQUE_UP_TO = 4, SYM_GUESS_SWEEPS = 1000 };
 /* Share by which two motions differ; shares down to which a guess tells forces and motions from none. */
 #define SYM_DIFFERENT 1e-6
 #define SYM_GUESSED 1e-6

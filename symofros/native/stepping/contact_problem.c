@@ -273,14 +273,22 @@ static int32_t sym_directions_agree(const sym_contact_problem *p, int32_t count,
     return 1;
 }
 
-/* Whether modes agree once balls that begin to slide do so against their friction, found by iteration. */
+/* Whether modes agree once balls that begin to slide do so against their friction, found from the directions of the problem on:
+ * of several by Newton's method, where these are near, else by iteration, which leads away from some solutions however near. */
 static int32_t sym_try_modes(sym_contact_problem *p) {
+    double d[2 * SYM_MOST_CONTACTS];
     int32_t which[SYM_MOST_CONTACTS], count = 0, i, round, turns = 1;
     sym_sliding_problem at;
     for (i = 0; i < p->n; ++i)
         if (p->mode[i] == SYM_SLIDES && !p->slides[i] && p->mu[i] > 0.0) which[count++] = i;
     if (count == 0) return sym_agree_refined(p, 0, which);
     sym_reduce_to_sliding(p, &at);
+    if (count > 1) {
+        memcpy(d, p->d, sizeof d);
+        sym_refine_directions(p, &at, count, which);
+        if (sym_directions_agree(p, count, which) && sym_agree_refined(p, count, which)) return 1;
+        memcpy(p->d, d, sizeof d);
+    }
     for (round = 0; round < SYM_DIRECT_TURNS && turns; ++round) {
         sym_motion_of_sliding(p, &at);
         if (sym_directions_agree(p, count, which) && sym_agree_refined(p, count, which)) return 1;
