@@ -157,7 +157,7 @@ class Switch(Block):
 
 @dataclass(frozen=True, kw_only=True)
 class LookupTable(Block):
-    """y(u) by straight lines between points: sum y_i (a_i-1 - a_i), a_i the share of u along interval i, a_-1 = 1.
+    """y(u) by straight lines between points: sum y[i] (a[i - 1] - a[i]), a[i] how far u is along interval i, 0 to 1.
 
     Attributes:
         x: Positions of the points (n), increasing.
