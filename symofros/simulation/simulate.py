@@ -159,8 +159,8 @@ def _held_as_a_whole(
         return run
     left_out = int(acted > 0 and not phases[-1].statistics.steps)  # What the actions of a terminal event leave.
     states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]
-    told: dict[str, Any] = {"par": start[2], "parts": 1 + acted, "stopped": outcome.kind == "event"}
-    whole = SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **told)
+    fields: dict[str, Any] = {"par": start[2], "parts": 1 + acted, "stopped": outcome.kind == "event"}
+    whole = SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **fields)
     if not outcome.ok:
         return replace(run, outcome=too_long(whole, outcome)) if acted else run
     note = "" if any(note.startswith(_OF_STEPS) for note in outcome.notes) else switched_run_note(whole)

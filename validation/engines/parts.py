@@ -1,7 +1,7 @@
 """The matrix measured in parts, some engines at a time: of stored parts is taken over what still answers what is asked.
 
 Cells and identities are stored as nested tables, which say names once: a fifth of the text of rows that repeat them.
-What an interrupted run has finished is a part, too: of it is taken over likewise.
+What an interrupted run has finished is a part, too.
 """
 
 from __future__ import annotations
@@ -145,12 +145,12 @@ def merged(own: Data, parts: Sequence[Data]) -> Data:
     origins: list[Data] = []
     for part in parts:
         there = [{name: part[name] for name in ORIGIN if name in part}, *part.get("origins", ())]
-        theirs = {name: unnested(part.get(name, {}), layout) for name, layout in TABLES.items()}
-        for row in theirs["asked"]:
+        stored = {name: unnested(part.get(name, {}), layout) for name, layout in TABLES.items()}
+        for row in stored["asked"]:
             origin = there[0 if row["origin"] == "" else row["origin"] + 1]
             origins += [origin] if origin not in origins else []
             row["origin"] = origins.index(origin)
-        for name, more in theirs.items():
+        for name, more in stored.items():
             rows[name] += more
         known = engines_of([result])
         result["engines"] = [*result["engines"], *(one for one in part["engines"] if one["name"] not in known)]

@@ -81,14 +81,14 @@ def measure(
         pairs = [pair for text in at for pair in releases.stated(text, requires or ())]
     except ValueError as error:
         raise typer.BadParameter(str(error)) from None
-    theirs = parts.engines_of(stored)
+    with_parts = parts.engines_of(stored)
     wished = known(engines, present, "--engine", "engine present")
-    chosen = {name: plugin for name, plugin in present.items() if name in wished or name in theirs}
+    chosen = {name: plugin for name, plugin in present.items() if name in wished or name in with_parts}
     every = questions()
     wanted = {name: every[name] for name in known(models, every, "--kinds", "kind")}
     # A part of the questions or of the engines, or other releases than those of this environment, leave the whole
     # report as it is.
-    asks_all = chosen.keys() | theirs >= set(present) and set(wanted) == set(every)
+    asks_all = chosen.keys() | with_parts >= set(present) and set(wanted) == set(every)
     run.writes = run.asked or (asks_all and not (at or smoke))
     with releases.in_reach(chosen, pairs, environments) as reach:
         for why in reach.failures.values():

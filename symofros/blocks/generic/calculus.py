@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -93,8 +94,9 @@ class Integrator(Block):
         return {"x": self._first(environment)} | ({} if self.reset == "none" else {"before": 0.0})
 
     def _limited(self, x: Tensor) -> Tensor:
-        x = x if self.low == -math.inf else x.apply("max", self.low)
-        return x if self.high == math.inf else x.apply("min", self.high)
+        for limit in self._limits.values():
+            x = x.apply("min" if limit.sign > 0.0 else "max", limit.value)
+        return x
 
     def _now(self, context: EvaluationContext) -> Tensor:
         """The sampled integral at this instant: the stored value, or the start where the reset signal fires."""
@@ -156,7 +158,7 @@ class Integrator(Block):
             {limit.name: at_limit} if leaves else {limit.name: at_limit + own, "x": x * (1.0 - own) + limit.value * own}
         )
 
-    @property
+    @cached_property
     def _limits(self) -> dict[str, _Limit]:
         """The limits that there are, by name."""
         starts = np.asarray(self.start, dtype=np.float64)

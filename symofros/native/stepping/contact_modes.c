@@ -25,15 +25,6 @@ static int32_t sym_most_contact(const sym_contact_problem *p, int32_t i) {
     return p->parts[i] ? SYM_OPEN : p->slides[i] || p->mu[i] == 0.0 ? SYM_SLIDES : SYM_STICKS;
 }
 
-/* Motion c of a ball by forces f on all. */
-static void sym_motion_of_ball(const sym_contact_problem *p, const double *f, int32_t ball, double *c) {
-    int32_t j, k;
-    for (k = 0; k < 3; ++k) {
-        const double *row = p->W + 3 * p->n * (3 * ball + k);
-        for (j = 0, c[k] = p->b[3 * ball + k]; j < 3 * p->n; ++j) c[k] += row[j] * f[j];
-    }
-}
-
 /* The force f (3) of a ball with the motion c becomes one nearer to its law, (47b). Returns by how much it changes. */
 static double sym_relax_ball(const sym_contact_problem *p, int32_t i, const double *c, double *f) {
     const double *W = p->W + 9 * i * p->n + 3 * i, *d = p->d + 2 * i, mu = p->mu[i], was[3] = {f[0], f[1], f[2]};

@@ -64,6 +64,15 @@ static double sym_sticking_margin(const sym_contact_problem *p, const double *mo
     return sym_shared_margin(n, count, mu, own, null);
 }
 
+/* Motion c of a ball by forces f on all. */
+static void sym_motion_of_ball(const sym_contact_problem *p, const double *f, int32_t ball, double *c) {
+    int32_t j, k;
+    for (k = 0; k < 3; ++k) {
+        const double *row = p->W + 3 * p->n * (3 * ball + k);
+        for (j = 0, c[k] = p->b[3 * ball + k]; j < 3 * p->n; ++j) c[k] += row[j] * f[j];
+    }
+}
+
 /* Forces and c where the balls have modes, directions of those that begin to slide included: the balls that stick do not move,
  * those that slide stay on their planes, (47). */
 static void sym_forces_of_modes(sym_contact_problem *p) {
@@ -92,10 +101,7 @@ static void sym_forces_of_modes(sym_contact_problem *p) {
         if (p->mode[ball[i]] != SYM_SLIDES) continue;
         for (k = 0; k < 2; ++k) p->f[3 * ball[i] + k] = -p->mu[ball[i]] * x[i] * p->d[2 * ball[i] + k];
     }
-    for (i = 0; i < n; ++i) {
-        p->c[i] = p->b[i];
-        for (j = 0; j < n; ++j) p->c[i] += p->W[n * i + j] * p->f[j];
-    }
+    for (i = 0; i < p->n; ++i) sym_motion_of_ball(p, p->f, i, p->c + 3 * i);
 }
 
 /* Whether modes agree with the motion that they bring about, (46). */

@@ -90,10 +90,10 @@ class SwitchedRun(ExaminedRun):
         """The same by finer steps, over all events but one that has ended it; None where these do not come there."""
         instants, times = self.states[0][self._rows], 2.0**refinements
         most = int(_PATIENCE * max(1.0, times) * self.steps) + MOST_STEPS
-        told = {"every": 0, "grid": instants, "max_steps": most, **({} if self.h else self._tolerances(refinements))}
+        options = {"every": 0, "grid": instants, "max_steps": most, **({} if self.h else self._tolerances(refinements))}
         begin = self.settings.t0, *self.start
         status, states = self.repeated(
-            begin, float(instants[-1]), self.settings.dt / (times if self.h else 1.0), **told
+            begin, float(instants[-1]), self.settings.dt / (times if self.h else 1.0), **options
         )
         return states if status >= 0 and len(states[0]) == len(instants) else None
 
