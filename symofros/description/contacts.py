@@ -19,8 +19,6 @@ MEASURES: dict[Surface, tuple[str, ...]] = {
     "capsule": ("surface_radius", "length"),
     "box": ("size",),
 }
-# Surfaces of rigid contacts.
-RIGID: tuple[Surface, ...] = ("plane", "sphere")
 HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
 _NUMBERS = (
@@ -49,8 +47,8 @@ class Contact:
     "BALL.bristle_x" and so on in the axes of the second frame, of a plane two, of other surfaces three
     (docs/theory/states.md, section 5).
 
-    *Rigid*, with `restitution` in place of `stiffness`: balls on a plane or sphere strike, slide, stick and part by
-    Coulomb's law, exactly, as modes of a run ("BALL.mode": 0 open, 1 slides, 2 sticks; docs/theory/constraints.md,
+    *Rigid*, with `restitution` in place of `stiffness`: balls on a surface strike, slide, stick and part by Coulomb's
+    law, exactly, as modes of a run ("BALL.mode": 0 open, 1 slides, 2 sticks; docs/theory/constraints.md,
     section 15). Runs, batches, steppers, C packages, MEX and FMUs choose the modes; all other functions see an open
     contact unless a mode is set.
 
@@ -140,9 +138,6 @@ class Contact:
             return Problem(f"{what}: compliant or rigid", found, rule, "state one of the two")
         if not self.rigid:
             return None
-        if self.surface not in RIGID:
-            rule = f"rigid contacts are of balls on a {' or '.join(RIGID)}"
-            return Problem(f"{what}: rigid", f"a {self.surface}", rule, "state a stiffness, or one of these surfaces")
         for label, left_out in _COMPLIANT.items():
             if getattr(self, label) != left_out:
                 remedy = "leave it out, or state a stiffness in place of restitution"

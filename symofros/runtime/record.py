@@ -124,7 +124,7 @@ class RigidContactRecord(NamedTuple):
         pushes: Parameters that are a further force on the ball, along the axes of contact.
         way: Parameters that are the direction in which it has begun to slide (2), and its speed then.
         apart: Parameter that is how far it may pass the surface, open, by rounding.
-        pole: Parameter that is the sign of a sphere's pole; -1 on a plane.
+        pole: Parameter that is the sign of the pole; -1 on a plane.
         rows: Rows of G that hold it along the axes of contact.
         constraints: Names of the constraints of these rows.
         friction: Formula of parameters: coefficient of friction.

@@ -49,6 +49,10 @@ def contact_conditions(system: System) -> Iterator[Condition]:
         for value in contact.size or ():
             rule, remedy = "edges of a box are above zero", "give its three edges"
             yield Condition((value,), "positive", partial(_wrong, contact.name, "size", value, rule, remedy, where))
+        if contact.rigid and contact.surface == "box":
+            value, rule = contact.radius, "a point has no normal of a box at its edges, from which that of a ball turns"
+            remedy = "round it by a radius above zero, or state a plane for each face"
+            yield Condition((value,), "positive", partial(_wrong, contact.name, "radius", value, rule, remedy, where))
         if contact.restitution is not None:
             left, rule = (Term(1.0) - Term(contact.restitution)).value, "an impact takes energy, and never gives any"
             wrong = partial(_wrong, contact.name, "1 less restitution", left, rule, "give a number from 0 to 1", where)

@@ -1,12 +1,13 @@
-"""Rigid contacts: modes of balls on planes and spheres, and what holds them (docs/theory/constraints.md, section 15).
+"""Rigid contacts: modes of balls on surfaces, and what holds them (docs/theory/constraints.md, section 15).
 
 A mode is a run-time parameter, "foot.mode": 0 is open, what it is unless a run sets it, 1 slides and 2 sticks. In
 modes 1 and 2 the condition "foot.normal" keeps the ball on the surface, in mode 2 "foot.across.x" and ".y" its point
-of contact from slipping; their multipliers are the forces on the ball along the axes of contact: those of a plane, of
-a sphere two tangents and the normal. The parameters "foot.push_x" to ".push_z" are a further force along these axes,
-by which a run adds sliding friction, and "foot.way_x", ".way_y" and ".way_speed" the direction in which the ball has
-begun to slide, and its speed then; "foot.apart" is how far a ball that has grazed the surface may pass it by rounding.
-On a sphere "foot.pole", 1 or -1, is the end of its z axis from which the tangents are turned to where the ball is.
+of contact from slipping; their multipliers are the forces on the ball along the axes of contact: those of a plane, else
+two tangents and the normal. The parameters "foot.push_x" to ".push_z" are a further force along these axes, by which a
+run adds sliding friction, and "foot.way_x", ".way_y" and ".way_speed" the direction in which the ball has begun to
+slide, and its speed then; "foot.apart" is how far a ball that has grazed the surface may pass it by rounding. Where the
+surface is no plane "foot.pole", 1 or -1, is the end of its z axis from which the tangents are turned to where the ball
+is.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ class RigidBall(NamedTuple):
 
     @property
     def pole(self) -> str:
-        """Name of the parameter that is the sign of a sphere's pole."""
+        """Name of the parameter that is the sign of the pole, of surfaces but planes."""
         return f"{self.name}.pole"
 
     @property
@@ -105,7 +106,7 @@ class RigidBall(NamedTuple):
     def watched(self) -> tuple[Value, Value]:
         """What falls to zero where a mode ends, (40): distance or normal force; slip, or what friction has left.
 
-        On a sphere the latter falls to zero, too, where the normal has come too far from its pole.
+        But on planes the latter falls to zero, too, where the normal has come too far from its pole.
         """
         m, one, two = _symbol(self.mode), Term(1.0), Term(2.0)
         is_open, slides, sticks = (m - one) * (m - two) / two, m * (two - m), m * (m - one) / two

@@ -106,7 +106,7 @@ static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const doub
     return SYM_NO_CONTACT_FORCE;
 }
 
-/* Poles of spheres by the normals at the evaluation point, in par: one that is far from its pole takes the other one. */
+/* Poles by the normals at the evaluation point, in par: one that is far from its pole takes the other one. */
 static void sym_choose_poles(const sym_system *s, double *par) {
     int32_t i, taken = 0;
     for (i = 0; i < s->n_contacts; ++i) {

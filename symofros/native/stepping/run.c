@@ -217,18 +217,23 @@ static int32_t sym_records_fit(const sym_run *r) {
     return records && r->n_event_records + r->system->n_events <= r->event_capacity;
 }
 
+/* The step that was tried is not taken. What the constraints' rank was in its stages says nothing of the motion. */
+static void sym_reject_step(sym_run *r, double next_step) {
+    ++r->rejected, r->next_step = next_step;
+    if (r->system->nc > 0) *r->system->rank = r->rank;
+}
+
 /* After a step was tried, with that status and error norm: accept it, or reject it and shorten the next one. Returns 0
  * or a status. */
 static int32_t sym_accept_or_reject(sym_run *r, sym_workspace *w, double h, double t1, int32_t status, double error) {
     if (status == SYM_CALLBACK_FAILED || status == SYM_NO_ROTATION) return status;
     if (r->adaptive && (status != 0 || !(error <= 1.0))) {
-        ++r->rejected;
-        r->next_step = status != 0 || !(error == error) ? 0.25 * h : sym_next_step_size(r, h, error);
+        sym_reject_step(r, status != 0 || !(error == error) ? 0.25 * h : sym_next_step_size(r, h, error));
         return 0;
     }
     if (status != 0) return status;
     if (r->adaptive && (status = sym_look_within_step(r, w, h, error)) <= 0) {
-        if (status == 0) ++r->rejected, r->next_step = h;
+        if (status == 0) sym_reject_step(r, h);
         return status;
     }
     if (r->adaptive) {

@@ -109,7 +109,7 @@ typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/con
     int32_t push[3]; /* parameters: a further force on the ball, along the axes of contact */
     int32_t way[3];  /* parameters: x, y of the direction in which it has begun to slide, and its speed then */
     int32_t apart;   /* parameter: how far it may pass the surface, open, by rounding */
-    int32_t pole;    /* parameter: sign of the pole of a sphere; -1: of a plane */
+    int32_t pole;    /* parameter: sign of the pole; -1: of a plane */
     int32_t row[3];  /* of G, which hold it along the axes of contact */
 } sym_rigid_contact;
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from symofros.expr.edges import ONE, Edge
+from symofros.description.contacts import Contact
+from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.lowering import Lowering
@@ -19,51 +20,77 @@ class ContactAxes(NamedTuple):
     """Axes of contact of a rigid ball, in world axes.
 
     Attributes:
+        distance: Signed distance of the ball's centre from the surface [m].
         R_WC: Tangents t_x and t_y, then the normal n, from the surface to the ball: the axes of contact C.
         normal_rate: Rate of n [1/s].
         w_WC_W: Their angular velocity [rad/s].
     """
 
+    distance: Edge
     R_WC: Mat3
     normal_rate: Vec3
     w_WC_W: Vec3
 
 
-def fixed_axes(R_WS: Mat3, w_WS_W: Vec3) -> ContactAxes:
-    """Those of a plane: the axes of its frame S, which turns by w_WS_W."""
-    return ContactAxes(R_WS, w_WS_W.cross(R_WS.column(2)), w_WS_W)
-
-
-def sphere_normal(g: Graph, d: Vec3, inside: bool) -> tuple[Edge, Vec3]:
-    """Distance of the centres, and the normal: along d from the sphere's to the ball's or, inside, against it."""
-    size = norm(g, d)
-    normal = d.scaled(g.div(ONE, size))
-    return size, -normal if inside else normal
-
-
-def sphere_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS_W: Vec3, d: Vec3, d_rate: Vec3) -> ContactAxes:
-    """Those of a sphere: the axes of its frame S, turned the shortest way from its pole to the normal: (38c), (38d).
+def surface_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS_W: Vec3, d: Vec3, d_rate: Vec3) -> ContactAxes:
+    """Axes of contact: of a plane those of its frame S, else these, turned to the normal: (38c) to (38f).
 
     Args:
-        lowering: Edges of the ball's pole.
+        lowering: Edges of the contact's numbers.
         ball: The ball.
         R_WS: Axes of S.
         w_WS_W: Its angular velocity [rad/s].
-        d: From the centre of the sphere to that of the ball [m].
+        d: From the origin of S to the ball's centre [m].
         d_rate: Its rate [m/s].
     """
+    if ball.contact.surface == "plane":
+        n = R_WS.column(2)
+        return ContactAxes(d.dot(n), R_WS, w_WS_W.cross(n), w_WS_W)
     g, inside = lowering.g, ball.contact.inside
-    size, n = sphere_normal(g, d, inside)
-    R = tangents(lowering, ball, R_WS, n)
-    per_size = g.div(-ONE if inside else ONE, size)
-    n_rate = (d_rate - n.scaled(n.dot(d_rate))).scaled(per_size)
-    turning = n.cross(n_rate - w_WS_W.cross(n))
+    away, free = from_core(lowering, ball.contact, R_WS.T.times(d))
+    size, normal = core_normal(g, away, inside)
+    distance = g.sub(size, lowering.value(ball.contact.surface_radius or 0.0))
+    n = R_WS.times(normal)
+    moved = R_WS.T.times(d_rate - w_WS_W.cross(d))
+    away_rate = R_WS.times(Vec3(g, *(g.mul(one, x) for one, x in zip(free, moved, strict=True))))
+    turned = (away_rate - n.scaled(n.dot(away_rate))).scaled(g.div(-ONE if inside else ONE, size))
+    k = n.cross(turned)
     Z, share = _pole(lowering, ball, R_WS, n)
-    return ContactAxes(R, n_rate, w_WS_W + turning - n.scaled(g.mul(turning.dot(Z), share)))
+    w_WC_W = w_WS_W + k - n.scaled(g.mul(k.dot(Z), share))
+    R_WC = tangents(lowering, ball, R_WS, n)
+    return ContactAxes(-distance if inside else distance, R_WC, w_WS_W.cross(n) + turned, w_WC_W)
+
+
+def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3]:
+    """From the nearest point of a solid's core to x, in the axes of its frame, and how it changes with x: (38c).
+
+    The core is the centre of a sphere, the axis of a cylinder, the segment between the ends of a capsule, a box itself.
+
+    Returns:
+        The vector; 1 for each of its components that changes as that of x does, 0 for one that stays zero.
+    """
+    g = lowering.g
+    if contact.surface == "cylinder":
+        return Vec3(g, x.x, x.y, ZERO), Vec3(g, ONE, ONE, ZERO)
+    lengths = contact.size or (0.0, 0.0, contact.length or 0.0)
+    away, free = list(x), [ONE, ONE, ONE]
+    for k, (coordinate, length) in enumerate(zip(x, lengths, strict=True)):
+        half = g.mul(g.constant(0.5), lowering.value(length))
+        if half != ZERO:
+            away[k] = g.sub(coordinate, g.call("min", g.call("max", coordinate, -half), half))
+            free[k] = g.call("step", g.sub(g.call("abs", coordinate), half))
+    return Vec3(g, *away), Vec3(g, *free)
+
+
+def core_normal(g: Graph, away: Vec3, inside: bool) -> tuple[Edge, Vec3]:
+    """Distance from the core, and the normal: along the vector from it or, inside of a hollow, against it."""
+    size = norm(g, away)
+    normal = away.scaled(g.div(ONE, size))
+    return size, -normal if inside else normal
 
 
 def tangents(lowering: Lowering, ball: RigidBall, R_WS: Mat3, n: Vec3) -> Mat3:
-    """Axes x and y of S turned the shortest way from the pole of the ball to n, and n: (38c)."""
+    """Axes x and y of S turned the shortest way from the pole of the ball to n, and n: (38e)."""
     g = lowering.g
     Z, share = _pole(lowering, ball, R_WS, n)
     lean = (n + Z).scaled(share)

@@ -11,7 +11,7 @@ from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import TINY, norm, sphere_normal, tangents
+from symofros.mechanics.dynamics.applied.contact_axes import TINY, core_normal, from_core, norm, tangents
 from symofros.mechanics.dynamics.applied.elements import smoothed_sign
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -196,13 +196,7 @@ def _surface(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Edge, Vec3]
         return x.z, Vec3.unit(g, 2)
     if contact.surface == "box":
         return _box(lowering, contact, x)
-    away = x
-    if contact.surface == "cylinder":
-        away = Vec3(g, x.x, x.y, ZERO)
-    elif contact.surface == "capsule":
-        half = g.mul(g.constant(0.5), lowering.value(contact.length or 0.0))
-        away = Vec3(g, x.x, x.y, g.sub(x.z, g.call("min", g.call("max", x.z, -half), half)))
-    length, normal = sphere_normal(g, away, contact.inside)
+    length, normal = core_normal(g, from_core(lowering, contact, x)[0], contact.inside)
     distance = g.sub(length, lowering.value(contact.surface_radius or 0.0))
     return (-distance if contact.inside else distance), normal
 

@@ -23,14 +23,13 @@ from symofros.description.constraints import (
     Rolling,
     Touching,
 )
-from symofros.description.contacts import Contact
 from symofros.description.forces import Anchor
 from symofros.expr.derivative import along, directional
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import ContactAxes, fixed_axes, sphere_axes
+from symofros.mechanics.dynamics.applied.contact_axes import surface_axes
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -256,11 +255,13 @@ class Constraints:
             yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
 
     def _touching(self, touching: Touching) -> Iterator[Row]:
-        """A ball on a surface: its distance and the velocity of its point of contact vanish (eqs. 38a, 38c, 38d)."""
+        """A ball on a surface: its distance and the velocity of its point of contact vanish (eqs. 38a to 38f)."""
         g, contact, lowering = self.g, touching.contact, self.kinematics.lowering
         S, B = self._state(touching.first), self._state(touching.second)
         arm, radius = B.R.times(lowering.vector(contact.points[touching.ball])), lowering.value(contact.radius)
-        axes = self._axes(touching, S, B, arm)
+        ball = RigidBall(contact, touching.ball, contact.ball_names[touching.ball])
+        d, d_rate = B.p + arm - S.p, B.v + B.w.cross(arm) - S.v
+        axes = surface_axes(lowering, ball, S.R, S.w, d, d_rate)
         n = axes.R_WC.column(2)
         rho = arm - n.scaled(radius)  # From the origins of the two frames to the point of contact.
         sigma = B.p + rho - S.p
@@ -270,26 +271,10 @@ class Constraints:
         drift = B.a + B.alpha.cross(rho) + B.w.cross(rho_rate) - S.a - S.alpha.cross(sigma) - S.w.cross(sigma_rate)
         for axis in touching.axes:
             t = axes.R_WC.column(axis)
-            phi = g.add(sigma.dot(n), self._lift(contact)) if axis == 2 else ZERO
+            phi = g.sub(axes.distance, radius) if axis == 2 else ZERO
             turned = g.add(drift.dot(t), slip.dot(axes.w_WC_W.cross(t)))
             parts = [(B, t, rho.cross(t), 1), (S, t, sigma.cross(t), -1)]
             yield self._row(phi, slip.dot(t), -turned, parts)
-
-    def _axes(self, touching: Touching, S: FrameState, B: FrameState, arm: Vec3) -> ContactAxes:
-        """Axes of contact of a ball, whose centre is at arm from the origin of its frame B, with the surface on S."""
-        contact = touching.contact
-        if contact.surface == "plane":
-            return fixed_axes(S.R, S.w)
-        ball = RigidBall(contact, touching.ball, contact.ball_names[touching.ball])
-        d, d_rate = B.p + arm - S.p, B.v + B.w.cross(arm) - S.v
-        return sphere_axes(self.kinematics.lowering, ball, S.R, S.w, d, d_rate)
-
-    def _lift(self, contact: Contact) -> Edge:
-        """What the distance along the normal from the origin of a surface's frame lacks of the gap."""
-        if contact.surface_radius is None:
-            return ZERO
-        radius = self.kinematics.lowering.value(contact.surface_radius)
-        return radius if contact.inside else -radius
 
     def _stated(self, constraint: Nonholonomic) -> Iterator[Row]:
         """A(q, t) v = b(q, t), differentiated along the motion (eq. 10)."""

@@ -92,12 +92,19 @@ SURFACES: dict[str, dict[str, Any]] = {
     "plane": {},
     "sphere": {"surface": "sphere", "surface_radius": 0.3},
     "hollow sphere": {"surface": "sphere", "surface_radius": 0.9, "inside": True},
+    "cylinder": {"surface": "cylinder", "surface_radius": 0.2},
+    "hollow cylinder": {"surface": "cylinder", "surface_radius": 0.9, "inside": True},
+    "shank of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 9.0},
+    "end of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 0.1},
+    "face of a box": {"surface": "box", "size": (9.0, 0.05, 9.0)},
+    "edge of a box": {"surface": "box", "size": (9.0, 0.05, 0.1)},
+    "corner of a box": {"surface": "box", "size": (0.02, 0.05, 0.1)},
 }
 
 
 @pytest.mark.parametrize(("surface", "pole"), [("plane", None), *((x, s) for x in list(SURFACES)[1:] for s in (1, -1))])
 def test_rows_of_rigid_contacts_are_derivatives_along_the_motion(surface: str, pole: float | None) -> None:
-    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38d)."""
+    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38f)."""
     contact = sf.Contact("k", A, B, restitution=0.0, radius=0.1, points=[(0.05, 0.1, -0.1)], **SURFACES[surface])
     m = sf.compile(
         tree(connections=(contact,)),
