@@ -31,7 +31,7 @@ from symofros.runtime.calls.sharing import parts, share, together
 
 # From here on a batch runs by vectors. What decides is the batch alone, so that no result depends on earlier calls;
 # below, what vectors would save in a thousand calls is not worth the compilation of their code.
-MANY = 256
+MANY = 64
 
 
 class ModelUnit:
