@@ -68,6 +68,12 @@ class Folder:
             )
             return None
 
+    def seen(self, file: str) -> str:
+        """The path of a file that is drawn, as the model states it; "" of one that is not there or may not be read."""
+        name = _relative(file)
+        path = None if name is None else self.packages.file(name, self.main.parent)
+        return str(path) if path is not None and os.path.isfile(path) else ""
+
     def fault(
         self,
         element: Element,

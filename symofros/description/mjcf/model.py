@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from symofros.description.joints.joint import WORLD
 from symofros.description.mjcf.actuators import ActuatorReader
 from symofros.description.mjcf.equalities import EqualityReader
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
+from symofros.description.mjcf.meshes import DrawnMesh
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
 from symofros.description.mjcf.visuals import visuals_of
@@ -35,11 +36,15 @@ class Stated:
         name: Name of the model.
         file: Main file of the model.
         places: Lines of bodies, joints and constraints, as in System.origin.
+        drawn: Meshes that shapes without mass stand for.
+        by_name: Meshes that MuJoCo reads, by their names.
     """
 
     name: str
     file: str
     places: Mapping[tuple[str, ...], str]
+    drawn: Sequence[DrawnMesh]
+    by_name: Mapping[str, DrawnMesh]
 
 
 class Importer:
@@ -95,7 +100,7 @@ class Importer:
             inputs=tuple(self.actuators.inputs),
             constraints=equalities.constraints,
             origin={("system",): file, **places},
-            visuals=visuals_of(self.model, self.bodies.__getitem__),
+            visuals=visuals_of(self.model, self.bodies.__getitem__, self.stated.drawn, self.stated.by_name),
         )
 
     def _body(self, i: int) -> ImportedBody:

@@ -95,7 +95,8 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     meshes = Meshes(folder, kept, root, remarks)
     meshes.cut()
     pairs = list(_written(kept))
-    stated = Stated(root.attributes.get("model") or folder.main.stem, str(folder.main), _places(kept))
+    name = root.attributes.get("model") or folder.main.stem
+    stated = Stated(name, str(folder.main), _places(kept), meshes.drawn, meshes.by_name)
     return Document("\n".join(line for line, _ in pairs), tuple(e for _, e in pairs), meshes.assets, stated)
 
 

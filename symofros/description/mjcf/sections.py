@@ -42,10 +42,10 @@ _PASSIVE = frozenset({"stiffness", "damping", "frictionloss", "armature", "range
 _KEPT: dict[str, frozenset[str]] = {
     "mujoco": _KEPT_SECTIONS,
     "option": frozenset({"flag"}),
-    "default": frozenset({"default", "joint", "geom", "site", "mesh", "equality"}) | _ACTUATORS,
+    "default": frozenset({"default", "joint", "geom", "site", "mesh", "material", "equality"}) | _ACTUATORS,
     "equality": _EQUALITIES,
     "actuator": _ACTUATORS,
-    "asset": frozenset({"mesh"}),
+    "asset": frozenset({"mesh", "material"}),
     **dict.fromkeys(("worldbody", "body", "frame", "replicate"), _BODY),
 }
 _IGNORED: dict[str, frozenset[str]] = {
@@ -59,8 +59,8 @@ _REFUSED: dict[str, str] = {
     "flexcomp": "a soft body is no rigid tree",
     "plugin": "state the body without it",
 }
-# Looks, and folders of files that are handed over by name.
-_DROPPED_ATTRIBUTES = frozenset({"material", "meshdir", "texturedir", "assetdir", "strippath"})
+# Pictures, and folders of files that are handed over by name.
+_DROPPED_ATTRIBUTES = frozenset({"texture", "meshdir", "texturedir", "assetdir", "strippath"})
 
 
 class Sections:

@@ -1,16 +1,22 @@
-"""Shapes of a compiled MJCF model as they look: primitives, as meshes are cut out before MuJoCo reads the model."""
+"""Shapes of a compiled MJCF model as they look: primitives, and meshes in the frames of their files."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from symofros.base.arrays import Array
 from symofros.description.imported.geometry import rotation_of
+from symofros.description.mjcf.meshes import DrawnMesh, drawn_index
 from symofros.description.values import Rotation
 from symofros.description.visual import MAX_VISUALS, Visual, VisualKind, color_of
 
+_MESH = 7  # mjGEOM_MESH
+_UNSTATED = np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32)  # MuJoCo's colour of what states none.
 _SEEN = 3  # Groups that MuJoCo's own viewer shows at first are those below.
 # mjtGeom -> our kind, and which of its three sizes that has, by what factor: MuJoCo states half lengths.
 _KINDS: dict[int, tuple[VisualKind, tuple[tuple[int, float], ...]]] = {
@@ -22,26 +28,72 @@ _KINDS: dict[int, tuple[VisualKind, tuple[tuple[int, float], ...]]] = {
 }
 
 
-def visuals_of(model: Any, name: Callable[[int], str]) -> dict[str, tuple[Visual, ...]]:
+def visuals_of(
+    model: Any, name: Callable[[int], str], drawn: Sequence[DrawnMesh], by_name: Mapping[str, DrawnMesh]
+) -> dict[str, tuple[Visual, ...]]:
     """Body -> how it looks.
 
     Args:
         model: An MjModel.
         name: Name of a body by its index.
+        drawn: Meshes that shapes stand for whose names say so (`drawn_index`).
+        by_name: Meshes that MuJoCo has read.
     """
     visuals: dict[str, tuple[Visual, ...]] = {}
     for i in range(min(model.ngeom, MAX_VISUALS)):
-        kind, rgba = int(model.geom_type[i]), np.array(model.geom_rgba[i], dtype=float)
-        if kind not in _KINDS or int(model.geom_group[i]) >= _SEEN or rgba[3] <= 0.0:
+        rgba = np.array(model.geom_rgba[i], dtype=float)
+        material = int(model.geom_matid[i])
+        if material >= 0 and np.array_equal(rgba, _UNSTATED):
+            rgba = np.array(model.mat_rgba[material], dtype=float)
+        pose = np.concatenate([model.geom_pos[i], model.geom_quat[i], rgba])
+        if int(model.geom_group[i]) >= _SEEN or not np.all(np.isfinite(pose)) or rgba[3] <= 0.0:
             continue
-        shape, sizes = _KINDS[kind]
-        size = tuple(factor * float(model.geom_size[i][k]) for k, factor in sizes)
-        numbers = np.concatenate([size, model.geom_pos[i], model.geom_quat[i], rgba])
-        if not np.all(np.isfinite(numbers)) or min(size) <= 0.0:
-            continue
-        x, y, z = (float(p) for p in model.geom_pos[i])
-        body = name(int(model.geom_bodyid[i]))
-        turned = Rotation.matrix(rotation_of(model.geom_quat[i]).tolist())
-        visual = Visual(shape, size, (x, y, z), turned, color_of(rgba.tolist()))
-        visuals[body] = (*visuals.get(body, ()), visual)
+        index = drawn_index(model.geom(i).name)
+        if 0 <= index < len(drawn):
+            visual = _mesh(drawn[index], model.geom_pos[i], rotation_of(model.geom_quat[i]))
+        elif int(model.geom_type[i]) == _MESH:
+            visual = _realigned(model, i, by_name)
+        else:
+            visual = _primitive(model, i)
+        if visual is not None:
+            body = name(int(model.geom_bodyid[i]))
+            color = None if visual.kind == "mesh" and np.array_equal(rgba, _UNSTATED) else color_of(rgba.tolist())
+            visuals[body] = (*visuals.get(body, ()), replace(visual, color=color))
     return visuals
+
+
+def _primitive(model: Any, i: int) -> Visual | None:
+    """A shape of _KINDS; None of any other, and of one without a size."""
+    shape, sizes = _KINDS.get(int(model.geom_type[i]), ("box", ()))
+    size = tuple(factor * float(model.geom_size[i][k]) for k, factor in sizes)
+    if not size or not all(map(math.isfinite, size)) or min(size) <= 0.0:
+        return None
+    x, y, z = (float(p) for p in model.geom_pos[i])
+    return Visual(shape, size, (x, y, z), Rotation.matrix(rotation_of(model.geom_quat[i]).tolist()))
+
+
+def _realigned(model: Any, i: int, by_name: Mapping[str, DrawnMesh]) -> Visual | None:
+    """A mesh that MuJoCo has moved: from the frame of the file to its own it has turned and shifted the corners."""
+    index = int(model.geom_dataid[i])
+    drawn = by_name.get(model.mesh(index).name)
+    if drawn is None:
+        return None
+    R_BM, R_SM = rotation_of(model.geom_quat[i]), rotation_of(model.mesh_quat[index])
+    R_BS = R_BM @ R_SM.T
+    return _mesh(drawn, model.geom_pos[i] - R_BS @ model.mesh_pos[index], R_BS)
+
+
+def _mesh(drawn: DrawnMesh, p_BS: Array, R_BS: Array) -> Visual | None:
+    """A file in the frame S of its shape; None where it is turned and then stretched, which no visual does.
+
+    Its corner p is at S R^T (p - r) there: a visual F of it, with the factors s, has the corners s p.
+    """
+    R_SF, scale = rotation_of(drawn.refquat).T, np.array(drawn.scale)
+    if np.allclose(R_SF, np.eye(3), atol=1e-12):
+        p_SF = -scale * drawn.refpos
+    elif np.ptp(scale) == 0.0:
+        p_SF = -scale * (R_SF @ drawn.refpos)
+    else:
+        return None
+    x, y, z = (p_BS + R_BS @ p_SF).tolist()
+    return Visual("mesh", drawn.scale, (x, y, z), Rotation.matrix((R_BS @ R_SF).tolist()), file=drawn.file)

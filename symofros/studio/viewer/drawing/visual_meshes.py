@@ -8,12 +8,14 @@ import warnings
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
+from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
 MAX_BYTES = 64 << 20
@@ -71,7 +73,7 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
         data = stream.read(MAX_BYTES + 1)
     if len(data) > MAX_BYTES:
         raise ValueError(f"more than {MAX_BYTES} bytes")
-    mesh = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file.suffix, data)
+    mesh = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file, data)
     vertices, faces = mesh.vertices, mesh.faces
     if not 0 < len(faces) <= MAX_FACES or not np.all(np.isfinite(vertices)):
         raise ValueError(f"{len(faces)} triangles; 1 to {MAX_FACES} with finite corners")
@@ -80,8 +82,8 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
     return mesh
 
 
-def _loaded(suffix: str, data: bytes) -> Mesh:
-    """The mesh in a file of any format but COLLADA, read by trimesh.
+def _loaded(file: Path, data: bytes) -> Mesh:
+    """The mesh in a file of any format but COLLADA, read by trimesh, with the colors that it states.
 
     Raises:
         ValueError: It is no such mesh, or trimesh is not installed.
@@ -93,12 +95,29 @@ def _loaded(suffix: str, data: bytes) -> Mesh:
     logging.getLogger("trimesh").addHandler(
         logging.NullHandler()
     )  # It writes tracebacks of what is raised here as well.
+    kind = file.suffix.lower()[1:]
     try:
-        # Of bytes, without a resolver: nothing that the file refers to is opened.
-        surface = trimesh.load(
-            io.BytesIO(data), file_type=suffix.lower()[1:], force="mesh", process=False, skip_materials=True
-        )
-        vertices = np.array(surface.vertices, dtype=np.float64).reshape(-1, 3)
-        return Mesh(vertices, np.array(surface.faces, dtype=np.int64).reshape(-1, 3))
+        # Of bytes: what the file refers to is opened by ours alone.
+        beside = FilesBeside(file.parent)
+        scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, resolver=beside)
+        return merged([_with_colors(surface) for surface in scene.dump()])
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
-        raise ValueError(f"not a {suffix} file: {error}") from None
+        raise ValueError(f"not a {file.suffix} file: {error}") from None
+
+
+def _with_colors(surface: Any) -> Mesh:
+    """A surface of trimesh's with the color of each face: its own, the mean of its corners', its picture's amid it."""
+    vertices = np.array(surface.vertices, dtype=np.float64).reshape(-1, 3)
+    faces = np.array(surface.faces, dtype=np.int64).reshape(-1, 3)
+    look = surface.visual
+    if look.kind is None or not len(faces):
+        return Mesh(vertices, faces)
+    if look.kind != "texture":
+        colors = look.face_colors
+    elif hash(look.material) == hash(import_module("trimesh.visual.material").empty_material()):
+        return Mesh(vertices, faces)  # It has places in a picture, which is not there.
+    elif look.uv is None or getattr(look.material, "image", None) is None:
+        colors = np.tile(look.material.main_color, (len(faces), 1))
+    else:
+        colors = look.material.to_color(np.asarray(look.uv)[faces].mean(axis=1))
+    return Mesh(vertices, faces, few_colors(np.asarray(colors)[:, :3]))

@@ -1,0 +1,92 @@
+"""Colors of mesh files: of faces, corners, materials and pictures; and files that are not opened for them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from symofros.description.visual import Visual
+from symofros.studio.viewer.drawing import mesh_colors
+from symofros.studio.viewer.drawing.mesh_colors import MOST_COLORS, FilesBeside, few_colors
+from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+
+RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
+# A tetrahedron: two faces in green, two where the picture is red on the left and blue on the right.
+OBJ = """mtllib look.mtl
+v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.1 0.5\nvt 0.9 0.5
+usemtl plain\nf 1 3 2\nf 2 3 4\nusemtl pictured\nf 1/1 2/1 4/1\nf 1/2 4/2 3/2
+"""
+PLY = """ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z
+property uchar red\nproperty uchar green\nproperty uchar blue
+element face 1\nproperty list uchar int vertex_indices\nend_header
+0 0 0 0 255 0\n1 0 0 0 255 0\n0 1 0 0 255 0\n0 0 1 0 0 0\n3 0 1 2
+"""
+
+
+def written(folder: Path, picture: str = "picture.png", size: int = 4) -> Path:
+    (folder / "part.obj").write_text(OBJ)
+    (folder / "look.mtl").write_text(f"newmtl plain\nKd 0 1 0\nnewmtl pictured\nmap_Kd {picture}\n")
+    pixels = np.zeros((size, size, 3), np.uint8)
+    pixels[:, : size // 2], pixels[:, size // 2 :] = RED, BLUE
+    (folder / picture).parent.mkdir(exist_ok=True)
+    Image.fromarray(pixels).save(folder / picture)
+    return folder / "part.obj"
+
+
+def colors_of(file: Path) -> list[tuple[int, ...]]:
+    """Colors of the faces by the alphabet; empty of a mesh that states none."""
+    mesh = visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file)))
+    assert mesh is not None and np.all(np.isfinite(mesh.vertices))
+    return [] if mesh.colors is None else sorted(map(tuple, mesh.colors.tolist()))
+
+
+@pytest.mark.parametrize("picture", ["picture.png", "pictures/a.png", "picture.bmp"])
+def test_faces_have_the_colors_of_materials_and_pictures(picture: str, tmp_path: Path) -> None:
+    found = colors_of(written(tmp_path, picture))
+    if picture.endswith(".bmp"):  # Only PNG and JPEG are unpacked.
+        assert found.count(GREEN) == 2 and RED not in found
+    else:
+        assert found == sorted([GREEN, GREEN, RED, BLUE])
+
+
+def test_faces_have_the_colors_of_their_corners(tmp_path: Path) -> None:
+    (tmp_path / "part.ply").write_text(PLY)
+    assert colors_of(tmp_path / "part.ply") == [GREEN]
+
+
+@pytest.mark.parametrize("stated", ["../look.mtl", "/etc/passwd", "gone.mtl", "link.mtl", "look\0.mtl"])
+def test_materials_of_other_folders_leave_a_mesh_without_color(stated: str, tmp_path: Path) -> None:
+    folder = tmp_path / "inside"
+    folder.mkdir()
+    file = written(folder)
+    (folder / "look.mtl").rename(tmp_path / "look.mtl")
+    (folder / "link.mtl").symlink_to(tmp_path / "look.mtl")
+    file.write_text(OBJ.replace("look.mtl", stated))
+    assert not colors_of(file)
+
+
+def test_pictures_that_are_large_when_unpacked_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(mesh_colors, "MAX_PIXELS", 15)
+    assert RED not in colors_of(written(tmp_path))
+
+
+def test_what_a_mesh_refers_to_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a.mtl").write_text("x" * 60)
+    monkeypatch.setattr(mesh_colors, "MAX_BYTES", 100)
+    beside = FilesBeside(tmp_path)
+    assert len(beside["a.mtl"]) == 60
+    with pytest.raises(OSError, match="too large"):
+        beside["a.mtl"]
+    monkeypatch.setattr(mesh_colors, "MAX_FILES", 0)
+    with pytest.raises(OSError, match="not read"):
+        FilesBeside(tmp_path)["a.mtl"]
+
+
+def test_of_many_colors_few_are_left() -> None:
+    many = np.random.default_rng(0).integers(0, 256, (5000, 3))
+    few = few_colors(many)
+    assert len(np.unique(few, axis=0)) == MOST_COLORS and np.abs(few - many).mean() < 40
+    assert few_colors(many[:5]).tolist() == many[:5].tolist()
