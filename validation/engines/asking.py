@@ -25,8 +25,11 @@ Asked = Mapping[str, Collection[str]]
 def lots() -> list[Questions]:
     """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
     own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
-    trees = (family.trees() for family in (hostile, loops, transformed, stated, acting, sensed, flexible, single))
-    return [*own, *trees, formats()]
+    trees = (family.trees() for family in (hostile, loops, transformed, stated, sensed, flexible, single))
+    forms: dict[str, dict[str, Reading]] = {}
+    for name, one in formats().items():
+        forms.setdefault(one.form, {})[name] = one
+    return [*own, acting.driven(), acting.passive(), *trees, *forms.values()]
 
 
 def questions() -> dict[str, Tree | Reading]:

@@ -126,6 +126,7 @@ class Actuator:
         tendon: Number of the tendon that it pulls; None for a joint.
         gear: Factor of length and force.
         gain: Force for a unit of control.
+        slopes: What a unit of l and one of l' add to the gain.
         bias: Force b0 + b1 l + b2 l'.
         control: Control that it has.
         control_limits: Least and greatest control that counts; () for none.
@@ -144,6 +145,7 @@ class Actuator:
     tendon: int | None = None
     gear: float = 1.0
     gain: float = 1.0
+    slopes: tuple[float, float] = (0.0, 0.0)
     bias: Vector = ORIGIN
     control: float = 0.0
     control_limits: tuple[float, ...] = ()
@@ -160,7 +162,7 @@ class Actuator:
         """Whether it is a force along a joint, or a servo of place and speed there, and no more; limits apart."""
         _, by_place, by_speed = self.bias
         is_servo = by_place < 0.0 >= by_speed
-        beyond = self.muscle or self.activation or self.control_limits or self.is_disabled
+        beyond = self.muscle or self.activation or self.control_limits or self.is_disabled or any(self.slopes)
         return bool(self.link) and self.gear == 1.0 and not beyond and (is_servo or self.bias == ORIGIN)
 
     def fed(self, place: float, speed: float) -> float:

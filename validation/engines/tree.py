@@ -193,6 +193,7 @@ class Tree:
             "actuators": bool(self.actuators),
             "a medium": self.medium is not None,
             "activations": any(actuator.activation for actuator in self.actuators),
+            "affine gains": any(any(actuator.slopes) for actuator in self.actuators),
         }
         return frozenset(name for name, there in stated.items() if there)
 

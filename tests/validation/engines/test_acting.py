@@ -35,6 +35,7 @@ FAULTS = [
         *("step_velocities_implicit:sparse", "step_semi_implicit"),
     ),
     ("mujoco", "servos along joints", "step_forces_implicit", "step_semi_implicit"),
+    ("mujoco", "affine gains of activations", "step_forces_implicit", "step_dampers_implicit"),
     ("mujoco", "servos against the order of joints", "step_velocities_implicit", "step_dampers_implicit"),
 ]
 
@@ -122,6 +123,35 @@ def test_a_step_that_leaves_a_part_out_is_a_red_cell(engine: str, name: str, ask
     assert want is not None
     cell = judge("planted", TREES[name], asked_for, np.asarray(steps[given].answer.value), want)
     assert cell.verdict == "wrong"
+
+
+@pytest.mark.parametrize("name", [name for name in TREES if name.startswith("affine gains") and "limits" not in name])
+def test_what_is_taken_at_the_end_of_a_step_is_the_derivative_of_forces(name: str) -> None:
+    truth, s = _truth(TREES[name])
+
+    def excess(t: Truth, s: Point) -> Exact:
+        D, K = t.own.metrics(s.q, s.v)
+        by_q = t.kinematics.tangent(lambda q: t.own.applied(q, s.v), s.q)
+        return np.concatenate([D + t.along_speeds(lambda v: t.own.applied(s.q, v), s.v), K + by_q])
+
+    assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
+
+
+def test_a_state_of_another_actuator_is_a_red_cell() -> None:
+    tree = TREES["affine gains of activations before a motor"]
+    first, second, *others = tree.actuators
+    assert first.activation and second.activation
+    swapped = (
+        replace(first, activation=first.activation._replace(state=second.activation.state)),
+        replace(second, activation=second.activation._replace(state=first.activation.state)),
+        *others,
+    )
+    (one,), (other,) = (
+        _judged("mujoco", at, "step_forces_implicit").values() for at in (tree, replace(tree, actuators=swapped))
+    )
+    assert one.want is not None and one.cell.verdict == other.cell.verdict == "right"
+    answer = np.asarray(other.answer.value)
+    assert judge("planted", tree, "step_forces_implicit", answer, one.want).verdict == "wrong"
 
 
 @pytest.mark.parametrize("name", ["actuators on tendons", "tendon over points"])

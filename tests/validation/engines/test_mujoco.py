@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import re
+import tempfile
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
+import mujoco
 import numpy as np
 import pytest
 
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Medium, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
-from validation.engines.models import acting, loops, single, transformed
-from validation.engines.models.kinds import tree_of
+from validation.engines.models import acting, formats, loops, single, transformed
+from validation.engines.models.kinds import tree_of, turned
 from validation.engines.plugins import OWN
+from validation.engines.plugins.mujoco import plugin
+from validation.engines.plugins.mujoco.elements import quaternion_of
 from validation.engines.verdicts import judge
 from validation.engines.workers import Job
 
@@ -73,12 +80,52 @@ def test_rates_of_lengths_are_those_of_differences(name: str) -> None:
     assert np.allclose((np.asarray(after) - np.asarray(before)) / (2.0 * step), one.want.value, atol=1e-8)
 
 
-def test_an_anchor_that_stays_is_a_red_cell() -> None:
+@pytest.mark.parametrize("function", ["constraint_residuals", "constraint_points"])
+def test_an_anchor_that_stays_is_a_red_cell(function: str) -> None:
     tree = loops.trees()["anchor of a connect constraint changed"]
-    (one,), (stale,) = (_judged(at, "constraint_residuals").values() for at in (tree, tree.before))
+    (one,), (stale,) = (_judged(at, function).values() for at in (tree, tree.before))
     assert one.want is not None and one.cell.verdict == "right"
     answer = np.asarray(stale.answer.value)
-    assert judge("planted", tree, "constraint_residuals", answer, one.want).verdict == "wrong"
+    assert judge("planted", tree, function, answer, one.want).verdict == "wrong"
+
+
+@pytest.mark.parametrize("name", [name for name, tree in loops.trees().items() if tree.sensors])
+def test_what_holds_a_link_without_the_share_of_constraints_is_a_red_cell(name: str) -> None:
+    tree = loops.trees()[name]
+    (one,) = _judged(tree, "wrench_sensors:bound").values()
+    assert one.want is not None and one.cell.verdict == "right" and one.answer.state is not None
+    model = MUJOCO.build(tree)
+    assert not isinstance(model, Unsupported)
+    bare = np.asarray(model.call("wrench_sensors", one.answer.state))
+    assert judge("planted", tree, "wrench_sensors", bare, one.want).verdict == "wrong"
+
+
+@pytest.mark.parametrize("first", ["an unlimited hinge", "a free joint", "a ball"])
+def test_a_range_that_is_not_read_is_a_red_cell(first: str) -> None:
+    stated = formats.formats()[f"mjcf: range of a hinge beyond {first}"]
+    texts = (stated.text, re.sub('range="[^"]*"', "", stated.text))
+    jobs = (Job("mujoco", stated.tree, stated.asked, SEED, form="mjcf", text=text) for text in texts)
+    (one,), (bare,) = (judged(MUJOCO, job, Truths()) for job in jobs)
+    assert one.cell.verdict == "right" and bare.cell.verdict == "wrong"
+
+
+def test_a_release_without_specifications_writes_the_same_file() -> None:
+    text = formats.formats()["mjcf: frame around a body"].text
+    names: dict[str, Any] = {"mj": mujoco, "tempfile": tempfile}
+    exec(plugin.WRITING, names)
+    by_specification = names["written"](text)
+    names["mj"] = SimpleNamespace(MjModel=mujoco.MjModel, mj_saveLastXML=mujoco.mj_saveLastXML)
+    assert names["written"](text) == by_specification
+
+
+def test_a_quaternion_is_that_of_the_rotation() -> None:
+    draw = np.random.default_rng(1)
+    half_turns = [np.diag(signs) for signs in ((1.0, -1.0, -1.0), (-1.0, 1.0, -1.0), (-1.0, -1.0, 1.0))]
+    for R in (np.eye(3), *half_turns, *(np.array(turned(draw)) for _ in range(20))):
+        w, x, y, z = quaternion_of(R)
+        K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        assert w >= 0.0
+        np.testing.assert_allclose(np.eye(3) + 2.0 * w * K + 2.0 * K @ K, R, atol=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,26 @@ def test_engines_are_right_about_transformed_models(name: str) -> None:
         assert verdicts <= {"right", "not offered"} and "right" in verdicts
 
 
+@pytest.mark.parametrize("name", [name for name, tree in trees().items() if tree.attached and tree.forces])
+def test_what_acts_on_attached_models_is_right(name: str) -> None:
+    found = {cell.function: cell.verdict for cell in cells(OWN["mujoco"], trees()[name])}
+    assert {"forward_dynamics", "step_forces_implicit"} <= set(found)
+    assert {verdict for name, verdict in found.items() if not name.endswith((":attach", ":recompile"))} <= {
+        *("right", "not offered")
+    }
+
+
+def test_a_tendon_that_attaching_leaves_out_is_a_red_cell() -> None:
+    tree = trees()["attached tendon around a sphere"]
+    names = ("passive_forces", "forward_dynamics")
+    bare = replace(tree, tendons=tree.tendons[:1])
+    both = (judged(OWN["mujoco"], Job("mujoco", at, names, SEED), Truths()) for at in (tree, bare))
+    for one, less in zip(*both, strict=True):
+        assert one.cell.verdict == less.cell.verdict == "right" and one.want is not None
+        answer = np.asarray(less.answer.value)
+        assert judge("planted", tree, one.cell.function, answer, one.want).verdict == "wrong"
+
+
 def test_an_engine_that_locks_no_joints_is_asked_nothing_of_locked_ones() -> None:
     assert list(cells(OWN["mujoco"], trees()["locked hinge amid"])) == []
 

@@ -8,7 +8,7 @@ from decimal import Decimal
 import numpy as np
 
 from ..truth import constraints
-from ..truth.arithmetic import Exact
+from ..truth.arithmetic import Exact, exact
 from ..truth.dynamics import Point, Truth
 from .function import Function
 
@@ -34,6 +34,11 @@ def _constrained() -> dict[str, Function]:
         "constraint_residual_products": Function(
             "second time derivative of constraint_residuals at q2 and v, with v kept (m)",
             lambda t, s: constraints.residual_products(t, s.q2, s.v),
+        ),
+        "constraint_points": Function(
+            "both frames' origins of constraints by points, in their links (n, 6)",
+            lambda t, s: exact(np.array([[x for end in one.ends for x in end.p] for one in t.tree.constraints])),
+            ("points by bodies",),
         ),
         "step_at_rest": Function("q, v (nq + nv) after a step at rest, without gravity and forces", _at_rest),
         "delassus": Function("J M^-1 J^T (m, m)", lambda t, s: constraints.delassus(t, s.q)),

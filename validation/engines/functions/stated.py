@@ -14,12 +14,17 @@ from ..truth.dynamics import Point, Truth
 from .function import Function, functions_of
 
 
+def _ranges(t: Truth, s: Point) -> Exact:
+    return t.own.ranges
+
+
 def _of_joints() -> dict[str, Function]:
     """What readers make of losses, limits and drives of joints."""
     rows = {
         "joint_dampings": ("force of dampers for a unit of speed (nv)", lambda t, s: t.own.damping),
         "joint_frictions": ("greatest force of dry friction (nv)", lambda t, s: t.own.friction),
-        "joint_limits": ("least and greatest coordinates (nv, 2)", lambda t, s: t.own.ranges),
+        "joint_limits": ("least and greatest coordinates (nv, 2)", _ranges),
+        "joint_limits_of_some": ("the same where not all joints have limits: zeros for none (nv, 2)", _ranges),
         "joint_speed_limits": ("greatest speeds (nv)", lambda t, s: t.own.bounds[:, 0]),
         "joint_force_limits": ("greatest forces (nv)", lambda t, s: t.own.bounds[:, 1]),
         "link_bodies": (

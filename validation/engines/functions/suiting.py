@@ -25,8 +25,9 @@ _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 _STATELESS = re.compile("step_(midpoint|rk.*|trapezoidal)|.*_(dq|dv|derivative)")
 # Formulas that take forces at the end of a step; those of a medium are no line.
 _LINEAR = re.compile("step_(forces|velocities|stiffness).*|.*_(dq|dv|derivative)")
-# What is asked of a tree with constraints besides, for identities.
+# What is asked of a tree with constraints besides, for identities; and if it has sensors.
 _BESIDES = ("mass_matrix", "bias")
+_SENSED_BOUND = ("wrench_sensors:bound",)
 
 
 def suits(way: str, tree: Tree) -> bool:
@@ -35,8 +36,10 @@ def suits(way: str, tree: Tree) -> bool:
     needs = FUNCTIONS[name].needs
     if tree.asked:
         return tree.asked in needs
+    if way in _SENSED_BOUND:
+        return bool(tree.constraints and tree.sensors)
     if tree.constraints:
-        return name in CONSTRAINED or way in _BESIDES
+        return way in _BESIDES or (name in CONSTRAINED and (not needs or bool(tree.demands & set(needs))))
     if "activations" in tree.forces and _STATELESS.fullmatch(name):
         return False
     if tree.medium and _LINEAR.fullmatch(name):

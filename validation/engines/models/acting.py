@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import zip_longest
 
 import numpy as np
 
@@ -32,8 +34,8 @@ def _passive() -> list[Tree]:
     draw = np.random.default_rng(9)
     body = link(draw, "a", -1, Joint("free", damping=0.5))
     return [
-        Tree("dampers on hinges", _chain("dampers", *[_DAMPED] * 3)),
         Tree("a damper and two free hinges", _chain("one damper", _HINGE, _DAMPED, _HINGE)),
+        Tree("dampers on hinges", _chain("dampers", *[_DAMPED] * 3)),
         Tree(
             "dampers on a slide and a ball",
             _chain("slide and ball", replace(_SLIDE, damping=1.5), Joint("ball", damping=0.5)),
@@ -113,7 +115,7 @@ def _sided() -> list[Tree]:
     sides = {
         "on one side of a sphere": ball._replace(side=(0.0, 0.5, 1.0)),
         "on the other side of a sphere": ball._replace(side=(0.0, -0.5, -1.0)),
-        "on the side of a point beside its plane": ball._replace(side=(0.0, 3.0, -1.25)),
+        "around a sphere on the side of a point beside its plane": ball._replace(side=(0.0, 3.0, -1.25)),
         "on one side of a cylinder": drum._replace(side=(0.0, 1.0, 0.5)),
         "on the other side of a cylinder": drum._replace(side=(0.0, -1.0, 0.5)),
     }
@@ -291,11 +293,51 @@ def _states() -> list[Tree]:
         for name, one in kinds.items()
     ]
     mixed = (motor, replace(servo, activation=filtered), replace(general, activation=integrator))
+    early = tuple(replace(one, activation=grown._replace(is_early=True)) for one in muscles)
     return [
         *made,
         Tree("actuators with states and without", links, actuators=mixed),
         Tree("muscles with activations", links, actuators=muscles),
+        Tree("muscles with activations taken early", links, actuators=early),
+        Tree("muscles with activations before a motor", links, actuators=(*muscles, motor)),
     ]
+
+
+def _affine() -> list[Tree]:
+    """Actuators whose gains depend on length and speed: of controls and of states, beside others, at limits, disabled.
+
+    What lengths and speeds make of a force is then in proportion to what drives the actuator. Neither makes it grow:
+    MuJoCo's `discrete` leaves out what would.
+    """
+    links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
+    first = Actuator("a", gear=2.0, gain=0.5, slopes=(1.0, -1.5), bias=(0.25, -1.0, -0.5), control=0.75)
+    second = Actuator("b", gear=-0.5, gain=1.5, slopes=(0.0, -3.0), control=2.0, control_limits=(-1.0, 1.0))
+    third = Actuator("c", gear=1.5, gain=0.25, slopes=(-0.5, -2.0), bias=(0.0, 0.0, -0.75), control=0.5)
+    motor = Actuator("b", gear=3.0, control=0.75)
+    every = (first, second, third)
+    integrated, filtered = Activation("integrator", 0.375), Activation("filter", 0.625, (0.125,))
+    moved = (
+        replace(first, activation=integrated),
+        replace(second, activation=filtered),
+        replace(third, activation=integrated._replace(state=1.25)),
+    )
+
+    def early(one: Actuator) -> Actuator:
+        assert one.activation is not None
+        return replace(one, activation=one.activation._replace(is_early=True))
+
+    made = {
+        "affine gains": every,
+        "affine gains of activations": moved,
+        "affine gains of activations taken early": tuple(map(early, moved)),
+        "affine gains of activations before a motor": (*moved, motor),
+        "affine gains of activations after a motor": (motor, *moved),
+        "affine gains of activations at their limits": tuple(
+            replace(one, force_limits=(-0.125, 0.0625)) for one in moved
+        ),
+        "affine gains disabled beside others": (replace(first, is_disabled=True), moved[1], third),
+    }
+    return [Tree(name, links, actuators=actuators) for name, actuators in made.items()]
 
 
 def _remote() -> list[Tree]:
@@ -324,24 +366,24 @@ def _remote() -> list[Tree]:
     ]
 
 
+def _in_turn(*families: Callable[[], list[Tree]]) -> dict[str, Tree]:
+    """Trees by name, one of each family after the other: who stops early has asked of each."""
+    rounds = zip_longest(*(family() for family in families))
+    return {tree.name: tree for trees in rounds for tree in trees if tree is not None}
+
+
+def passive() -> dict[str, Tree]:
+    """Dampers, springs, media, tendons."""
+    return _in_turn(_passive, _tendons, _wrapped, _dragged, _heavy, _sided)
+
+
+def driven() -> dict[str, Tree]:
+    """Actuators."""
+    return _in_turn(
+        *(_plain_motors, _plain_actuators, _servos_along_joints, _states, _actuators, _affine, _remote, _muscles)
+    )
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
-    return {
-        tree.name: tree
-        for family in (
-            _plain_motors,
-            _servos_along_joints,
-            _passive,
-            _dragged,
-            _tendons,
-            _wrapped,
-            _sided,
-            _heavy,
-            _actuators,
-            _plain_actuators,
-            _muscles,
-            _states,
-            _remote,
-        )
-        for tree in family()
-    }
+    return driven() | passive()

@@ -64,6 +64,13 @@ def _pair(kind: str) -> Tree:
     return Tree(f"{kind} between free bodies", links, constraints=(bound,), asked="a bound pair")
 
 
+def _sensed(name: str, kind: str, ends: tuple[str, str], *lengths: int) -> Tree:
+    """Branches that are bound, each link with a sensor: what holds it, constraints bear a part of."""
+    tree = _bound(name, kind, ends, *lengths)
+    draw = np.random.default_rng(43)
+    return replace(tree, sensors=tuple(_end(draw, link.name) for link in tree.links))
+
+
 def _two_points() -> Tree:
     draw = np.random.default_rng(31)
     links = _branches(draw, 0, -1, 4, 4)
@@ -146,6 +153,9 @@ def trees() -> dict[str, Tree]:
         _lone_body(),
         _pair("weld"),
         _pair("point"),
+        _sensed("sensors on branches that a connect constraint binds", "point", ("a2", "b2"), 3, 3),
+        _sensed("sensors on a chain that a connect constraint holds in the world", "point", ("a3", ""), 4),
+        _sensed("sensors on branches that a weld constraint binds", "weld", ("a3", "b2"), 4, 3),
         _by_bodies(),
         replace(_by_bodies(), name="anchor of a connect constraint changed", changed="anchor"),
         _two_points(),

@@ -314,13 +314,14 @@ def _trees() -> Iterator[tuple[str, Reading]]:
     box = dense(solid_of("box", 0.1, 0.2, 0.3), R=R, com=(0.2, -0.1, 0.4))
     shaped = file(b=f'{JOINT_B}{frame}<geom type="box" size="0.1 0.2 0.3"/></frame>')
     yield _of("frame around a geom", shaped, FIRST, box)
-    ball, moved = '<geom size="0.1" mass="5"/>', 'pos="0.2 0 0"'
+    # Another ball stands in no frame: a file that loses one is read all the same.
+    ball, moved, own = '<geom size="0.1" mass="5"/>', 'pos="0.2 0 0"', '<geom size="0.1" pos="-0.4 0 0" mass="1"/>'
     after = f'<frame pos="0 0.4 0"><body name="c">{JOINT_A}{MB}</body></frame><frame {moved}>{ball}</frame>'
-    solid = replace(NEXT, mass=5.0, com=(0.2, 0.0, 0.0), inertia=diagonal(0.02, 0.02, 0.02))
+    solid = replace(NEXT, mass=6.0, com=(0.1, 0.0, 0.0), inertia=diagonal(0.024, 0.324, 0.324))
     hanging = Link("c", 1, (Joint("revolute", p=(0.0, 0.4, 0.0), axis=(0.0, 0.0, 1.0)),), 1.0, NEXT.com, NEXT.inertia)
-    yield _of("frame of a geom after the frame of a body", file(b=JOINT_B + after), FIRST, solid, hanging)
+    yield _of("frames of a body and then of a geom", file(b=JOINT_B + own + after), FIRST, solid, hanging)
     before = f'<frame {moved}>{ball}</frame><frame pos="0 0.4 0"><body name="c">{JOINT_A}{MB}</body></frame>'
-    yield _of("frame of a geom before the frame of a body", file(b=JOINT_B + before), FIRST, solid, hanging)
+    yield _of("frames of a geom and then of a body", file(b=JOINT_B + own + before), FIRST, solid, hanging)
     classes = f'{RADIAN}<default><default class="k"><joint axis="1 0 0"/></default></default>'
     classed = file("<joint/>" + MA, "<joint/>" + MB, classes).replace(
         "<worldbody>", '<worldbody><frame childclass="k">'

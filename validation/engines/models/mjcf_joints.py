@@ -10,7 +10,7 @@ from functools import partial
 from ..interface import Joint, Link
 from . import readers
 from .mjcf_files import FIRST, JOINT_A, MA, MB, RADIAN, file
-from .readers import LIMITED, LOSSES, NEXT, Reading, hung
+from .readers import LIMITED, LIMITED_OF_SOME, LOSSES, NEXT, Reading, hung
 
 _of = partial(readers.reading, "mjcf")
 _DEGREES = '<compiler angle="degree"/>'
@@ -90,6 +90,22 @@ def _limits() -> Iterator[tuple[str, Reading]]:
     yield stated("ranges of three joints of a body", f"<joint {radians}/>{along}{across}", one, slide, third)
 
 
+def _limits_of_some() -> Iterator[tuple[str, Reading]]:
+    """Ranges of joints beyond others that have none, or more speeds or coordinates than one."""
+    hinge, limited = '<joint axis="0 1 0" range="{} {}"/>'.format(*_RANGE), hung(NEXT, limits=_RANGE)
+    free = replace(FIRST, joints=(Joint("free"),))
+    ball = replace(FIRST, joints=(replace(FIRST.joints[0], kind="ball"),))
+    firsts = {
+        "an unlimited hinge": (JOINT_A, FIRST),
+        "a free joint": ("<freejoint/>", free),
+        "a ball": ('<joint type="ball"/>', ball),
+    }
+    for name, (joint, first) in firsts.items():
+        yield _of(
+            f"range of a hinge beyond {name}", file(joint + MA, hinge + MB), first, limited, asked=LIMITED_OF_SOME
+        )
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_losses(), *_limits()])
+    return dict([*_losses(), *_limits(), *_limits_of_some()])

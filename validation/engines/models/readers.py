@@ -15,7 +15,7 @@ from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
 READ = ("sizes", "mass_matrix", "bias", "link_poses", "link_bodies")
 # What joints state beside their motion, sites, actuators.
 LOSSES = ("joint_dampings", "joint_frictions", "joint_stiffnesses")
-LIMITED = ("joint_limits",)
+LIMITED, LIMITED_OF_SOME = ("joint_limits",), ("joint_limits_of_some",)
 BOUNDED = (*LIMITED, "joint_speed_limits", "joint_force_limits")
 PLACED = ("frame_poses",)
 DRIVEN = ("actuator_forces", "actuated_forces")

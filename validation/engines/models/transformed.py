@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import ORIGIN, Joint, Link, Rows, Tree
+from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Rows, Tendon, Tree, Wrap
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed, turned
 from .readers import diagonal, in_series
@@ -47,6 +47,37 @@ def _fixed_parts() -> tuple[Link, ...]:
     return tuple(link(draw, "abcde"[k], k - 1, joint) for k, joint in enumerate(held))
 
 
+def _acting(links: tuple[Link, ...]) -> list[Tree]:
+    """Attached chains that forces of their own act on: what hangs on parts must follow them, those of the other first.
+
+    Tendons pass a sphere the shortest way, and on the side of a point; one stands on the model that is attached to.
+    """
+    damped = tuple(
+        replace(one, joints=(replace(one.joints[0], damping=0.75, stiffness=3.0, rest=0.25),)) for one in links
+    )
+    straight = Tendon("path", (End("a", p=(0.5, 0.0, 0.25)), End("b", p=(0.0, 0.25, -0.5))), (), 3.0, 0.5, 0.25)
+    ends = End("c", p=(-1.0, 0.125, 0.25)), End("d", p=(0.5, 0.0625, 1.5))
+    ball = Wrap(0, End("c", p=(0.0625, 0.0, 0.25)), 0.375, True)
+    around = replace(straight, ends=ends, stiffness=4.0, wraps=(ball,))
+    aside = replace(around, wraps=(ball._replace(side=(0.0, 0.5, 0.25)),))
+    total = Tendon("coupling", (End("c"), End("d")), (1.0, -0.5), 4.0, 0.5, 0.25)
+    state = Activation("filter", 0.375, (0.125,))
+    driven = (
+        Actuator("b", gear=3.0, control=0.75, activation=Activation("integrator", 0.25)),
+        Actuator("a", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5),
+        Actuator("d", gear=2.0, gain=1.5, bias=(0.25, 0.0, -1.5), control=0.5, activation=state),
+        Actuator("c", gear=-1.5, control=2.0, control_limits=(-1.0, 1.0)),
+        Actuator(tendon=1, gear=0.5, gain=3.0, bias=(0.25, -3.0, -0.5)),
+    )
+    return [
+        Tree("attached springs and dampers", damped, attached="c"),
+        Tree("attached tendon around a sphere", links, attached="c", tendons=(straight, around)),
+        Tree("attached tendon on the side of a sphere", links, attached="c", tendons=(straight, aside)),
+        Tree("attached tendon of a sum", links, attached="c", tendons=(straight, total)),
+        Tree("attached actuators", links, attached="c", tendons=(straight, total), actuators=driven),
+    ]
+
+
 def trees() -> dict[str, Tree]:
     """All of them, by name."""
     free, held = Joint("revolute", axis=OBLIQUE), Joint("revolute", axis=OBLIQUE, locked=0.75)
@@ -63,6 +94,7 @@ def trees() -> dict[str, Tree]:
         Tree("attached chain", parts[:4], attached="c"),
         Tree("attached branches", parts, attached="c"),
         Tree("attached fixed links", _fixed_parts(), attached="c"),
+        *_acting(parts[:4]),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
         _fused_at_one_point("fixed links fused at one point"),
         _fused_at_one_point("fixed links fused at a quarter turn", in_series(("z", math.pi / 2.0))),

@@ -138,6 +138,7 @@ def write(tree: Tree) -> Source | Unsupported:
 
 
 _OFFERED = ("dampers", "springs", "compensation", "sensors", "tendons", "wrapped tendons", "heavy tendons")
+_DRIVEN = ("actuators", "activations", "affine gains")
 PLUGIN = SourcePlugin(
     name="mjx",
     package="mujoco-mjx",
@@ -149,6 +150,6 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
-    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, "actuators", "activations", "a medium")},
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, "a medium")},
     calls=4,
 )

@@ -135,6 +135,7 @@ _CONSTRAINED = {
         "-efc.aref after a second forward", "value = -row('aref') * ways_round()", at="q2", rows=_AGAIN
     ),
     "constraint_residuals": _bound("efc.pos", "value = row('pos') * ways_round()", at="q2"),
+    "constraint_points": Way("set_const, eq_data", "value = made(m)[0].eq_data.numpy()[0][:, :6]"),
     "constrained_acceleration": _bound("forward: qacc", "value = got(dc, 'qacc')", SOFT),
     "constraint_forces": _bound("efc.force", "value = np.linalg.solve(axes().T, row('force'))", SOFT_FORCES),
 }

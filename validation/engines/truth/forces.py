@@ -4,7 +4,7 @@ With l(q) the length of a tendon and J its derivative along the speeds, e the fo
 where it has one, the state w,
 
     Q = -d v - k (q - rest) + J_c^T (-gamma m g) + sum J^T (-k (l - rest) - d J v) + sum gear J^T e
-    e = clip(gain (clip(u) or w) + b0 + b1 gear l + b2 gear J v)
+    e = clip((gain + g1 gear l + g2 gear J v) (clip(u) or w) + b0 + b1 gear l + b2 gear J v)
 
 where J_c is the Jacobian of a link's mass centre; of an actuator of a joint, l is its coordinate and J v its speed.
 What actuators make together along a joint stays within the joint's limits.
@@ -174,9 +174,8 @@ class Forces:
 
     def _slopes(self, actuator: Actuator, q: Exact, v: Exact, number: int) -> tuple[Exact, Exact]:
         """The derivatives of an actuator's force by its length and by its speed."""
-        _, b1, b2 = exact(actuator.bias)
         if actuator.muscle is None:
-            return b1, b2
+            return tuple(exact(actuator.bias)[1:] + exact(actuator.slopes) * driving(actuator))
         length, J = self.transmissions(q)[number]
         at = np.array([length, J @ v], dtype=object)
         unit = exact(np.eye(2))
@@ -191,7 +190,9 @@ def _effort(actuator: Actuator, length: Exact, speed: Exact) -> Exact:
     if actuator.is_disabled:
         return exact(0.0)[()]
     b0, b1, b2 = exact(actuator.bias)
-    effort = exact(actuator.gain)[()] * driving(actuator) + b0 + b1 * length + b2 * speed
+    g1, g2 = exact(actuator.slopes)
+    gain = exact(actuator.gain)[()] + g1 * length + g2 * speed
+    effort = gain * driving(actuator) + b0 + b1 * length + b2 * speed
     if actuator.muscle is not None:
         driven = driving(actuator) if actuator.activation else exact(actuator.muscle.activation)[()]
         effort = _pull(actuator.muscle, driven, length, speed)

@@ -98,12 +98,15 @@ class _Bodies:
         return made
 
     def _inertia(self, inertia: Array) -> str:
-        """MJCF attributes of an inertia: its entries, or its principal moments and axes."""
+        """MJCF attributes of an inertia: its entries, or its principal moments and the turn of its axes.
+
+        By its quaternion, which all releases read: what hides behind a mass matrix is asked of all.
+        """
         if not self.principal:
             return f'fullinertia="{_text(inertia[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))}"'
         moments, axes = np.linalg.eigh(inertia)
         axes[:, 2] *= np.linalg.det(axes)
-        return f'diaginertia="{_text(moments)}" xyaxes="{_text([*axes[:, 0], *axes[:, 1]])}"'
+        return f'diaginertia="{_text(moments)}" quat="{_text(beside.quaternion_of(axes))}"'
 
     def _joints(self, k: int, steps: Sequence[tuple[Array, Array, Joint]]) -> list[str] | Unsupported:
         """The elements of a link's joints."""

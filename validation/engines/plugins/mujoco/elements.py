@@ -113,20 +113,20 @@ def _muscle(one: Muscle) -> str:
 
 def _actuator(number: int, one: Actuator) -> str:
     """A motor, a servo of position or velocity, or the general one."""
-    b0, b1, b2 = one.bias
-    match one:
-        case Actuator(muscle=Muscle() as muscle):
-            element = _muscle(muscle)
-        case Actuator(gain=1.0, bias=(0.0, 0.0, 0.0)):
-            element = "motor"
-        case Actuator(bias=(0.0, _, 0.0)) if one.gain == -b1:
-            element = f'position kp="{one.gain!r}"'
-        case Actuator(bias=(0.0, 0.0, _)) if one.gain == -b2:
-            element = f'velocity kv="{one.gain!r}"'
-        case _:
-            element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
-    if one.activation and one.muscle is None:
-        element = f'general gainprm="{one.gain!r}" biastype="affine" biasprm="{_text(one.bias)}"'
+    _, b1, b2 = one.bias
+    is_affine = any(one.slopes)
+    gain = f'gaintype="affine" gainprm="{_text((one.gain, *one.slopes))}"' if is_affine else f'gainprm="{one.gain!r}"'
+    element = f'general {gain} biastype="affine" biasprm="{_text(one.bias)}"'
+    if one.muscle is not None:
+        element = _muscle(one.muscle)
+    elif one.activation is None and not is_affine:
+        match one:
+            case Actuator(gain=1.0, bias=(0.0, 0.0, 0.0)):
+                element = "motor"
+            case Actuator(bias=(0.0, _, 0.0)) if one.gain == -b1:
+                element = f'position kp="{one.gain!r}"'
+            case Actuator(bias=(0.0, 0.0, _)) if one.gain == -b2:
+                element = f'velocity kv="{one.gain!r}"'
     limits = f' ctrllimited="true" ctrlrange="{_text(one.control_limits)}"' if one.control_limits else ""
     limits += f' forcelimited="true" forcerange="{_text(one.force_limits)}"' if one.force_limits else ""
     group = ' group="1"' if one.is_disabled else ""
@@ -200,9 +200,18 @@ def _equality(number: int, one: Constraint) -> str:
 
 
 def quaternion_of(R: Array) -> tuple[float, float, float, float]:
-    """Quaternion (w, x, y, z) of a rotation (3, 3) whose angle is not pi."""
-    w = math.sqrt(max(0.0, 1.0 + np.trace(R))) / 2.0
-    x, y, z = ((R[(k + 2) % 3, (k + 1) % 3] - R[(k + 1) % 3, (k + 2) % 3]) / (4.0 * w) for k in range(3))
+    """Quaternion (w, x, y, z) of a rotation (3, 3), with w >= 0: of its four multiples, the longest."""
+    (a, b, c), (d, e, f), (g, h, i) = np.asarray(R).tolist()
+    multiples = np.array(
+        [
+            [1.0 + a + e + i, h - f, c - g, d - b],
+            [h - f, 1.0 + a - e - i, b + d, c + g],
+            [c - g, b + d, 1.0 - a + e - i, f + h],
+            [d - b, c + g, f + h, 1.0 - a - e + i],
+        ]
+    )
+    row = max(multiples, key=lambda one: float(one @ one))
+    w, x, y, z = (row * math.copysign(1.0, row[0]) / math.sqrt(row @ row)).tolist()
     return w, x, y, z
 
 
@@ -290,6 +299,30 @@ _SET = "m.eq_solref[:] = 0.0\nm.opt.jacobian, m.opt.tolerance = mj.mjtJacobian.m
 _AT = f"{_SET}d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nmj.mj_forward(m, d)\n"
 _J = "J = d.efc_J.reshape(-1, m.nv)\n"
 
+# At given accelerations the forces of soft constraints are far from those that keep them, and known: what holds a link
+# does all but what they do there. w: force, and moment if any, at the first frame and along its axes.
+_BOUND = """from copy import copy
+n = copy(m)
+n.eq_solimp[:, :2] = 0.5
+d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, 0.0
+mj.mj_forward(n, d)
+d.qacc[:] = a
+mj.mj_inverse(n, d)
+given, value = np.linalg.solve(axes().T, d.efc_force), []
+def carries(top, body): return body == top or (body > 0 and carries(top, m.body_parentid[body]))
+for k in sensed:
+    own, total = m.site(f'o{k}').id, np.zeros(6)
+    for c in range(m.neq):
+        first, second = (m.site(f's{c}_{end}').id for end in (0, 1))
+        R = d.site_xmat[first].reshape(3, 3)
+        w = np.r_[np.split(given, m.neq)[c], np.zeros(3)][:6]
+        force, moment, arm = R @ w[:3], R @ w[3:], d.site_xpos[first] - d.site_xpos[own]
+        for site, way in ((first, 1), (second, -1)):
+            if carries(m.site_bodyid[own], m.site_bodyid[site]):
+                total += way * np.r_[force, moment + np.cross(arm, force)]
+    R = d.site_xmat[own].reshape(3, 3).T
+    value.append(np.r_[data('force', k) + R @ total[:3], data('torque', k) + R @ total[3:]])"""
+
 # Constraints are springs by design (MuJoCo's documentation, "Constraint model"): at the largest impedance a regulariser
 # of 1e-4 of the inertia that a row sees, by an estimate at the reference configuration, stands beside J M^-1 J^T.
 SOFT = 1e-2
@@ -306,6 +339,8 @@ WAYS = {
     "constraint_residual_products": Way(
         "-efc_aref", f"{_AT.replace('= q, v', '= q2, v')}value = -d.efc_aref * ways_round()"
     ),
+    "constraint_points": Way("eq_data", "value = m.eq_data[:, :6]"),
+    "wrench_sensors:bound": Way("mj_inverse with constraints, force, torque", _BOUND),
     "step_at_rest": Way(
         "mj_step",
         "from copy import copy\nn = copy(m)\n"

@@ -129,6 +129,9 @@ for k in sensed:
     "flexible_relation": Way("qfrc_passive, mj_step", "value = 1.0 + difference()", 1e-9),
     "joint_dampings": Way("dof_damping", "value = m.dof_damping"),
     "joint_limits": Way("jnt_range", "value = m.jnt_range"),
+    "joint_limits_of_some": Way(
+        "jnt_range, jnt_limited", "value = (m.jnt_range * m.jnt_limited[:, np.newaxis])[m.dof_jntid]"
+    ),
     "joint_frictions": Way("dof_frictionloss", "value = m.dof_frictionloss"),
     "joint_stiffnesses": Way("jnt_stiffness", "value = m.jnt_stiffness[m.dof_jntid]"),
     "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
-from ...interface import Convention, Statement, Tree, Unsupported
+from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
 from ..writing import copies
 from ..writing.source import Source, SourcePlugin, attached, numbered
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
@@ -74,17 +75,12 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
     own = attached(tree)
     if not own:
         return [f"m = mj.MjModel.from_xml_string('''{xml}''')"]
-    first = min(own)
-    kept = {k: place for place, k in enumerate(k for k in range(len(tree.links)) if k not in own)}
-    places = {k: place for place, k in enumerate(sorted(own))}
-    rest = tuple(replace(tree.links[k], parent=kept.get(tree.links[k].parent, -1)) for k in kept)
-    branch = tuple(replace(tree.links[k], parent=places.get(tree.links[k].parent, -1)) for k in sorted(own))
     texts = []
-    for links in (rest, branch):
-        part = document(replace(tree, links=links, attached=""), principal=True)
-        assert not isinstance(part, Unsupported)  # The whole is none, either.
-        texts.append(part[0])
-    holder = tree.links[tree.links[first].parent].name
+    for part in (_part(tree, [k for k in range(len(tree.links)) if k not in own]), _part(tree, sorted(own))):
+        made = document(part, principal=True)
+        assert not isinstance(made, Unsupported)  # The whole is none, either.
+        texts.append(made[0])
+    holder = tree.links[tree.links[min(own)].parent].name
     return [
         f"s = mj.MjSpec.from_string('''{texts[0]}''')",
         f"own = mj.MjSpec.from_string('''{texts[1]}''')",
@@ -93,11 +89,46 @@ def _compiled(tree: Tree, xml: str) -> list[str]:
     ]
 
 
+def _part(tree: Tree, kept: Sequence[int]) -> Tree:
+    """Some links of a tree, with the tendons over no others, and the actuators that act on no others."""
+    places = {k: place for place, k in enumerate(kept)}
+    links = tuple(replace(tree.links[k], parent=places.get(tree.links[k].parent, -1)) for k in kept)
+    names = {link.name for link in links}
+    own = [k for k, one in enumerate(tree.tendons) if names.issuperset(end.link for end in _ends(one))]
+    tendons = {k: place for place, k in enumerate(own)}
+    actuators = []
+    for one in tree.actuators:
+        if one.tendon in tendons:
+            actuators.append(replace(one, tendon=tendons[one.tendon]))
+        elif one.link in names or (one.ends and names.issuperset(end.link for end in one.ends)):
+            actuators.append(one)
+    pulled = tuple(tree.tendons[k] for k in own)
+    return replace(tree, links=links, attached="", tendons=pulled, actuators=tuple(actuators))
+
+
+def _ends(tendon: Tendon) -> tuple[End, ...]:
+    """The frames that a tendon's way is made of."""
+    return (*tendon.ends, *(wrap.end for wrap in tendon.wraps))
+
+
 _READERS = {
     "urdf": "mj.MjModel.from_xml_string({text})",
     "mjcf": "mj.MjModel.from_xml_string({text})",
-    "mjcf written": "mj.MjModel.from_xml_string(mj.MjSpec.from_string({text}).to_xml())",
+    "mjcf written": "mj.MjModel.from_xml_string(written({text}))",
 }
+# By the specification, where the release has some; all releases write the file that was read last.
+WRITING = (
+    rebuilt.PARSED
+    + """
+def written(text):
+    if hasattr(mj, 'MjSpec') and hasattr(mj.MjSpec, 'to_xml'):
+        spec = parsed(text)
+        spec.compile()
+        return spec.to_xml()
+    with tempfile.NamedTemporaryFile(suffix='.xml') as file:
+        mj.mj_saveLastXML(file.name, mj.MjModel.from_xml_string(text))
+        return file.read().decode()"""
+)
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -111,9 +142,11 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         return made
     slots, nq, nv = made
     names = [link.name for link in tree.links]
+    writing = ("import tempfile", *WRITING.split("\n")) if form.endswith("written") else ()
     lines = (
         "import numpy as np",
         "import mujoco as mj",
+        *writing,
         f"m = {_READERS[form].format(text=repr(text))}",
         "d = mj.MjData(m)",
         *beside.controls(tree),
@@ -163,6 +196,7 @@ PLUGIN = SourcePlugin(
         "a medium": "density, viscosity, wind",
         "actuators": "general, motor, position, velocity",
         "activations": "dyntype, dynprm, actearly, actrange",
+        "affine gains": "gaintype affine",
     },
     formats=tuple(_READERS),
     write_reading=write_reading,

@@ -63,6 +63,7 @@ for row, bound in zip(*found):
     value[k, int(row[k] > 0)] = configuration.q[place] + bound / row[k]"""
 _KINEMATICS = {
     "joint_limits": Way("ConfigurationLimit", _LIMITS),
+    "joint_limits_of_some": Way("ConfigurationLimit", _LIMITS.replace("[-np.inf, np.inf]", "[0.0, 0.0]")),
     "link_poses": Way(
         "get_transform_frame_to_world",
         "configuration = mink.Configuration(m, q)\nvalue = []\nfor name in links:\n"
