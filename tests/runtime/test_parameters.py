@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
@@ -66,6 +66,7 @@ VALUES = st.one_of(
 
 @settings(max_examples=120)
 @given(st.sampled_from(NAMES), VALUES, st.sampled_from(NAMES), VALUES)
+@example("m", 1e200, "c", 1e200)
 def test_run_time_parameters_are_refused_exactly_where_a_description_is(one: str, x: float, two: str, y: float) -> None:
     """Any two parameters of a scene, at any values: the same verdict, about the same objects."""
     values = dict(zip(NAMES, DEFAULTS, strict=True)) | {one: x} | {two: y}

@@ -177,8 +177,8 @@ def moment_conditions(system: System) -> Iterator[Condition]:
         arm = [a[i - 2] * c[i - 1] - a[i - 1] * c[i - 2] for i in range(3)]
         moment = _weight(body)[1] + Term(joint.armature).absolute()
         if body.inertia.about != "body":
-            # Not the moment itself, but zero where that is, and safe from overflow.
-            moment += Term(body.inertia.mass).absolute() * sum((x.absolute() for x in arm), _ZERO)
+            # Not the moment itself, but zero where that is; a product of the two overflows where each is large.
+            moment += Term(body.inertia.mass).absolute().minimum(sum((x.absolute() for x in arm), _ZERO))
         where = system.origin.get(("body", body.name), "")
         yield Condition((moment.value,), "positive", partial(_massless_tip, body.name, joint.name, where))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+from collections import ChainMap
 from pathlib import Path
 from string import Template
 
@@ -28,7 +29,7 @@ DRIVEN = sf.System(
         for i in range(2)
     ),
 )
-SYSTEMS = {**MODELS, "driven_arm": DRIVEN}
+SYSTEMS = ChainMap({"driven_arm": DRIVEN}, MODELS)  # Each is read when it is asked for.
 # Models and the speeds whose joints have actuators: a tree, a loop with more actuators than freedoms, one in space with
 # conditions that repeat each other, one with a prescribed motion and a beam.
 CASES = {

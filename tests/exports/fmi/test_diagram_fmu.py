@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from math import cos
@@ -22,12 +23,19 @@ from tests.diagrams.run.test_states_of_forces import driven
 from tests.diagrams.run.test_switching import CASES, Case
 from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import Unit
+from tests.exports.fmi.test_fmu import Unit, quickly
 from tests.exports.test_controller import conditional, inside, machine, rates
 from tests.exports.test_diagram import switching
 from tests.simulation.rigid_scenes import rod_system
 
 STEPS = 20
+
+
+@pytest.fixture(autouse=True)
+def compiled_quickly() -> Iterator[None]:
+    """What they are compiled with does not matter here: tests of models have a unit as it ships."""
+    with quickly():
+        yield
 
 
 def put(unit: Unit, values: dict[str, float]) -> None:

@@ -32,7 +32,12 @@ from tests.models import sampled
 Way = Literal["articulated", "factors"]
 WAYS: tuple[Way, ...] = ("articulated", "factors")
 NAME = "forward_dynamics"
-TREES = tuple(name for name, system in MODELS.items() if not system.constraints)
+# Reference models with constraints, named because reading all models to ask them takes two seconds of collection.
+CLOSED = (
+    "andrews_squeezer docking flexible_slider_crank four_bar parallelogram rolling_disc sleigh slider_crank"
+    " bricard stewart delta delta_rods two_four_bars grasp two_arms"
+).split()
+TREES = tuple(name for name in MODELS if name not in CLOSED)
 # Those that take a second or more to generate.
 LARGE = tuple(name for name in TREES if name.endswith(("mss", "spdm", "ssrms")) or name.startswith("chain2"))
 # Rounding times the condition of M: up to 3e7 among the reference models.
@@ -59,6 +64,7 @@ def difference(system: sf.System, seed: int = 0) -> float:
 @pytest.mark.parametrize("name", sampled(TREES, [name for name in TREES if name not in LARGE]))
 def test_articulated_bodies_accelerate_reference_models_as_factors_do(name: str) -> None:
     """Flexible arms, rotors, springs and loads among them."""
+    assert not MODELS[name].constraints
     assert difference(MODELS[name]) < TOLERANCE
 
 
