@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
+
+from symofros.description.xml_nodes import Element
+
 EXAMPLES = 3
 
 
@@ -27,3 +31,28 @@ def note(text: str, noun: str, names: list[str]) -> str:
     shown = ", ".join(names[:EXAMPLES]) + (", …" if len(names) > EXAMPLES else "")
     plural = f"{noun.removesuffix('y')}ies" if noun.endswith("y") else f"{noun}s"
     return f"{text}: {len(names)} {noun if len(names) == 1 else plural} ({shown})"
+
+
+def remark_unread(
+    remarks: Remarks,
+    element: Element,
+    attributes: Mapping[str, Collection[str]],
+    several: Collection[str],
+    thing: tuple[str, str],
+) -> None:
+    """Tell of what nothing reads in an element: other attributes than its own, and all but the first of equal children.
+
+    Args:
+        remarks: Where it is told.
+        element: An element of a link or joint, or one inside of it.
+        attributes: Element -> the attributes that it has.
+        several: Elements that may be stated more than once.
+        thing: What it belongs to: noun and name.
+    """
+    for name in element.attributes:
+        if name not in attributes.get(element.tag, ()):
+            remarks.add(f"attribute '{name:.60}' of <{element.tag}> ignored", *thing)
+    tags = [child.tag for child in element.children]
+    for tag in dict.fromkeys(tags):
+        if tags.count(tag) > 1 and tag not in several:
+            remarks.add(f"all but the first <{tag:.60}> of <{element.tag}> ignored", *thing)

@@ -104,6 +104,7 @@ class Dynamics:
     def __init__(self, system: System, frames: Sequence[str] = (), second_order: bool = True) -> None:
         if isinstance(frames, str):  # A sequence of letters, too.
             check_argument("frames", frames, tuple[str, ...])
+        self._given = system, tuple(frames), second_order
         known = Compilation(system)
         check_record(known.record)
         wanted = _differentiable(len(known.record.v_names))
@@ -125,6 +126,9 @@ class Dynamics:
         self._c_name, self._source = c_name, source
         self.library: Path = self._build(source)
         self.functions = {name: casadi.external(own, str(self.library)) for name, own in self.names.items()}
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._given
 
     def write_acados_library(self, folder: str | os.PathLike[str]) -> str:
         """Write lib<name>.so for acados, whose whole numbers are `int` where CasADi's are `long long`.

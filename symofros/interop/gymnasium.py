@@ -29,6 +29,7 @@ from symofros.simulation.steppers import Steppers
 gymnasium = rules.framework("gymnasium", "gymnasium")
 _Env: Any = gymnasium.Env
 _VectorEnv: Any = gymnasium.vector.VectorEnv
+_LARGEST_ANGLE = np.radians(12.0)  # Of a pole that still stands.
 
 
 @dataclass(frozen=True)
@@ -57,14 +58,15 @@ class Task:
     parameters: Callable[[np.random.Generator, int], Array] | None = None
 
     def __post_init__(self) -> None:
-        """Check the sizes."""
+        """Check the sizes and numbers."""
         rules.check_model(self.model)
-        if np.shape(self.largest) != (self.model.nu,):
-            raise rules.InteropError(
-                Problem(
-                    "task: wrong number of bounds", str(np.shape(self.largest)), f"({self.model.nu},)", "one an input"
-                )
-            )
+        largest, nu = np.asarray(self.largest, dtype=np.float64), self.model.nu
+        if largest.shape != (nu,) or not (largest >= 0.0).all():
+            found, rule = str(self.largest)[:60], f"({nu},), none negative"
+            raise _misfit("task: bounds of inputs do not fit", found, rule, "give a largest magnitude for each input")
+        steps = self.substeps
+        if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
+            raise _misfit("task: no number of substeps", repr(steps)[:60], "a whole number from 1 on", "substeps=1")
 
     def begin(self, rng: np.random.Generator) -> tuple[Array, Array, Array]:
         """First state of an episode, q (nq) and v (nv), and its parameters (npar).
@@ -93,7 +95,12 @@ class Task:
 
     def judge(self, q: Array, v: Array, u: Array) -> tuple[Array, np.ndarray[Any, Any]]:
         """Rewards (n) and whether episodes end (n), for states q (n, nq), v (n, nv) that inputs u (n, nu) led to."""
-        return self.reward(q, v, u), self.fails(q, v)
+        rewards, failed, n = self.reward(q, v, u), self.fails(q, v), len(q)
+        for name, found in (("reward", rewards), ("fails", failed)):
+            if np.shape(found) != (n,):
+                remedy = "return one number for each of the n states; np.full(len(q), x) where all have the same"
+                raise _misfit(f"task: {name} does not fit", str(np.shape(found)), f"shape ({n},) for n = {n}", remedy)
+        return rewards, failed
 
     @property
     def _steps(self) -> dict[str, Any]:
@@ -156,7 +163,7 @@ class MechanismEnv(_Env):  # type: ignore[misc]
         u = _bounded(np.asarray(action, dtype=np.float64).reshape(-1), self._least, self._largest)
         stepper = self.stepper
         if not stepper.running:
-            stepper.reset(stepper.q, stepper.v, stepper.t)
+            stepper.reset(stepper.q, stepper.v, stepper.t, z=stepper.z)
         going = stepper.step(u, self.task.substeps)
         reward, failed = self.task.judge(stepper.q[None], stepper.v[None], u[None])
         return self._observation(), float(reward[0]), bool(failed[0]) or not going, False, {}
@@ -178,6 +185,10 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
     """
 
     def __init__(self, task: Task, num_envs: int, max_steps: int = 500) -> None:
+        for name, count in (("num_envs", num_envs), ("max_steps", max_steps)):
+            if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+                what, rule = f"MechanismVectorEnv: {name} does not fit", "a whole number from 1 on"
+                raise _misfit(what, repr(count)[:60], rule, f"{name}=1 at least")
         self.task, self.num_envs, self._max_steps = task, num_envs, max_steps
         self.single_action_space, self.single_observation_space = task.action_space, task.observation_space
         batch_space = gymnasium.vector.utils.batch_space
@@ -227,7 +238,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         before = self._steppers
         if not self._own:  # They had one set for all.
             self._own, self._steppers = True, self._made()
-            self._steppers.reset(before.q, before.v)
+            self._steppers.reset(before.q, before.v, z=before.z)
         else:
             before.reset(before.q, before.v, par=self.par, which=_mask(chosen, self.num_envs))
 
@@ -311,10 +322,11 @@ def _checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> Seque
         return [None] * count
     if isinstance(seed, int | np.integer):
         return [int(seed) + k for k in range(count)]
-    seeds = [None if one is None else int(one) for one in seed]
-    if len(seeds) != count:
-        raise _misfit("reset: seeds do not fit", f"{len(seeds)} seeds", f"one for each of {count}", "give as many")
-    return seeds
+    seeds = list(seed) if isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str) else []
+    if len(seeds) != count or not all(one is None or isinstance(one, int | np.integer) for one in seeds):
+        rule = f"a whole number, or one (or None) for each of {count}"
+        raise _misfit("reset: seeds do not fit", f"{type(seed).__name__} {seed!r:.60}", rule, "seed=0")
+    return [None if one is None else int(one) for one in seeds]
 
 
 def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError:
@@ -347,13 +359,17 @@ def cart_pole(largest: float = 10.0) -> Task:
     )
     model = compile_system(System("cart_pole", bodies, inputs=(Input("F", "N"),), gravity=(0, 0, -9.8)))
 
-    def start(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
-        return rng.uniform(-0.05, 0.05, (n, 2)), rng.uniform(-0.05, 0.05, (n, 2))
-
-    largest_angle = np.radians(12.0)
-
-    def fails(q: Array, v: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        return np.asarray((np.abs(q[:, 0]) > 2.4) | (np.abs(q[:, 1]) > largest_angle))
-
     # One step of rk4 errs by some 1e-6 in half a second of full forces.
-    return Task(model, np.array([largest]), start, lambda q, v, u: np.ones(len(q)), fails, substeps=1)
+    return Task(model, np.array([largest]), _nearly_upright, _standing, _fallen, substeps=1)
+
+
+def _nearly_upright(rng: np.random.Generator, n: int) -> tuple[Array, Array]:
+    return rng.uniform(-0.05, 0.05, (n, 2)), rng.uniform(-0.05, 0.05, (n, 2))
+
+
+def _standing(q: Array, v: Array, u: Array) -> Array:
+    return np.ones(len(q))
+
+
+def _fallen(q: Array, v: Array) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    return np.asarray((np.abs(q[:, 0]) > 2.4) | (np.abs(q[:, 1]) > _LARGEST_ANGLE))

@@ -46,7 +46,9 @@ class Dynamics(WrappedDynamics):
 
     def _apply(self, name: str, *tensors: Any) -> Any:
         given = self._given(name, **dict(zip(RULES[name].inputs, tensors, strict=True)))
-        return _Value.apply(self, name, *given)
+        if torch.compiler.is_compiling():
+            return torch.compiler.disable(_evaluated)(self, name, given)  # A compiled program calls C as it stands.
+        return _evaluated(self, name, given)
 
     def _given(self, function: str, **given: Any) -> list[Any]:
         """Tensors of doubles with the same leading dimensions; None stays."""
@@ -68,11 +70,17 @@ class Dynamics(WrappedDynamics):
         return [None if x is None else x.expand(*batch, x.shape[-1]) for x in given.values()]
 
 
+def _evaluated(of: Dynamics, name: str, given: list[Any]) -> Any:
+    return _Value.apply(of, name, *given)
+
+
 def _numpy(of: Dynamics, name: str, tensors: tuple[Any, ...]) -> dict[str, Any]:
     """Arrays by name, at unit quaternions; parameters that were expanded are one set again."""
     q, *others = tensors
     at = (of.coordinates.unit(q), *others)
-    named = {key: x.detach().numpy() for key, x in zip(RULES[name].inputs, at, strict=True) if x is not None}
+    named = {
+        key: x.detach().resolve_neg().numpy() for key, x in zip(RULES[name].inputs, at, strict=True) if x is not None
+    }
     par = named.get("par")
     if par is not None and par.ndim > 1 and par.size and not any(par.strides[:-1]):
         named["par"] = par[(0,) * (par.ndim - 1)]

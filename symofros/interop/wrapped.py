@@ -28,6 +28,9 @@ class WrappedDynamics(ABC):
         self.coordinates = Coordinates(model.record.segments, operations)
         self._sizes = {"q": model.nq, "q0": model.nq, "q1": model.nq, "u": model.nu, "par": model.npar}
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.model,)
+
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
         """Accelerations (..., nv) of arrays q (..., nq), v (..., nv), u (..., nu), par (..., npar)."""
         return self._apply("forward_dynamics", q, v, u, par)

@@ -93,6 +93,22 @@ def test_mimic_joints_move_as_in_pinocchio(tmp_path: Path) -> None:
     np.testing.assert_allclose(tau, [0.8], rtol=1e-11)
 
 
+def test_quaternions_of_urdf_1_2_are_read_as_pinocchio_does(tmp_path: Path) -> None:
+    stated = 'quat_xyzw="0.1 -0.2 0.3 0.9"'
+    body = urdf_models.ROBOT.replace('rpy="0 1.5707963267948966 0"', stated).replace('rpy="0 0 0.5"', stated)
+    text = f'<robot name="arm" version="1.2">{body}</robot>'
+    model = sf.compile(load(tmp_path, text), sf.Options(backend="interpreter"))
+    theirs = pinocchio.buildModelFromUrdf(str(tmp_path / "arm.urdf"))
+    q, v, a = np.array([0.3]), np.array([1.4]), np.array([-0.6])
+    expected = pinocchio.rnea(theirs, theirs.createData(), q, v, a)
+    np.testing.assert_allclose(model.inverse_dynamics(q, v, a), expected, rtol=1e-13)
+    unit = text.replace(stated, 'quat_xyzw="0 0 1 0"')
+    assert any("no unit quaternions" in note for note in load(tmp_path, text).notes)
+    assert not any("no unit quaternions" in note for note in load(tmp_path, unit).notes)
+    for odd in (text.replace(stated, f'{stated} rpy="0 0 1"'), text.replace(stated, 'quat_xyzw="0 0 0 0"')):
+        assert "can't have this quat_xyzw" in reading.faults_of(tmp_path, odd, "arm.urdf")
+
+
 @pytest.mark.parametrize("kind", ["floating", "free", "screw", "", "odd"])
 def test_a_joint_that_no_closure_replaces_is_dropped(kind: str) -> None:
     """A hinge in the place of a floating joint binds five directions too many."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from typing import Any
 
 import numpy as np
@@ -109,6 +110,13 @@ def test_casadi_hessians_of_loops_match_the_model() -> None:
     at = dict(zip(("q", "v", "u", "par"), given, strict=True))
     (right,) = model.evaluate("forward_dynamics_hessian", **at, a_bar=weights, lam_bar=np.zeros(model.nc))
     np.testing.assert_allclose(exact, right, rtol=1e-9, atol=1e-11 * np.abs(right).max())
+
+
+def test_dynamics_can_be_sent_to_other_processes(dynamics: Any, model: sf.Model) -> None:
+    again = pickle.loads(pickle.dumps(dynamics))
+    assert again.library == dynamics.library and again.names == dynamics.names
+    q, v, u = np.full(model.nq, 0.1), np.full(model.nv, 0.2), np.full(model.nu, 0.3)
+    np.testing.assert_array_equal(again.forward_dynamics(q, v, u), dynamics.forward_dynamics(q, v, u))
 
 
 def test_frames_that_were_not_asked_for_are_refused(dynamics: Any) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import warnings
 from dataclasses import replace
 from typing import Any
@@ -142,6 +143,9 @@ def test_parameters_of_selected_environments_leave_the_others_in_their_time(task
         ({"options": {"state": [0.0] * 4}}, "no option 'state'"),
         ({"options": {"reset_mask": np.zeros(2, dtype=bool)}}, "reset_mask does not fit"),
         ({"seed": [1, 2, 3]}, "seeds do not fit"),
+        ({"seed": 1.5}, "seeds do not fit"),
+        ({"seed": "12"}, "seeds do not fit"),
+        ({"seed": [1, 0.5]}, "seeds do not fit"),
     ],
 )
 def test_resets_that_mean_nothing_are_refused(task: Any, asked: dict[str, Any], says: str) -> None:
@@ -154,6 +158,67 @@ def test_draws_of_another_shape_are_refused(task: Any, what: str) -> None:
     changed = {what: (lambda rng, n: (np.zeros(2), np.zeros(2))) if what == "start" else (lambda rng, n: np.zeros(3))}
     with pytest.raises(sf.SymofrosError, match="do not fit"):
         sf.interop.gymnasium.MechanismEnv(replace(with_masses(task), **changed)).reset(seed=0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "says"),
+    [
+        ({"reward": lambda q, v, u: -q[:, :1]}, "reward does not fit"),
+        ({"reward": lambda q, v, u: 1.0}, "reward does not fit"),
+        ({"fails": lambda q, v: np.abs(q) > 1.0}, "fails does not fit"),
+        ({"fails": lambda q, v: False}, "fails does not fit"),
+        ({"largest": np.array([-1.0])}, "bounds of inputs do not fit"),
+        ({"largest": np.array([np.nan])}, "bounds of inputs do not fit"),
+        ({"largest": np.ones(2)}, "bounds of inputs do not fit"),
+        ({"substeps": 0}, "no number of substeps"),
+    ],
+)
+def test_tasks_that_mean_nothing_are_refused(task: Any, changed: dict[str, Any], says: str) -> None:
+    for many in (True, False):
+        with pytest.raises(sf.SymofrosError, match=says):
+            odd = replace(task, **changed)
+            envs, shape = sf.interop.gymnasium, (3, 1) if many else (1,)
+            (envs.MechanismVectorEnv(odd, 3) if many else envs.MechanismEnv(odd)).step(np.zeros(shape))
+
+
+@pytest.mark.parametrize("sizes", [{"num_envs": 0}, {"num_envs": 2, "max_steps": 0}, {"num_envs": 1.5}])
+def test_sizes_that_mean_nothing_are_refused(task: Any, sizes: dict[str, Any]) -> None:
+    with pytest.raises(sf.SymofrosError, match="a whole number from 1 on"):
+        sf.interop.gymnasium.MechanismVectorEnv(task, **sizes)
+
+
+def test_resets_of_others_leave_the_states_of_forces() -> None:
+    """Bristles that are bent stay so, also where the others' parameters are stated for the first time."""
+    bristles = sf.LuGre(6.0, stiffness=4e3, damping=6.0, viscous=0.4)
+    joint = sf.Joint("q", "revolute", axis=(0, 0, 1), elements=(bristles,), actuated=True)
+    wheel = sf.RigidBody("wheel", joint, sf.Inertia(2.0, (0, 0, 0), (0.02, 0.02, "J")))
+    model = sf.compile(sf.System("wheel", (wheel,), (sf.Parameter("J", 0.02),)))
+
+    def rest(rng: np.random.Generator, n: int) -> tuple[np.ndarray, np.ndarray]:
+        return np.zeros((n, 1)), np.zeros((n, 1))
+
+    def never(q: np.ndarray, v: np.ndarray) -> Any:
+        return np.zeros(len(q), dtype=bool)
+
+    turned = sf.interop.gymnasium.Task(model, np.array([9.0]), rest, lambda q, v, u: q[:, 0], never, 1e-3, 1)
+    ends = []
+    for options in (None, {}, {"par": np.full((2, 1), 0.02)}):
+        envs = sf.interop.gymnasium.MechanismVectorEnv(turned, 2)
+        envs.reset(seed=0)
+        for k in range(40):
+            if k == 20 and options is not None:
+                envs.reset(options={"reset_mask": np.array([True, False]), **options})
+            state, *_ = envs.step(np.full((2, 1), 4.0))
+        ends.append(state[1])
+    np.testing.assert_array_equal(ends[1], ends[0])
+    np.testing.assert_allclose(ends[2], ends[0], rtol=1e-12)  # Other C where each has its own parameters.
+
+
+def test_tasks_can_be_sent_to_other_processes(task: Any) -> None:
+    again = sf.interop.gymnasium.MechanismEnv(pickle.loads(pickle.dumps(task)))
+    env = sf.interop.gymnasium.MechanismEnv(task)
+    np.testing.assert_array_equal(env.reset(seed=3)[0], again.reset(seed=3)[0])
+    np.testing.assert_array_equal(env.step([1.0])[0], again.step([1.0])[0])
 
 
 def test_observations_hold_coordinates_then_speeds_where_there_are_more_of_the_first() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator
 from typing import Any
 
@@ -117,6 +118,12 @@ def test_motions_along_the_manifold_are_the_models(turning: tuple[sf.Model, Any]
         return wrapped.integrate(q, dq), wrapped.coordinate_rates(q, dq), wrapped.difference(q, ends)
 
     check_grads(every, (q[0], dq[0], ends[0]), order=1, modes=["fwd", "rev"])
+
+
+def test_dynamics_can_be_sent_to_other_processes(dynamics: Any, model: sf.Model) -> None:
+    q, v, u, _ = arrays(model, 2, model.nu)
+    again = pickle.loads(pickle.dumps(dynamics))
+    np.testing.assert_array_equal(again.forward_dynamics(q, v, u), dynamics.forward_dynamics(q, v, u))
 
 
 def test_second_derivatives_are_refused(dynamics: Any, model: sf.Model) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,29 @@ def test_functional_transforms_give_the_models_derivatives(dynamics: Any, model:
         slopes = torch.func.vmap(transform(dynamics.forward_dynamics, argnums=(0, 1, 2)))(q, v, u)
         for slope, right in zip(slopes, (by_q, by_v, by_u), strict=True):
             np.testing.assert_allclose(slope.numpy(), right, rtol=1e-12, atol=1e-12)
+
+
+def test_dynamics_can_be_sent_to_other_processes(dynamics: Any, model: sf.Model) -> None:
+    q, v, u, _ = (x.detach() for x in tensors(model, 2, model.nu))
+    again = pickle.loads(pickle.dumps(dynamics))
+    assert torch.equal(again.forward_dynamics(q, v, u), dynamics.forward_dynamics(q, v, u))
+
+
+def test_compiled_programs_call_the_model_as_it_stands(dynamics: Any, model: sf.Model) -> None:
+    def loss(q: Any, v: Any, u: Any) -> Any:
+        return dynamics.forward_dynamics(2.0 * q, v, u).sin().sum()
+
+    given = tensors(model, 3, model.nu)[:3]
+    values = [function(*given) for function in (loss, torch.compile(loss, backend="eager"))]
+    (value, slopes), (compiled, others) = ((x, torch.autograd.grad(x, given)) for x in values)
+    assert torch.equal(compiled, value)
+    assert all(torch.equal(a, b) for a, b in zip(slopes, others, strict=True))
+
+
+def test_tensors_that_are_negatives_by_a_bit_are_read(dynamics: Any, model: sf.Model) -> None:
+    q, v, u, _ = (x.detach() for x in tensors(model, 2, model.nu))
+    negative = torch.complex(v, -v).conj().imag  # v, stored as -v.
+    assert torch.equal(dynamics.forward_dynamics(q, negative, u), dynamics.forward_dynamics(q, v, u))
 
 
 def test_second_derivatives_are_refused(dynamics: Any, model: sf.Model) -> None:

@@ -59,6 +59,9 @@ class ActuatorReader:
         self._names = self._input_names()
         for i in range(model.nu):
             self._read(i)
+        if np.any(model.body_gravcomp):  # Together with the actuators' efforts MuJoCo bounds it, here it is a load.
+            for j in np.flatnonzero(model.jnt_actgravcomp & model.jnt_actfrclimited).tolist():
+                self.remarks.add("actuatorfrcrange does not bound the compensation of gravity", "joint", joints[j])
         self.efforts = {
             **{j: JointEfforts(actuated=True) for j in self._driven},
             **{j: JointEfforts(self._bounded(j, e), j in self._driven) for j, e in self._efforts.items()},

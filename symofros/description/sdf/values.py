@@ -10,6 +10,7 @@ import numpy as np
 from symofros.base.rotations import normalized, quaternion_matrix
 from symofros.description.imported.geometry import roll_pitch_yaw, stated_rotation
 from symofros.description.pose import IDENTITY_POSE, Pose
+from symofros.description.remarks import remark_unread
 from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers
 from symofros.description.xml_nodes import Element
@@ -35,6 +36,18 @@ _READ_IN: dict[str, frozenset[str]] = {
     "dynamics": frozenset({"damping", "friction", "spring_reference", "spring_stiffness"}),
     "mimic": frozenset({"multiplier", "offset", "reference"}),
 }
+# Attributes of links, joints and what is read inside them.
+_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "link": ("name",),
+    "joint": ("name", "type"),
+    "pose": ("relative_to", "frame", "degrees", "rotation_format"),
+    "inertial": ("auto",),
+    "xyz": ("expressed_in",),
+    "mimic": ("joint", "axis"),
+}
+_SEVERAL = frozenset({"visual", "collision", "sensor", "light", "battery", "audio_source", "projector"}) | frozenset(
+    {"particle_emitter"}
+)
 _MOMENTS = (("ixx", 1.0), ("iyy", 1.0), ("izz", 1.0), ("ixy", 0.0), ("ixz", 0.0), ("iyz", 0.0))
 
 
@@ -97,12 +110,15 @@ class SdfValues(Values):
         return None if abs(number) >= UNBOUNDED else number
 
     def remark_unread(self, element: Element, kind: str, name: str) -> None:
-        """Tell of the elements inside a link or joint that nothing reads."""
+        """Tell of elements and attributes of a link or joint that nothing reads."""
+        remark_unread(self.remarks, element, _ATTRIBUTES, _SEVERAL, (kind, name))
         for child in element.children:
             if child.tag not in _READ_IN[element.tag]:
                 self.remarks.add(f"<{child.tag:.60}> of <{element.tag}> ignored", kind, name)
             elif child.tag in _READ_IN:
                 self.remark_unread(child, kind, name)
+            elif child.tag in _ATTRIBUTES:
+                remark_unread(self.remarks, child, _ATTRIBUTES, _SEVERAL, (kind, name))
 
     def pose_frame(self, pose: Element | None, owner: str) -> str:
         """Name of the frame that a pose is stated in; "" for its default. Before 1.7 the attribute was `frame`."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from symofros.description.remarks import Remarks
+from symofros.description.remarks import Remarks, remark_unread
 from symofros.description.xml_nodes import Element
 
 _USED = frozenset({"link", "joint", "material"})
@@ -17,6 +17,20 @@ _READ_IN = {
     "link": frozenset({"inertial", "visual", "collision"}),
     "joint": frozenset({"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration"}),
 }
+# Attributes of links, joints and what is read inside them; <dynamics> has a remark of its own.
+_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "link": ("name", "type"),
+    "joint": ("name", "type"),
+    "origin": ("xyz", "rpy", "quat_xyzw"),
+    "mass": ("value",),
+    "inertia": ("ixx", "iyy", "izz", "ixy", "ixz", "iyz"),
+    "parent": ("link",),
+    "child": ("link",),
+    "axis": ("xyz",),
+    "limit": ("lower", "upper", "velocity", "effort"),
+    "mimic": ("joint", "multiplier", "offset"),
+}
+_SEVERAL = frozenset({"visual", "collision"})
 # Entries of <gazebo> that change how a link or joint moves; others are looks, contacts and sensors.
 _MECHANICS = frozenset(
     {"turnGravityOff", "gravity", "springStiffness", "springReference", "implicitSpringDamper", "stopCfm", "stopErp"}
@@ -28,6 +42,8 @@ OPEN_LOOP = "the loop that it closes stays open (sf.Closure closes one)"
 def remark_extras(robot: Element, remarks: Remarks) -> None:
     """Remark on the elements that mean nothing here, in the robot, its links and its joints."""
     for element in robot.children:
+        if element.tag in _READ_IN:
+            _remark_inside(element, remarks, (element.tag, _name(element)))
         for child in element.children if element.tag in _READ_IN else ():
             if child.tag not in _READ_IN[element.tag]:
                 remarks.add(f"<{child.tag:.60}> of <{element.tag}> ignored", element.tag, _name(element))
@@ -41,6 +57,14 @@ def remark_extras(robot: Element, remarks: Remarks) -> None:
             remarks.add(f"<{element.tag:.60}> ignored, {OPEN_LOOP}", "element", _name(element))
         else:
             remarks.add(f"<{element.tag:.60}> ignored", "element", _name(element))
+
+
+def _remark_inside(element: Element, remarks: Remarks, thing: tuple[str, str]) -> None:
+    """Remark on attributes and repeated elements in a link or joint that nothing reads."""
+    remark_unread(remarks, element, _ATTRIBUTES, _SEVERAL, thing)
+    for child in element.children:
+        if child.tag in _ATTRIBUTES or child.tag == "inertial":
+            _remark_inside(child, remarks, thing)
 
 
 def _remark_gazebo(element: Element, remarks: Remarks) -> None:

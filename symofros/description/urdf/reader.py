@@ -105,6 +105,7 @@ class _Importer:
 
     def reading(self) -> Reading:
         name = self.values.attribute(self.robot, "name", "the file") or ""
+        self.values.quaternions = self.robot.attributes.get("version", "").strip() == "1.2"
         count = sum(1 for _ in self.robot.all("link"))
         if count > MAX_LINKS:
             self.values.fault(self.robot, "too many links", f"{count} links", f"at most {MAX_LINKS}", "split the robot")

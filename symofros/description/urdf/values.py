@@ -6,6 +6,10 @@ import math
 import re
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from symofros.base.rotations import normalized, quaternion_matrix
+from symofros.description.imported.geometry import stated_rotation
 from symofros.description.joints.joint import Limits
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
@@ -35,12 +39,14 @@ class Values:
             to 0 or +-1 become exact.
         problems: Every fault met.
         remarks: Remarks on what was ignored or changed.
+        quaternions: Whether <origin> may state a quaternion: in URDF 1.2.
     """
 
     file: str
     snap_tol: float
     problems: list[Problem] = field(default_factory=list)
     remarks: Remarks = field(default_factory=Remarks)
+    quaternions: bool = False
 
     def where(self, element: Element) -> str:
         """The element's place."""
@@ -109,15 +115,33 @@ class Values:
         if element is None:
             return ZERO, IDENTITY
         position = self.triple(element, "xyz", owner, ZERO)
-        angles = self.triple(element, "rpy", owner, ZERO)
         x, y, z = self.snapped(position, (0.0,), owner)
+        if "quat_xyzw" in element.attributes:
+            return (x, y, z), self.quaternion(element, owner)
+        angles = self.triple(element, "rpy", owner, ZERO)
         roll, pitch, yaw = (self.snapped((angle,), (round(angle / _QUARTER) * _QUARTER,), owner)[0] for angle in angles)
         return (x, y, z), Rotation.rpy(roll, pitch, yaw)
+
+    def quaternion(self, element: Element, owner: str) -> Rotation:
+        """The rotation of an <origin> by its quaternion, which URDF has since version 1.2, in place of angles."""
+        numbers = self.numbers(element, "quat_xyzw", owner, 4) or (0.0, 0.0, 0.0, 1.0)
+        if not self.quaternions or "rpy" in element.attributes or not any(numbers):
+            found = ", ".join(element.attributes) + ("" if self.quaternions else "; URDF before version 1.2")
+            rule = "angles, or in URDF 1.2 a quaternion that is not zero, and not both"
+            remedy = 'write rpy="…" alone, or quat_xyzw="…" alone and <robot version="1.2">'
+            self.fault(element, f"{owner}: <origin> can't have this quat_xyzw", found, rule, remedy)
+            return IDENTITY
+        quaternion = np.array(numbers)
+        if abs(np.linalg.norm(quaternion) - 1.0) > _UNIT_TOLERANCE:
+            self.remarks.add("quaternions that are no unit quaternions normalized", "element", _bare(owner))
+        return stated_rotation(quaternion_matrix(normalized(quaternion)))
 
     def axis(self, owner_element: Element, owner: str) -> Triple:
         """Direction of <axis>, snapped; x where there is none, as URDF has it."""
         element = owner_element.first("axis")
-        stated = (1.0, 0.0, 0.0) if element is None else self.triple(element, "xyz", owner, (1.0, 0.0, 0.0))
+        stated: tuple[float, ...] = (1.0, 0.0, 0.0)
+        if element is not None:
+            stated = self.numbers(element, "xyz", owner, 3) or stated
         x, y, z = self.snapped(stated, (0.0, 1.0, -1.0), owner)
         length = math.hypot(x, y, z)
         if length == 0.0:
