@@ -22,7 +22,7 @@ MEASURES: dict[Surface, tuple[str, ...]] = {
 HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
 _NUMBERS = (
-    *("stiffness", "radius", "surface_radius", "length", "dissipation"),
+    *("stiffness", "radius", "rim", "surface_radius", "length", "dissipation"),
     *("friction", "minimum_velocity", "bristle_stiffness", "bristle_damping", "restitution"),
 )
 # What rigid contacts have no use for, and what stands there unless it is stated.
@@ -49,8 +49,8 @@ class Contact:
 
     *Rigid*, with `restitution` in place of `stiffness`: balls on a surface strike, slide, stick and part by Coulomb's
     law, exactly, as modes of a run ("BALL.mode": 0 open, 1 slides, 2 sticks; docs/theory/constraints.md,
-    section 15). Runs, batches, steppers, C packages, MEX and FMUs choose the modes; all other functions see an open
-    contact unless a mode is set.
+    section 15). Runs, batches, steppers, C packages, MEX, FMUs and WebAssembly choose the modes; all other functions
+    see an open contact unless a mode is set.
 
     Attributes:
         name: Unique name, among connections too.
@@ -75,6 +75,8 @@ class Contact:
         bristle_damping: Damping of that displacement [N s/m].
         restitution: Of a rigid contact, Stronge's energetic coefficient, 0 to 1: the normal impulse gives back its
             square of the work that it took.
+        rim: Radius of a circle about the z axis of the first frame through each point, whose next point to a plane
+            takes the point's place: rims of a disc, a wheel or an upright cylinder that tumbles; of rigid contacts [m].
     """
 
     name: str
@@ -95,6 +97,7 @@ class Contact:
     bristle_stiffness: Value | None = None
     bristle_damping: Value | None = None
     restitution: Value | None = None
+    rim: Value | None = None
 
     def __post_init__(self) -> None:
         """Convert the numbers, and refuse measures that the surface lacks or does not have."""
@@ -123,6 +126,10 @@ class Contact:
         if self.inside and self.surface not in HOLLOW:
             remedy = "leave inside out, or state a contact for each wall"
             return Problem(f"{what}: inside a {self.surface}", "inside", "balls move within spheres, cylinders", remedy)
+        if self.rim is not None and (self.surface != "plane" or not self.rigid):
+            found = f"a {self.surface}, {'rigid' if self.rigid else 'compliant'}"
+            remedy = "a plane and restitution; or points along the rim"
+            return Problem(f"{what}: rim", found, "rims meet planes, as rigid contacts", remedy)
         if self.exponent not in EXPONENTS:
             rule = f"one of {', '.join(f'{x:g}' for x in EXPONENTS)}"
             return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")

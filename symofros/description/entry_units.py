@@ -47,6 +47,7 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "Connection": {"stiffness": ("N/m",), "length": ("m",), "damping": ("N s/m",)},
     "Contact": {
         "radius": ("m",),
+        "rim": ("m",),
         "points": ("m",),
         "surface_radius": ("m",),
         "length": ("m",),

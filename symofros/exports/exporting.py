@@ -259,7 +259,7 @@ def _material(
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
     if not stepping.method.family.batched:
-        described.record.refuse_rigid_contacts(f"export: '{target}' by '{stepping.method.name}'")
+        described.record.refuse_rigid_contacts(f"export: '{target}' by '{stepping.method.name}'", by_method=True)
     if described.record.sticking or described.record.rigid_contacts:
         needs = (*needs, "constraint")
     stepped = ("forward_dynamics", "project") if constrained else ("forward_dynamics",)

@@ -111,6 +111,9 @@ class StickingRecord(NamedTuple):
     watch: str
 
 
+# What chooses modes.
+_CHOOSE = "`simulate`, batches, steppers, diagrams, C packages, MEX, FMUs and WebAssembly choose them"
+
 # Modes of a ball of a rigid contact.
 OPEN, SLIDES, STICKS = 0.0, 1.0, 2.0
 
@@ -148,9 +151,8 @@ class RigidContactRecord(NamedTuple):
     @property
     def state(self) -> tuple[str, ...]:
         """Formulas of its state: distance, velocity against the surface (3), friction, restitution, normal's tilt."""
-        quantities = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz"))
-        tilt = "1" if self.pole < 0 else f"`contact.{self.name}.nz`"
-        return (*quantities, self.friction, self.restitution, tilt)
+        gap, vx, vy, vz, nz = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz", "nz"))
+        return (gap, vx, vy, vz, self.friction, self.restitution, nz)
 
 
 class JointLimit(NamedTuple):
@@ -311,23 +313,24 @@ class ModelRecord:
         """
         if self.sticking:
             found = f"friction of '{self.sticking[0].name}' sticks"
-            choose = "`simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them"
             remedy = "sticks=False: friction that is smooth, and creeps"
-            raise _no_modes(f"{what}: friction that sticks", found, choose, remedy)
+            raise _no_modes(f"{what}: friction that sticks", found, _CHOOSE, remedy)
 
-    def refuse_rigid_contacts(self, what: str) -> None:
+    def refuse_rigid_contacts(self, what: str, *, by_method: bool = False) -> None:
         """Refuse rigid contacts where nothing chooses their modes.
+
+        Args:
+            what: What does not.
+            by_method: Whether it does by an explicit method.
 
         Raises:
             SymofrosError: There are some.
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            choose = (
-                "`simulate`, batches, steppers, diagrams, C packages, MEX and FMUs choose them, by explicit methods"
-            )
-            remedy = "a compliant contact: stiffness in place of restitution"
-            raise _no_modes(f"{what}: rigid contact", found, choose, remedy)
+            method = "an explicit method, such as dopri5 or rk4; or " if by_method else ""
+            remedy = f"{method}a compliant contact: stiffness in place of restitution"
+            raise _no_modes(f"{what}: rigid contact", found, f"{_CHOOSE}, by explicit methods", remedy)
 
     def refuse_states(self, what: str) -> None:
         """Refuse states of forces where nothing takes them.

@@ -331,7 +331,7 @@ def test_a_stepper_holds_as_a_run_does(tmp_path: Any) -> None:
     held = sf.compile(system)
     refused = (
         lambda: sf.simulate(held, t_end=1.0, method="cvode", stabilisation="baumgarte"),
-        lambda: sf.export(system, "wasm", tmp_path),
+        lambda: sf.export(system, "sfunction", tmp_path),
     )
     for attempt in refused:
         with pytest.raises(sf.SymofrosError, match="friction of 'x' sticks(?s:.)*sticks=False"):

@@ -15,7 +15,7 @@ from symofros.simulation.actions import StatedActions, places_of, plan_actions
 from symofros.simulation.events import Event, events_of, opens_of
 
 # Targets whose steps look for events.
-_TARGETS = ("c", "fmu2", "fmu3", "mex")
+_TARGETS = ("c", "fmu2", "fmu3", "mex", "wasm")
 
 
 @dataclass(frozen=True)

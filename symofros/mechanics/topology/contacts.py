@@ -14,6 +14,7 @@ from symofros.mechanics.topology.numbers import Numbers
 _SIGNS: dict[str, tuple[Sign, str, str]] = {
     "stiffness": ("positive", "a surface pushes back", "give a stiffness above zero"),
     "radius": ("not negative", "a ball has a radius, or is a point", "give its radius, or zero"),
+    "rim": ("positive", "a rim is a circle", "give a radius above zero, or leave it out"),
     "surface_radius": ("positive", "a curved surface has a radius", "give a radius above zero"),
     "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
     "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),

@@ -28,10 +28,13 @@ from symofros.mechanics.topology.sticking import sticking_coordinates
 # above the rounding of one that has just begun to slide.
 _REST = 1e-14
 # Quantities of a ball in formulas, "contact.foot.gap": its distance from the surface, the velocity of its material
-# point against the surface's along the axes of contact, and the z component of the normal in the axes of the surface.
+# point against the surface's along the axes of contact, and the z component of the normal in the axes of the surface;
+# of rims the sine of the angle between their plane and that of contact.
 QUANTITIES = ("gap", "vx", "vy", "vz", "nz")
 # Least cosine between normal and pole, less than which the pole is taken anew: 120 degrees.
 _POLE_LEAST = -0.5
+# Sine of the angle between a rim and its plane at which a mode ends. Runs end there: SYM_FLAT of native code is larger.
+_FLAT = 0.009
 
 
 class RigidBall(NamedTuple):
@@ -106,7 +109,8 @@ class RigidBall(NamedTuple):
     def watched(self) -> tuple[Value, Value]:
         """What falls to zero where a mode ends, (40): distance or normal force; slip, or what friction has left.
 
-        But on planes the latter falls to zero, too, where the normal has come too far from its pole.
+        But on planes the latter falls to zero, too, where the normal has come too far from its pole; of rims where they
+        lie flat.
         """
         m, one, two = _symbol(self.mode), Term(1.0), Term(2.0)
         is_open, slides, sticks = (m - one) * (m - two) / two, m * (two - m), m * (m - one) / two
@@ -117,8 +121,10 @@ class RigidBall(NamedTuple):
         left = limit * limit - fx * fx - fy * fy
         gap = _symbol(f"contact.{self.name}.gap") + _symbol(self.apart)
         across = is_open + slides * ahead + sticks * left
-        if self.contact.surface != "plane":
-            near = _symbol(self.pole) * _symbol(f"contact.{self.name}.nz") - Term(_POLE_LEAST)
+        tilt = _symbol(f"contact.{self.name}.nz")
+        if self.contact.surface != "plane" or self.contact.rim is not None:
+            rim = self.contact.rim is not None
+            near = tilt - Term(_FLAT) if rim else _symbol(self.pole) * tilt - Term(_POLE_LEAST)
             across = across * (is_open + (one - is_open) * near)
         return (is_open * gap + (one - is_open) * fz).value, across.value
 

@@ -9,6 +9,8 @@ enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a bal
 #define SYM_GRAZES 1e-13
 /* Cosine between a normal and its pole from which on a pole stays as it is. */
 #define SYM_POLE_STAYS -0.25
+/* Sine of the angle with its plane below which a rim lies on it, and touches everywhere. */
+#define SYM_FLAT 0.01
 /* Twice the acceleration towards a plane below which a ball is taken to rise above it from where rounding has put it [m/s^2]. */
 #define SYM_STEEP 1e3
 
@@ -121,7 +123,7 @@ static void sym_choose_poles(const sym_system *s, double *par) {
 }
 
 /* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
- * they are. Returns 0 or a status: one has penetrated where a motion begins, or too many touch. */
+ * they are. Returns 0 or a status: one has penetrated where a motion begins, too many touch, or a rim lies flat. */
 static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int32_t begins, sym_touching *at) {
     const sym_system *s = r->system;
     int32_t i, k, n = 0;
@@ -134,6 +136,7 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         if (begins && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
         if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
+        if (s->contacts[i].pole < 0 && state[SYM_TILT] < SYM_FLAT) return SYM_FLAT_RIM;
         at->of[n] = i, at->problem.mu[n] = state[4];
         at->apart[n] = met == NULL ? 0.0 : par[s->contacts[i].apart]; /* as it has become, where others are met */
         if (met != NULL && met[i] > 0.0) at->apart[n] = fmin(fmax(SYM_GRAZES, 2.0 * at->apart[n]), SYM_TOUCHING);

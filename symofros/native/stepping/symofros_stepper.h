@@ -33,7 +33,8 @@ typedef enum sym_status {
     SYM_HELD_TWICE = -15,        /* friction holds what it or constraints hold already: what it takes is not determined */
     SYM_WRONG_CONTACT = -16,     /* a contact that rests is penetrated, or holds by a force that draws */
     SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction were found that agree with their motion */
-    SYM_CONTACTS_AMBIGUOUS = -18 /* several motions agree with Coulomb's law at rigid contacts */
+    SYM_CONTACTS_AMBIGUOUS = -18, /* several motions agree with Coulomb's law at rigid contacts */
+    SYM_FLAT_RIM = -19           /* a rim lies on its plane: no single point of it touches */
 } sym_status;
 
 typedef enum sym_method {

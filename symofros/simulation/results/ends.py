@@ -113,6 +113,11 @@ ENDS: dict[int, End] = {
         " determined",
         "less friction, or a compliant contact there: stiffness in place of restitution",
     ),
+    Status.FLAT_RIM: End(
+        "beyond theory",
+        "a rim of a rigid contact lies on its plane, to 0.6 degrees, where it touches all along and at no point",
+        "three points or more along the rim in its place, `points` without `rim`, on which a disc can lie",
+    ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."
     ),

@@ -120,7 +120,7 @@ class BoundRun:
         if not balls:
             return
         if not self.method.family.batched:
-            self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'")
+            self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'", by_method=True)
         self._bind("contact_state", self.model.contact_state())
         system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))
         system.contact_memory = memory.zeros(int(self.native.sym_contact_memory_size(system)))

@@ -97,7 +97,7 @@ def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -
         *met, status, state = run(program, "0.01", repr(t_end), cwd=tmp_path).splitlines()
         assert status == f"status {expected}" and met[0].startswith("strike 0.4")
         assert abs(float(state.split()[1])) < 0.2
-    for target in ("sfunction", "wasm", "cuda"):
+    for target in ("sfunction", "cuda"):
         with pytest.raises(sf.ExportError, match=f"'{target}' looks for no events"):
             sf.export(BALL, target, tmp_path / target, events=STRIKE)
     with pytest.raises(sf.ExportError, match="'rest' ends the motion"):

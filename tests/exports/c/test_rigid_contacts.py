@@ -92,4 +92,4 @@ def test_what_packages_refuse(tmp_path: Path) -> None:
     with pytest.raises(sf.SymofrosError, match="is rigid"):
         sf.export(ball_system(), "c", tmp_path / "c", method="rodas4")
     with pytest.raises(sf.SymofrosError, match="is rigid"):
-        sf.export(ball_system(), "wasm", tmp_path / "wasm")
+        sf.export(ball_system(), "sfunction", tmp_path / "s")

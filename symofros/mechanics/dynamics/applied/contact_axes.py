@@ -61,6 +61,40 @@ def surface_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS_W: Vec3, 
     return ContactAxes(-distance if inside else distance, R_WC, w_WS_W.cross(n) + turned, w_WC_W)
 
 
+class Reach(NamedTuple):
+    """From the centre of a rim to its point next to a plane, in world axes.
+
+    Attributes:
+        reach: The vector [m].
+        rate: Its rate [m/s].
+        sine: Of the angle between the planes of the rim and of contact.
+    """
+
+    reach: Vec3
+    rate: Vec3
+    sine: Edge
+
+
+def rim_reach(g: Graph, radius: Edge, a: Vec3, a_rate: Vec3, n: Vec3, n_rate: Vec3) -> Reach:
+    """Where a rim with the axis a is next to a plane with the normal n: (38g).
+
+    Args:
+        g: Graph of the result.
+        radius: Radius of the rim [m].
+        a: Unit vector along its axis.
+        a_rate: Its rate [1/s].
+        n: Normal of the plane.
+        n_rate: Its rate [1/s].
+    """
+    cosine = n.dot(a)
+    s = n - a.scaled(cosine)
+    s_rate = n_rate - a.scaled(g.add(n_rate.dot(a), n.dot(a_rate))) - a_rate.scaled(cosine)
+    sine = norm(g, s)
+    e = s.scaled(g.div(ONE, sine))
+    e_rate = (s_rate - e.scaled(s_rate.dot(e))).scaled(g.div(ONE, sine))
+    return Reach(-e.scaled(radius), -e_rate.scaled(radius), sine)
+
+
 def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3]:
     """From the nearest point of a solid's core to x, in the axes of its frame, and how it changes with x: (38c).
 

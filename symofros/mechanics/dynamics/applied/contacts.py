@@ -11,7 +11,7 @@ from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import TINY, core_normal, from_core, norm, tangents
+from symofros.mechanics.dynamics.applied.contact_axes import TINY, core_normal, from_core, norm, rim_reach, tangents
 from symofros.mechanics.dynamics.applied.elements import smoothed_sign
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -37,7 +37,7 @@ class TouchingBall:
         share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
         slip: Velocity of the ball's material point there against the surface's, in the axes of the surface, of rigid
             contacts in the axes of contact [m/s].
-        tilt: Component of the normal along z of the surface's frame.
+        tilt: Component of the normal along z of the surface's frame; of a rim the sine of its angle with the plane.
         rates: Rates of the deflections of its bristles, in the axes of the surface; none without bristles [m/s].
     """
 
@@ -77,7 +77,11 @@ def _touching(
     ends = [frame_of(kinematics.tree, *anchor) for anchor in (contact.first, contact.second)]
     first, second = (frames.pose(end) for end in ends)
     radius = lowering.value(contact.radius)
-    p_WC = first.p_WF + first.R_WF.times(point)
+    p_WC, tilt = first.p_WF + first.R_WF.times(point), None
+    if contact.rim is not None:
+        n, still = second.R_WF.column(2), Vec3(g)
+        rim = rim_reach(g, lowering.value(contact.rim), first.R_WF.column(2), still, n, still)
+        p_WC, tilt = p_WC + rim.reach, rim.sine
     distance, gradient = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
     normal = second.R_WF.times(gradient)
     p_WP = p_WC - normal.scaled(distance)
@@ -90,7 +94,8 @@ def _touching(
         axes = second.R_WF if contact.surface == "plane" else tangents(lowering, ball, second.R_WF, normal)
         pushes = Vec3(g, *(lowering.symbol(name) for name in ball.pushes))
         along = axes.T.times(slip)
-        return TouchingBall(gap, ZERO, pushes.z, axes.times(pushes), p_WP, ZERO, ZERO, along, gradient.z, ())
+        tilt = gradient.z if tilt is None else tilt
+        return TouchingBall(gap, ZERO, pushes.z, axes.times(pushes), p_WP, ZERO, ZERO, along, tilt, ())
     slip_S = second.R_WF.T.times(slip)
     depth = g.call("max", -gap, ZERO)
     approach = -slip.dot(normal)

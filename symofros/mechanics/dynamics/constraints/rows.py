@@ -29,7 +29,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import surface_axes
+from symofros.mechanics.dynamics.applied.contact_axes import rim_reach, surface_axes
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -255,17 +255,21 @@ class Constraints:
             yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
 
     def _touching(self, touching: Touching) -> Iterator[Row]:
-        """A ball on a surface: its distance and the velocity of its point of contact vanish (eqs. 38a to 38f)."""
+        """A ball or rim on a surface: its distance and the speed of its point of contact vanish (eqs. 38a to 38g)."""
         g, contact, lowering = self.g, touching.contact, self.kinematics.lowering
         S, B = self._state(touching.first), self._state(touching.second)
-        arm, radius = B.R.times(lowering.vector(contact.points[touching.ball])), lowering.value(contact.radius)
+        radius, arm = lowering.value(contact.radius), B.R.times(lowering.vector(contact.points[touching.ball]))
+        arm_rate = B.w.cross(arm)
+        if contact.rim is not None:
+            a, n = B.R.column(2), S.R.column(2)
+            rim = rim_reach(g, lowering.value(contact.rim), a, B.w.cross(a), n, S.w.cross(n))
+            arm, arm_rate = arm + rim.reach, arm_rate + rim.rate
         ball = RigidBall(contact, touching.ball, contact.ball_names[touching.ball])
-        d, d_rate = B.p + arm - S.p, B.v + B.w.cross(arm) - S.v
-        axes = surface_axes(lowering, ball, S.R, S.w, d, d_rate)
+        axes = surface_axes(lowering, ball, S.R, S.w, B.p + arm - S.p, B.v + arm_rate - S.v)
         n = axes.R_WC.column(2)
         rho = arm - n.scaled(radius)  # From the origins of the two frames to the point of contact.
         sigma = B.p + rho - S.p
-        rho_rate = B.w.cross(arm) - axes.normal_rate.scaled(radius)
+        rho_rate = arm_rate - axes.normal_rate.scaled(radius)
         sigma_rate = B.v + rho_rate - S.v
         slip = B.v + B.w.cross(rho) - S.v - S.w.cross(sigma)
         drift = B.a + B.alpha.cross(rho) + B.w.cross(rho_rate) - S.a - S.alpha.cross(sigma) - S.w.cross(sigma_rate)

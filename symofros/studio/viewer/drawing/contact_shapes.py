@@ -1,4 +1,4 @@
-"""Shapes of compliant contacts: their balls, and the solids that push these back."""
+"""Shapes of contacts: their balls, and the solids that push these back."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ _POINT, _PLATE, _THIN, _LONG = 0.008, 0.6, 0.002, 0.5
 
 
 def balls(contact: Contact, numbers: Numbers, size: float) -> Mesh:
-    """The balls of a contact, in its first frame.
+    """The balls of a contact, in its first frame; of rims thin discs.
 
     Args:
         contact: The contact.
         numbers: The parameters' values.
         size: Extent of the mechanism [m].
     """
-    ball = sphere(max(numbers.value(contact.radius), _POINT * size))
+    radius = max(numbers.value(contact.radius), _POINT * size)
+    disc = _on_axis(0.5 * radius)
+    ball = sphere(radius) if contact.rim is None else cylinder(-disc, disc, numbers.value(contact.rim))
     return merged([ball.transformed(numbers.values(point), np.eye(3)) for point in contact.points])
 
 

@@ -1,0 +1,153 @@
+"""Rims of discs and cylinders on planes: closed forms, own equations (docs/theory/constraints.md, section 15)."""
+
+from __future__ import annotations
+
+from functools import cache
+from math import cos, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import symofros as sf
+from tests.simulation.rigid_scenes import FINE, GROUND, G
+
+RADIUS, MASS = 0.1, 0.5
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@cache
+def disc(friction: float, e: float = 0.0, half: float = 0.0, incline: float = 0.0) -> sf.Model:
+    """A homogeneous disc on its rim or, with half a length, a cylinder on its two rims; x is down the incline."""
+    across = MASS * (RADIUS**2 / 4 + half**2 / 3)
+    body = sf.RigidBody(
+        "disc", sf.Joint("free", "free"), sf.Inertia(MASS, moments=(across, across, MASS * RADIUS**2 / 2))
+    )
+    points = [(0, 0, z) for z in ((-half, half) if half else (0.0,))]
+    contact = sf.Contact("rim", ("disc", None), GROUND, restitution=e, friction=friction, points=points, rim=RADIUS)
+    gravity = (G * sin(incline), 0.0, -G * cos(incline))
+    return sf.compile(sf.System("disc", (body,), gravity=gravity, connections=(contact,)))
+
+
+def tilted(model: sf.Model, angle: float, height: float = 0.0) -> Any:
+    """Its axis turned from the vertical, about x; its rim at a height."""
+    q = model.neutral()
+    q[2], q[3], q[6] = height + RADIUS * sin(angle), sin(angle / 2), cos(angle / 2)
+    return q
+
+
+def in_body(angle: float, w: Any) -> list[float]:
+    """Speeds of a disc whose centre rests, by its angular velocity in the axes of the world."""
+    c, s = cos(angle), sin(angle)
+    return [0.0, 0.0, 0.0, *(np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) @ w)]
+
+
+def axis(q: Any) -> Any:
+    """Axes of the disc in the world, (n, 3)."""
+    x, y, z, w = np.asarray(q)[..., 3:7].T
+    return np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+
+
+def to_contact(a: Any) -> Any:
+    """From the centre to the lowest point of the rim."""
+    s = UP - a[2] * a
+    return -RADIUS * s / np.linalg.norm(s)
+
+
+def test_a_cylinder_rolls_down_an_incline() -> None:
+    """On both rims, by 2/3 g sin of the incline, while friction carries a third of what draws."""
+    model = disc(0.3, half=0.03, incline=0.4)
+    run = sf.simulate(model, tilted(model, pi / 2), t_end=0.5, **FINE)
+    assert run.events == () and run.q[-1, 0] == pytest.approx(G * sin(0.4) * 0.5**2 / 3, abs=1e-11)
+    force = run.contact_forces().force
+    assert force[3] == pytest.approx(MASS * G / 2 * np.array([[-sin(0.4) / 3, 0, cos(0.4)]] * 2), abs=1e-9)
+    slides = sf.simulate(disc(0.1, half=0.03, incline=0.4), tilted(model, pi / 2), t_end=0.5, **FINE)
+    assert slides.q[-1, 0] == pytest.approx(G * (sin(0.4) - 0.1 * cos(0.4)) * 0.5**2 / 2, abs=1e-11)
+
+
+@pytest.mark.parametrize("angle", [0.02, 0.2, 1.0])
+def test_eulers_disc_wobbles_steadily(angle: float) -> None:
+    """Its centre rests, and its point of contact goes round at sqrt(4 g/(R sin)), the faster the flatter it is."""
+    model, rate = disc(50.0), sqrt(4 * G / (RADIUS * sin(angle)))
+    # About the line from the centre to the point of contact.
+    w = rate * (UP - cos(angle) * np.array([0, -sin(angle), cos(angle)]))
+    run = sf.simulate(model, tilted(model, angle), in_body(angle, w), t_end=2 * pi / rate, **FINE)
+    assert run.events == () and run.outcome.notes == ()
+    np.testing.assert_allclose(run.q[:, :3], [[0, 0, RADIUS * sin(angle)]] * len(run), atol=1e-11)
+    assert axis(run.q[-1]) == pytest.approx([0, -sin(angle), cos(angle)], abs=1e-8)
+
+
+def test_a_disc_rolls_as_newtons_and_eulers_equations_say() -> None:
+    """Of the rates of the vector to the point of contact by differences; its tilt swings."""
+    angle, w0 = 0.9, np.array([1.0, -8.0, 12.0])
+    model = disc(1e3)
+    a0 = np.array([0, -sin(angle), cos(angle)])
+    start = in_body(angle, w0)
+    c, s = cos(angle), sin(angle)
+    start[:3] = np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) @ -np.cross(w0, to_contact(a0))
+
+    def rates(_: float, y: Any) -> Any:
+        a, w = y[3:6], y[6:]
+        turn = np.cross(w, a)
+        r, h = to_contact(a), 1e-4
+        weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+        ends = [
+            [to_contact((a + k * h * turn) / np.linalg.norm(a + k * h * turn)) for k in (j, -j)] for j, _ in weights
+        ]
+        r_rate = sum(x * (ahead - behind) / h for (_, x), (ahead, behind) in zip(weights, ends, strict=True))
+        inertia = MASS * RADIUS**2 / 4 * (np.eye(3) + np.outer(a, a))
+        about_contact = inertia + MASS * (r @ r * np.eye(3) - np.outer(r, r))
+        moment = -np.cross(w, inertia @ w) - MASS * np.cross(r, np.cross(w, r_rate) - G * UP)
+        return [*-np.cross(w, r), *turn, *np.linalg.solve(about_contact, moment)]
+
+    first = [0, 0, RADIUS * s, *a0, *w0]
+    known = solve_ivp(rates, (0, 0.5), first, "DOP853", rtol=1e-12, atol=1e-13)
+    run = sf.simulate(model, tilted(model, angle), start, t_end=0.5, **FINE)
+    assert run.events == () and known.success
+    assert [*run.q[-1, :3], *axis(run.q[-1])] == pytest.approx(known.y[:6, -1], abs=1e-8)
+    energy = run.kinetic_energy + run.potential_energy
+    assert np.ptp(energy) < 1e-9 and np.ptp(axis(run.q)[:, 2]) > 0.3
+
+
+def test_a_disc_without_friction_keeps_its_spin() -> None:
+    """The plane's force meets the axis of the disc, and is vertical: spin, vertical momentum and energy stay."""
+    model, angle = disc(0.0), 0.7
+    v = in_body(angle, np.array([0.0, 2.0, 12.0]))
+    run = sf.simulate(model, tilted(model, angle), v, t_end=0.6, **FINE)
+    a = axis(run.q)
+    w = np.array([model.frame_velocity("disc", *x)[3:] for x in zip(run.q, run.v, strict=True)])
+    spin = np.einsum("ni,ni->n", a, w)
+    vertical = w[:, 2] / 4 + spin * a[:, 2] / 4  # Over m R^2.
+    assert {one.name for one in run.events} == {"rim turns"} and np.ptp(a[:, 2]) > 0.1
+    for kept in (spin, vertical, run.kinetic_energy + run.potential_energy, run.q[:, 0], run.q[:, 1]):
+        assert np.ptp(kept) < 1e-9
+
+
+@pytest.mark.parametrize("e", [0.0, 0.7])
+def test_a_disc_strikes_with_its_rim(e: float) -> None:
+    """Without friction: by the inertia that its lowest point has along the normal."""
+    model, angle, height = disc(0.0, e), 0.6, 0.05
+    run = sf.simulate(model, tilted(model, angle, height), t_end=0.11, **FINE)
+    strike, fast = run.events[0], sqrt(2 * G * height)
+    arm = RADIUS * cos(angle)
+    impulse = (1 + e) * fast / (1 / MASS + arm**2 / (MASS * RADIUS**2 / 4))
+    assert strike.name == ("rim strikes" if e else "rim slides")
+    assert strike.t == pytest.approx(sqrt(2 * height / G), abs=1e-12)
+    assert strike.impulse[0] == pytest.approx(impulse, rel=1e-10)
+    assert abs(model.frame_velocity("disc", strike.q, strike.v_after)[3]) == pytest.approx(
+        arm * impulse / (MASS * RADIUS**2 / 4), rel=1e-10
+    )
+
+
+def test_a_rim_that_lies_on_its_plane_is_said() -> None:
+    """Where it begins so, and where it comes to lie; on points along the rim the disc rests."""
+    model = disc(0.5)
+    begins = sf.simulate(model, tilted(model, 0.0), t_end=0.1)
+    falls = sf.simulate(model, tilted(model, 0.5), t_end=0.2, dt=1e-3)
+    for run in (begins, falls):
+        assert run.outcome.kind == "beyond theory" and "lies on its plane" in str(run.outcome)
+    assert falls.t[-1] < 0.12 and axis(falls.q[-1])[1] == pytest.approx(-0.009, abs=1e-5)
+    for stated in ({"stiffness": 1e5}, {"restitution": 0.0, "surface": "sphere", "surface_radius": 1.0}):
+        with pytest.raises(sf.DescriptionError, match="rims meet planes"):
+            sf.Contact("c", ("disc", None), GROUND, rim=0.1, **stated)  # type: ignore[arg-type]
