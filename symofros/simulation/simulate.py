@@ -230,7 +230,8 @@ def _phase(
         notes = recorded_notes(stepper.model.record, states[0], states[3])
         outcome = replace(outcome, notes=(*outcome.notes, *notes))
     met = [found_of(stepper, event) for event in recorded.events]
-    phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings)
+    notes = tuple(note for event in recorded.events for note in notes_of(stepper, event))  # Strikes at the start.
+    phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings, notes)
     return phase, [which for which, when, *_ in recorded.events if when == stepper.t]
 
 

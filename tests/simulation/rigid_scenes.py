@@ -85,6 +85,19 @@ def in_shell(friction: float, axis: tuple[float, float, float] = (1, 0, 0), angl
     return sf.System("in_shell", bodies, gravity=(0, 0, 0), connections=[contact])
 
 
+def three_feet() -> sf.System:
+    """A body on three feet; where it strikes with the speeds `WITHOUT_ANSWER` no simultaneous strike is found."""
+    pull = sf.Load(force=(sf.formula("pull"), 0, 0), axes="world")
+    inertia = sf.Inertia(2.0, center_of_mass=(-0.1, 0.0, -0.3), moments=(0.02, 0.03, 0.04))
+    body = sf.RigidBody("body", sf.Joint("free", "free"), inertia, loads=(pull,))
+    feet = [(-0.1, 0.5, -0.1), (0.1, -0.4, -0.1), (0.2, -0.2, -0.1)]
+    sole = sf.Contact("sole", ("body", None), GROUND, restitution=0.0, friction=1.3, points=feet)
+    return sf.System("three_feet", (body,), inputs=(sf.Input("pull"),), connections=(sole,))
+
+
+WITHOUT_ANSWER = (-2.2, -1.5, -0.3, 3.2, -2.6, 3.0)
+
+
 def rested(model: sf.Model, height: float) -> Any:
     """The configuration in which a box stands."""
     q = model.neutral()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.simulation.rigid_scenes import GROUND, box, rested
+from tests.simulation.rigid_scenes import GROUND, WITHOUT_ANSWER, box, rested, three_feet
 
 
 def settled(run: sf.Trajectory) -> None:
@@ -57,3 +57,20 @@ def test_what_is_thrown_lands(
     draw.random(2)
     speeds = np.concatenate([draw.normal(size=3), 3.0 * draw.normal(size=3)])
     settled(sf.simulate(model, rested(model, 0.35), speeds, t_end=t_end, method="dopri5"))
+
+
+@pytest.mark.parametrize(("share", "heard"), [(1.0, 1), (0.5, 1), (0.0, 0)])
+def test_strikes_in_sequence_for_want_of_another_answer_are_noted(share: float, heard: int) -> None:
+    """By single runs, by hand and in batches, once each; a strike with an answer, without spin, bears no such note."""
+    model = sf.compile(three_feet())
+    q, v = rested(model, 0.1), np.array(WITHOUT_ANSWER) * ([1.0] * 3 + [np.sign(share)] * 3) * (share or 1.0)
+    by_hand = sf.Stepper(model, dt=1e-3)
+    by_hand.reset(q, v)
+    by_hand.step(steps=5)
+    outcomes = [
+        sf.simulate(model, q, v, t_end=5e-3, dt=1e-3).outcome,
+        by_hand.outcome,
+        sf.simulate_batch(model, [q] * 3, [v] * 3, t_end=5e-3, dt=1e-3).outcome(1),
+    ]
+    said = "several balls struck one after the other at t = 0 s, as no motion was found in which they do at once"
+    assert [sum(note.startswith(said) for note in one.notes) for one in outcomes] == [heard] * 3, outcomes

@@ -66,7 +66,8 @@ def _found(compiled: CompiledDiagram, part: Part, block: str, number: int, met: 
         done = met.done
         before, after = (layout.parameters_of(block, model, values) for values in (done.par, done.par_set))
         u = _inputs(compiled, block, met, par)
-        kept = Done(done.status, done.gap, u, done.v_set[v], done.v_after[v], done.q_after[q], before, after)
+        speeds, q_after = (done.v_set[v], done.v_after[v]), done.q_after[q]
+        kept = Done(done.status, done.gap, done.in_sequence, u, *speeds, q_after, before, after)
         own = own._replace(done=kept)
     return found_event(switching.events[number], compiled.impacts(model), own)
 

@@ -137,7 +137,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean final
     (void)final;
     ALLOWED(f->cosim && f->phase == FMU_STEPPING);
     found = fmi_step(f, t, h);
-    if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi2Warning, f->message);
+    if (found == FMU_OK && fmu_remark(f)) say(f, fmi2Warning, f->message);
     status = outcome(f, found);
     f->discarded = status == fmi2Discard;
     return status;

@@ -178,6 +178,6 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean 
     *event = *terminate = *early = fmi3False;
     found = fmi_step(f, t, h);
     *last = *fmu_time(f);
-    if (found == FMU_OK && fmu_note_bending(f)) say(f, fmi3Warning, f->message);
+    if (found == FMU_OK && fmu_remark(f)) say(f, fmi3Warning, f->message);
     return outcome(f, found);
 }

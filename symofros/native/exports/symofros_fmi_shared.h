@@ -78,7 +78,7 @@ FMI(Status) FMI(CompletedIntegratorStep)(FMI_INSTANCE c, FMI(Boolean) final, FMI
     NEEDED(event && terminate);
     *event = *terminate = FMI(False);
     if (fmu_judge(f) != 0) *terminate = FMI(True);
-    if (fmu_note_bending(f)) say(f, FMI(Warning), f->message);
+    if (fmu_remark(f)) say(f, FMI(Warning), f->message);
     return FMI(OK);
 }
 

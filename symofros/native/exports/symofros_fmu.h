@@ -29,8 +29,8 @@ typedef struct fmu {
     /* What the environment gave. */
     void *environment, *logger;
     char *name;
-    int bending_noted;  /* whether the log already says that a beam bends much */
-    char message[256]; /* on the beam that bends most, a derivative that there is none of, or a step that is refused */
+    int bending_noted, sequence_noted; /* whether the log already says that a beam bends much, that balls struck in sequence */
+    char message[256]; /* a remark for the log, on a derivative that there is none of, or on a step that is refused */
     void (*release)(void *);
 } fmu;
 
@@ -150,7 +150,7 @@ static void fmu_reset(fmu *f) {
         for (i = 0; i < 2 * nc; ++i) f->instance->gains[i] = FMU_GAIN;
     f->phase = FMU_INSTANTIATED, f->rates_valid = 0, f->has_stop = 0, f->parameters_valid = 1;
     f->instance->run.rtol = f->instance->plant->rtol;
-    f->bending_noted = 0;
+    f->bending_noted = f->sequence_noted = 0;
 }
 
 /* What depends on parameters alone, for the present ones, if the description allows them. */
@@ -261,6 +261,15 @@ static int fmu_note_bending(fmu *f) {
     sprintf(f->message, "beam '%.60s' bends at t = %.6g s: second-order theory errs by about %.2g %% of the deflection",
             plant->beam_names[worst], r->beam_t[worst], 100.0 * error);
     return !f->bending_noted++;
+}
+
+/* Write a remark on what has happened so far. Returns whether there is one that is new and worth telling. */
+static int fmu_remark(fmu *f) {
+    const double t = sym_instance_struck_in_sequence(f->instance);
+    if (fmu_note_bending(f)) return 1;
+    if (t == -HUGE_VAL || f->sequence_noted) return 0;
+    sprintf(f->message, "balls of rigid contacts struck one after the other at t = %.6g s, as no motion was found in which they do at once", t);
+    return f->sequence_noted = 1;
 }
 
 /* One communication step, to time t. */

@@ -68,7 +68,7 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
 }
 
 /* A beam that bends beyond its theory ends a step; below that nothing is said. */
-static int fmu_note_bending(fmu *f) { return (void)f, 0; }
+static int fmu_remark(fmu *f) { return (void)f, 0; }
 
 static void fmu_reset(fmu *f) {
     f->instance = sym_program_init(f->instance, f->size, SYM_FMU_PROGRAM()); /* it began so before */

@@ -307,6 +307,8 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
         for (i = 0; i < nq; ++i) x[i * n + k] = instance->q[i];
         for (i = 0; i < nv; ++i) x[(nq + i) * n + k] = instance->v[i];
     }
+    if (sym_instance_struck_in_sequence(instance) != -HUGE_VAL)
+        mexWarnMsgIdAndTxt("symofros:sequence", "several balls struck one after the other, as no motion was found in which they do at once");
     if (nlhs < 2) return;
     plhs[1] = mxCreateDoubleMatrix(n, nq + nv, mxREAL);
     memcpy(mxGetPr(plhs[1]), x, n * (nq + nv) * sizeof *x);

@@ -72,7 +72,8 @@ SYM_EXPORT sym_done sym_run_done(const sym_run *r, int64_t row) {
     const sym_system *s = r->system;
     const size_t npar = (size_t)r->actions->npar, nv = (size_t)s->nv;
     sym_done done;
-    done.acted = r->event_done + (size_t)row * sym_done_size(r), done.gap = done.acted + 1, done.u = done.acted + 2;
+    done.acted = r->event_done + (size_t)row * sym_done_size(r), done.gap = done.acted + 1, done.in_sequence = done.acted + 2;
+    done.u = done.acted + 3;
     done.v_set = done.u + s->nu, done.v_after = done.v_set + nv, done.q_after = done.v_after + nv;
     done.par = done.q_after + s->nq, done.par_set = done.par + npar;
     return done;
@@ -80,7 +81,7 @@ SYM_EXPORT sym_done sym_run_done(const sym_run *r, int64_t row) {
 
 SYM_EXPORT size_t sym_done_size(const sym_run *r) {
     const sym_system *s = r->system;
-    return 2 + (size_t)s->nu + 2 * (size_t)s->nv + (size_t)s->nq + 2 * (size_t)r->actions->npar;
+    return 3 + (size_t)s->nu + 2 * (size_t)s->nv + (size_t)s->nq + 2 * (size_t)r->actions->npar;
 }
 
 /* Whether bodies that an impact without rebound has brought to rest on each other part again: the force that would hold them
@@ -211,6 +212,7 @@ static void sym_note_modes(const sym_run *r, const sym_done *done, int32_t statu
 static void sym_note_contact(const sym_run *r, const sym_done *done, int32_t ball) {
     const int32_t mode = r->system->contacts[ball].mode;
     sym_note_modes(r, done, 0);
+    *done->in_sequence = *sym_struck_in_sequence(r->system) == r->t;
     if (done->par[mode] == SYM_OPEN && done->par_set[mode] != SYM_OPEN) *done->acted = SYM_RESTS;
 }
 
@@ -279,7 +281,7 @@ SYM_EXPORT int32_t sym_run_act(sym_run *r) {
     for (row = r->first_met; row < r->met_end; ++row) {
         const int32_t which = r->event_index[row];
         const sym_done done = sym_run_done(r, row);
-        *done.acted = *done.gap = 0.0;
+        *done.acted = *done.gap = *done.in_sequence = 0.0;
         memcpy(r->event_q + row * s->nq, r->q, (size_t)s->nq * sizeof *r->q);
         memcpy(r->event_v + row * s->nv, r->v, (size_t)s->nv * sizeof *r->v);
         ended |= s->event_terminal[which] == 1;

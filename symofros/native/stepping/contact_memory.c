@@ -34,13 +34,15 @@ SYM_EXPORT size_t sym_contact_work_size(const sym_system *s) {
 }
 
 SYM_EXPORT size_t sym_contact_memory_size(const sym_system *s) {
-    return s->n_contacts == 0 ? 0 : SYM_BALL_ENTRIES * (size_t)s->n_contacts + 2;
+    return s->n_contacts == 0 ? 0 : SYM_BALL_ENTRIES * (size_t)s->n_contacts + 3;
 }
 
-/* What is remembered of a ball; of all of them: whether modes have been chosen, and whether a load is shared. */
+/* What is remembered of a ball; of all of them: whether modes have been chosen, whether a load is shared, and when balls struck
+ * in sequence last because no motion was found in which they do at once. */
 static double *sym_ball_memory(const sym_system *s, int32_t ball) { return s->contact_memory + SYM_INDEX(ball, SYM_BALL_ENTRIES, 0); }
 static double *sym_modes_chosen(const sym_system *s) { return sym_ball_memory(s, s->n_contacts); }
 static double *sym_load_shared(const sym_system *s) { return sym_ball_memory(s, s->n_contacts) + 1; }
+static double *sym_struck_in_sequence(const sym_system *s) { return sym_ball_memory(s, s->n_contacts) + 2; }
 
 SYM_EXPORT void sym_run_forget_contacts(sym_run *r) {
     const sym_system *s = r->system;
@@ -49,5 +51,5 @@ SYM_EXPORT void sym_run_forget_contacts(sym_run *r) {
         double *known = sym_ball_memory(s, i);
         known[0] = r->par[s->contacts[i].way[0]], known[1] = r->par[s->contacts[i].way[1]], known[2] = 0.0, known[3] = known[4] = -HUGE_VAL;
     }
-    if (s->n_contacts > 0) *sym_modes_chosen(s) = *sym_load_shared(s) = 0.0;
+    if (s->n_contacts > 0) *sym_modes_chosen(s) = *sym_load_shared(s) = 0.0, *sym_struck_in_sequence(s) = -HUGE_VAL;
 }

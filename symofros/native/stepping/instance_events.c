@@ -149,6 +149,11 @@ static int32_t sym_instance_doubt_contacts(sym_instance *instance) {
     return status;
 }
 
+SYM_EXPORT double sym_instance_struck_in_sequence(const sym_instance *instance) {
+    const sym_system *s = &instance->system;
+    return s->n_contacts > 0 ? *sym_struck_in_sequence(s) : -HUGE_VAL;
+}
+
 /* The state at which a motion ends. */
 static void sym_instance_leave(sym_instance *instance) {
     const sym_system *s = &instance->system;

@@ -81,17 +81,20 @@ static void sym_add_impulses(sym_run *r, sym_touching *at, int32_t first, int32_
     }
 }
 
-/* Balls that strike without restitution do so at once, others one after the other, the fastest first, until none approaches.
- * Returns 0 or a status. */
+/* Balls that strike without restitution do so at once; others, and those of which no such motion is found, in sequence, the fastest
+ * first, until none approaches. Returns 0 or a status. */
 static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const double *e) {
     sym_contact_problem *p = &at->problem;
     const int32_t n = 3 * p->n;
     int32_t round, i, j, k, elastic = 0, alone = p->n == 1;
     for (i = 0; i < p->n; ++i) elastic |= e[i] > 0.0, p->parts[i] = p->slides[i] = 0;
     memcpy(p->b, at->u, (size_t)n * sizeof *at->u);
-    if (!elastic && !alone && sym_solve_contacts(p, 0) == 0) {
-        sym_add_impulses(r, at, 0, n, p->f);
-        return 0;
+    if (!elastic && !alone) {
+        if (sym_solve_contacts(p, 0) == 0) {
+            sym_add_impulses(r, at, 0, n, p->f);
+            return 0;
+        }
+        *sym_struck_in_sequence(r->system) = r->t;
     }
     for (round = 0; round < SYM_MOST_STRIKES; ++round) {
         double W[9], P[3];

@@ -110,6 +110,9 @@ int32_t sym_instance_project(sym_instance *instance);
 int32_t sym_instance_judge_beams(sym_instance *instance);
 /* Estimated error of a beam's theory since the reset, relative to its deflection, axial loads included. */
 double sym_instance_beam_error(sym_instance *instance, int32_t beam);
+/* When balls of rigid contacts without restitution have last struck one after the other in this motion, since no motion was found
+ * in which they do at once: where it goes on depends on their order (docs/theory/constraints.md, section 15). -HUGE_VAL: never. */
+double sym_instance_struck_in_sequence(const sym_instance *instance);
 /* Accelerations and multipliers at the present state. Returns 0 or a status. */
 int32_t sym_instance_accelerate(sym_instance *instance);
 /* Integrate to t_end by steps of at most h (0: the plant's), from quaternions that are near unit length (1e-3), which

@@ -150,6 +150,7 @@ typedef struct sym_actions {
 typedef struct sym_done {
     double *acted;                   /* 1; SYM_RESTS; 0: nothing; a status: failed */
     double *gap;                     /* as of sym_run_engage */
+    double *in_sequence;             /* whether balls of rigid contacts struck so, as no motion was found in which they do at once */
     double *u;                       /* (nu) inputs by which it acted */
     double *v_set, *v_after;         /* (nv) speeds that it set; those that the impact left */
     double *q_after;                 /* (nq) */
@@ -215,7 +216,8 @@ typedef struct sym_system {
     double longest_step;               /* of fixed steps [s] */
     /* (sym_contact_memory_size) of each ball its direction at the last end of a step with a slip (2), the slip up to which it
      * stays so [m/s], the instant of the last strike [s]; then whether modes have been chosen in this motion, and whether balls
-     * that stick share their load in more than one way. */
+     * that stick share their load in more than one way, and when balls struck in sequence last because no motion was found in which
+     * they do at once [s], below all times: never. */
     double *contact_memory;
     double *contact_work;              /* sym_contact_work_size entries of scratch */
     int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */

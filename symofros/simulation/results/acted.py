@@ -46,14 +46,20 @@ def found_event(event: Event, model: Model, met: Met) -> Found:
 
 
 def notes_of(run: Stepper, met: Met) -> tuple[str, ...]:
-    """Remarks on what an action did: a gap that was closed beyond rounding, a contact that came to rest."""
+    """Remarks on what an action did: a gap closed beyond rounding, strikes in sequence, a contact that came to rest."""
     if met.done is None or met.done.status <= 0:
         return ()
-    event, closed = run.events[met.which], engaging_notes(met.t, met.done.gap)
+    event, notes = run.events[met.which], engaging_notes(met.t, met.done.gap)
+    if met.done.in_sequence:
+        notes = (
+            *notes,
+            f"several balls struck one after the other at t = {met.t:.6g} s, as no motion was found in which they do at"
+            " once: another order may lead elsewhere; compare with a compliant contact",
+        )
     if not met.done.rests:
-        return closed
+        return notes
     within = f", where strikes would follow within {run.accumulation:.3g} s" if event.restitution else ""
-    return (*closed, f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}")
+    return (*notes, f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}")
 
 
 def failure_of(run: BoundRun, met: Met) -> Outcome | None:

@@ -143,6 +143,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a contact that rests has come to rest, after strikes that accumulate or one without rebound",
         "nothing, or `restitution` and the length of the run, of which the threshold is a share",
     ),
+    "strikes in sequence": NoteKind(
+        "several balls struck one after the other at t = … s, as no motion was found in which they do at once",
+        "rigid contacts without restitution that strike together have no simultaneous answer that is found",
+        "a compliant contact there: stiffness in place of restitution",
+    ),
     "contact too deep": NoteKind(
         "contact '…' is … times its radius deep at t = … s: …",
         "the centre of a ball came to lie within the solid that should push it back",

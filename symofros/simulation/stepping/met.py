@@ -16,6 +16,7 @@ class Done(NamedTuple):
     Attributes:
         status: 1, or 2 where a contact came to rest; below zero: why it has failed.
         gap: |phi| by weight that engaging has closed.
+        in_sequence: Whether balls of rigid contacts struck so because no motion was found in which they do at once.
         u: Inputs by which it acted (nu).
         v_set: Speeds that it set (nv).
         v_after: Speeds that the impact left (nv).
@@ -26,6 +27,7 @@ class Done(NamedTuple):
 
     status: int
     gap: float
+    in_sequence: bool
     u: Array
     v_set: Array
     v_after: Array
@@ -45,9 +47,9 @@ class Done(NamedTuple):
         if not row[0]:
             return None
         u, v_set, v_after, q_after, par, par_set = (
-            part.copy() for part in _split(row[2:], (nu, nv, nv, nq, npar, npar))
+            part.copy() for part in _split(row[3:], (nu, nv, nv, nq, npar, npar))
         )
-        return cls(int(row[0]), float(row[1]), u, v_set, v_after, q_after, par, par_set)
+        return cls(int(row[0]), float(row[1]), bool(row[2]), u, v_set, v_after, q_after, par, par_set)
 
 
 def _split(row: Array, sizes: tuple[int, ...]) -> list[Array]:

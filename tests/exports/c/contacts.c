@@ -4,7 +4,7 @@
 /* A box that is drawn from one instant on, then lifted by hand. */
 static void tell(const sym_instance *it, int status) {
     int i;
-    printf("status %d\nq", status);
+    printf("status %d, in sequence at %g s\nq", status, sym_instance_struck_in_sequence(it));
     for (i = 0; i < it->model->nq; ++i) printf(" %.17g", it->q[i]);
     for (i = 0; i < it->model->nv; ++i) printf(" %.17g", it->v[i]);
     printf("\n");

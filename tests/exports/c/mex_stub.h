@@ -35,4 +35,5 @@ static void *mxCalloc(size_t n, size_t size) { return calloc(n, size); }
 static void mxFree(void *memory) { free(memory); }
 static int mexAtExit(void (*action)(void)) { return atexit(action); }
 #define mexPrintf printf
+#define mexWarnMsgIdAndTxt(id, ...) (printf("%s ", id), printf(__VA_ARGS__))
 #define mexErrMsgIdAndTxt(id, ...) (printf("%s ", id), printf(__VA_ARGS__), exit(3))

@@ -12,6 +12,7 @@ import pytest
 
 import symofros as sf
 from tests.exports.cases import run
+from tests.simulation.rigid_scenes import WITHOUT_ANSWER, three_feet
 
 SAME = 1e-12
 # Two motors on three joints: B is not symmetric; gravity across, so that little else is.
@@ -35,8 +36,11 @@ PROGRAM = Path(__file__).with_name("mex_ask.c").read_text()
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("mex")
-    sf.export(ARM, "mex", folder)
+    return compiled(ARM, tmp_path_factory.mktemp("mex"))
+
+
+def compiled(system: sf.System, folder: Path) -> Path:
+    sf.export(system, "mex", folder, name="arm")
     shutil.copy(Path(__file__).parent / "mex_stub.h", folder / "mex.h")
     (folder / "main.c").write_text(PROGRAM)
     run("gcc", "-std=c99", "-O0", "-Wall", "-Wno-unused-function", "-I.", "main.c", "-lm", "-o", "ask", cwd=folder)
@@ -111,3 +115,11 @@ def test_invalid_states_inputs_and_parameters_are_refused(
 ) -> None:
     done = ask(program, 1, *arguments)
     assert done.returncode == 3 and words in done.stdout
+
+
+def test_strikes_in_sequence_are_warned_of(tmp_path: Path) -> None:
+    """Of a motion in which no simultaneous strike is found; without spin there is one."""
+    asked, q = compiled(three_feet(), tmp_path), [0.0, 0, 0.1, 0, 0, 0, 1]
+    for speeds, heard in ((WITHOUT_ANSWER, True), ((*WITHOUT_ANSWER[:3], 0, 0, 0), False)):
+        done = ask(asked, 1, [9.0], [*q, *speeds], [0.0], [], [0.0, 0.01, 1e-3])
+        assert done.returncode == 0 and ("symofros:sequence" in done.stdout) == heard, done.stdout[:200]

@@ -13,7 +13,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.exports.cases import build, run, sources
-from tests.simulation.rigid_scenes import G, ball_system, box_system, in_shell, rod_system
+from tests.simulation.rigid_scenes import WITHOUT_ANSWER, G, ball_system, box_system, in_shell, rod_system, three_feet
 
 MAIN, BY_HAND = (Path(__file__).with_name(name).read_text() for name in ("events.c", "contacts.c"))
 SCENES: dict[str, tuple[sf.System, dict[str, float]]] = {
@@ -85,6 +85,16 @@ def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float)
     assert last[2] == pytest.approx(0.1, abs=1e-12)
     way = first[0] + a * 0.1 * fall + left * slides - mu * G * slides**2 / 2
     assert last[0] == pytest.approx(way, abs=1e-12)
+
+
+@pytest.mark.parametrize(("share", "when"), [(1.0, "0"), (0.0, "-inf")])
+def test_packages_tell_that_balls_struck_in_sequence(tmp_path: Path, share: float, when: str) -> None:
+    """No motion was found in which they strike at once; without spin there is one."""
+    speeds = zip(("vx", "vy", "vz", "wx", "wy", "wz"), WITHOUT_ANSWER, (1, 1, 1, share, share, share), strict=True)
+    start = {"free.pz": 0.1} | {f"free.{name}": speed * of for name, speed, of in speeds}
+    program = packaged(tmp_path, BY_HAND, three_feet(), start)
+    status = run(program, "0", "0", cwd=tmp_path).splitlines()[0]
+    assert status == f"status {Status.FINISHED}, in sequence at {when} s"
 
 
 def test_what_packages_refuse(tmp_path: Path) -> None:

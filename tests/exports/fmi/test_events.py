@@ -13,7 +13,7 @@ from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.fmi.logs import heard
 from tests.exports.fmi.test_fmu import Unit, quickly
-from tests.simulation.rigid_scenes import ball_system, box, box_system, rested, rod_system
+from tests.simulation.rigid_scenes import WITHOUT_ANSWER, ball_system, box, box_system, rested, rod_system, three_feet
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -99,3 +99,15 @@ def test_importers_are_told_of_painleves_paradox(tmp_path: Path) -> None:
     with heard() as (logger, log):
         fmpy.simulate_fmu(str(tmp_path / "rod.fmu"), stop_time=0.1, output_interval=0.01, logger=logger)
     assert "Painleve's paradox" in "".join(log)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_importers_are_told_once_of_strikes_in_sequence(tmp_path: Path, version: int) -> None:
+    start = {"free.pz": 0.1} | dict(
+        zip([f"free.{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")], WITHOUT_ANSWER, strict=True)
+    )
+    with quickly():
+        sf.export(three_feet(), f"fmu{version}", tmp_path, start=start)  # type: ignore[arg-type]
+    with heard() as (logger, log):
+        fmpy.simulate_fmu(str(tmp_path / "three_feet.fmu"), stop_time=0.05, output_interval=0.01, logger=logger)
+    assert "".join(log).count("struck one after the other at t = 0 s") == 1
