@@ -26,7 +26,7 @@ from ..worker_process import WorkerError
 from .interface import EnginePlugin
 from .workers import LIMIT, Answer, Crashed, Job, Worker, registry
 
-# So many crashes are an answer; what else could be asked of a release is not.
+# So many questions that crash are an answer, and so many crashes at one; what else could be asked of a release is not.
 CRASHES = 3
 # What ends the name of a package in a requirement.
 _NAME = re.compile(r"[^\w.-]")
@@ -98,7 +98,7 @@ class _Process(Worker):
     """The process of one release.
 
     Attributes:
-        crashes: How often the engine took it along, or gave no answer in time.
+        crashes: Questions at which the engine took it along, or gave no answer in time.
         seconds: Time of a processor that its answers took; a busy machine makes it no longer.
     """
 
@@ -106,14 +106,15 @@ class _Process(Worker):
 
     def ask(self, job: Job) -> Iterator[Answer]:
         """As any engine, until it has crashed too often; at which state a crash comes is looked for all the same."""
-        answers, answer = super().ask(job), None
+        answers, answer, own = super().ask(job), None, 0
         looks = not job.further and (bool(job.pieces) or len(job.functions) == 1)
-        while self.crashes < CRASHES or looks:
+        while max(self.crashes, own) < CRASHES or looks:
             answer = next(answers, None)
             if answer is None:
                 self._count()
                 return
-            self.crashes += not looks and isinstance(answer.value, Crashed)
+            if not looks and isinstance(answer.value, Crashed):
+                self.crashes, own = self.crashes + (not own), own + 1
             yield answer
 
     def _count(self) -> None:

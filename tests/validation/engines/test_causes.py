@@ -122,3 +122,13 @@ def test_stated_causes_are_sentences_of_an_engine_that_is_there(path: Path) -> N
             assert text.rstrip('"').endswith("."), text
         functions = OWN[cause.engine].functions
         assert any(re.fullmatch(pattern, name) for pattern in cause.functions for name in functions), cause.name
+
+
+def test_files_of_two_formats_have_no_reader_in_common() -> None:
+    row: dict[str, Any] = {
+        name: ["wrong", 0.5, 1e-12] for name in ("sdf: plain", "mjcf: plain", "mjcf: turned", "free")
+    }
+    engine = {"name": "toy", "version": "1", "conventions": [], "functions": {"gravity": "weight"}}
+    toy: dict[str, Any] = {"engines": [engine], "cells": {"toy": {"gravity": row}}}
+    models = [group.models for group in causes_of(parts.cells(toy), ())]
+    assert sorted(models) == [("mjcf: plain", "mjcf: turned"), ("sdf: plain", "free")]

@@ -25,7 +25,7 @@ LINES = mjcf_lines.files()
 HINGE = Layout(1, 1, ((Slot("angle", (0,), (0,)),),))
 LENGTH = Layout(1, 1, ((Slot("length", (0,), (0,)),),))
 # What XPBD has wrong (`causes/stated/newton.yaml`).
-WRONG = {"wheel on a hinge", "wheel on a damped hinge", "wheel on a ball"}
+WRONG = {"wheel on a hinge", "wheel on a damped hinge", "wheel on a ball", "wheel on a damped ball"}
 
 
 def _at(tree: Tree, layout: Layout) -> tuple[Truth, Point]:
@@ -48,6 +48,11 @@ def test_a_damper_slows_a_wheel() -> None:
         end = digits(truth.value(steps.single("nothing", steps.normalized), point))
         v, tau = float(point.v[0]), float(point.tau[0])
         assert np.isclose(end[1], v + STEP * (tau - damping * v) / 0.25, atol=1e-15)
+
+
+def test_dampers_of_a_ball_are_stated_along_each_axis() -> None:
+    assert OWN["newton"].building(SINGLE["wheel on a damped ball"]).count("damping=0.5") == 3
+    assert "damping" not in OWN["newton"].building(SINGLE["wheel on a ball"])
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Tree
 from validation.engines.matrix import cells
-from validation.engines.models import acting, hostile, single
+from validation.engines.models import acting, hostile, single, transformed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin
@@ -80,6 +80,11 @@ FAULTS = [
     ("dart", "revolute x", "mass_matrix:clone", "s.clone()", "s.clone(); s.getBodyNode(0).setMass(9.0)"),
     ("drake", "revolute x", "link_poses:Clone", "(b.index()) for b in links]", "(b.index()) for b in links][::-1]"),
     ("pybullet", "revolute x", "link_poses:saveState", "p.restoreState(kept)", "kept"),
+    ("exudyn-joints", "rotations", "rpy_rates_rate", "(-v, -a) @ B", "(-v, a) @ B"),
+    ("exudyn-joints", "rotations", "pose_logarithm", "*T[:3, 3]", "*X[:3, 3]"),
+    ("exudyn-joints", "rotations", "spatial_inertia_sum", "I.Transformed(X) + I", "I + I"),
+    ("newton", "revolute z, 2^-12 from zero", "coordinates_of_links", "= q1.numpy()", "= 0 * q1.numpy()"),
+    ("newton", "cylindrical", "speeds_of_links", "= v1.numpy()", "= v1.numpy()[::-1]"),
     ("exudyn", "revolute x", "bias:GetSystemState", "mbs.systemData.SetSystemState(kept)", "kept"),
     ("mjx", "revolute x", "link_poses:get_data", "get_data(m, forward(q", "get_data(m, forward(2 * q"),
     ("adam", "revolute oblique", "mass_matrix_dq", "ca.vec(M.T)", "2 * ca.vec(M.T)"),
@@ -105,3 +110,25 @@ def test_a_planted_fault_is_a_red_cell(
     (red,) = cells(plugin, tree, (function,))
     assert sound.verdict == "right" or (engine == "pybullet" and sound.verdict == "imprecise")
     assert red.verdict == "wrong"
+
+
+def test_what_is_read_again_is_not_asked_of_mimicking_joints() -> None:
+    """Pinocchio leaves what they follow unset, so that it crashes, or answers by chance."""
+    plugin = OWN["pinocchio"]
+    asked = {
+        cell.function for cell in cells(plugin, tree_of("mimic revolute"), ("link_poses", "link_poses:saveToString"))
+    }
+    assert "link_poses" in asked
+    (again,) = cells(plugin, tree_of("mimic revolute"), ("link_poses:saveToString",))
+    assert again.verdict == "not offered"
+
+
+def test_masses_are_changed_after_they_were_used() -> None:
+    tree = transformed.trees()["mass changed"]
+    plugin = OWN["pybullet"]
+    assert isinstance(plugin, SourcePlugin)
+    made = plugin.write(tree)
+    assert isinstance(made, Source)
+    before, used, after = made.closing[1:]
+    assert str([link.mass for link in tree.before.links]) in before and str([link.mass for link in tree.links]) in after
+    assert "calculateMassMatrix" in used and "calculateInverseDynamics" in used

@@ -20,8 +20,9 @@ from validation.engines.bisection import Search, has_fault, same_fault
 from validation.engines.interface import EnginePlugin
 from validation.engines.models.kinds import tree_of
 from validation.engines.parts import CELLS, nested
-from validation.engines.releases import CRASHES, Opened, Release, opened
+from validation.engines.releases import CRASHES, Opened, Release, _Process, opened
 from validation.engines.verdicts import Cell, Verdict
+from validation.engines.workers import Answer, Crashed, Job, Worker
 from validation.faults.environment import kept
 
 TREES = {name: tree_of(name) for name in ("revolute x", "revolute y", "revolute z", "revolute oblique")}
@@ -93,6 +94,18 @@ def test_releases_are_engines_of_the_matrix(asked: Opened) -> None:
     assert verdicts["toy 4.0"] == ["plug-in"] * 4
     assert set(asked.alone()) == set(asked.plugins) and min(asked.alone().values()) > 0.0
     assert not asked.stated("toy 4.0")["gave_up"] and asked.processes["toy 2.0"][1].memory() >= 0.0
+
+
+def test_crashes_at_one_question_are_counted_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    def crash(self: Worker, job: Job) -> Iterator[Answer]:
+        yield from (Answer(name, Crashed("said")) for name in job.functions)
+
+    monkeypatch.setattr(Worker, "ask", crash)
+    monkeypatch.setattr(_Process, "_count", lambda self: None)
+    process, tree = _Process.__new__(_Process), next(iter(TREES.values()))
+    job = Job("toy", tree, tuple("abcdef"), 1)
+    assert [len(list(process.ask(job))) for _ in range(CRASHES + 1)] == [CRASHES] * (CRASHES - 1) + [1, 0]
+    assert process.crashes == CRASHES
 
 
 def test_a_release_that_is_not_there_is_said_in_words(asked: Opened) -> None:

@@ -13,6 +13,8 @@ from .cause import Cause, stated
 from .corrections import CORRECTIONS
 
 _GRAVITY = {"wrong": 2, "crashes": 2, "raises": 1}
+# What names of files begin with.
+FORMATS = frozenset(("urdf", "mjcf", "sdf", "usd"))
 # Part of the functions that are red on either of two trees that must be red on both.
 _SIMILAR = 0.5
 
@@ -123,6 +125,12 @@ def by_function(cells: Iterable[Cell]) -> list[list[Cell]]:
     return list(lots.values())
 
 
+def _by_other_readers(one: Cell, other: Cell) -> bool:
+    """Whether both are of files, and these of two formats: each has a reader of its own."""
+    forms = {cell.model.split()[0].rstrip(":") for cell in (one, other)}
+    return len(forms & FORMATS) == 2
+
+
 def _alike(cells: Sequence[Cell]) -> list[list[Cell]]:
     """Cells that are taken for one fault: of functions that are red on the same trees, and they on trees alike."""
     functions: dict[tuple[str, str], set[str]] = {}
@@ -135,6 +143,8 @@ def _alike(cells: Sequence[Cell]) -> list[list[Cell]]:
             mine = functions[cell.engine, cell.model]
             for lot in own:
                 others = functions[cell.engine, lot[0].model]
+                if _by_other_readers(cell, lot[0]):
+                    continue
                 if len(mine & others) >= _SIMILAR * len(mine | others):
                     lot.append(cell)
                     break

@@ -122,7 +122,7 @@ def _far(name: str, p: Vector) -> Tree:
 
 # Joints whose turns engines expand in series near zero, and how near: beside the series' usual bounds of 1e-3 and 1e-4,
 # and where the cosine is 1 in doubles.
-_TURNING, _NEAR = ("ball", "free", "planar", "free between links", "ellipsoid", "helical"), (12, 27)
+_TURNING, _NEAR = ("ball", "free", "planar", "free between links", "ellipsoid", "helical", "revolute z"), (12, 27)
 
 
 def _small_turns() -> list[Tree]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from ..interface import STEP, Convention, Statement, Tree, Unsupported
 from . import turns
@@ -142,11 +143,27 @@ def write(tree: Tree) -> Source | Unsupported:
     """The tree through PyBullet's reader of URDF."""
     if tree.asked == "turns":
         return turns.source(*turning.IMPORTS, scalar_last=True)
+    if tree.changed:
+        first = write(tree.before)
+        return first if isinstance(first, Unsupported) else replace(first, closing=_weighing(tree, first.nv))
     described = describe(tree)
     if isinstance(described, Unsupported):
         return described
     text = re.sub(r'<link name="([^"]*)"/>', rf'<link name="\1">{_MASSLESS}</link>', described.text)
     return write_reading(tree, "urdf", text)
+
+
+def _weighing(tree: Tree, count: int) -> tuple[str, ...]:
+    """Statements that use the masses before a change, then state those of the tree, with the moments as they were."""
+    before, after = ([link.mass for link in one.links] for one in (tree.before, tree))
+    weighed = (
+        f"for k, mass in zip(links, {masses}): p.changeDynamics(robot, k, mass=mass, "
+        "localInertiaDiagonal=p.getDynamicsInfo(robot, k)[2])"
+        for masses in (before, after)
+    )
+    still = [0.0] * count
+    used = f"p.calculateMassMatrix(robot, {still}); p.calculateInverseDynamics(robot, {still}, {still}, {still})"
+    return "joints", next(weighed), used, next(weighed)
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -205,7 +222,11 @@ PLUGIN = SourcePlugin(
     write=write,
     formats=tuple(_LOADS),
     write_reading=write_reading,
-    demands={"turns": "rotations and placements", "dampers": "dynamics, damping"},
+    demands={
+        "turns": "rotations and placements",
+        "dampers": "dynamics, damping",
+        "changed mass": "changeDynamics: mass",
+    },
     statements=(
         Statement(
             "repairs",

@@ -21,7 +21,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...interface import Array, Constraint, Convention, Joint, Slot, Tree, Unsupported
-from ..writing.source import HALF_TURNS, Source, SourcePlugin, Way, series
+from .. import turns
+from ..turns import exudyn as turning
+from ..writing.source import Source, SourcePlugin, Way, series
 from . import exudyn_systems
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -225,34 +227,13 @@ WAYS |= {
         (":rotation vector", "RotationRotationVector"),
     )
 }
-WAYS |= {
-    "rotation_matrix": Way("EulerParameters2RotationMatrix", "value = ut.EulerParameters2RotationMatrix(q).ravel()"),
-    "rotation_logarithm": Way(
-        "RotationMatrix2RotationVector",
-        "value = ut.RotationMatrix2RotationVector(ut.EulerParameters2RotationMatrix(q))",
-    ),
-    "rotation_exponential": Way("RotationVector2RotationMatrix", "value = ut.RotationVector2RotationMatrix(v).ravel()"),
-    "rotation_exponential_of_turns": Way(
-        "RotationVector2RotationMatrix", "value = ut.RotationVector2RotationMatrix(16 * v).ravel()"
-    ),
-    "rotation_half_turn": Way(
-        "RotationMatrix2EulerParameters",
-        "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
-        "value = ut.EulerParameters2RotationMatrix(ut.RotationMatrix2EulerParameters(H)).ravel()",
-    ),
-    "rotation_half_turns": Way(
-        "RotationMatrix2EulerParameters",
-        f"{HALF_TURNS}parameters = map(ut.RotationMatrix2EulerParameters, half_turns)\n"
-        "value = [ut.EulerParameters2RotationMatrix(p).ravel() for p in parameters]",
-    ),
-}
+WAYS |= turning.WAYS
 
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that states links and connectors; each call makes the system that it asks."""
     if tree.asked == "turns":
-        turn = Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2))
-        return Source(("import numpy as np, exudyn as exu", "import exudyn.utilities as ut"), ((turn,),), 4, 3)
+        return turns.source("import exudyn as exu", "import exudyn.utilities as ut", *turning.IMPORTS)
     links: list[str] = []
     special: list[str] = []
     generic: list[str] = []
@@ -387,7 +368,7 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
-    demands={"turns": "CreateRigidBody, exudyn.utilities"},
+    demands={"turns": "CreateRigidBody, rigidBodyUtilities, lieGroupBasics"},
     constraints={
         "point": "ObjectJointSpherical",
         "weld": "ObjectJointGeneric",

@@ -10,6 +10,10 @@ from ...interface import Actuator, Array, Joint, Link, Slot, Tree, Unsupported
 from ..writing.source import Source, series
 from .ways import AXIS, CENTRES, DRIVEN, IMPORTS, ROTATION
 
+_BALL = "quaternion xyzw, parent speeds"
+# Charts in which a pose has one set of coordinates, but for whole turns.
+_SINGLE = ("angle", "length", "planar angle", "three lengths")
+
 
 def _array(values: object) -> str:
     return repr(np.asarray(values, dtype=float).tolist())
@@ -38,7 +42,8 @@ def _axes(joint: Joint) -> tuple[list[str], list[str], str] | None:
 
     def axis(number: int, along: object) -> str:
         # An axis without `target_ke` and `target_kd` takes the builder's.
-        return f"axis(axis={_array(along)}, armature={own[number]!r}, target_ke=0, target_kd=0)"
+        lost = f", damping={joint.damping!r}" if joint.damping else ""
+        return f"axis(axis={_array(along)}, armature={own[number]!r}, target_ke=0, target_kd=0{lost})"
 
     unit = np.eye(3)
     match joint.kind:
@@ -53,6 +58,8 @@ def _axes(joint: Joint) -> tuple[list[str], list[str], str] | None:
             return [], [axis(k, row) for k, row in enumerate(turns)], "three angles"
         case "translation":
             return [axis(k, row) for k, row in enumerate(unit)], [], "three lengths"
+        case "ball":
+            return [], [axis(k, row) for k, row in enumerate(unit)], _BALL
         case "planar":
             return [axis(0, unit[0]), axis(1, unit[1])], [axis(2, unit[2])], "planar angle"
     return None
@@ -68,17 +75,20 @@ def _call(
     if any(one.form or one.mimics for _, _, one in steps):
         return "no such form of a joint"
     alone = len(steps) == 1 and joint.kind in ("revolute", "prismatic")
-    if any(one.damping or one.stiffness for _, _, one in steps) and not alone:
-        return "dampers and springs stand on hinges and slides alone"
+    if any(one.stiffness for _, _, one in steps) and not alone:
+        return "springs stand on hinges and slides alone"
     if len(steps) == 1 and joint.kind == "ball":
         armature = joint.armature[0] if joint.armature else 0.0
-        return f"b.add_joint_ball({{ends}}, armature={armature!r})", [("quaternion xyzw, parent speeds", 4, 3)]
+        if not joint.damping:
+            return f"b.add_joint_ball({{ends}}, armature={armature!r})", [(_BALL, 4, 3)]
+        _, axes, _ = _axes(joint) or ([], [], "")
+        return f"b.add_joint(newton.JointType.BALL, {{ends}}, angular_axes=[{', '.join(axes)}])", [(_BALL, 4, 3)]
     linear: list[str] = []
     angular: list[str] = []
     parts: list[tuple[str, int, int]] = []
     for number, (R, p, one) in enumerate(steps):
         found = _axes(one)
-        if found is None:
+        if found is None or found[2] == _BALL:
             return f"no joint for {one.kind}"
         if number and (np.any(p) or not np.array_equal(R, np.eye(3)) or (found[0] and angular)):
             return "axes of one joint share a frame, linear before angular"
@@ -161,5 +171,8 @@ def write(tree: Tree) -> Source | Unsupported:
     lines += [f"b.add_articulation([{', '.join(joints)}])", 'm = b.finalize(device="cpu")']
     optional = {"rotation": ROTATION, "centres": CENTRES} | ({"fed": _driven(tree, slots)} if drives else {})
     # What it keeps of arms is that of files.
+    lacks: tuple[str, ...]
     lacks, spelling = (("actuator_arms",), DRIVEN) if drives else ((), {})
+    if any(slot.chart not in _SINGLE for own in slots for slot in own):  # Of others the same pose has several.
+        lacks += ("coordinates_of_links",)
     return Source(tuple(lines), tuple(slots), nq, nv, optional, lacks, spelling=spelling)

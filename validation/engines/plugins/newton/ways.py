@@ -7,8 +7,10 @@ from ..writing.source import Way
 
 # Warp prints what it compiles unless this is set before it starts: `quiet` of older releases, the level of newer ones.
 QUIET = "wp.config.quiet, wp.config.log_level = True, 30"
+# Warp compiles Newton's kernels on their first use: without their derivatives, and as they stand, it takes seconds.
+PLAIN = "wp.config.enable_backward, wp.config.optimization_level = False, 0"
 # Newton's import starts Warp. `b` is the builder, `m` the model.
-IMPORTS = ("import numpy as np, warp as wp", QUIET, "import newton")
+IMPORTS = ("import numpy as np, warp as wp", QUIET, PLAIN, "import newton")
 AXIS = "axis = newton.ModelBuilder.JointDofConfig"
 ROTATION = (
     "def rotation(x, y, z, w):",
@@ -70,7 +72,13 @@ value = np.r_[after.joint_q.numpy(), after.joint_qd.numpy()]""",
 )
 
 
+_BACK = (
+    f"{QV}q1, v1 = wp.zeros(m.joint_coord_count, device='cpu'), wp.zeros(m.joint_dof_count, device='cpu')\n"
+    "newton.eval_ik(m, s, q1, v1)\n"
+)
 WAYS |= {
+    "coordinates_of_links": Way("eval_fk, eval_ik", f"{_BACK}value = q1.numpy()"),
+    "speeds_of_links": Way("eval_fk, eval_ik", f"{_BACK}value = v1.numpy()"),
     "frame_poses": Way(
         "add_site",
         f"""{_Q}rotation, sensed

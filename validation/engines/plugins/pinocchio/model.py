@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...interface import Array, End, Joint, Rows, Slot, Tree, Unsupported
+from ..writing import copies
 from ..writing.source import Source, attached, series
 from . import constraints
 
@@ -189,7 +190,9 @@ class _ModelText:
             stated = (text.format(*self.place(end)) for text, end in zip(made, tree.sensors, strict=True))
             optional["sensed"] = (f"sensed = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constraints.optional(tree.constraints, self.place)
-        return Source(tuple(lines), slots, self.nq, self.nv, optional, closing=CLOSING, of_links="fs")
+        # Mimicking joints that are read again hold what is not set: they crash, or answer by chance.
+        lacks = READ_AGAIN if any(joint.mimics for link in tree.links for joint in link.joints) else ()
+        return Source(tuple(lines), slots, self.nq, self.nv, optional, lacks, CLOSING, of_links="fs")
 
 
 def _changing(tree: Tree) -> list[str]:
@@ -222,6 +225,8 @@ def write(tree: Tree) -> Source | Unsupported:
     return text.source()
 
 
+# Ways of a model that was written and read again.
+READ_AGAIN = tuple(f"{name}:saveToString" for name in copies.OF_MODELS)
 _NAMED_FRAMES = "fs = [m.getFrameId(f'f{{k}}') for k in range({})]"
 
 

@@ -31,6 +31,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     made = numbered(tree, {key: model[1] for key, model in MODELS.items()})
     if isinstance(made, Unsupported):
         return made
+    if form == "urdf written" and any(joint.mimics for link in tree.links for joint in link.joints):
+        return Unsupported("mimicking joints that are read again hold what is not set", offered=False)
     slots, nq, nv = made
     names = [link.name for link in tree.links]
     lines = ("import numpy as np", "import pinocchio as pin", f"TEXT = {text!r}", *read)
