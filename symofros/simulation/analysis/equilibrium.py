@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +25,8 @@ from symofros.simulation.analysis.force_states import rest_with_states
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
+from symofros.simulation.analysis.mass_matrix import mass_matrix
+from symofros.simulation.analysis.reach import reach_of
 from symofros.simulation.analysis.rest_search import Balance, Search, leaving
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
@@ -121,7 +124,10 @@ def equilibrium(
     u = vector("u", given_inputs(model, u), model.nu)
     moving = model.carried
     q, v = (np.asarray(x) for x in model.carry(q, v, np.zeros(model.nz) if z is None else z))
-    balance = Balance(moving, free, np.arange(model.nv, moving.nv), v, u, par, t)
+    at: Any = {"u": u, "par": par, "t": t}
+    G = moving.constraint_jacobian(q, **at) if moving.nc else np.zeros((0, moving.nv))
+    reach = reach_of(moving, G, mass_matrix(moving, q, v, **at), par)
+    balance = Balance(moving, free, np.arange(model.nv, moving.nv), v, u, par, t, reach)
     balance, end, remarks = rest_with_states(balance, q, tolerance, iterations)
     q, v, lam = end.q, end.v, end.lam
     bendings, unstable = _bendings(balance, end)

@@ -15,6 +15,7 @@ from symofros.base.arrays import Array
 from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
+from symofros.simulation.analysis.reach import Reach
 
 Indices = npt.NDArray[np.intp]
 # Rounding of a force at a configuration, relative to the forces that moving by the reach brings.
@@ -23,8 +24,6 @@ _ROUNDING = 8 * float(np.finfo(float).eps)
 _NEAR = 1e-6
 # Stiffness, of the largest, that is neutral: an axis of symmetry leaves rounding.
 _NEUTRAL = 1e-9
-# Rate at which an unstable rest is left, without damping [1/s], below which it is rounding of a neutral one.
-_SLOWEST_LEAVING = 1e-3
 # Asymmetry of the stiffness, of the largest entry, from which forces have no potential.
 _NO_POTENTIAL = 1e-6
 # Mass that the relaxation adds to every motion, of their mean: bodies without mass have none.
@@ -48,6 +47,7 @@ class Balance:
         u: Inputs (nu).
         par: Run-time parameters.
         t: Time [s].
+        reach: How far the mechanism reaches.
     """
 
     model: Model
@@ -57,6 +57,7 @@ class Balance:
     u: Array
     par: ArrayLike | None
     t: float
+    reach: Reach
 
     @property
     def n(self) -> int:
@@ -90,8 +91,8 @@ class Balance:
             _, h, Q = self.model.dynamics(q, v, self.u, par=self.par, t=self.t)
         else:
             h, Q = self.model.evaluate("rest_forces", q=q, u=self.u, par=self.par, t=self.t)
-        sizes = np.ones(self.model.nv + self.model.nc)
-        sizes[:n] = max(float(np.abs(h[:n]).max(initial=0.0)), float(np.abs(Q[:n]).max(initial=0.0)))
+        sizes = np.concatenate([np.ones(self.model.nv), self.reach.conditions])
+        sizes[:n] = np.maximum(self._largest(h), self._largest(Q))
         sizes[n : self.model.nv] = np.where(Q[n:] == 0.0, 1.0, np.abs(Q[n:]))
         return h - Q, sizes
 
@@ -103,9 +104,29 @@ class Balance:
         """Imbalance h - Q - G^T lam and residual phi (nv + nc), and the size of each condition (nv + nc)."""
         forces, sizes = self.forces(q, v)
         reaction = self.jacobian(q).T @ lam
-        sizes[: self.n] = np.maximum(sizes[: self.n], np.abs(reaction).max(initial=0.0))
+        sizes[: self.n] = np.maximum(sizes[: self.n], self._largest(reaction))
         sizes[: self.n][sizes[: self.n] == 0.0] = 1.0
         return self.imbalance(q, forces, reaction), sizes
+
+    def _largest(self, forces: Array) -> Array:
+        """The largest force by its work along the reach, as the force on each speed that does as much (n)."""
+        reach = self.reach.speeds[: self.n]
+        return np.asarray(np.abs(forces[: self.n] * reach).max(initial=0.0) / reach)
+
+    def units(self, K: Array, R: Array, sizes: Array) -> tuple[Array, Array]:
+        """Units of the conditions and of the unknowns (nv + nc), in which no choice of kilogram or metre shows (7f).
+
+        Args:
+            K: Derivative of the conditions by the unknowns (nv + nc, nv + nc).
+            R: Conditions (nv + nc).
+            sizes: Their sizes (nv + nc).
+        """
+        n, nv, reach = self.n, self.model.nv, self.reach.speeds[: self.n]
+        energies = np.abs(K[:n, :n]) * np.outer(reach, reach), np.abs(R[:n]) * reach, [1.0]
+        energy = next(size for one in energies if (size := float(np.max(one, initial=0.0))) > 0.0)
+        conditions = np.concatenate([energy / reach, sizes[n:nv], self.reach.conditions])
+        unknowns = np.concatenate([reach, np.ones(nv - n), energy / self.reach.conditions])
+        return conditions, unknowns
 
     def imbalance(self, q: Array, forces: Array, reaction: Array) -> Array:
         """Forces less reaction, and phi (nv + nc)."""
@@ -178,21 +199,20 @@ def search_rest(balance: Balance, q: Array, tolerance: float, iterations: int) -
     """
     lam = np.zeros(balance.model.nc)
     start = Search(q, balance.v, lam, *balance.residual(q, balance.v, lam), 0)
-    reach = _reach(balance.model, balance.par)
-    newton = _newton(balance, start, reach, tolerance, iterations)
+    newton = _newton(balance, start, tolerance, iterations)
     if balance.size(newton.R, newton.sizes) <= tolerance:
         return newton
-    relaxed = _relax(balance, start, reach, iterations)
-    again = None if relaxed is None else _newton(balance, relaxed, reach, tolerance, relaxed.count + iterations)
+    relaxed = _relax(balance, start, iterations)
+    again = None if relaxed is None else _newton(balance, relaxed, tolerance, relaxed.count + iterations)
     if again is None or not balance.size(again.R, again.sizes) <= tolerance:
         return newton
     return again
 
 
-def _newton(balance: Balance, start: Search, reach: Array, tolerance: float, most: int) -> Search:
+def _newton(balance: Balance, start: Search, tolerance: float, most: int) -> Search:
     """Newton's method with exact derivatives; the norm of the residual falls from the second step on."""
     model, rows, unknowns, n = balance.model, balance.rows, balance.unknowns, balance.n
-    nv, nc = model.nv, model.nc
+    nv, nc, reach = model.nv, model.nc, balance.reach.speeds
     q, v, lam, R, sizes, count = start.q, start.v, start.lam, start.R, start.sizes, start.count
     while balance.size(R, sizes) > tolerance and count < most:
         G = balance.jacobian(q)
@@ -205,18 +225,22 @@ def _newton(balance: Balance, start: Search, reach: Array, tolerance: float, mos
         brought = (np.abs(K[:n, :n]) @ reach[:n])[balance.free]  # Forces that a motion of the reach brings.
         if np.all(np.abs(R[balance.free]) <= _ROUNDING * brought):
             # A guess at rest but for rounding, where all forces vanish: nothing on the way says what small is.
-            sizes[:n] = np.maximum(sizes[:n], brought.max(initial=0.0))
+            sizes[:n] = np.maximum(sizes[:n], (brought * reach[balance.free]).max(initial=0.0) / reach[:n])
         if balance.size(R, sizes) <= tolerance:
             break
         step = np.zeros(nv + nc)
-        step[unknowns] = -_least_change(
-            K[np.ix_(rows, unknowns)], R[rows], slice(len(balance.free), len(balance.free) + nv - n)
+        of_conditions, of_unknowns = balance.units(K, R, sizes)
+        of_conditions, of_unknowns = of_conditions[rows], of_unknowns[unknowns]
+        step[unknowns] = -of_unknowns * _least_change(
+            K[np.ix_(rows, unknowns)] * of_unknowns / of_conditions[:, None],
+            R[rows] / of_conditions,
+            slice(len(balance.free), len(balance.free) + nv - n),
         )
-        step[:nv] *= _bounded(step[:n], reach[:n])
+        step[:nv] *= _bounded(step[:n], balance)
         for _ in range(HALVINGS):
             (tried, v_tried), lam_tried = balance.moved(q, v, step[:nv]), lam + step[nv:]
             R_tried, sizes_tried = balance.residual(tried, v_tried, lam_tried)
-            if np.linalg.norm(R_tried[rows]) < np.linalg.norm(R[rows]) or count == 0:
+            if np.linalg.norm(R_tried[rows] / of_conditions) < np.linalg.norm(R[rows] / of_conditions) or count == 0:
                 break
             step *= 0.5
         # Forces may vanish one and all at rest: the largest on the way there is what small is measured by.
@@ -234,7 +258,7 @@ def _least_change(K: Array, R: Array, rates: slice) -> Array:
     return np.asarray(np.linalg.lstsq(K, R, rcond=1e-13)[0])
 
 
-def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Search | None:
+def _relax(balance: Balance, start: Search, iterations: int) -> Search | None:
     """A heavily damped motion towards a stable rest: steps (7b) of the implicit Euler method, the longer the nearer.
 
     States of forces follow: their rates vanish all the way.
@@ -268,14 +292,14 @@ def _relax(balance: Balance, start: Search, reach: Array, iterations: int) -> Se
         if stable and balance.size(R, sizes) <= _NEAR:
             return Search(q, v, lam, R, sizes, count)
         size = float(np.abs(pull).max(initial=0.0))
-        if not count:
-            damping = size / LARGEST_STEP
+        if not count:  # The first step moves by the reach at most.
+            damping = float(np.abs(Y @ pull / balance.reach.speeds[free]).max(initial=0.0)) / LARGEST_STEP
         elif size:
             damping *= min(_SLOWEST, max(_FASTEST, size / before))
         before = size or before
         step = np.zeros(model.nv)
         step[free] = -Y @ np.linalg.lstsq(K + damping * np.eye(len(K)), pull)[0]
-        step *= _bounded(step, reach)
+        step *= _bounded(step[: balance.n], balance)
         for _ in range(HALVINGS):  # The forces at its end push back by half of what they push at its begin at most.
             step[balance.searched] = following.change + following.by_q @ step[free]
             ahead, _ = balance.forces(*balance.moved(q, v, step))
@@ -306,9 +330,10 @@ def leaving(balance: Balance, end: Search) -> tuple[int, float] | None:
         return None
     x = Y @ np.linalg.eigh(own)[1][:, 0]
     k = float(x @ K @ x)
-    if not k < -max(_SLOWEST_LEAVING**2, _NEUTRAL * float(np.abs(x) @ np.abs(K) @ np.abs(x))):
+    brought = float(x**2 @ (end.sizes[: model.nv] / balance.reach.speeds)[free])  # By forces that turn with the motion.
+    if not k < -_NEUTRAL * max(brought, float(np.abs(x) @ np.abs(K) @ np.abs(x))):
         return None
-    return int(free[np.argmax(np.abs(x) / _reach(model, balance.par)[free])]), float(np.sqrt(-k))
+    return int(free[np.argmax(np.abs(x) / balance.reach.speeds[free])]), float(np.sqrt(-k))
 
 
 class _Following(NamedTuple):
@@ -344,14 +369,7 @@ def _downhill(K: Array) -> tuple[Array, bool]:
     return np.asarray(K + (directions * turned) @ directions.T), stable
 
 
-def _bounded(step: Array, reach: Array) -> float:
-    """The factor that makes a step no longer than LARGEST_STEP."""
-    return min(1.0, LARGEST_STEP / max(float(np.abs(step / reach).max(initial=0.0)), 1e-300))
-
-
-def _reach(model: Model, par: ArrayLike | None) -> Array:
-    """Size of each speed's coordinate for the bound of a step (nv): the length of a beam for displacements along it."""
-    reach = np.ones(model.nv)
-    for beam in model.beams(par):
-        reach[beam.in_v] = 1.0 / beam.scale
-    return reach
+def _bounded(step: Array, balance: Balance) -> float:
+    """The factor of a step (n) that makes it no longer than LARGEST_STEP of the reach."""
+    extent = np.abs(step / balance.reach.steps[: len(step)])
+    return min(1.0, LARGEST_STEP / max(float(extent.max(initial=0.0)), 1e-300))
