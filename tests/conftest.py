@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import datetime
 import gc
 import os
@@ -19,6 +20,7 @@ import hypothesis
 import numpy as np
 import pytest
 
+from symofros.base.options import Options
 from symofros.harness import claim
 from tests import draw
 from tests.absent import CACHED, by_need, summary
@@ -50,9 +52,12 @@ sys.dont_write_bytecode = False
 
 # Compiling is half of a run's time, and half of that is optimisation. Tests of other things than generated code and its
 # compilation do without, but for files that are drawn by the day, for runs with --slow or a part of it and for
-# benchmarks, which compile as users do.
+# benchmarks, which compile as users do. Tests of motions, whose models are many and small, have them on tape,
+# with the bits of C, where they ask for no backend.
 _STATED_FLAGS = os.environ.get("SYMOFROS_CFLAGS")
 _OPTIMISED = {"generator", "native"}
+_ON_TAPE = {"blocks", "diagrams", "simulation"}
+_BACKEND = [field.name for field in dataclasses.fields(Options)].index("backend")
 
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
@@ -166,13 +171,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Flags of the compiler for a test, its fixtures and the processes that it starts."""
+    """Backend and flags of the compiler for a test and its fixtures; flags for processes that it starts, too."""
     if _STATED_FLAGS is None:
         asked = any(map(item.config.getoption, ("--slow", "--benchmark-enable")))
         file = item.path.relative_to(Path(__file__).parent)
         drawn = draw.is_optimised(file.as_posix(), item.config.getoption("--draw"))
         as_users_do = asked or drawn or file.parts[0] in _OPTIMISED
         os.environ["SYMOFROS_CFLAGS"] = "" if as_users_do else "-O0"
+        stated: Any = Options.__init__
+        backend = "tape" if file.parts[0] in _ON_TAPE and not as_users_do else "c"
+        stated.__defaults__ = (*stated.__defaults__[:_BACKEND], backend, *stated.__defaults__[_BACKEND + 1 :])
 
 
 def _keep_a_part(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -19,7 +19,7 @@ from symofros.expr.program import Function, Program
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.interpreted import InterpretedUnit
 from symofros.generator.codegen.model import Packs, model_source, model_text
-from symofros.generator.codegen.tape import machine_text, tape_functions
+from symofros.generator.codegen.tape import tape_unit
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
@@ -32,7 +32,6 @@ from symofros.runtime.build.progress import Progress
 from symofros.runtime.build.toolchain import NO_COMPILER, Toolchain
 from symofros.runtime.calls.kernel import SHARED_PARAMETERS, LaneOptions, Precision, Unit
 from symofros.runtime.calls.library import CompiledKernel, CompiledUnit
-from symofros.runtime.calls.tape import TapeUnit, tape_machine
 from symofros.runtime.cuda.device_code import DeviceCode
 from symofros.runtime.functions import Key, Rate
 from symofros.runtime.record import ModelRecord
@@ -86,7 +85,7 @@ class UnitCompiler:
         if self._background is not None and not self._is_known(requests):
             self._background.start(keys)
             with self._generating:
-                return self._tape_unit(self._programs.program(requests))
+                return tape_unit(self._programs.program(requests), self._record)
         return self._unit(requests, names, lambda: self._programs.program(requests), meanwhile)
 
     def by_vectors(self, keys: Sequence[Key], functions: Collection[str]) -> Unit:
@@ -177,7 +176,7 @@ class UnitCompiler:
         program = cache(form)
         if self._toolchain is None:
             with self._generating:
-                return self._tape_unit(program()) if self._on_tape else InterpretedUnit(program())
+                return tape_unit(program(), self._record) if self._on_tape else InterpretedUnit(program())
         in_lanes = self._in_lanes(request, program) if self._options.batch == "vector" else None
         return self._compile((request, _SINGLE), names, program, self._toolchain, None, in_lanes, meanwhile)
 
@@ -189,9 +188,6 @@ class UnitCompiler:
         assert self._toolchain is not None
         recipe = self._recipe_of((requests, _SINGLE))
         return known_library(recipe, _header(), self._toolchain, self._options.flags) is not None
-
-    def _tape_unit(self, program: Program) -> TapeUnit:
-        return TapeUnit(tape_machine(machine_text()), *tape_functions(program), self._record)
 
     def _compile(
         self,

@@ -25,7 +25,7 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.wiring import Source, Wired, located, surroundings, wire
 from symofros.errors import CompileError, DescriptionError, Problem
 from symofros.expr import Program
-from symofros.generator import FormulaInstants, InterpretedUnit, model_source, run_passes
+from symofros.generator import FormulaInstants, InterpretedUnit, model_source, run_passes, tape_unit
 from symofros.native import native_text
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build import NO_COMPILER, Toolchain, build_library, find_toolchain
@@ -153,7 +153,7 @@ class CompiledDiagram:
         actions: The actions of each part's mechanisms; None where their events have none.
         instants: Functions "due_i", "crossed_i", "inputs_i_j".
         reads_accelerations: Whether functions of instants read accelerations and multipliers of that time.
-        toolchain: Compiler and its identity.
+        toolchain: Compiler and its identity; None where the functions are on tape.
         options: Options as of `compile_diagram`; functions that are asked for later are compiled by the same options.
         sources: C texts, for people.
     """
@@ -163,7 +163,7 @@ class CompiledDiagram:
     actions: tuple[Actions | None, ...]
     instants: Unit
     reads_accelerations: bool
-    toolchain: Toolchain
+    toolchain: Toolchain | None
     options: Options
     sources: tuple[str, ...] = ()
     _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
@@ -208,24 +208,24 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
 
     Args:
         resolved: Diagram as `resolve` returns it.
-        options: Options, of which `compiler`, `flags` and `packs` count.
+        options: Options, of which `backend`, `compiler`, `flags` and `packs` count.
 
     Raises:
         DescriptionError: A part needs what is known at instants only.
-        CompileError: The options ask for another backend than C, or there is no compiler, or it failed.
+        CompileError: The options ask for NumPy, or there is no compiler, or it failed.
     """
     options = options or Options()
-    if options.backend != "c":
+    if options.backend == "interpreter":
         raise CompileError(
             Problem(
                 f"diagram '{resolved.wired.name}': backend '{options.backend}'",
                 "a loop of compiled functions",
-                "a compiled diagram is C",
+                "the functions of a compiled diagram are C or tapes",
                 "interpret it: Simulation.interpret(compiled=False)",
             )
         )
-    toolchain = find_toolchain(options.compiler)
-    if toolchain is None:
+    toolchain = find_toolchain(options.compiler) if options.backend == "c" else None
+    if toolchain is None and options.backend == "c":
         raise CompileError(replace(NO_COMPILER, remedy=f"{NO_COMPILER.remedy}, or interpret the diagram"))
     write = fuser(resolved)
     parts, acting, texts = [], [], []
@@ -255,7 +255,7 @@ def reads_accelerations(program: Program) -> bool:
 
 
 def _model(
-    resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain, options: Options
+    resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
 ) -> tuple[Model, Actions | None, str]:
     """A part as a model, what its events do, and its C text."""
     record = record_of(resolved, part)
@@ -307,9 +307,10 @@ def part_beams(resolved: Resolved, part: Part, par: Array) -> tuple[ElasticBeam,
 def unit_of(
     program: Program, record: ModelRecord, toolchain: Toolchain | None, options: Options | None = None
 ) -> tuple[Unit, str]:
-    """The functions of a program, and their C text; without a compiler NumPy interprets them."""
+    """The functions of a program, and their C text; without a compiler they are on tape if asked for, or NumPy's."""
     if toolchain is None:
-        return InterpretedUnit(program), ""
+        on_tape = options is not None and options.backend == "tape"
+        return tape_unit(program, record) if on_tape else InterpretedUnit(program), ""
     header = native_text("model/symofros_model.h")
     text = model_source(program, record, GENERATOR, packs="where they pay" if options and options.packs else "none")
     path = build_library(text, header, toolchain, options.flags if options else None)

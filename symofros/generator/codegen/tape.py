@@ -25,7 +25,8 @@ from symofros.generator.codegen import trigonometry
 from symofros.generator.codegen.solvers import ROUTINES, routine_work
 from symofros.generator.codegen.statements import WIDEST
 from symofros.native import native_text
-from symofros.runtime.calls.tape import Routine, Tape, TapeFunction
+from symofros.runtime.calls.tape import Routine, Tape, TapeFunction, TapeUnit, tape_machine
+from symofros.runtime.record import ModelRecord
 
 # Instructions past the earliest one that is left, among which the next one is chosen.
 _WINDOW = 128
@@ -47,6 +48,15 @@ def tape_functions(program: Program) -> tuple[Tape, list[TapeFunction]]:
     """The parameters' part of a staged program, and its functions, as tapes."""
     init = _tape(program.graph, ("par",), [Output("pre", (len(program.init),), program.init)], {})
     return init, [_function(program, function) for function in program.functions]
+
+
+def tape_unit(program: Program, record: ModelRecord) -> TapeUnit:
+    """The functions of a staged program on tape.
+
+    Raises:
+        CompileError: There is no machine, or it holds as many functions as it can.
+    """
+    return TapeUnit(tape_machine(machine_text()), *tape_functions(program), record)
 
 
 def _function(program: Program, function: Function) -> TapeFunction:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from symofros.base.options import Options
 from symofros.diagrams.program import compiled
 from symofros.runtime.build.toolchain import Toolchain
-from tests.diagrams.parts import ramp
+from tests.diagrams.parts import arm, ramp
 
 
 def rising() -> sf.Diagram:
@@ -30,10 +32,20 @@ def test_signals_are_compiled_with_the_diagrams_options(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(compiled, "build_library", build_library)
     flags = ("-O1", "-ffp-contract=off")
-    run = sf.Simulation(rising(), Options(flags=flags)).run(0.02, dt=0.01)
+    run = sf.Simulation(rising(), Options(backend="c", flags=flags)).run(0.02, dt=0.01)
     before = len(used)
     assert run["ramp.y"].shape[1:] == (2,)
     assert len(used) == before + 1 and set(used) == {flags}
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_tapes_have_the_bits_of_c_without_contraction(method: str) -> None:
+    """A sampled controller, whose instants are functions of their own, and an arm; nothing is compiled of them."""
+    diagram, names = arm(MODELS["double_pendulum"], 2.5e-3, q1=0.3), ("plant.q", "plant.v", "plant.a", "pd.effort")
+    exact, tape = Options(backend="c", flags=("-O1", "-ffp-contract=off")), Options(backend="tape")
+    ran = [sf.Simulation(diagram, options).run(0.05, method=method, record=1e-3) for options in (exact, tape)]
+    assert all(np.array_equal(ran[0][name], ran[1][name]) and np.ptp(ran[0][name]) > 0 for name in names)
+    assert sf.Simulation(diagram, tape).compiled.sources == ("", "")
 
 
 def test_another_backend_is_refused_immediately() -> None:
