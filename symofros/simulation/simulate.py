@@ -24,16 +24,13 @@ from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
 from symofros.simulation.results.examination.diagnosis import diagnose, too_long
 from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
-from symofros.simulation.results.notes import distinct
+from symofros.simulation.results.notes import distinct, of_steps
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
 from symofros.simulation.stepping.loops import run_own, run_sundials
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
-
-# How notes on the steps of a part begin.
-_OF_STEPS = ("step", "the step", "the tolerances")
 
 
 @checked
@@ -163,7 +160,7 @@ def _held_as_a_whole(
     whole = SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **fields)
     if not outcome.ok:
         return replace(run, outcome=too_long(whole, outcome)) if acted else run
-    note = "" if any(note.startswith(_OF_STEPS) for note in outcome.notes) else switched_run_note(whole)
+    note = "" if of_steps(outcome.notes) else switched_run_note(whole)
     return replace(run, outcome=replace(outcome, notes=(*outcome.notes, note))) if note else run
 
 

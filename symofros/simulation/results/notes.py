@@ -6,6 +6,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+# How notes on the steps of a run, or of a part of it, begin.
+_OF_STEPS = ("step", "the step", "the tolerances")
 _NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
 
 
@@ -15,6 +17,11 @@ def distinct(notes: Iterable[str]) -> tuple[str, ...]:
     for note in notes:
         first.setdefault(_NUMBER.sub("#", note), note)
     return tuple(first.values())
+
+
+def of_steps(notes: Iterable[str]) -> tuple[str, ...]:
+    """Those of notes that are about the steps of a run."""
+    return tuple(note for note in notes if note.startswith(_OF_STEPS))
 
 
 class NoteKind(NamedTuple):

@@ -87,13 +87,13 @@ class Trajectories(BatchResults):
         return np.asarray(np.vectorize(lambda status: ENDS[int(status)].kind, otypes=["U16"])(self.status))
 
     def outcome(self, index: Index) -> Outcome:
-        """Outcome of one run; its steps and inputs are examined at this call."""
+        """Outcome of one run; its steps and inputs are examined at this call, which takes as long as a single run."""
         status, states, steps = int(self.status[index]), self._states(index), int(self.steps[index])
-        bendings = self.bendings(index)
+        bendings, number = self.bendings(index), self._number(index)
         if self.examination is not None:
             if self.examination.initial.events:
-                return self.examination.outcome_with_events(status, states, self._met(index))
-            return self.examination.outcome(self._number(index), status, states, steps, bendings)
+                return self.examination.outcome_with_events(number, status, states, steps, self._met(index))
+            return self.examination.outcome(number, status, states, steps, bendings)
         t, worst = float(self.t_last[index]), largest_bending(bendings)
         if status == Status.BEYOND_THEORY and worst is not None:
             return ENDS[status].outcome(t, reason=str(worst))
@@ -203,7 +203,7 @@ class Trajectories(BatchResults):
         good = np.argwhere(self.ok)
         for row in good[:: max(1, -(-len(good) // _EXAMINED))]:
             index = tuple(map(int, row))
-            if self.examination is None or not self.steps[index] or self.examination.initial.events:
+            if self.examination is None or not self.steps[index]:
                 break
             states, steps = self._states(index), int(self.steps[index])
             notes = self.examination.notes_on_steps(self._number(index), states, steps)

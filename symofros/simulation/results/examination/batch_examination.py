@@ -19,9 +19,10 @@ from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
 from symofros.simulation.results.examination.run import ExaminedRun, Ranks
 from symofros.simulation.results.examination.step_size import examine_run
-from symofros.simulation.results.notes import distinct
+from symofros.simulation.results.notes import distinct, of_steps
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
+from symofros.simulation.simulate import run_to_its_end
 from symofros.simulation.stepping.batch_stepper import InitialStates
 from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
@@ -29,7 +30,7 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Share of the span after the last state in which an input is looked at, where steps have no length of their own.
 _NEXT = 1e-3
-_NOT_EXAMINED = "the steps of motions with events are not examined in a batch: sf.simulate says more of one"
+_NOT_EXAMINED = "a motion with events of so many steps is not examined in a batch: sf.simulate says more of it"
 # Steps of the longest run that is made once more as a whole, and how many ends of steps are kept.
 _MADE_AGAIN, _KEPT = 100_000, 4096
 
@@ -69,12 +70,16 @@ class BatchExamination:
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
         return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
 
-    def outcome_with_events(self, status: int, states: tuple[Array, ...], met: Sequence[Met]) -> Outcome:
-        """Outcome of a run of a batch with events; its steps are not examined.
+    def outcome_with_events(
+        self, i: int, status: int, states: tuple[Array, ...], steps: int, met: Sequence[Met]
+    ) -> Outcome:
+        """Outcome of a run of a batch with events, with the notes of the same motion by itself.
 
         Args:
+            i: Number of the run.
             status: Its last Status.
             states: Samples of the run and its last state: t (n), q, v, u.
+            steps: Number of steps.
             met: Events that it met.
         """
         t, end = float(states[0][-1]), ENDS[status]
@@ -82,11 +87,24 @@ class BatchExamination:
         ended = [one for one in met if self.initial.events[one.which].terminal]
         reason = f"event '{self.initial.events[ended[-1].which].name}'" if ended else ""
         outcome = failure or end.outcome(t, reason=reason if status == Status.TERMINAL_EVENT else "")
-        remarks = (*distinct(note for one in met for note in notes_of(self.single, one)), _NOT_EXAMINED)
-        return replace(outcome, notes=(*outcome.notes, *remarks))
+        notes = self._notes_by_itself(i, steps) if status != Status.RUNNING else None
+        if notes is None:
+            notes = (*distinct(note for one in met for note in notes_of(self.single, one)), _NOT_EXAMINED)
+        return replace(outcome, notes=(*outcome.notes, *notes))
+
+    def _notes_by_itself(self, i: int, steps: int) -> tuple[str, ...] | None:
+        """Notes of a single run in the place of run i that records its steps; None where these are too many."""
+        if steps > _MADE_AGAIN:
+            return None
+        start = _row(self.initial.q, i), _row(self.initial.v, i)
+        stepper, settings = self._not_begun(i), replace(self.settings, every=1, grid=np.zeros(0))
+        settings.apply(stepper)
+        return run_to_its_end(stepper, settings, *start).outcome.notes
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
+        if self.initial.events:
+            return of_steps(self._notes_by_itself(i, steps) or ())
         run = self._made_again(self._run(i, states, steps), failed=False)
         return examine_run(run, ended_well=True, failed=False)[1]
 
@@ -145,6 +163,13 @@ class BatchExamination:
         return self._single(0)
 
     def _single(self, i: int) -> Stepper:
+        stepper = self._not_begun(i)
+        self.settings.apply(stepper)
+        stepper.start(_row(self.initial.q, i), _row(self.initial.v, i), max(1, len(self.settings.grid)))
+        return stepper
+
+    def _not_begun(self, i: int) -> Stepper:
+        """One whose contacts have no modes yet."""
         inputs = self.initial.inputs
         signals = [
             (index, t, values[i] if stride else values, linear)
@@ -153,9 +178,7 @@ class BatchExamination:
         plan = replace(inputs.plan, constant=_row(inputs.constant, i), signals=signals)
         model, par = self.model.with_precision("double"), _row(self.initial.par, i)
         stepper = Stepper(model, self.settings.method, plan, self.initial.events, par)
-        self.settings.apply(stepper)
         stepper.set_span(self.settings.span)
-        stepper.start(_row(self.initial.q, i), _row(self.initial.v, i), max(1, len(self.settings.grid)))
         return stepper
 
     def __getstate__(self) -> dict[str, Any]:
