@@ -137,6 +137,47 @@ def test_what_is_taken_at_the_end_of_a_step_is_the_derivative_of_forces(name: st
     assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
 
 
+CONTROLLED = ["affine gains", "muscles", "actuators clamped at their joints", "actuators at their limits"]
+
+
+@pytest.mark.parametrize("name", [*CONTROLLED, "actuators disabled", "actuators on tendons"])
+def test_what_controls_make_is_the_difference_of_forces(name: str) -> None:
+    tree = TREES[name]
+
+    def moved(number: int, by: float) -> Tree:
+        one = tree.actuators[number]
+        muscle = one.muscle._replace(activation=one.muscle.activation + by) if one.muscle else None
+        changed = replace(one, control=one.control + by, muscle=muscle)
+        return replace(tree, actuators=(*tree.actuators[:number], changed, *tree.actuators[number + 1 :]))
+
+    # A power of two, so that controls stay exact; forces are piecewise linear in controls.
+    step, truth = 2.0**-20, _truth(tree)
+    t, s = truth
+    columns = []
+    for number in range(len(tree.actuators)):
+        ends = [_truth(moved(number, by))[0] for by in (-step, step)]
+        before, after = (digits(one.value(lambda t, s: t.own.actuated(s.q, s.v), s)) for one in ends)
+        columns.append((after - before) / (2.0 * step))
+    want = digits(t.value(lambda t, s: t.own.by_controls(s.q, s.v), s))
+    np.testing.assert_allclose(np.array(columns).T, want, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", CONTROLLED)
+def test_a_control_that_acts_beyond_its_limits_is_a_red_cell(name: str) -> None:
+    """The derivatives of the same actuators without limits, or of other gains."""
+    tree, function = TREES[name], "step_dampers_implicit_control_derivative"
+    joints = tuple(replace(link, joints=(replace(link.joints[0], force_limits=()),)) for link in tree.links)
+    loose = tuple(replace(one, control_limits=(), force_limits=(), gain=2.0 * one.gain) for one in tree.actuators)
+    free = tuple(
+        replace(one, muscle=one.muscle._replace(peak=2.0 * one.muscle.peak)) if one.muscle else one for one in loose
+    )
+    (one,), (other,) = (
+        _judged("mujoco", at, function).values() for at in (tree, replace(tree, links=joints, actuators=free))
+    )
+    assert one.want is not None and one.cell.verdict == other.cell.verdict == "right"
+    assert judge("planted", tree, function, np.asarray(other.answer.value), one.want).verdict == "wrong"
+
+
 def test_a_state_of_another_actuator_is_a_red_cell() -> None:
     tree = TREES["affine gains of activations before a motor"]
     first, second, *others = tree.actuators

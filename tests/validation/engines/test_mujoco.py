@@ -31,6 +31,10 @@ FAULTS = [
     (tree_of("three hinges"), "link_velocities_seen", "link_velocities"),
     (acting.trees()["springs on hinges"], "inverse_dynamics_acted", "inverse_dynamics:mj_rne"),
     (acting.trees()["dampers on hinges"], "inverse_dynamics_acted", "inverse_dynamics:mj_rne"),
+    (acting.trees()["actuators on tendons"], "tendon_lengths:tendonpos", "tendon_speeds:tendonvel"),
+    (acting.trees()["actuators at their limits"], "actuator_forces:actuatorfrc", "actuator_lengths:actuatorpos"),
+    (acting.trees()["motors"], "actuator_lengths:actuatorpos", "actuator_speeds:actuatorvel"),
+    (acting.trees()["actuators clamped at their joints"], "actuated_forces:jointactuatorfrc", "passive_forces"),
 ]
 
 

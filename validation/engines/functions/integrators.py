@@ -41,3 +41,8 @@ STEPS["step_dampers_implicit_derivative"] = Function(
     steps.derivative(STEPS["step_dampers_implicit"].truth),
     ("dampers", "springs", "tendons", "actuators"),
 )
+STEPS["step_dampers_implicit_control_derivative"] = Function(
+    "derivative of q+ along speeds and v+ of that step by the controls (2 nv, nu)",
+    steps.by_controls(STEPS["step_dampers_implicit"].truth),
+    ("actuators",),
+)

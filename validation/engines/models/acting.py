@@ -227,9 +227,9 @@ def _plain_actuators() -> list[Tree]:
     off = replace(brake, is_disabled=True)
     loose = Link("c", -1, (Joint("free"),), 1.0, ORIGIN, inertia)
     return [
-        Tree("velocity feedback", links, actuators=(brake,)),
         # What one step's length changes is large: singles show it, too.
         Tree("velocity feedback after a free body", (loose, links[0]), actuators=(replace(brake, gear=16.0),)),
+        Tree("velocity feedback", links, actuators=(brake,)),
         Tree("velocity feedback disabled", links, actuators=(off,)),
         Tree("velocity feedback disabled beside others", links, actuators=(off, replace(brake, link="b"))),
         Tree("servo disabled beside others", links, actuators=(brake, replace(off, link="b", bias=(0.0, -1.5, 0.0)))),

@@ -138,39 +138,40 @@ def _cable(name: str, *via: str) -> Tree:
 
 
 def trees() -> dict[str, Tree]:
-    """All of them, by name."""
+    """All of them, by name: first one of each kind."""
+    anchored = _by_bodies()
     made = (
         _bound("point between branches", "point", ("a2", "b2"), 3, 3),
-        _bound("point held in the world", "point", ("a3", ""), 4),
-        _bound("point between branches of a free base", "point", ("a2", "b2"), 3, 3, free=True),
-        _bound("point of a free base's branch on the world", "point", ("a2", ""), 3, free=True),
         _bound("weld between branches", "weld", ("a3", "b3"), 4, 4),
-        _bound("weld on the world", "weld", ("a6", ""), 7),
-        _bound("weld of two branches on a free base", "weld", ("a3", "b3"), 4, 4, free=True),
-        _bound("weld of a free base's branch on the world", "weld", ("a1", ""), 2, free=True),
+        replace(anchored, name="anchor of a connect constraint changed", changed="anchor"),
+        _sensed("sensors on branches that a connect constraint binds", "point", ("a2", "b2"), 3, 3),
+        _coupled("coupling of two hinges", 3, 1.0, -0.5),
         _scaled("weld between branches with a torque scale", "b3", 4, 4),
-        _scaled("weld on the world with a torque scale", "", 7),
+        _polynomial("polynomial of a hinge, of degree two", Joint("revolute", axis=OBLIQUE), 0.125, -0.5, 0.25),
+        _cable("cable of two points", "a2", "b1"),
         _lone_body(),
         _pair("weld"),
         _pair("point"),
-        _sensed("sensors on branches that a connect constraint binds", "point", ("a2", "b2"), 3, 3),
-        _sensed("sensors on a chain that a connect constraint holds in the world", "point", ("a3", ""), 4),
-        _sensed("sensors on branches that a weld constraint binds", "weld", ("a3", "b2"), 4, 3),
-        _by_bodies(),
-        replace(_by_bodies(), name="anchor of a connect constraint changed", changed="anchor"),
-        _two_points(),
         _four_bar(),
+        anchored,
+        _bound("point held in the world", "point", ("a3", ""), 4),
+        _bound("weld on the world", "weld", ("a6", ""), 7),
+        _sensed("sensors on branches that a weld constraint binds", "weld", ("a3", "b2"), 4, 3),
+        _bound("point between branches of a free base", "point", ("a2", "b2"), 3, 3, free=True),
+        _bound("weld of two branches on a free base", "weld", ("a3", "b3"), 4, 4, free=True),
+        _sensed("sensors on a chain that a connect constraint holds in the world", "point", ("a3", ""), 4),
+        _bound("point of a free base's branch on the world", "point", ("a2", ""), 3, free=True),
+        _bound("weld of a free base's branch on the world", "weld", ("a1", ""), 2, free=True),
+        _scaled("weld on the world with a torque scale", "", 7),
+        _two_points(),
         _of_joint("point beyond a slide", Joint("prismatic", axis=OBLIQUE)),
         _of_joint("point beyond a ball", Joint("ball")),
         _of_joint("point beyond a universal joint", Joint("universal", axis=(1.0, 0.0, 0.0), second=_Y)),
-        _coupled("coupling of two hinges", 3, 1.0, -0.5),
         _coupled("coupling of four hinges", 4, 1.0, -0.5, 0.25, 2.0),
-        _polynomial("polynomial of a hinge, of degree two", Joint("revolute", axis=OBLIQUE), 0.125, -0.5, 0.25),
         _polynomial(
             "polynomial of a hinge, of degree four", Joint("revolute", axis=OBLIQUE), -0.25, 0.5, 0.125, -0.25, 0.0625
         ),
         _polynomial("polynomial of a slide", Joint("prismatic", axis=OBLIQUE), 0.25, 0.0, -1.5, 0.5),
-        _cable("cable of two points", "a2", "b1"),
         _cable("cable over four points", "a2", "a0", "", "b1"),
     )
     return {tree.name: tree for tree in made}

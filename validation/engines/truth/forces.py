@@ -164,13 +164,33 @@ class Forces:
             if not self.is_saturated(number, q, v) and not actuator.is_disabled:
                 b1, b2 = self._slopes(actuator, q, v, number)
                 made.append((b1 * np.outer(J, J), b2 * np.outer(J, J)))
-        total = self._together(q, v)
-        sides = {place: exact(limits) for place, limits in self._limits.items()}
-        bound = [place for place, (low, high) in sides.items() if not low < total[place] < high]
+        bound = self._bound(q, v)
         for by_length, by_speed in made:
             by_length[bound], by_speed[bound] = zeros(self._nv), zeros(self._nv)
             D, K = D - by_speed, K - by_length
         return D, K
+
+    def _bound(self, q: Exact, v: Exact) -> list[int]:
+        """Speeds along which actuators together are at a limit of their joint."""
+        total = self._together(q, v)
+        sides = {place: exact(limits) for place, limits in self._limits.items()}
+        return [place for place, (low, high) in sides.items() if not low < total[place] < high]
+
+    def by_controls(self, q: Exact, v: Exact) -> Exact:
+        """dQ/du of actuators without states (nv, nu); none of what is disabled or at a limit."""
+        made = zeros(self._nv, len(self.tree.actuators))
+        for number, (one, (length, J)) in enumerate(zip(self.tree.actuators, self.transmissions(q), strict=True)):
+            control = exact(one.control)[()]
+            if one.is_disabled or self.is_saturated(number, q, v) or control != clipped(control, one.control_limits):
+                continue
+            g1, g2 = exact(one.slopes)
+            gain = exact(one.gain)[()] + g1 * length + g2 * (J @ v)
+            if one.muscle is not None:
+                pulls = [_pull(one.muscle, exact(driven)[()], length, J @ v) for driven in (0.0, 1.0)]
+                gain = pulls[1] - pulls[0]
+            made[:, number] = gain * J
+        made[self._bound(q, v)] = zeros(len(self.tree.actuators))
+        return made
 
     def _slopes(self, actuator: Actuator, q: Exact, v: Exact, number: int) -> tuple[Exact, Exact]:
         """The derivatives of an actuator's force by its length and by its speed."""

@@ -61,11 +61,25 @@ def derivative(step: TruthOf) -> TruthOf:
     def function(t: Truth, s: Point) -> Exact:
         by_q = t.kinematics.tangent(lambda q: step(t, s._replace(q=q)), s.q)
         by_v = t.along_speeds(lambda v: step(t, s._replace(v=v)), s.v)
-        columns, end = np.concatenate([by_q, by_v], axis=1), step(t, s)
-        nq = len(s.q)
-        return np.concatenate([to_tangent(t, end[:nq], columns[:nq]), columns[nq:]])
+        return _along_speeds(t, step(t, s), np.concatenate([by_q, by_v], axis=1))
 
     return function
+
+
+def by_controls(step: TruthOf) -> TruthOf:
+    """The derivative (2 nv, nu) of where a step leads, along speeds, by the actuators' controls."""
+
+    def function(t: Truth, s: Point) -> Exact:
+        by_forces = t.along_speeds(lambda tau: step(t, s._replace(tau=tau)), s.tau)
+        return _along_speeds(t, step(t, s), by_forces @ t.own.by_controls(s.q, s.v))
+
+    return function
+
+
+def _along_speeds(t: Truth, end: Exact, columns: Exact) -> Exact:
+    """Derivatives of the coordinates and speeds after a step, with coordinates along speeds (2 nv, n)."""
+    nq = len(end) - t.nv
+    return np.concatenate([to_tangent(t, end[:nq], columns[:nq]), columns[nq:]])
 
 
 def along(t: Truth, q: Exact, u: Exact) -> Exact:

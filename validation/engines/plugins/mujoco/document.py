@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from ...interface import Array, Constraint, Joint, Slot, Tendon, Tree, Unsupported
+from ...interface import Array, Joint, Slot, Tree, Unsupported
 from ..writing.source import series
 from . import elements as beside
 
@@ -64,9 +64,6 @@ class _Bodies:
             self.children[link.parent].append(k)
         self.slots: dict[int, tuple[Slot, ...]] = {}
         self.nq = self.nv = 0
-        lines: tuple[Constraint | Tendon, ...] = (*tree.constraints, *tree.tendons)
-        self.coupled = {end.link for one in lines if one.kind in ("coupling", "polynomial") for end in one.ends}
-        self.coupled |= {one.link for one in tree.actuators}
 
     def element(self, k: int) -> str | Unsupported:
         """The element of a link and of what it carries."""
@@ -123,7 +120,8 @@ class _Bodies:
             own.append(Slot(chart, tuple(q), tuple(v)))
             self.nq, self.nv = q.stop, v.stop
             armature = f' armature="{joint.armature[0]!r}"' if joint.armature else ""
-            named = f' name="{link.name}"' if link.name in self.coupled else ""
+            # A joint alone has its link's name, by which lines and sensors find it.
+            named = f' name="{_name(link.name)}"' if len(steps) == len(_elements(joint)) == 1 else ""
             for kind, axis in _elements(joint):
                 about = f' axis="{_text(axis)}"' if kind in ("hinge", "slide") else ""
                 elements.append(f'<joint{named} type="{kind}"{about}{armature}{beside.forces(joint)}/>')

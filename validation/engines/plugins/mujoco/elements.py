@@ -130,7 +130,7 @@ def _actuator(number: int, one: Actuator) -> str:
     limits = f' ctrllimited="true" ctrlrange="{_text(one.control_limits)}"' if one.control_limits else ""
     limits += f' forcelimited="true" forcerange="{_text(one.force_limits)}"' if one.force_limits else ""
     group = ' group="1"' if one.is_disabled else ""
-    return f"<{element} {_driven(number, one)}{limits}{group}{_activation(one)}/>"
+    return f'<{element} name="a{number}" {_driven(number, one)}{limits}{group}{_activation(one)}/>'
 
 
 _DYNAMICS = {"exact filter": "filterexact"}

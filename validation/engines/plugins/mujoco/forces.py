@@ -42,7 +42,8 @@ def transition(step: float, settings: str = "") -> str:
     """Derivatives of Euler's step, with options of a model of its own."""
     return (
         f"{COPY}n.opt.timestep = {step}\n{settings}d.qfrc_applied[:] = tau\n{QV}A = np.zeros([2 * m.nv + m.na] * 2)\n"
-        "mj.mjd_transitionFD(n, d, 1e-6, True, A, None, None, None)\nA = A[:2 * m.nv, :2 * m.nv]\n"
+        "B = np.zeros((2 * m.nv + m.na, m.nu)) if m.nu else None\n"
+        "mj.mjd_transitionFD(n, d, 1e-6, True, A, B, None, None)\nA = A[:2 * m.nv, :2 * m.nv]\n"
     )
 
 
@@ -69,6 +70,9 @@ WAYS = {
     "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     "step_dampers_implicit_derivative": Way(
         "mjd_transitionFD", f"{transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
+    ),
+    "step_dampers_implicit_control_derivative": Way(
+        "mjd_transitionFD", f"{transition(STEP)}value = B[:2 * m.nv]", Steps("step_dampers_implicit", 1e-6, 1e-9)
     ),
     # Tendons and actuators that couple joints are solved for by iterations.
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),

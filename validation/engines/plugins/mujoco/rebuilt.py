@@ -138,3 +138,35 @@ SENSED = {
     "kinetic_energy:e_kinetic": Way("e_kinetic", f"{QV}value = d.sensor('E_KINETIC').data[0]", built=_OF_ALL),
     "potential_energy:e_potential": Way("e_potential", f"{QV}value = d.sensor('E_POTENTIAL').data[0]", built=_OF_ALL),
 }
+
+# A sensor of one kind on each tendon, actuator or joint of one speed, in their order.
+_LINED = """
+def made(text):
+    m = mj.MjModel.from_xml_string(text)
+    added = ''.join(f'<KIND OF="{m.OF(int(k)).name}"/>' for k in PLACES)
+    return mj.MjModel.from_xml_string(text.replace('</mujoco>', f'<sensor>{added}</sensor></mujoco>'))"""
+_PLACES = {
+    "tendon": "range(m.ntendon)",
+    "actuator": "range(m.nu)",
+    "joint": "np.flatnonzero(m.jnt_type > int(mj.mjtJoint.mjJNT_BALL))",
+}
+
+
+def _lined(kind: str, of: str, constant: str) -> Way:
+    """What sensors of a kind read; of joints along the speeds, zero along those of others."""
+    text = _LINED.replace("KIND", kind).replace("OF", of).replace("PLACES", _PLACES[of])
+    read = f"d.sensordata[m.sensor_adr[m.sensor_type == mj.mjtSensor.mjSENS_{constant}]]"
+    value = "value = "
+    if of == "joint":
+        value = f"value = np.zeros(m.nv)\nvalue[m.jnt_dofadr[{_PLACES[of]}]] = "
+    return Way(kind, QV + value + read, built=((_READ, "made("), (_IMPORT, _IMPORT + text)))
+
+
+SENSED |= {
+    "tendon_lengths:tendonpos": _lined("tendonpos", "tendon", "TENDONPOS"),
+    "tendon_speeds:tendonvel": _lined("tendonvel", "tendon", "TENDONVEL"),
+    "actuator_lengths:actuatorpos": _lined("actuatorpos", "actuator", "ACTUATORPOS"),
+    "actuator_speeds:actuatorvel": _lined("actuatorvel", "actuator", "ACTUATORVEL"),
+    "actuator_forces:actuatorfrc": _lined("actuatorfrc", "actuator", "ACTUATORFRC"),
+    "actuated_forces:jointactuatorfrc": _lined("jointactuatorfrc", "joint", "JOINTACTFRC"),
+}
