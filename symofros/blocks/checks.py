@@ -157,7 +157,11 @@ def weights(name: str, field: str, values: Any, size: int, *, positive: bool = F
     numbers(name, field, given, ((), (size,), (size, size))[min(given.ndim, 2)])
     matrix = given if given.ndim == 2 else np.diag(np.broadcast_to(given, size))
     least = np.linalg.eigvalsh(0.5 * (matrix + matrix.T)).min(initial=np.inf)
-    if not np.allclose(matrix, matrix.T) or least < 0.0 or (positive and least == 0.0):
+    symmetric = np.allclose(matrix, matrix.T)
+    if not symmetric or least < 0.0 or (positive and least == 0.0):
         rule = f"symmetric and {'positive' if positive else 'not negative'}"
-        raise refuse(name, f"{field} are not weights", f"least eigenvalue {least:g}", rule, "choose others")
+        found = f"least eigenvalue {least:g}"
+        if not symmetric:
+            found = f"entries that differ from the mirrored ones by up to {np.abs(matrix - matrix.T).max():g}"
+        raise refuse(name, f"{field} are not weights", found, rule, "choose others")
     return matrix

@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 from scipy import linalg
@@ -38,6 +39,31 @@ def test_gains_match_scipy(size: int, scale: float, rng: np.random.Generator) ->
         expected = np.linalg.solve(R + Bc.T @ X @ Bc, Bc.T @ X @ Ac)
         found = sampled_gain(Ad, Bd, Q, R)
         np.testing.assert_allclose(found, expected, rtol=1e-8, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("size", [2, 4, 6, 8])
+@pytest.mark.parametrize("cost", [1e-8, 0.1, 1e8])
+def test_gains_of_integrators_keep_their_digits(size: int, cost: float) -> None:
+    """A craft that tilts to move has four in a row. p(s) p(-s) = (-s^2)^n + sum (-s^2)^i/cost, p of the loop."""
+    A, B = np.diag(np.ones(size - 1), 1), np.eye(size)[:, -1:]
+    found = continuous_gain(A, B, np.eye(size), np.array([[cost]]))
+    squares = [(-1.0) ** size, 0.0] + [x for i in reversed(range(size)) for x in ((-1.0) ** i / cost, 0.0)]
+    with mpmath.workdps(40):
+        poles = [s for s in mpmath.polyroots(squares[:-1], maxsteps=500, extraprec=200) if s.real < 0.0]
+        p = [mpmath.mpc(1)]
+        for pole in poles:
+            p = [a - pole * b for a, b in zip([*p, 0], [0, *p], strict=True)]
+    np.testing.assert_allclose(found, [[float(x.real) for x in p[:0:-1]]], rtol=1e-11)
+
+
+@pytest.mark.parametrize("rates", [(1.0, 2.0), (0.1, 1e4), (1.0, 1e3)])
+def test_gains_of_oscillators_are_those_of_each(rates: tuple[float, ...]) -> None:
+    """x'' = -w^2 x + u: k = sqrt(w^4 + 1) - w^2 and sqrt(1 + 2 k)."""
+    w2 = np.square(rates)
+    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.diag(w2), np.zeros((2, 2))]])
+    found = continuous_gain(A, np.eye(4)[:, 2:], np.eye(4), np.eye(2))
+    k = 1.0 / (w2 + np.sqrt(w2**2 + 1.0))
+    np.testing.assert_allclose(found, np.hstack([np.diag(k), np.diag(np.sqrt(1.0 + 2.0 * k))]), rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize(("size", "scale", "period"), [(1, 1.0, 0.5), (4, 1.0, 0.3), (4, 30.0, 0.05)])
@@ -168,6 +194,7 @@ def crank_driven() -> sf.System:
 @pytest.mark.parametrize(
     ("fields", "found"),
     [
+        ({"state_weights": np.eye(4) + np.eye(4, k=1)}, "mirrored ones by up to 1"),
         ({"state_weights": [1, 2]}, "(2,)"),
         ({"input_weights": 0.0}, "0"),
         ({"model": "dead"}, "no inputs"),
