@@ -22,10 +22,13 @@ from symofros.simulation.inputs import InputPlan
 # which differences resolve to some 1e-6; of samples, whose chords miss a tenth of a sine with eight samples a period.
 OF_FORMULAS, OF_SAMPLES = 1e-3, 0.2
 # Instants at which formulas are looked at; half the way between the two values of a difference, as a share of the run,
-# and the longer one that a contradiction must stand.
-_INSTANTS, _HALF, _LONGER = 16, 1e-7, 1e-5
+# and the longer one that a contradiction must stand; its least share of the time, whose rounding is a 1e-4 of it.
+_INSTANTS, _HALF, _LONGER, _OF_TIME = 16, 1e-7, 1e-5, 4e-12
 # Intervals between samples that are looked at, evenly chosen of all.
 _INTERVALS = 400
+# Parts of a run in which formulas are asked for jumps; share of what the position changes by from which one counts; how
+# many are followed, what of a jump is left where it is, and how near that is, as a share of the part.
+_PARTS, _JUMP, _FOLLOWED, _LEFT, _BESIDE = 128, 1e-4, 4, 0.5, 1e-9
 
 
 class Rated(NamedTuple):
@@ -67,6 +70,44 @@ class Contradiction(NamedTuple):
     stated: float
     found: float
 
+    @property
+    def problem(self) -> Problem:
+        """In words."""
+        return Problem(
+            f"inputs '{self.position}' and '{self.rate}' prescribe no one motion",
+            f"at t = {self.t:.4g} s '{self.rate}' is {self.stated:.4g}, and '{self.position}' changes at "
+            f"{self.found:.4g}",
+            f"'{self.rate}' is the rate of '{self.position}', and the joint is where '{self.position}' says",
+            f"give '{self.position}' as a formula of t alone, whose rates follow ('0.3*t' for a speed of 0.3), or "
+            "rates that belong to it",
+        )
+
+
+class Jump(NamedTuple):
+    """Where a prescribed position or speed jumps.
+
+    Attributes:
+        name: Name of the input.
+        t: Time [s].
+        size: What it changes by.
+    """
+
+    name: str
+    t: float
+    size: float
+
+    @property
+    def problem(self) -> Problem:
+        """In words."""
+        return Problem(
+            f"input '{self.name}' prescribes a motion that jumps",
+            f"at t = {self.t:.6g} s '{self.name}' changes by {self.size:.4g} within an instant",
+            "prescribed positions and speeds are continuous: a jump takes an impulse, which moves what is free, and no "
+            "step has one",
+            "round the corner, as by a ramp (1 - cos(pi*t/T))/2 that begins and ends at rest; or end the run there and "
+            "begin another one from the speeds after the impulse",
+        )
+
 
 def rated_inputs(record: ModelRecord) -> list[Rated]:
     """The inputs that are rates of others: of each prescribed joint."""
@@ -82,7 +123,7 @@ def rated_inputs(record: ModelRecord) -> list[Rated]:
 
 def contradiction(
     model: Model, plan: InputPlan, inputs_at: Callable[[float], Array], span: tuple[float, float]
-) -> Contradiction | None:
+) -> Contradiction | Jump | None:
     """The first prescribed motion whose inputs contradict each other; of functions in Python nothing is known before.
 
     Args:
@@ -104,27 +145,17 @@ def contradiction(
             found = found and _compared(model, rated, inputs_at, _around_instants(span, _LONGER), OF_FORMULAS)
         if found is not None:
             return found
-    return None
+    return _jump(model, plan, inputs_at, span)
 
 
-def refuse_contradiction(found: Contradiction | None) -> None:
+def refuse_contradiction(found: Contradiction | Jump | None) -> None:
     """Refuse a motion whose inputs contradict each other.
 
     Raises:
         SymofrosError: It does.
     """
-    if found is None:
-        return
-    raise SymofrosError(
-        Problem(
-            f"inputs '{found.position}' and '{found.rate}' prescribe no one motion",
-            f"at t = {found.t:.4g} s '{found.rate}' is {found.stated:.4g}, and '{found.position}' changes at "
-            f"{found.found:.4g}",
-            f"'{found.rate}' is the rate of '{found.position}', and the joint is where '{found.position}' says",
-            f"give '{found.position}' as a formula of t alone, whose rates follow ('0.3*t' for a speed of 0.3), or "
-            "rates that belong to it",
-        )
-    )
+    if found is not None:
+        raise SymofrosError(found.problem)
 
 
 def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
@@ -143,6 +174,55 @@ def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
                 f"inputs '{position}' and '{rate}' prescribe no one motion: '{rate}' is not the rate of '{position}'",
             )
     return ()
+
+
+def _jump(model: Model, plan: InputPlan, inputs_at: Callable[[float], Array], span: tuple[float, float]) -> Jump | None:
+    """The first jump of a position or speed that a formula prescribes: its change is no integral of its rate (3f)."""
+    sampled = {index for index, *_ in plan.signals}
+    pairs = [
+        [rated.position[0], rated.rate[0]]
+        for rated in rated_inputs(model.record)
+        if len(rated.position) == 1 and rated.position[0] in plan.formulas and rated.rate[0] not in sampled
+    ]
+    if not pairs:
+        return None
+    times = np.linspace(*span, 2 * _PARTS + 1)
+    values = np.array([inputs_at(t) for t in times.tolist()])  # Rows are copied: inputs share their memory.
+    jumps = list[Jump]()
+    for pair in pairs:
+        p, s = values[:, pair].T
+        if not (np.isfinite(p).all() and np.isfinite(s).all()):  # Which the run says.
+            continue
+        missed = np.abs(np.diff(p[::2]) - (times[2] - times[0]) / 6.0 * (s[:-1:2] + 4.0 * s[1::2] + s[2::2]))
+        counts = _JUMP * float(np.abs(p - p[0]).max())
+        for k in np.argsort(-missed, kind="stable")[:_FOLLOWED]:
+            if missed[k] > counts > 0.0:
+                t, size = _followed(inputs_at, pair, float(times[2 * k]), float(times[2 * k + 2]))
+                if abs(size) > max(_LEFT * missed[k], counts):
+                    jumps.append(Jump(model.names.u[pair[0]], t, size))
+    return min(jumps, key=lambda jump: jump.t, default=None)
+
+
+def _followed(inputs_at: Callable[[float], Array], pair: Sequence[int], a: float, b: float) -> tuple[float, float]:
+    """Where in an interval a value leaves the integral of its rate most, by halving, and by how much it changes there.
+
+    Args:
+        inputs_at: All inputs at a time.
+        pair: Indices of the value and of its rate.
+        a: Start [s].
+        b: End [s].
+    """
+    beside = max(_BESIDE * (b - a), 8.0 * float(np.spacing(max(abs(a), abs(b)))))
+    (p_a, s_a), (p_b, s_b) = inputs_at(a)[pair], inputs_at(b)[pair]
+    while b - a > beside:
+        m = 0.5 * (a + b)
+        p_m, s_m = inputs_at(m)[pair]
+        before = abs(p_m - p_a - 0.5 * (m - a) * (s_a + s_m))
+        if not before <= abs(p_b - p_m - 0.5 * (b - m) * (s_m + s_b)):
+            b, p_b, s_b = m, p_m, s_m
+        else:
+            a, p_a, s_a = m, p_m, s_m
+    return 0.5 * (a + b), float(inputs_at(b + beside)[pair[0]] - inputs_at(a - beside)[pair[0]])
 
 
 def _compared(
@@ -183,7 +263,7 @@ def _largest(means: Array, stated: Array) -> float:
 def _around_instants(span: tuple[float, float], share: float) -> list[tuple[float, float]]:
     """Intervals around instants that are drawn, the same for the same run; half of one: a share of the run."""
     begin, end = span
-    half = max(share * (end - begin), 1e-9 * max(abs(begin), abs(end)))
+    half = max(share * (end - begin), _OF_TIME * max(abs(begin), abs(end)))
     instants = begin + half + (end - begin - 2.0 * half) * np.random.default_rng(0).random(_INSTANTS)
     return [(float(t - half), float(t + half)) for t in instants]
 

@@ -24,6 +24,7 @@ from symofros.simulation.inputs import Inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import (
     Contradiction,
+    Jump,
     contradiction,
     rated_inputs,
     refuse_contradiction,
@@ -181,7 +182,7 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
 
 def _contradiction(
     model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper
-) -> Contradiction | None:
+) -> Contradiction | Jump | None:
     """The first prescribed motion whose inputs contradict each other: of the first trajectory, and of constants."""
     q, v, plan = initial.q[0], initial.v[0], initial.inputs.plan
     sampled = {index for index, *_ in plan.signals} | plan.formulas.keys()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import Any
 
@@ -80,6 +81,49 @@ def test_inconsistent_prescribed_motions_are_refused(how: str) -> None:
     for simulate, q0 in ((sf.simulate, np.zeros(1)), (sf.simulate_batch, np.zeros((2, 1)))):
         with pytest.raises(sf.SymofrosError, match="prescribe no one motion"):
             simulate(crane(), q0, t_end=2.0, u=BAD[how])
+
+
+JUMPS = {
+    "0.1*abs(t - 1)": ("dth", 1.0, 0.2),
+    "min(t, 0.73)": ("dth", 0.73, -1.0),
+    "max(0, t - 0.37)": ("dth", 0.37, 1.0),
+    "0.1*sign(t - 1.2)": ("th", 1.2, 0.2),
+    "1e3 + sin(2*t) + 0.01*abs(t - 1.5)": ("dth", 1.5, 0.02),
+    "abs(sin(7*t))": ("dth", np.pi / 7, 14.0),
+}
+SMOOTH = [
+    "0.4*(1 - cos(pi*min(t, 1)))",
+    "max(0, t - 1)^2",
+    "abs(t - 1)^3",
+    "1e6 + 0.001*sin(t)",
+    "1e8*t",
+    "sin(300*t)",
+    "exp(-1e4*(t - 1)^2)",
+    "tanh(500*(t - 1.1))",
+    "0.3",
+]
+
+
+@pytest.mark.parametrize("law", JUMPS)
+def test_prescribed_motions_that_jump_are_refused(law: str) -> None:
+    """A hoist that stops within an instant throws its bob, by an impulse that no step has: at rest it stayed."""
+    name, t, size = JUMPS[law]
+    for simulate, q0 in ((sf.simulate, np.zeros(1)), (sf.simulate_batch, np.zeros((2, 1)))):
+        with pytest.raises(sf.SymofrosError, match="prescribes a motion that jumps") as refused:
+            simulate(crane(), q0, t_end=2.0, u={"th": law})
+        assert f"at t = {t:.6g} s '{name}' changes by {size:.4g} " in str(refused.value)
+    stated = {"th": "min(t, 0.73)", "dth": "0.5 + 0.5*sign(0.73 - t)", "ddth": "0"}
+    with pytest.raises(sf.SymofrosError, match="jumps"):
+        sf.simulate(crane(), t_end=2.0, u=stated)
+
+
+@pytest.mark.parametrize("law", SMOOTH)
+@pytest.mark.parametrize("t0", [0.0, 1e7])
+def test_motions_that_bend_sharply_are_no_jumps(law: str, t0: float) -> None:
+    """Accelerations may jump, speeds may change fast."""
+    moved = re.sub(r"\bt\b", f"(t - {t0!r})", law)
+    run = sf.simulate(crane(), t0=t0, t_end=t0 + 2.0, u={"th": moved}, dt=0.05)
+    assert run.outcome.kind == "finished"
 
 
 @pytest.mark.parametrize("axis", "xyz")
