@@ -7,13 +7,16 @@ import datetime
 import gc
 import os
 import shutil
+import subprocess
 import sys
 import zlib
 from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import hypothesis
@@ -59,6 +62,16 @@ _OPTIMISED = {"generator", "native"}
 _ON_TAPE = {"blocks", "diagrams", "simulation"}
 _BACKEND = [field.name for field in dataclasses.fields(Options)].index("backend")
 
+# What every worker needs, at a first run ten seconds of a compiler each: made while they collect.
+_AHEAD = """
+from concurrent.futures import ThreadPoolExecutor
+from symofros.generator.codegen.tape import machine_text
+from symofros.runtime.calls.binding import native_library
+from symofros.runtime.calls.tape import tape_machine
+with ThreadPoolExecutor() as pool:
+    pool.submit(native_library), pool.submit(tape_machine, machine_text())
+"""
+
 # The browser's tests name Playwright's types as they are collected.
 _PLAYWRIGHT = find_spec("playwright") is not None
 collect_ignore = [] if _PLAYWRIGHT else ["studio/editor/browser"]
@@ -89,6 +102,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     gc.disable()
     if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
         session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))
+        if _folders(session.config):
+            ahead = partial(subprocess.run, [sys.executable, "-c", _AHEAD], capture_output=True)
+            Thread(target=ahead, daemon=True).start()
 
 
 @pytest.hookimpl(tryfirst=True)

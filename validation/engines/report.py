@@ -10,6 +10,7 @@ from typing import Any
 
 from ..program import PROGRAM
 from ..reporting.numbers import counted
+from ..reporting.provenance import by_origin
 from ..reporting.record import Bullets, Cell, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from . import changes, parts
 from .causes import shown
@@ -247,10 +248,10 @@ def _tally(engine: Row, data: Data, found: _Found) -> tuple[str, ...]:
 
 def _measured(asked: list[Row], data: Data) -> str:
     """When and of which commit something was measured; on how many trees, where that differs."""
-    counts = Counter(row["origin"] for row in asked) or Counter({"": 1})
-    origins = {origin: data if origin == "" else data["origins"][origin] for origin in counts}
-    said = {origin: f"{one.get('date', '')}, {one.get('revision', '')[:8]}" for origin, one in origins.items()}
-    return "; ".join(said[k] + (f": {counts[k]}" if len(counts) > 1 else "") for k in sorted(counts, key=str))
+    keys = sorted((row["origin"] for row in asked), key=str)
+    origins = by_origin(data if key == "" else data["origins"][key] for key in keys or ("",))
+    several = len(origins) > 1
+    return "; ".join(f"{date}, {revision}" + (f": {number}" if several else "") for date, revision, number in origins)
 
 
 def _earlier(data: Data) -> Iterator[Text]:

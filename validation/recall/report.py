@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..reporting.numbers import counted
+from ..reporting.provenance import by_origin
 from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
 from .measure import measure
 from .scoring import LOST
@@ -83,11 +84,8 @@ _CLASSES = "faults | hit | half a hit | miss | not asked"
 
 def _earlier(rows: Sequence[Row]) -> Iterator[str]:
     """Which rows an update has kept."""
-    origins = Counter((row["origin"]["date"], row["origin"]["revision"][:8]) for row in rows if "origin" in row)
-    if origins:
-        said = "; ".join(
-            f"{number} on {date} by the harness of {revision}" for (date, revision), number in origins.items()
-        )
+    if origins := by_origin(row["origin"] for row in rows if "origin" in row):
+        said = "; ".join(f"{number} on {date} by the harness of {revision}" for date, revision, number in origins)
         yield f"Of the {len(rows)} faults, these were asked earlier: {said}."
 
 

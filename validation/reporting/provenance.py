@@ -5,6 +5,8 @@ from __future__ import annotations
 import datetime
 import os
 import platform
+from collections import Counter
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import metadata
 from pathlib import Path
@@ -67,6 +69,12 @@ class Provenance:
         }
         rows = tuple((what, value) for what, value in pairs.items() if value)
         return cls(pairs["made"], machine, stated.get("versions", {}), rows, standing(data, present))
+
+
+def by_origin(origins: Iterable[Mapping[str, Any]]) -> list[tuple[str, str, int]]:
+    """Dates, revisions and numbers of rows that were measured together, by the origin of each row."""
+    counts = Counter((one.get("date", ""), one.get("revision", "")[:8]) for one in origins)
+    return [(date, revision, number) for (date, revision), number in counts.items()]
 
 
 def _digest(data: Any, present: str) -> str:
