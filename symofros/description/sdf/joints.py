@@ -23,7 +23,7 @@ from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import KINDS, JointKindName
 from symofros.description.pose import Pose
 from symofros.description.sdf.frames import Frames
-from symofros.description.sdf.values import SdfValues
+from symofros.description.sdf.values import UNIT_NORM_TOL, SdfValues
 from symofros.description.values import IDENTITY, Vector
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean
@@ -254,6 +254,8 @@ class JointReader:
                 did_you_mean(expressed_in, self.frames.nodes) if expressed_in else "give a direction such as 0 0 1",
             )
             return (0.0, 0.0, 1.0)
+        if abs(length - 1.0) > UNIT_NORM_TOL:
+            self.values.remarks.add("axes that are not unit vectors are normalised", "joint", joint.name)
         if frame == into:
             return self.exact.direction(vector / length)
         return self.exact.direction(self.frames.relative(frame, into).R @ (vector / length))

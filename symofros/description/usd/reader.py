@@ -145,22 +145,23 @@ class _Importer:
         )
 
     def _remark_body(self, body: Mapping[str, Any], name: str) -> None:
-        for schema in body["schemas"]:
-            self._remark_schema(schema, "body", name)
+        self._remark_unread(body, "body", name)
         if any(velocity and any(velocity) for velocity in body["moving"]):
             self.remarks.add("velocities of bodies ignored: a run has its own start", "body", name)
 
-    def _remark_schema(self, schema: str, noun: str, name: str) -> None:
-        if schema.partition(":")[0] not in _KNOWN:
-            self.remarks.add(f"API schema {schema.partition(':')[0]:.60} ignored", noun, name)
+    def _remark_unread(self, row: Mapping[str, Any], noun: str, name: str) -> None:
+        for schema in row["schemas"]:
+            if schema.partition(":")[0] not in _KNOWN:
+                self.remarks.add(f"API schema {schema.partition(':')[0]:.60} ignored", noun, name)
+        for stated in row["unread"]:
+            self.remarks.add(f"property '{stated:.60}' ignored", noun, name)
 
     def _joints(self) -> Iterator[UsdJoint]:
         """The joints that bind something, in the order of the stage."""
         rows = {row["path"]: row for row in self.stage["joints"]}
         for path, name in names_of(rows).items():
             row = rows[path]
-            for schema in row["schemas"]:
-                self._remark_schema(schema, "joint", name)
+            self._remark_unread(row, "joint", name)
             if row["enabled"] is False:
                 self.remarks.add("joints that are not enabled ignored", "joint", name)
                 continue

@@ -13,6 +13,7 @@ import math
 import os
 import struct
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 MEMORY = 4 << 30  # [bytes]; OpenUSD maps its files, and reserves stacks for threads.
@@ -45,6 +46,8 @@ _SHAPES = {
     "Capsule_1": (),
     "Points": (),
 }
+# Mass properties of a body, read whether or not its schema for them is applied.
+_MASS = ("mass", "density", "centerOfMass", "diagonalInertia", "principalAxes")
 # Attributes of joints that extensions of UsdPhysics define, which are read where they are authored.
 _EXTENSIONS = (
     "physxJoint:armature",
@@ -221,8 +224,16 @@ def _schemas(prim: Any) -> list[str]:
     return [str(name) for name in prim.GetPrimTypeInfo().GetAppliedAPISchemas()]
 
 
+def _unread(prim: Any, read: Iterable[str] = ()) -> list[str]:
+    """Stated properties of physics that the prim's schemas don't have and nothing reads, misspelt ones among them."""
+    known = {*prim.GetPrimDefinition().GetPropertyNames(), *read}
+    names = [str(stated.GetName()) for stated in prim.GetAuthoredProperties()]
+    return [name for name in names if name.partition(":")[0] in ("physics", "drive", "limit") and name not in known]
+
+
 def _body(prim: Any) -> dict[str, Any]:
     return {
+        "unread": _unread(prim, [f"physics:{name}" for name in _MASS]),
         "path": str(prim.GetPath()),
         "enabled": authored(prim, "physics:rigidBodyEnabled"),
         "kinematic": authored(prim, "physics:kinematicEnabled"),
@@ -234,8 +245,7 @@ def _body(prim: Any) -> dict[str, Any]:
 
 
 def _mass(prim: Any) -> dict[str, Any]:
-    names = ("mass", "density", "centerOfMass", "diagonalInertia", "principalAxes")
-    return {name: authored(prim, f"physics:{name}") for name in names}
+    return {name: authored(prim, f"physics:{name}") for name in _MASS}
 
 
 def _scene(prim: Any) -> dict[str, Any]:
@@ -258,6 +268,7 @@ def _joint(prim: Any, kind: str) -> dict[str, Any]:
         "body0": ends[0][0] if ends[0] else "",
         "body1": ends[1][0] if ends[1] else "",
         "targets": max(len(ends[0]), len(ends[1])),
+        "unread": _unread(prim),
         "schemas": schemas,
         "position0": authored(prim, "physics:localPos0"),
         "rotation0": authored(prim, "physics:localRot0"),
