@@ -203,6 +203,7 @@ class Tree:
         scaled = any(one.torque_scale != 1.0 for one in self.constraints)
         by_bodies = any(one.by_bodies for one in self.constraints)
         stated = {"sensors": bool(self.sensors), "scaled welds": scaled, "points by bodies": by_bodies}
+        stated["sensors of bound links"] = bool(self.sensors and self.constraints)
         stated[self.asked] = bool(self.asked)
         return self.transformations | self.forces | {name for name, there in stated.items() if there}
 

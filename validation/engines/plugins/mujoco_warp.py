@@ -147,6 +147,7 @@ def _of_links() -> dict[str, Way]:
     for name, way in rebuilt.SENSED.items():
         code = way.code.replace(rebuilt.QVA, _INVERSE).replace(rebuilt.QV, _FORWARD.replace("tau", "0 * v"))
         code = code.replace("read(", "sense(").replace("d.sensor(", "sense(").replace(").data[0]", ")[0]")
+        code = code.replace("d.sensordata[", "got(dw, 'sensordata')[")
         code = code.replace("m.body_subtreemass[", "mw.body_subtreemass.numpy()[0, ")
         code = code.replace("m.opt.gravity", "mw.opt.gravity.numpy()[0]")
         made[name] = way._replace(code=code)
@@ -278,7 +279,7 @@ def made(model, **sizes):
     mjw.set_const(model, data)
     return model, data
 mw, dw = made(m, njmax=64, nconmax=0)"""
-_UNOFFERED = ("flexible bodies", "a lone body", "turns")
+_UNOFFERED = ("flexible bodies", "a lone body", "turns", "sensors of bound links")
 PLUGIN = SourcePlugin(
     name="mujoco-warp",
     package="mujoco-warp",

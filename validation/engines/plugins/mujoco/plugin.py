@@ -186,6 +186,7 @@ PLUGIN = SourcePlugin(
         "springs": "stiffness, springref",
         "compensation": "gravcomp",
         "sensors": "sensor",
+        "sensors of bound links": "cfrc_int, efc_force",
         "tendons": "tendon/fixed, tendon/spatial",
         "wrapped tendons": "tendon/spatial/geom",
         "heavy tendons": "tendon armature",
