@@ -133,13 +133,15 @@ def event_notes(run: Any, events: Sequence[Event]) -> tuple[str, ...]:
     """
     notes = []
     if run.touched_event >= 0:
-        notes.append(
-            f"event '{events[run.touched_event].name}' turns at t = {run.touched_t:.6g} s so near to zero that the"
-            " steps cannot tell whether it gets there"
-        )
+        notes.append(undecided_note(events[run.touched_event].name, run.touched_t))
     if run.unresolved_event >= 0:
         notes.append(unresolved_note(events[run.unresolved_event].name, run.unresolved_t))
     return tuple(notes)
+
+
+def undecided_note(name: str, t: float) -> str:
+    """Note on an event that may get to zero at t [s], or not."""
+    return f"event '{name}' turns at t = {t:.6g} s so near to zero that the steps cannot tell whether it gets there"
 
 
 def unresolved_note(name: str, t: float) -> str:

@@ -1,6 +1,6 @@
 """A run with actions of events, held as a whole against finer steps: errors go on from one part into the next.
 
-docs/theory/simulation.md, section 8, (18f) to (18i).
+docs/theory/simulation.md, section 8, (18f) to (18j).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.simulation.events import undecided_note
 from symofros.simulation.results.examination.finer_steps import (
     Part,
     States,
@@ -21,6 +22,7 @@ from symofros.simulation.results.examination.finer_steps import (
     other_end_note,
     percent,
 )
+from symofros.simulation.results.examination.near_events import event_values, turns_near_zero
 from symofros.simulation.results.examination.run import MOST_STEPS, ExaminedRun, share_of
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
@@ -127,7 +129,13 @@ class SwitchedRun(ExaminedRun):
 
     def error(self, share: float, refinements: int) -> float:
         """Error of the run, by its change where steps are refined so many times (18h)."""
-        return share / (1.0 - 2.0 ** (-self.settings.method.order * refinements)) if self.h else share
+        return share * self.own_share(refinements)
+
+    def own_share(self, refinements: int) -> float:
+        """Share of a difference from other steps, refined or coarser, that is the error of its own."""
+        if self.h:
+            return 1.0 / abs(1.0 - 2.0 ** (-self.settings.method.order * refinements))
+        return 1.0 if refinements > 0 else 1.0 / _TIGHTER
 
     def order(self) -> float:
         """Order of convergence, by what two refinements change one after the other (18i); NaN where none is seen."""
@@ -144,19 +152,34 @@ def switched_run_note(run: SwitchedRun) -> str:
         return ""
     tight = run.settings.rtol < _LOOSEST if run.settings.adaptive else not run.short
     if tight and _agrees(run):
-        return ""
+        return _near_event_note(run, _COARSER)
     stepping, cure = (f"steps of {run.h:.4g} s", "a smaller dt") if run.h else ("the tolerances", "tighter tolerances")
     worst = run.changed(run.window, "run")
     if not worst.arrived:
         return other_end_note(run, worst, f" over {_actions(run)}", stepping, cure)
     error = run.error(worst.size, worst.refinements)
     if not error > run.tolerance:
-        return ""
+        return _near_event_note(run, 1)
     about = f", so that it errs by {'about ' * (error < 1.0)}{percent(error)}" if run.h else ""
     return (
         f"{stepping} do not determine the motion over {_actions(run)}: {finer_words(run, worst)}"
         f" changes it by {percent(worst.size)}{about}{_lost_order(run, error)}; {cure}"
     )
+
+
+def _near_event_note(run: SwitchedRun, refinements: int) -> str:
+    """Note on an event that turns nearer to zero than the run errs there, by other steps (18j); "" for none."""
+    turns = turns_near_zero(run.stepper, run.states)
+    other = run.fine(run.window, refinements, 1) if turns else None
+    if other is None:
+        return ""
+    ours = run.coarse(run.window, 1)
+    off = np.abs(event_values(run.stepper, ours) - event_values(run.stepper, other)) * run.own_share(refinements)
+    for turn in turns:
+        k = min(max(1, int(np.searchsorted(ours[0], turn.t))), len(off) - 1)
+        if turn.distance < off[k - 1 : k + 1, turn.event].min():
+            return undecided_note(run.stepper.events[turn.event].name, turn.t)
+    return ""
 
 
 def _lost_order(run: SwitchedRun, error: float) -> str:

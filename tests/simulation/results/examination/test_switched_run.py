@@ -360,3 +360,16 @@ def test_long_runs_of_batches_with_events_say_that_they_are_not_examined(monkeyp
     monkeypatch.setattr(batch_examination, "_MADE_AGAIN", 100)
     (note,) = sf.simulate_batch(model, [q], [v], **given, method="rk4", dt=2.0 / 120).outcome(0).notes
     assert note == "a motion with events of so many steps is not examined in a batch: sf.simulate says more of it"
+
+
+@pytest.mark.parametrize(("share", "noted"), [(0.02, True), (0.7, True), (-0.5, False), (-30.0, False)])
+def test_events_that_turn_nearer_to_zero_than_steps_err_are_noted(share: float, noted: bool) -> None:
+    """Levels below the top of the right motion that no steps reach, and above it by more than their error."""
+    model, q, v, given = relay()
+    options: dict[str, Any] = {"method": "implicit_euler", "dt": 2e-4}
+    top, right = (sf.simulate(model, q, v, **(given | {"events": {}}), **one).q[:, 0].max() for one in (options, FINE))
+    given["events"] = {"up": sf.Event(f"q0 - {right - share * (right - top)}", "rising", action={"side": -3})}
+    run, known = (sf.simulate(model, q, v, **given, **one) for one in (options, FINE))
+    assert not run.events and len(known.events) == (share > 0.0)
+    said = "so near to zero that the steps cannot tell whether it gets there"
+    assert [said in note for note in run.outcome.notes] == [True] * noted, run.outcome
