@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import symofros as sf
+from tests.mechanics.beams.rods import HUB, STIFF, rod
 from validation.mechanics import carried
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.elastic import ElasticBeam
+from validation.mechanics.rod import StrainRod
 
 # Of differences of sixth order along a motion.
 STEP = 1e-2
@@ -41,15 +46,30 @@ def tree() -> tuple[Assembly, dict[str, ElasticBeam]]:
     return assemble(system), {"b": ElasticBeam(beam, {})}
 
 
-def test_jacobians_and_accelerations_are_rates_along_a_motion() -> None:
-    assembly, beams = tree()
-    rng = np.random.default_rng(3)
-    n = assembly.nv + 1
-    q, v, a = 0.3 * rng.standard_normal((3, 1, n))
+def strained(**stated: Any) -> tuple[Assembly, dict[str, StrainRod]]:
+    """A geometrically exact rod on a turning hub."""
+    beam = replace(rod((2, 1, 1), HUB), **stated)
+    return assemble(sf.System("s", (beam,))), {"rod": StrainRod(beam, {})}
+
+
+# What is carried, and how many prescribed speeds it has.
+CASES: dict[str, tuple[Any, int]] = {
+    "tree": (tree(), 1),
+    "rod by Legendre polynomials, stretched, sheared, bent without stress": (
+        strained(stretch=1, shear_y=2, shear_z=1, curvature_y="0.3 + x", twist_rate=0.2, **STIFF),
+        0,
+    ),
+    "rod by splines with knots": (strained(family="spline", bend_y=6), 0),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_jacobians_and_accelerations_are_rates_along_a_motion(case: str, rng: np.random.Generator) -> None:
+    (assembly, beams), prescribed = CASES[case]
+    q, v, a = 0.3 * rng.standard_normal((3, 1, assembly.nv + prescribed))
 
     def at(t: float) -> carried.Carried:
-        still = np.zeros((1, n))
-        states = carried.AllSpeeds(q + v * t + a * t**2 / 2, still, still)
+        states = carried.AllSpeeds(q + v * t + a * t**2 / 2, 0 * v, 0 * a)
         return carried.joined(carried.bodies(assembly, beams, states))
 
     now = carried.joined(carried.bodies(assembly, beams, carried.AllSpeeds(q, v, a)))
