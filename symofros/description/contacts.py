@@ -21,8 +21,13 @@ MEASURES: dict[Surface, tuple[str, ...]] = {
 }
 HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
+# What points of contact move along, the surfaces that it meets, and what stands in for it elsewhere.
+_MOVING: tuple[tuple[str, tuple[Surface, ...], str], ...] = (
+    ("rim", ("plane",), "a plane and restitution; or points along the rim"),
+    ("segment", ("sphere", "cylinder", "capsule"), "its two ends as points, as on a plane; or points along it"),
+)
 _NUMBERS = (
-    *("stiffness", "radius", "rim", "surface_radius", "length", "dissipation"),
+    *("stiffness", "radius", "rim", "segment", "surface_radius", "length", "dissipation"),
     *("friction", "minimum_velocity", "bristle_stiffness", "bristle_damping", "restitution"),
 )
 # What rigid contacts have no use for, and what stands there unless it is stated.
@@ -77,6 +82,8 @@ class Contact:
             square of the work that it took.
         rim: Radius of a circle about the z axis of the first frame through each point, whose next point to a plane
             takes the point's place: rims of a disc, a wheel or an upright cylinder that tumbles; of rigid contacts [m].
+        segment: Length of a line along the z axis of the first frame about each point, whose next point to a sphere,
+            cylinder or capsule takes the point's place: with a radius a capsule; of rigid contacts [m].
     """
 
     name: str
@@ -98,6 +105,7 @@ class Contact:
     bristle_damping: Value | None = None
     restitution: Value | None = None
     rim: Value | None = None
+    segment: Value | None = None
 
     def __post_init__(self) -> None:
         """Convert the numbers, and refuse measures that the surface lacks or does not have."""
@@ -126,10 +134,13 @@ class Contact:
         if self.inside and self.surface not in HOLLOW:
             remedy = "leave inside out, or state a contact for each wall"
             return Problem(f"{what}: inside a {self.surface}", "inside", "balls move within spheres, cylinders", remedy)
-        if self.rim is not None and (self.surface != "plane" or not self.rigid):
-            found = f"a {self.surface}, {'rigid' if self.rigid else 'compliant'}"
-            remedy = "a plane and restitution; or points along the rim"
-            return Problem(f"{what}: rim", found, "rims meet planes, as rigid contacts", remedy)
+        for label, surfaces, remedy in _MOVING:
+            if getattr(self, label) is not None and (self.surface not in surfaces or self.inside or not self.rigid):
+                found = f"{'inside ' if self.inside else ''}a {self.surface}, {'rigid' if self.rigid else 'compliant'}"
+                rule = f"a {label} meets a {', '.join(surfaces)} from outside, as a rigid contact"
+                return Problem(f"{what}: {label}", found, rule, remedy)
+        if self.rim is not None and self.segment is not None:
+            return Problem(f"{what}: rim and segment", "both", "a contact is of one of them", "state two contacts")
         if self.exponent not in EXPONENTS:
             rule = f"one of {', '.join(f'{x:g}' for x in EXPONENTS)}"
             return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")

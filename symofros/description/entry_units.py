@@ -48,6 +48,7 @@ ENTRY_UNITS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     "Contact": {
         "radius": ("m",),
         "rim": ("m",),
+        "segment": ("m",),
         "points": ("m",),
         "surface_radius": ("m",),
         "length": ("m",),

@@ -150,9 +150,10 @@ class RigidContactRecord(NamedTuple):
 
     @property
     def state(self) -> tuple[str, ...]:
-        """Formulas of its state: distance, velocity against the surface (3), friction, restitution, normal's tilt."""
-        gap, vx, vy, vz, nz = (f"`contact.{self.name}.{quantity}`" for quantity in ("gap", "vx", "vy", "vz", "nz"))
-        return (gap, vx, vy, vz, self.friction, self.restitution, nz)
+        """Formulas: distance, velocity against the surface (3), friction, restitution, normal's tilt, sine of rims."""
+        quantities = ("gap", "vx", "vy", "vz", "nz", "sine")
+        gap, vx, vy, vz, *angles = (f"`contact.{self.name}.{quantity}`" for quantity in quantities)
+        return (gap, vx, vy, vz, self.friction, self.restitution, *angles)
 
 
 class JointLimit(NamedTuple):

@@ -42,7 +42,8 @@ def bind_contacts(equations: Equations, used: Iterable[str]) -> None:
     for name in sorted(contact_symbols(tree).intersection(used) - {*own.symbols, *own.keys, *own.constants}):
         ball, quantity = name.removeprefix("contact.").rsplit(".", 1)
         touching = equations.touching_balls[balls.index(ball)]
-        lowering.bind(name, dict(zip(QUANTITIES, (touching.gap, *touching.slip, touching.tilt), strict=True))[quantity])
+        values = (touching.gap, *touching.slip, touching.tilt, touching.sine)
+        lowering.bind(name, dict(zip(QUANTITIES, values, strict=True))[quantity])
 
 
 def bind_reactions(equations: Equations, used: Iterable[str]) -> bool:

@@ -15,6 +15,7 @@ _SIGNS: dict[str, tuple[Sign, str, str]] = {
     "stiffness": ("positive", "a surface pushes back", "give a stiffness above zero"),
     "radius": ("not negative", "a ball has a radius, or is a point", "give its radius, or zero"),
     "rim": ("positive", "a rim is a circle", "give a radius above zero, or leave it out"),
+    "segment": ("positive", "a segment has two ends", "give its length, or leave it out"),
     "surface_radius": ("positive", "a curved surface has a radius", "give a radius above zero"),
     "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
     "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),

@@ -28,12 +28,12 @@ from symofros.mechanics.topology.sticking import sticking_coordinates
 # above the rounding of one that has just begun to slide.
 _REST = 1e-14
 # Quantities of a ball in formulas, "contact.foot.gap": its distance from the surface, the velocity of its material
-# point against the surface's along the axes of contact, and the z component of the normal in the axes of the surface;
-# of rims the sine of the angle between their plane and that of contact.
-QUANTITIES = ("gap", "vx", "vy", "vz", "nz")
+# point against the surface's along the axes of contact, the z component of the normal in the axes of the surface, and
+# the sine of the angle of a rim or segment with what it would touch along a line.
+QUANTITIES = ("gap", "vx", "vy", "vz", "nz", "sine")
 # Least cosine between normal and pole, less than which the pole is taken anew: 120 degrees.
 _POLE_LEAST = -0.5
-# Sine of the angle between a rim and its plane at which a mode ends. Runs end there: SYM_FLAT of native code is larger.
+# That sine at which a mode ends. Runs end there: SYM_FLAT of native code is larger.
 _FLAT = 0.009
 
 
@@ -121,11 +121,13 @@ class RigidBall(NamedTuple):
         left = limit * limit - fx * fx - fy * fy
         gap = _symbol(f"contact.{self.name}.gap") + _symbol(self.apart)
         across = is_open + slides * ahead + sticks * left
-        tilt = _symbol(f"contact.{self.name}.nz")
-        if self.contact.surface != "plane" or self.contact.rim is not None:
-            rim = self.contact.rim is not None
-            near = tilt - Term(_FLAT) if rim else _symbol(self.pole) * tilt - Term(_POLE_LEAST)
-            across = across * (is_open + (one - is_open) * near)
+        limits = []
+        if self.contact.surface != "plane":
+            limits.append(_symbol(self.pole) * _symbol(f"contact.{self.name}.nz") - Term(_POLE_LEAST))
+        if self.contact.rim is not None or self.contact.segment is not None:
+            limits.append(_symbol(f"contact.{self.name}.sine") - Term(_FLAT))
+        for left in limits:
+            across = across * (is_open + (one - is_open) * left)
         return (is_open * gap + (one - is_open) * fz).value, across.value
 
 

@@ -1,6 +1,6 @@
 /* Rigid contacts with friction: impacts, and which mode each takes (docs/theory/constraints.md, section 15). */
 
-enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a ball's state */
+enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6, SYM_SINE = 7 }; /* entries of a ball's state: of its normal, of a rim */
 /* Slip up to which adaptive steps do not follow how its direction turns [m/s]. */
 #define SYM_SLOW 1e-5
 /* Share of the speed with which a ball began to slide that is left by the turning of its path where it comes to rest. */
@@ -9,7 +9,7 @@ enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6 }; /* entry of the normal in a bal
 #define SYM_GRAZES 1e-13
 /* Cosine between a normal and its pole from which on a pole stays as it is. */
 #define SYM_POLE_STAYS -0.25
-/* Sine of the angle with its plane below which a rim lies on it, and touches everywhere. */
+/* Sine of the angle below which a rim lies on its plane, or a segment along its surface, and touches along a line. */
 #define SYM_FLAT 0.01
 /* Twice the acceleration towards a plane below which a ball is taken to rise above it from where rounding has put it [m/s^2]. */
 #define SYM_STEEP 1e3
@@ -126,7 +126,7 @@ static void sym_choose_poles(const sym_system *s, double *par) {
 }
 
 /* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
- * they are. Returns 0 or a status: one has penetrated where a motion begins, too many touch, or a rim lies flat. */
+ * they are. Returns 0 or a status: one has penetrated where a motion begins, too many touch, or one touches along a line. */
 static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int32_t begins, sym_touching *at) {
     const sym_system *s = r->system;
     int32_t i, k, n = 0;
@@ -139,7 +139,7 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         if (begins && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
         if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
-        if (s->contacts[i].pole < 0 && state[SYM_TILT] < SYM_FLAT) return SYM_FLAT_RIM;
+        if (state[SYM_SINE] < SYM_FLAT) return SYM_FLAT_RIM;
         at->of[n] = i, at->problem.mu[n] = state[4];
         at->apart[n] = met == NULL ? 0.0 : par[s->contacts[i].apart]; /* as it has become, where others are met */
         if (met != NULL && met[i] > 0.0) at->apart[n] = fmin(fmax(SYM_GRAZES, 2.0 * at->apart[n]), SYM_TOUCHING);

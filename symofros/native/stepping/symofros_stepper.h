@@ -34,7 +34,7 @@ typedef enum sym_status {
     SYM_WRONG_CONTACT = -16,     /* a contact that rests is penetrated, or holds by a force that draws */
     SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction were found that agree with their motion */
     SYM_CONTACTS_AMBIGUOUS = -18, /* several motions agree with Coulomb's law at rigid contacts */
-    SYM_FLAT_RIM = -19           /* a rim lies on its plane: no single point of it touches */
+    SYM_FLAT_RIM = -19           /* a rim lies on its plane, or a segment along its surface: no single point touches */
 } sym_status;
 
 typedef enum sym_method {
@@ -103,7 +103,7 @@ typedef struct sym_sticking { /* a coordinate with friction that sticks (docs/th
 } sym_sticking;
 
 /* Entries a ball of a rigid contact: of its state, and of its memory. */
-typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 7, SYM_BALL_ENTRIES = 5 } sym_contact_sizes;
+typedef enum sym_contact_sizes { SYM_CONTACT_ENTRIES = 8, SYM_BALL_ENTRIES = 5 } sym_contact_sizes;
 
 typedef struct sym_rigid_contact { /* a ball of a rigid contact (docs/theory/constraints.md, section 15) */
     int32_t mode;    /* parameter: SYM_OPEN, SYM_SLIDES, SYM_STICKS */
@@ -210,7 +210,8 @@ typedef struct sym_system {
     int32_t n_contacts;
     const sym_rigid_contact *contacts; /* (n_contacts) balls of rigid contacts */
     /* One output, SYM_CONTACT_ENTRIES of each: its distance, its velocity against the surface (3), its coefficients of
-     * friction and of restitution, and the normal's component along z of the surface's frame. */
+     * friction and of restitution, the normal's component along z of the surface's frame, and the sine of the angle of a rim
+     * or segment with what it would touch along a line. */
     sym_call contact_state;
     int32_t npar;
     double longest_step;               /* of fixed steps [s] */

@@ -115,8 +115,9 @@ ENDS: dict[int, End] = {
     ),
     Status.FLAT_RIM: End(
         "beyond theory",
-        "a rim of a rigid contact lies on its plane, to 0.6 degrees, where it touches all along and at no point",
-        "three points or more along the rim in its place, `points` without `rim`, on which a disc can lie",
+        "a rim of a rigid contact lies on its plane, or a segment along its surface, to 0.6 degrees: it"
+        " touches all along",
+        "points along the rim or segment in its place, on which a body can lie: `points` without `rim` or `segment`",
     ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."

@@ -61,13 +61,45 @@ def surface_axes(lowering: Lowering, ball: RigidBall, R_WS: Mat3, w_WS_W: Vec3, 
     return ContactAxes(-distance if inside else distance, R_WC, w_WS_W.cross(n) + turned, w_WC_W)
 
 
+class Line(NamedTuple):
+    """A line of a body, in world axes.
+
+    Attributes:
+        p: Its middle [m].
+        v: The velocity of that [m/s].
+        a: Unit vector along it.
+        a_rate: Its rate [1/s].
+    """
+
+    p: Vec3
+    v: Vec3
+    a: Vec3
+    a_rate: Vec3
+
+
+def reach_of(lowering: Lowering, contact: Contact, on_ball: Line, on_surface: Line) -> Reach | None:
+    """What leads from a point of a contact to that of its rim or segment next to the surface; None of a ball.
+
+    Args:
+        lowering: Edges of the contact's numbers.
+        contact: The contact.
+        on_ball: The line through the point along the z axis of its frame.
+        on_surface: The z axis of the surface's frame.
+    """
+    if contact.rim is not None:
+        of = on_ball.a, on_ball.a_rate, on_surface.a, on_surface.a_rate
+        return rim_reach(lowering.g, lowering.value(contact.rim), *of)
+    return None if contact.segment is None else segment_reach(lowering, contact, on_ball, on_surface)
+
+
 class Reach(NamedTuple):
-    """From the centre of a rim to its point next to a plane, in world axes.
+    """From a point to that of its rim or segment which is next to the surface, in world axes.
 
     Attributes:
         reach: The vector [m].
         rate: Its rate [m/s].
-        sine: Of the angle between the planes of the rim and of contact.
+        sine: Of the angle between the planes of rim and contact, or of that between a segment and the surface's axis:
+            near zero they touch along a line.
     """
 
     reach: Vec3
@@ -93,6 +125,37 @@ def rim_reach(g: Graph, radius: Edge, a: Vec3, a_rate: Vec3, n: Vec3, n_rate: Ve
     e = s.scaled(g.div(ONE, sine))
     e_rate = (s_rate - e.scaled(s_rate.dot(e))).scaled(g.div(ONE, sine))
     return Reach(-e.scaled(radius), -e_rate.scaled(radius), sine)
+
+
+def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Reach:
+    """Where a segment on the line A is next to the core of a solid along B, and how that point moves: (38h)."""
+    g = lowering.g
+    half = g.mul(g.constant(0.5), lowering.value(contact.segment or 0.0))
+    c, c_rate = A.p - B.p, A.v - B.v
+    y, y_rate = A.a.dot(c), g.add(A.a_rate.dot(c), A.a.dot(c_rate))
+    x = x_rate = t = t_rate = ZERO
+    sine = ONE
+    if contact.surface != "sphere":
+        x, x_rate = A.a.dot(B.a), g.add(A.a_rate.dot(B.a), A.a.dot(B.a_rate))
+        z, z_rate = B.a.dot(c), g.add(B.a_rate.dot(c), B.a.dot(c_rate))
+        square = g.call("max", g.sub(ONE, g.mul(x, x)), g.constant(TINY))
+        sine = g.sqrt(square)
+        s = g.div(g.sub(g.mul(x, z), y), square)
+        s_rate = g.sub(g.add(g.mul(x_rate, z), g.mul(x, z_rate)), y_rate)
+        s_rate = g.div(g.add(s_rate, g.mul(g.mul(g.constant(2.0), s), g.mul(x, x_rate))), square)
+        s, s_rate = _clamped(g, s, s_rate, half)
+        t, t_rate = g.add(g.mul(s, x), z), g.add(g.add(g.mul(s_rate, x), g.mul(s, x_rate)), z_rate)
+        if contact.surface == "capsule":
+            t, t_rate = _clamped(g, t, t_rate, g.mul(g.constant(0.5), lowering.value(contact.length or 0.0)))
+    s_rate = g.sub(g.add(g.mul(t_rate, x), g.mul(t, x_rate)), y_rate)
+    s, s_rate = _clamped(g, g.sub(g.mul(t, x), y), s_rate, half)
+    return Reach(A.a.scaled(s), A.a.scaled(s_rate) + A.a_rate.scaled(s), sine)
+
+
+def _clamped(g: Graph, x: Edge, x_rate: Edge, half: Edge) -> tuple[Edge, Edge]:
+    """A number between -half and half, and its rate."""
+    within = g.call("step", g.sub(half, g.call("abs", x)))
+    return g.call("min", g.call("max", x, -half), half), g.mul(within, x_rate)
 
 
 def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3]:

@@ -11,7 +11,15 @@ from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import TINY, core_normal, from_core, norm, rim_reach, tangents
+from symofros.mechanics.dynamics.applied.contact_axes import (
+    TINY,
+    Line,
+    core_normal,
+    from_core,
+    norm,
+    reach_of,
+    tangents,
+)
 from symofros.mechanics.dynamics.applied.elements import smoothed_sign
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -37,8 +45,9 @@ class TouchingBall:
         share: Penetration over the radius of the ball, or else of the surface; zero where neither has any.
         slip: Velocity of the ball's material point there against the surface's, in the axes of the surface, of rigid
             contacts in the axes of contact [m/s].
-        tilt: Component of the normal along z of the surface's frame; of a rim the sine of its angle with the plane.
+        tilt: Component of the normal along z of the surface's frame.
         rates: Rates of the deflections of its bristles, in the axes of the surface; none without bristles [m/s].
+        sine: Of the angle of a rim or segment with what it would touch along a line; 1 of balls.
     """
 
     gap: Edge
@@ -51,6 +60,7 @@ class TouchingBall:
     slip: Vec3
     tilt: Edge
     rates: tuple[Edge, ...]
+    sine: Edge = ONE
 
 
 def touching_balls(kinematics: TreeKinematics, frames: FrameKinematics, contact: Contact) -> list[TouchingBall]:
@@ -77,11 +87,11 @@ def _touching(
     ends = [frame_of(kinematics.tree, *anchor) for anchor in (contact.first, contact.second)]
     first, second = (frames.pose(end) for end in ends)
     radius = lowering.value(contact.radius)
-    p_WC, tilt = first.p_WF + first.R_WF.times(point), None
-    if contact.rim is not None:
-        n, still = second.R_WF.column(2), Vec3(g)
-        rim = rim_reach(g, lowering.value(contact.rim), first.R_WF.column(2), still, n, still)
-        p_WC, tilt = p_WC + rim.reach, rim.sine
+    p_WC, still = first.p_WF + first.R_WF.times(point), Vec3(g)
+    lines = (Line(p, still, R.column(2), still) for p, R in ((p_WC, first.R_WF), (second.p_WF, second.R_WF)))
+    reach = reach_of(lowering, contact, *lines)
+    if reach is not None:
+        p_WC = p_WC + reach.reach
     distance, gradient = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
     normal = second.R_WF.times(gradient)
     p_WP = p_WC - normal.scaled(distance)
@@ -94,8 +104,8 @@ def _touching(
         axes = second.R_WF if contact.surface == "plane" else tangents(lowering, ball, second.R_WF, normal)
         pushes = Vec3(g, *(lowering.symbol(name) for name in ball.pushes))
         along = axes.T.times(slip)
-        tilt = gradient.z if tilt is None else tilt
-        return TouchingBall(gap, ZERO, pushes.z, axes.times(pushes), p_WP, ZERO, ZERO, along, tilt, ())
+        force, sine = axes.times(pushes), ONE if reach is None else reach.sine
+        return TouchingBall(gap, ZERO, pushes.z, force, p_WP, ZERO, ZERO, along, gradient.z, (), sine)
     slip_S = second.R_WF.T.times(slip)
     depth = g.call("max", -gap, ZERO)
     approach = -slip.dot(normal)

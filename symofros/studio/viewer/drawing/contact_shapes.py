@@ -17,7 +17,7 @@ _POINT, _PLATE, _THIN, _LONG = 0.008, 0.6, 0.002, 0.5
 
 
 def balls(contact: Contact, numbers: Numbers, size: float) -> Mesh:
-    """The balls of a contact, in its first frame; of rims thin discs.
+    """The balls of a contact, in its first frame; of rims thin discs, of segments capsules.
 
     Args:
         contact: The contact.
@@ -26,7 +26,9 @@ def balls(contact: Contact, numbers: Numbers, size: float) -> Mesh:
     """
     radius = max(numbers.value(contact.radius), _POINT * size)
     disc = _on_axis(0.5 * radius)
-    ball = sphere(radius) if contact.rim is None else cylinder(-disc, disc, numbers.value(contact.rim))
+    ball = _drawn_out(radius, numbers.value(contact.segment or 0.0))
+    if contact.rim is not None:
+        ball = cylinder(-disc, disc, numbers.value(contact.rim))
     return merged([ball.transformed(numbers.values(point), np.eye(3)) for point in contact.points])
 
 
@@ -52,9 +54,16 @@ def _cylinder(contact: Contact, numbers: Numbers, size: float) -> Mesh:
 
 
 def _capsule(contact: Contact, numbers: Numbers, _size: float) -> Mesh:
-    radius, end = numbers.value(contact.surface_radius or 0.0), _on_axis(0.5 * numbers.value(contact.length or 0.0))
+    return _drawn_out(numbers.value(contact.surface_radius or 0.0), numbers.value(contact.length or 0.0))
+
+
+def _drawn_out(radius: float, length: float) -> Mesh:
+    """A ball that is drawn out along z."""
+    end = _on_axis(0.5 * length)
+    if not length:
+        return sphere(radius)
     ends = [sphere(radius).transformed(at, np.eye(3)) for at in (-end, end)]
-    return merged([cylinder(-end, end, radius), *ends] if end[2] else ends)
+    return merged([cylinder(-end, end, radius), *ends])
 
 
 def _box(contact: Contact, numbers: Numbers, _size: float) -> Mesh:

@@ -94,6 +94,13 @@ SURFACES: dict[str, dict[str, Any]] = {
     "sphere": {"surface": "sphere", "surface_radius": 0.3},
     "hollow sphere": {"surface": "sphere", "surface_radius": 0.9, "inside": True},
     "cylinder": {"surface": "cylinder", "surface_radius": 0.2},
+    **{
+        f"{part} of a segment, {surface}": {"surface": surface, "surface_radius": 0.1, "segment": length} | sizes
+        for part, length in (("middle", 9.0), ("end", 0.1))
+        for surface, sizes in (("sphere", {}), ("cylinder", {}), ("capsule", {"length": 9.0}))
+    },
+    "segment, end of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 0.1, "segment": 9.0},
+    "end of a segment, end of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 0.1, "segment": 0.1},
     "hollow cylinder": {"surface": "cylinder", "surface_radius": 0.9, "inside": True},
     "shank of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 9.0},
     "end of a capsule": {"surface": "capsule", "surface_radius": 0.1, "length": 0.1},
@@ -107,7 +114,7 @@ SURFACES: dict[str, dict[str, Any]] = {
     ("surface", "pole"), [("plane", None), ("rim", None), *((x, s) for x in list(SURFACES)[2:] for s in (1, -1))]
 )
 def test_rows_of_rigid_contacts_are_derivatives_along_the_motion(surface: str, pole: float | None) -> None:
-    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38g)."""
+    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38h)."""
     contact = sf.Contact("k", A, B, restitution=0.0, radius=0.1, points=[(0.05, 0.1, -0.1)], **SURFACES[surface])
     m = sf.compile(
         tree(connections=(contact,)),
