@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -116,6 +117,16 @@ def system(case: str) -> sf.System:
         return MODELS[case]
     tree = random_tree(TREES[case], kinds=MORE_KINDS if case.startswith("joints") else KINDS)
     return parametrised(tree) if case.startswith("parametrised") else tree
+
+
+def state_of(m: sf.Model, start: Any, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """A random state, on the constraints near a start where one is given, and inputs: q, v, u."""
+    rng = np.random.default_rng(seed)
+    q, v = m.random_state(rng)
+    if start is not None:
+        at = sf.assemble(m, start, rng.normal(size=m.nv))
+        q, v = at.q, at.v
+    return q, v, rng.normal(size=m.nu)
 
 
 @cache

@@ -14,7 +14,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.compiler import Compilation
 from tests.late import require
-from tests.models import sampled, system
+from tests.models import sampled, state_of, system
 from validation.adapters.pinocchio import tree as pin_adapter
 from validation.inputs.cases import robot_case
 
@@ -39,12 +39,7 @@ def model(name: str, backend: str = "c") -> sf.Model:
 
 
 def state(name: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    m, rng = model(name), np.random.default_rng(seed)
-    q, v = m.random_state(rng)
-    if name in CLOSED:
-        at = sf.assemble(m, CLOSED[name], rng.normal(size=m.nv))
-        q, v = at.q, at.v
-    return q, v, rng.normal(size=m.nu)
+    return state_of(model(name), CLOSED.get(name), seed)
 
 
 def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:

@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import sampled
+from tests.models import sampled, state_of
 from tests.simulation.mechanisms import loop
 
 CLOSED = {
@@ -42,12 +42,7 @@ def model(name: str) -> sf.Model:
 
 
 def state(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    m, rng = model(name), np.random.default_rng(0)
-    q, v = m.random_state(rng)
-    if name in CLOSED:
-        at = sf.assemble(m, CLOSED[name], rng.normal(size=m.nv))
-        q, v = at.q, at.v
-    return q, v, rng.normal(size=m.nu)
+    return state_of(model(name), CLOSED.get(name))
 
 
 @pytest.mark.parametrize("name", sampled(CASES, [name for name in CASES if name != "rx90"]))

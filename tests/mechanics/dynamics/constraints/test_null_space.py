@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.models import GUESSES, sampled
+from tests.models import GUESSES, sampled, state_of
 
 # Off their constraints, at random: the equations hold there as well.
 LOOSE = ("grasp", "flexible_slider_crank")
@@ -21,12 +21,7 @@ def model(name: str, form: str, backend: str) -> sf.Model:
 
 
 def state(name: str, backend: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    m, rng = model(name, "multipliers", backend), np.random.default_rng(0)
-    q, v = m.random_state(rng)
-    if name in GUESSES:
-        at = sf.assemble(m, GUESSES[name], rng.normal(size=m.nv))
-        q, v = at.q, at.v
-    return q, v, rng.normal(size=m.nu)
+    return state_of(model(name, "multipliers", backend), GUESSES.get(name))
 
 
 @pytest.mark.parametrize("name", [*GUESSES, *LOOSE])
