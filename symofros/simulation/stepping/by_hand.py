@@ -197,6 +197,7 @@ class HandRun:
     def reset(self, t: float, q: Array, v: Array, par: Array | None = None) -> None:
         """Begin anew at a state, the inputs those of the description until a step gives others."""
         self._given = self._given if par is None else par
+        self.run.take_parameters()  # Modes may have been chosen without an event.
         if self._given is not self.run.par:
             self.run.set_parameters(self._given)
         self._looked_for[:] = [event.cut for event in self.run.events]
