@@ -113,18 +113,35 @@ static double sym_first_direction(const sym_run *r, int32_t n, const double *slo
     return size > SYM_SPECTRUM_LEAST_CHANGE * largest ? size : SYM_SPECTRUM_LEAST_CHANGE * largest;
 }
 
+/* Least rotation by which a change may turn [rad], where the motion of a step turns by less: that of metres says nothing of
+ * radians, as a body that flies by kilometres in a step does not turn by thousands of radians. */
+#define SYM_SPECTRUM_TURN 1e-4
+
+/* The size of the rotations among a change x (2 nv) of the state. */
+static double sym_turned(int32_t nv, const int32_t *moving, const double *x) {
+    double s = 0.0;
+    int32_t i;
+    for (i = 0; i < nv; ++i)
+        if (moving[i] == 2) s += x[i] * x[i] + x[nv + i] * x[nv + i];
+    return sqrt(s);
+}
+
 SYM_EXPORT int32_t sym_run_spectrum(sym_run *r, double h, const int32_t *moving, int32_t dimension, double *basis,
                                     double *matrix, double *motion) {
     const int32_t n = 2 * r->system->nv;
     double *slope = basis + (size_t)dimension * (size_t)n, *scale = slope + n, *next = scale + n, *y = next + n, *x = y + n;
-    double change, length;
+    double most, turn, change, length;
     int32_t i, j, k, status;
     memset(matrix, 0, (size_t)dimension * (size_t)dimension * sizeof *matrix);
     status = sym_keeps_to_constraints(r->system) ? sym_start_on_constraints(r, y) : 0;
     if (status == 0) status = sym_scales(r, h, moving, scale, y, slope);
     if (status != 0) return status;
-    change = sym_first_direction(r, n, slope, basis);
+    most = sym_first_direction(r, n, slope, basis);
+    turn = sym_turned(n / 2, moving, slope);
+    if (!(turn > SYM_SPECTRUM_TURN)) turn = SYM_SPECTRUM_TURN;
     for (j = 0; j < dimension; ++j) {
+        change = sym_turned(n / 2, moving, basis + (size_t)j * (size_t)n);
+        change = most * change > turn ? turn / change : most;
         for (i = 0; i < n; ++i) x[i] = change * basis[SYM_INDEX(j, n, i)];
         status = sym_scaled_slope(r, h, scale, x, y, next);
         if (status != 0) return status;

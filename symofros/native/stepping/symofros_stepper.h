@@ -402,7 +402,7 @@ int32_t sym_event_is_met(const sym_event_search *search, int32_t i, double x, do
 void sym_run_configuration_rate(const sym_run *run, const double *q, const double *w, double *rate);
 /* Linearise the motion about the present state in the subspace of the first directions that the motion excites, by
  * differences of the size of a step of length h. moving (nv): 0 at speeds that are states of forces or blocks, which have
- * scales of their own; basis: (dimension + 5, 2 nv), of which the first rows become an orthonormal basis of changes
+ * scales of their own, 2 at rotations, which turn by little however far bodies fly, 1 at others; basis: (dimension + 5, 2 nv), of which the first rows become an orthonormal basis of changes
  * (theta, h v); matrix (dimension, dimension): h times the derivative in that basis; motion (dimension): components of the
  * motion of one step. Returns the number of directions, at most `dimension` <= 2 nv, or a status below 0. */
 int32_t sym_run_spectrum(sym_run *run, double h, const int32_t *moving, int32_t dimension, double *basis, double *matrix,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from symofros.base.arrays import Array, Mask
+from symofros.base.measures import ROTATION
 from symofros.base.names import TIME
 from symofros.native import native_number
 from symofros.runtime.beams import BeamBending, worst_bendings
@@ -268,10 +270,18 @@ class Stepper(BoundRun):
         self.memory.view(self.system.u_constant, self.model.nu)[:] = u
         if self.place(t, np.concatenate([q, v])) == Status.RUNNING:
             arrays = (self._pointer(basis), self._pointer(matrix), self._pointer(motion))
-            counted = np.ones(self.model.nv, np.int32) if moving is None else moving.astype(np.int32)
+            counted = np.where(True if moving is None else moving, 1 + self._turns, 0).astype(np.int32)
             of_motion = self.ffi.from_buffer("int32_t[]", counted)
             m = int(self.native.sym_run_spectrum(self.run, h, of_motion, dimension, *arrays))
         return (basis[:m], matrix[:m, :m], motion[:m]) if m > 0 else None
+
+    @cached_property
+    def _turns(self) -> Mask:
+        """Whether each speed is a rotation (nv)."""
+        turns = np.zeros(self.model.nv, dtype=bool)
+        kinds = np.array(self.model.record.measures.speed, dtype=np.intp)
+        turns[: len(kinds)] = kinds == ROTATION
+        return turns
 
     def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:
         """Accelerations (n, nv) and inputs (n, nu) at states of the motion; within `preserved`.

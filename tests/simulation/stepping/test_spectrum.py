@@ -98,3 +98,24 @@ def test_an_overconstrained_mechanism_has_the_modes_of_its_one_freedom(method: s
     assert (
         np.abs(rates(model, run.q[50], run.v[50], step=1e-4)).max(initial=0.0) < 10.0
     )  # Those that lock it would be of 1e3 or more.
+
+
+@pytest.mark.parametrize("spin", [0.0, 1.08e-3, 0.01])
+@pytest.mark.parametrize("kind", ["free", "planar"])
+def test_a_satellite_in_orbit_has_slow_modes_alone(kind: str, spin: float) -> None:
+    """It flies 7.5 km in a step, which turns it by nothing: a radian is no metre. Runs bear no note."""
+    mu, radius = 3.986004418e14, 7e6
+    x, y = ("s.px", "s.py") if kind == "free" else ("s.x", "s.y")
+    body = sf.RigidBody("s", sf.Joint("s", kind), sf.Inertia(500.0, moments=(100.0, 120.0, 90.0)))  # type: ignore[arg-type]
+    pull = sf.Potential("g", sf.formula(f"-{mu}*500/sqrt({x}^2 + {y}^2)"))
+    model = sf.compile(sf.System("orbit", (body,), gravity=(0, 0, 0), potentials=(pull,)))
+    n = np.sqrt(mu / radius**3)
+    start = dict(zip(model.names.q, model.neutral(), strict=True)) | {x: radius}
+    names = model.names.v
+    speeds = {names[1]: radius * n, names[-1]: spin}
+    run = sf.simulate(model, start, speeds, t_end=600.0, dt=1.0)
+    assert run.outcome.notes == ()
+    assert run.q[-1, :2] == pytest.approx(radius * np.array([np.cos(600 * n), np.sin(600 * n)]), abs=2e-3)
+    q, v = (np.array([given.get(k, 0.0) for k in keys]) for given, keys in ((start, model.names.q), (speeds, names)))
+    seen = spectrum(model, q, v, step=1.0)
+    assert np.abs(np.linalg.eigvals(seen[1])).max() < 0.1
