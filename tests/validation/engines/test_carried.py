@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from validation.engines.functions import FUNCTIONS
 from validation.engines.functions.carried import CARRIED
 from validation.engines.interface import Slot, State
-from validation.engines.models import hostile
+from validation.engines.models import hostile, urdf_files
+from validation.engines.models.readers import BODY
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 
@@ -31,6 +32,31 @@ def _slope(name: str) -> Array:
     """The rate of a function of q as the tree moves."""
     before, after = (_of(name, replace(_STATE, q=_STATE.q + sign * _SIZE * _STATE.v)) for sign in (-1, 1))
     return np.asarray((after - before) / (2 * _SIZE))
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"),
+    [
+        ("planar about x", (1.0, 0.0, 0.0)),
+        ("planar about y", (0.0, 1.0, 0.0)),
+        ("planar against z", (0.0, 0.0, -1.0)),
+        ("planar, oblique", (0.6, 0.0, 0.8)),
+    ],
+)
+def test_a_plane_turns_about_its_axis(name: str, axis: tuple[float, float, float]) -> None:
+    tree = urdf_files.files()[f"urdf: {name}"].tree
+    layout = Layout(4, 4, ((Slot("planar angle", (0, 1, 2), (0, 1, 2)),), (Slot("angle", (3,), (3,)),)))
+    state = random_state(tree, layout, 6)
+    turning, _ = digits(Truth(tree, layout).value(FUNCTIONS["link_turning"].truth, Point.of(state)))
+    np.testing.assert_allclose(turning, state.v[2] * np.array(BODY.joints[0].R) @ axis, atol=1e-14)
+    at_rest = digits(Truth(tree, layout).value(FUNCTIONS["link_poses"].truth, Point.of(replace(state, q=0 * state.q))))
+    np.testing.assert_allclose(at_rest[0], [*BODY.joints[0].p, *np.ravel(BODY.joints[0].R)], atol=1e-14)
+
+
+def test_a_link_has_the_state_that_it_is_in() -> None:
+    np.testing.assert_array_equal(_of("coordinates_of_links"), _STATE.q)
+    np.testing.assert_array_equal(_of("speeds_of_links"), _STATE.v)
+    np.testing.assert_allclose(_of("link_turning"), _of("link_velocities")[:, 3:], atol=1e-15)
 
 
 def test_centres_move_as_they_say() -> None:

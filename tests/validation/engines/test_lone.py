@@ -51,7 +51,7 @@ def test_a_damper_slows_a_wheel() -> None:
 
 
 def test_dampers_of_a_ball_are_stated_along_each_axis() -> None:
-    assert OWN["newton"].building(SINGLE["wheel on a damped ball"]).count("damping=0.5") == 3
+    assert OWN["newton"].building(SINGLE["wheel on a damped ball"]).count("damping=4.0") == 3
     assert "damping" not in OWN["newton"].building(SINGLE["wheel on a ball"])
 
 

@@ -64,6 +64,9 @@ FAULTS = [
         "assign(0 * places",
     ),
     ("sapien", "revolute x", "joint_wrenches_driven", "(tau)", "(50 * tau)"),
+    ("dart", "planar", "link_turning", "b.getAngularVelocity()", "b.getLinearVelocity()"),
+    ("roboticstoolbox", "three hinges", "inverse_dynamics:trajectory", ")[1]", ")[0]"),
+    ("roboticstoolbox", "three hinges", "link_poses:ETS, trajectory", ").A[1]", ").A[2]"),
     ("dart", "revolute x", "joint_wrenches_driven", "setForces(tau)", "setForces(2 * tau)"),
     (
         "symofros",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import carried
+from ..truth import carried, derived
 from .function import Function, functions_of
 
 
@@ -30,6 +30,10 @@ def _wholes() -> dict[str, Function]:
         "link_accelerations_driven": ("link_accelerations at the accelerations that tau makes (L, 6)", carried.driven),
         "coordinate_rates": ("N v (nq)", carried.coordinate_rates),
         "speeds_of_rates": ("v, of N v (nv)", lambda t, s: s.v),
+        "link_turning": (
+            "angular velocities of the links (L, 3)",
+            lambda t, s: derived.velocities(t, s.q, s.v, "aligned")[:, 3:],
+        ),
         "coordinates_of_links": ("q, of the poses that the links have there (nq)", lambda t, s: s.q),
         "speeds_of_links": ("v, of the velocities that the links have there (nv)", lambda t, s: s.v),
         "squared_distance": ("the square of v2, of q and where v2 leads (1)", carried.squared_distance),

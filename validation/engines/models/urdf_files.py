@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from ..interface import ORIGIN, Joint, Link
+import numpy as np
+
+from ..interface import ORIGIN, Array, Joint, Link, Vector, rows
 from . import readers
 from .readers import (
     ASKEW,
@@ -163,6 +165,30 @@ def _kinds() -> Iterator[tuple[str, Reading]]:
     yield _of("planar", _chain(f'planar|{_AT}<axis xyz="0 0 1"/>', _SECOND), replace(BODY, joints=(plane,)), NEXT)
 
 
+def _planes() -> Iterator[tuple[str, Reading]]:
+    """Planes across other axes than z: which two directions slide in them, the format leaves open."""
+    first = BODY.joints[0]
+    for name, text, axis in (
+        ("planar about x", "1 0 0", (1.0, 0.0, 0.0)),
+        ("planar about y", "0 1 0", (0.0, 1.0, 0.0)),
+        ("planar against z", "0 0 -1", (0.0, 0.0, -1.0)),
+        ("planar, oblique", "0.6 0 0.8", (0.6, 0.0, 0.8)),
+    ):
+        R = _across(axis)
+        plane = Joint("planar", R=rows(np.array(first.R) @ R), p=first.p)
+        turned = replace(BODY, joints=(plane, Joint("fixed", R=rows(R.T))))
+        stated = f'planar|{_AT}<axis xyz="{text}"/>'
+        yield _of(name, _chain(stated, _SECOND), turned, NEXT, asked=("sizes", "link_turning"))
+
+
+def _across(axis: Vector) -> Array:
+    """A rotation whose third column is an axis."""
+    z = np.array(axis)
+    x = np.cross(z, np.eye(3)[int(np.argmin(np.abs(z)))])
+    x /= np.linalg.norm(x)
+    return np.stack([x, np.cross(z, x), z], axis=1)
+
+
 def _losses() -> Iterator[tuple[str, Reading]]:
     """Dampers and dry friction of joints, which no function of M and g shows."""
     text, lost = '<dynamics damping="0.7" friction="0.3"/>', {"damping": 0.7, "friction": 0.3}
@@ -173,6 +199,9 @@ def _losses() -> Iterator[tuple[str, Reading]]:
     yield second("losses of a hinge", _SECOND + text, **lost)
     yield second("losses of a hinge without limits", _SECOND.replace("revolute", "continuous") + text, **lost)
     yield second("losses of a slide", _SECOND.replace("revolute", "prismatic") + text, kind="prismatic", **lost)
+    plane = replace(BODY, joints=(Joint("planar", R=BODY.joints[0].R, p=BODY.joints[0].p, damping=0.7),))
+    damped = f'planar|{_AT}{_ALONG}<dynamics damping="0.7"/>'
+    yield _of("damping of a planar joint", _chain(damped, _SECOND), plane, NEXT, asked=("joint_dampings",))
     yield second("friction alone", _SECOND + '<dynamics friction="0.3"/>', friction=0.3)
     yield second("damping alone", _SECOND + '<dynamics damping="0.7"/>', damping=0.7)
 
@@ -253,4 +282,6 @@ def _from_shapes() -> Iterator[tuple[str, Reading]]:
 
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_inertias(), *_placements(), *_kinds(), *_losses(), *_limits(), *_trees(), *_from_shapes()])
+    return dict(
+        [*_inertias(), *_placements(), *_kinds(), *_planes(), *_losses(), *_limits(), *_trees(), *_from_shapes()]
+    )

@@ -64,6 +64,14 @@ WAYS = {
     "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
     "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
     "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
+    **{
+        name: Way(native, f"value = [s.getDof(k).{native}() for k in range(s.getNumDofs())]")
+        for name, native in (
+            ("joint_dampings", "getDampingCoefficient"),
+            ("joint_frictions", "getCoulombFriction"),
+            ("joint_stiffnesses", "getSpringStiffness"),
+        )
+    },
     "joint_limits": Way(
         "getPositionLowerLimits, getPositionUpperLimits",
         "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",
@@ -90,6 +98,7 @@ WAYS = {
     "link_velocities": Way(
         "getLinearVelocity", f"{_QV}value = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]"
     ),
+    "link_turning": Way("getAngularVelocity", f"{_QV}value = [b.getAngularVelocity() for b in links]"),
     "velocity_local": Way("getSpatialVelocity", _linear_first("b.getSpatialVelocity()", _QV)),
     "acceleration_local": Way("getSpatialAcceleration", _linear_first("b.getSpatialAcceleration()", _QVA)),
     "link_accelerations": Way(

@@ -11,7 +11,7 @@ from .ways import IMPORTS, QV
 
 # Builders of some releases take a number for gravity, of others a vector.
 _WEIGHTLESS = ("m.gravity.zero_()",)
-# What iterations leave of constraints; what springs in their place do, and orientations that go along their rate.
+# What iterations leave of constraints, and springs in their place; orientations that go along their rate.
 _LEFT, _SOFT = 1e-3, 1e-2
 _STEPPED = (
     f"{QV}after, control = m.state(), m.control()\ncontrol.joint_f.assign(tau.astype(np.float32))\n"
@@ -31,7 +31,7 @@ def _step(solver: str, slack: float) -> Way:
 _XPBD, _FORCES = "SolverXPBD(m, angular_damping=0.0)", "SolverSemiImplicit(m, angular_damping=0.0)"
 WAYS = {
     "step_of_wheel": _step(_XPBD, _SOFT),
-    "step_of_wheel:SolverSemiImplicit": _step(_FORCES, _SOFT),
+    "step_of_wheel:SolverSemiImplicit": _step(_FORCES, _LEFT),
     "step_of_wheel:SolverFeatherstone": Way(
         "SolverFeatherstone",
         _STEPPED.format(solver="SolverFeatherstone(m, angular_damping=0.0)")

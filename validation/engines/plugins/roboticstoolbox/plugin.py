@@ -66,6 +66,29 @@ for J, (name, (_, path)) in zip(value, links.items()):
         "ETS.hessian0", f"{_HESSIANS}ets(end=name).hessian0(q[path]), (1, 1)).transpose(0, 2, 1)"
     ),
 } | denavit.WAYS
+# Rows of a trajectory, of which the second is what is asked.
+_MANY = "Q, V, A, F = (np.stack([x / 2, x, 2 * x]) for x in (q, v, a, tau))\n"
+# Of one joint rows are taken for joints.
+_SECOND = f"""{_MANY}T = []
+for name, (_, path) in links.items(): T.append(({{of}}).A[1] if {{n}} > 1 else robot.fkine(q, end=name).A)
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]"""
+WAYS |= {
+    f"{name}:trajectory": Way(f"{native} of a trajectory", f"{_MANY}value = robot.{native}({rows})[1]")
+    for name, native, rows in (
+        ("mass_matrix", "inertia", "Q"),
+        ("gravity", "gravload", "Q"),
+        ("inverse_dynamics", "rne", "Q, V, A"),
+        ("forward_dynamics", "accel", "Q, V, F"),
+        ("inertia_forces", "itorque", "Q, A"),
+    )
+}
+WAYS |= {
+    "link_poses:trajectory": Way("fkine of a trajectory", _SECOND.format(n="robot.n", of="robot.fkine(Q, end=name)")),
+    "link_poses:ETS, trajectory": Way(
+        "ETS.fkine of a trajectory",
+        _SECOND.format(n="len(path)", of="robot.base * robot.ets(end=name).fkine(Q[:, path])"),
+    ),
+}
 
 
 _AGAINST = {(-x, -y, -z): letter for (x, y, z), letter in _LETTERS.items()}
