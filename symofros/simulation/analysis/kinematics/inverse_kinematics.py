@@ -103,10 +103,11 @@ def inverse_kinematics(
     Raises:
         UnknownNameError: No such frame or speed.
         ShapeError: A target, the guess or rest does not fit, or is not of finite numbers.
-        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts is out of range.
+        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts or tolerance is out of
+            range.
     """
     model = model.with_precision("double")
-    check_starts(starts)
+    check_search(starts, tolerance)
     task = Task(model, targets, u, par)
     solver = task.solver
     free = free_speeds(model, held) if held else solver.everything
@@ -229,12 +230,15 @@ def joint_motion(
     return np.array(qs), np.array(vs), np.array(accs)
 
 
-def check_starts(starts: int) -> None:
-    """Refuse a number of starts that would take hours, or is none.
+def check_search(starts: int, tolerance: float) -> None:
+    """Refuse a number of starts that would take hours, or is none, and a tolerance that nothing meets.
 
     Raises:
         SymofrosError: It is.
     """
+    if not tolerance > 0.0:
+        what, rule = "inverse kinematics: tolerance is out of range", "a bound of errors [m, rad] is above zero"
+        raise SymofrosError(Problem(what, f"{tolerance:g}", rule, "leave it out for 1e-10"))
     if not 1 <= starts <= _MAX_STARTS:
         raise SymofrosError(
             Problem(
