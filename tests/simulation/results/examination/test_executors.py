@@ -130,7 +130,7 @@ def test_every_executor_notes_what_a_single_run_notes(name: str, executor: str) 
     moved = made(name)
     notes = EXECUTORS[executor](moved).notes
     unseen = [UNSEEN in note for note in notes]
-    assert any(unseen) == (executor in ("events", "together")), notes
+    assert any(unseen) == (executor == "together"), notes
     said = [moved.said in note for note, left_out in zip(notes, unseen, strict=True) if not left_out]
     assert all(said) and (any(unseen) or bool(said) == bool(moved.said)), notes
 
