@@ -25,7 +25,7 @@ LINES = mjcf_lines.files()
 HINGE = Layout(1, 1, ((Slot("angle", (0,), (0,)),),))
 LENGTH = Layout(1, 1, ((Slot("length", (0,), (0,)),),))
 # What XPBD has wrong (`causes/stated/newton.yaml`).
-WRONG = {"wheel on a hinge", "wheel on a damped hinge", "wheel on a ball", "wheel on a damped ball"}
+WRONG = {"wheel on a hinge", "wheel on a damped hinge", "wheel on a ball", "wheel on a ball with dampers"}
 
 
 def _at(tree: Tree, layout: Layout) -> tuple[Truth, Point]:
@@ -51,7 +51,7 @@ def test_a_damper_slows_a_wheel() -> None:
 
 
 def test_dampers_of_a_ball_are_stated_along_each_axis() -> None:
-    assert OWN["newton"].building(SINGLE["wheel on a damped ball"]).count("damping=4.0") == 3
+    assert OWN["newton"].building(SINGLE["wheel on a ball with dampers"]).count("damping=4.0") == 3
     assert "damping" not in OWN["newton"].building(SINGLE["wheel on a ball"])
 
 

@@ -74,7 +74,7 @@ def trees() -> dict[str, Tree]:
         _wheel("wheel on a damped hinge along z", "revolute", axis=along["z"], damping=0.5),
         _wheel("body on a slide", "prismatic", axis=oblique),
         _wheel("wheel on a ball", "ball"),
-        _wheel("wheel on a damped ball", "ball", damping=4.0),
+        _wheel("wheel on a ball with dampers", "ball", damping=4.0),
         _held("distance below its bounds", 2.0, 3.0),
         _held("distance beyond its bounds", 0.125, 0.25),
         _held("distance within its bounds", 0.0625, 8.0),
