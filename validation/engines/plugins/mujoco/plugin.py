@@ -117,9 +117,11 @@ _READERS = {
     "mjcf written": "mj.MjModel.from_xml_string(written({text}))",
 }
 # By the specification, where the release has some; all releases write the file that was read last.
-WRITING = (
-    rebuilt.PARSED
-    + """
+WRITING = """def parsed(text):
+    try: return mj.MjSpec.from_string(text)
+    except TypeError: spec = mj.MjSpec()  # First it was a method of specifications that are made.
+    spec.from_string(text)
+    return spec
 def written(text):
     if hasattr(mj, 'MjSpec') and hasattr(mj.MjSpec, 'to_xml'):
         spec = parsed(text)
@@ -128,7 +130,6 @@ def written(text):
     with tempfile.NamedTemporaryFile(suffix='.xml') as file:
         mj.mj_saveLastXML(file.name, mj.MjModel.from_xml_string(text))
         return file.read().decode()"""
-)
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:

@@ -6,25 +6,17 @@ from collections.abc import Mapping
 
 from ..writing.source import Way
 
-# First a method of specifications that are made.
-PARSED = """def parsed(text):
-    try: return mj.MjSpec.from_string(text)
-    except TypeError: spec = mj.MjSpec()
-    spec.from_string(text)
-    return spec"""
 # Options are those of the model that is attached to.
-_ATTACHED = f"""
-{PARSED}
+_ATTACHED = """
 def made(text):
-    child, parent = parsed(text), mj.MjSpec()
+    child, parent = mj.MjSpec.from_string(text), mj.MjSpec()
     for name in ('gravity', 'timestep', 'disableactuator', 'density', 'viscosity', 'wind'):
         setattr(parent.option, name, getattr(child.option, name))
     parent.attach(child, prefix='own_', frame=parent.worldbody.add_frame())
     return parent.compile()"""
-_AGAIN = f"""
-{PARSED}
+_AGAIN = """
 def made(text):
-    spec = parsed(text)
+    spec = mj.MjSpec.from_string(text)
     m = spec.compile()
     return spec.recompile(m, mj.MjData(m))[0]"""
 _SAVED = """
@@ -64,11 +56,9 @@ def ways(first: Mapping[str, Way]) -> dict[str, Way]:
     }
 
 
-_SENSED = (
-    f"\n{PARSED}"
-    + """
+_SENSED = """
 def made(text):
-    spec, kinds = parsed(text), mj.mjtSensor
+    spec, kinds = mj.MjSpec.from_string(text), mj.mjtSensor
     bodies = [body.name for body in spec.bodies if body.name != 'world']
     def add(kind, name, one, **more):
         spec.add_sensor(name=f'{kind}:{name}', type=getattr(kinds, f'mjSENS_{kind}'), objtype=one, objname=name, **more)
@@ -79,7 +69,6 @@ def made(text):
         spec.add_sensor(name=kind, type=getattr(kinds, f'mjSENS_{kind}'))
     return spec.compile()
 def read(kind, b): return np.array(d.sensor(f'{kind}:{m.body(b).name}').data)"""
-)
 _FRAMES = ("FRAMEPOS", "FRAMEXAXIS", "FRAMEYAXIS", "FRAMEZAXIS", "FRAMEQUAT", "FRAMELINVEL", "FRAMEANGVEL")
 _RATES = ("FRAMELINACC", "FRAMEANGACC")
 _SUBTREES = ("SUBTREECOM", "SUBTREELINVEL", "SUBTREEANGMOM")
