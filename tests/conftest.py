@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import datetime
+import functools
 import gc
 import os
 import shutil
@@ -197,6 +198,15 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
         stated: Any = Options.__init__
         backend = "tape" if file.parts[0] in _ON_TAPE and not as_users_do else "c"
         stated.__defaults__ = (*stated.__defaults__[:_BACKEND], backend, *stated.__defaults__[_BACKEND + 1 :])
+
+
+def pytest_runtest_teardown(item: pytest.Item, nextitem: pytest.Item | None) -> None:
+    """A file's own caches end with it: the machine of tapes holds a thousand functions of models that live."""
+    module = getattr(item, "module", None)
+    if module is not None and module is not getattr(nextitem, "module", None):
+        for value in vars(module).values():
+            if isinstance(value, functools._lru_cache_wrapper) and value.__module__ == module.__name__:
+                value.cache_clear()
 
 
 def _keep_a_part(config: pytest.Config, items: list[pytest.Item]) -> None:
