@@ -138,13 +138,25 @@ def test_a_reset_is_located_in_time() -> None:
     assert found["x.y"][-1] == pytest.approx([0.5 + 0.5679, 0.5 + 2 * 0.5679], abs=1e-9)
 
 
+@pytest.mark.parametrize(("start", "end"), [(0.5, 0.65), (0.8, 0.8)])
+def test_a_reset_leads_away_from_a_limit_or_to_it(start: float, end: float) -> None:
+    diagram = sf.Diagram("reset")
+    diagram.add(Ramp(name="when", slope=1.0, start=-0.6))
+    diagram.add(Step(name="u", time=0.2, before=-1.0, after=1.0))
+    diagram.add(Integrator(name="x", start=start, high=0.8, reset="rising"), u="u.y", reset="when.y")
+    simulation = sf.Simulation(diagram)
+    for found in (simulation.run(0.75, dt=0.1), simulation.interpret(0.75, dt=0.1)):
+        assert found["x.y"][-1] == pytest.approx(end, abs=1e-9)
+
+
 @pytest.mark.parametrize(
     ("reset", "expected"), [("rising", [0, 1, 0, 1, 2]), ("falling", [0, 1, 2, 3, 0]), ("both", [0, 1, 0, 1, 0])]
 )
 def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int]) -> None:
-    integrator = Integrator(name="x", reset=reset, period=STEP)
-    found = run(integrator, {"u": np.full(5, 100.0), "reset": [-1, -1, 1, 1, -1]})["y"]
-    assert found == pytest.approx(expected, abs=1e-12)
+    for start in (0.0, 7.0):
+        integrator = Integrator(name="x", start=start, reset=reset, period=STEP)
+        found = run(integrator, {"u": np.full(5, 100.0), "reset": [-1, -1, 1, 1, -1]})["y"]
+        assert found == pytest.approx(np.add(expected, start), abs=1e-12)
     limited = run(Integrator(name="x", high=1.5, period=STEP), {"u": [100.0] * 3 + [-100.0] * 2})["y"]
     assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
 
