@@ -96,14 +96,22 @@ def test_colours_are_those_of_shapes_or_materials(
         ('mesh="part" ', 'mesh="part" group="3" '),
         ('file="part.obj"', 'file="gone.obj"'),
         ('file="part.obj"', 'file="part.obj" scale="1 2 3" refquat="0.8 0.1 -0.5 0.3"'),
+        ('geom type="mesh"', 'geom type="capsule"'),
     ],
-    ids=["group", "missing", "turned and stretched"],
+    ids=["group", "missing", "turned and stretched", "a capsule about a mesh"],
 )
 def test_what_can_not_be_drawn_is_left_out(change: tuple[str, str], tmp_path: Path) -> None:
     file = written(tmp_path)
     file.write_text(file.read_text().replace(*change))
     system = sf.load(file)
     assert not system.visuals and system.bodies
+
+
+def test_folders_of_files_are_left_out_if_asked_for(tmp_path: Path) -> None:
+    file = written(tmp_path)
+    file.write_text(file.read_text().replace("<compiler ", '<compiler strippath="true" ').replace("part.", "gone/part."))
+    (shape,) = sf.load(file).visuals["a"]
+    assert shape.file == str((tmp_path / "meshes" / "part.obj").resolve())
 
 
 def test_no_file_of_other_folders_is_drawn(tmp_path: Path) -> None:
