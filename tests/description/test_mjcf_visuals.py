@@ -109,7 +109,9 @@ def test_what_can_not_be_drawn_is_left_out(change: tuple[str, str], tmp_path: Pa
 
 def test_folders_of_files_are_left_out_if_asked_for(tmp_path: Path) -> None:
     file = written(tmp_path)
-    file.write_text(file.read_text().replace("<compiler ", '<compiler strippath="true" ').replace("part.", "gone/part."))
+    file.write_text(
+        file.read_text().replace("<compiler ", '<compiler strippath="true" ').replace("part.", "gone/part.")
+    )
     (shape,) = sf.load(file).visuals["a"]
     assert shape.file == str((tmp_path / "meshes" / "part.obj").resolve())
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -19,6 +20,17 @@ def point(friction: float, gravity: tuple[float, float, float] = (0, 0, -G), e: 
     foot = sf.Contact("foot", ("z", None), GROUND, restitution=e, friction=friction)
     bodies = (x, y, sf.RigidBody("z", axis, sf.Inertia(2.0)))
     return sf.compile(sf.System("point", bodies, connections=(foot,), gravity=gravity))
+
+
+def guided(friction: float) -> sf.Model:
+    """A sledge of 1 kg on a cross-beam of 3 kg, led along a line askew on the plane."""
+    x, y = (sf.RigidBody(n, sf.Joint(n, "prismatic", axis=a, parent=p)) for n, a, p in _SLIDES)
+    x = replace(x, inertia=sf.Inertia(3.0))
+    axis = sf.Joint("z", "prismatic", axis=(0, 0, 1), parent="y")
+    foot = sf.Contact("foot", ("z", None), GROUND, restitution=0.0, friction=friction)
+    line = sf.Coupling("line", "y - 0.5*x")
+    bodies = (x, y, sf.RigidBody("z", axis, sf.Inertia(1.0)))
+    return sf.compile(sf.System("guided", bodies, connections=(foot,), constraints=(line,)))
 
 
 _SLIDES = (("x", (1, 0, 0), "world"), ("y", (0, 1, 0), "x"))

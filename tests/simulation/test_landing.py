@@ -33,6 +33,16 @@ def test_a_box_that_rocks_from_edge_to_edge_comes_to_rest(method: str, off: floa
     )
 
 
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_what_several_feet_lose_at_once_is_counted_once(method: str) -> None:
+    """A box that falls flat: its four feet strike at one instant, each with an event of its own."""
+    model = box(0.5, height=0.05)
+    run = sf.simulate(model, rested(model, 0.3), [0, 0, -1.0, 0, 0, 0], t_end=0.4, method=method, dt=1e-3)
+    settled(run)
+    assert len(run.events) == 4
+    assert sum(event.energy_lost for event in run.events) == pytest.approx(run.energy[0] - run.energy[-1], rel=1e-6)
+
+
 DISC = [(0.2 * cos(angle), 0.2 * sin(angle), -0.06) for angle in (0, 2.1, 4.2)]
 BOX = [(x, y, -0.05) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
 

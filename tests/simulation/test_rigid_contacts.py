@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, box, point, rested, rod
+from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, box, guided, point, rested, rod
 
 
 @pytest.mark.parametrize("share", [1 + 1e-3, 1 - 1e-3])
@@ -237,6 +237,18 @@ def test_multipliers_are_the_forces_of_the_motion(name: str) -> None:
     for one in model.record.rigid_contacts:
         x, y, normal = (run.lam[:, row] for row in one.rows)
         assert np.hypot(x, y) == pytest.approx(mu * normal, rel=1e-12) and normal.min() > 0.0
+
+
+def test_friction_changes_the_forces_of_other_constraints() -> None:
+    """Led along (2, 1), against friction; across, the line pushes what would not go there by itself."""
+    mu, end = 0.3, 0.2
+    model = guided(mu)
+    run = sf.simulate(model, [0, 0, 0], [2.0, 1.0, 0], t_end=end, dt=1e-2)
+    friction = -mu * 9.81 * np.array([2.0, 1.0]) / 5**0.5
+    x = (friction[0] + 0.5 * friction[1]) / (4.0 + 0.25)  # Along the line, of 4 kg by x and 1 kg by y = x/2.
+    assert run.a[:, 0] == pytest.approx(x, abs=1e-12) and run.v[-1, 0] == pytest.approx(2.0 + x * end, abs=1e-12)
+    line = model.names.constraints.index("line")
+    assert run.lam[:, line] == pytest.approx(0.5 * x - friction[1], abs=1e-11)
 
 
 def test_a_ball_on_a_turntable_goes_in_circles() -> None:

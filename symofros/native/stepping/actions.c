@@ -247,7 +247,7 @@ static int32_t sym_end_modes(sym_run *r) {
     const sym_system *s = r->system;
     const int32_t first = a->first_mode, first_contact = sym_first_contact_event(r);
     double *met = a->modes + a->npar + 2 * s->n_sticking;
-    int32_t i, status = 0;
+    int32_t i, status = 0, struck = 0;
     int64_t row;
     for (i = 0; i < s->n_contacts; ++i) met[i] = 0.0;
     for (row = r->first_met; row < r->met_end; ++row) {
@@ -266,9 +266,13 @@ static int32_t sym_end_modes(sym_run *r) {
     if (status == 0 && s->n_contacts > 0) status = sym_settle_contacts(r, met);
     for (row = r->first_met; row < r->met_end; ++row) {
         const sym_done done = sym_run_done(r, row);
+        const int32_t ball = r->event_index[row] >= first_contact ? (r->event_index[row] - first_contact) / 2 : -1;
         if (status != 0 ? row + 1 < r->met_end : r->event_index[row] < first) continue;
-        if (status == 0 && r->event_index[row] >= first_contact) sym_note_contact(r, &done, (r->event_index[row] - first_contact) / 2);
+        if (status == 0 && ball >= 0) sym_note_contact(r, &done, ball);
         else sym_note_modes(r, &done, status);
+        /* What balls lose that strike at once can't be told apart: the first event has it all. */
+        if (struck) memcpy(done.v_set, r->v, (size_t)s->nv * sizeof *r->v);
+        struck |= ball >= 0;
     }
     return status;
 }

@@ -36,7 +36,7 @@ class Found(NamedTuple):
         v_after: Speeds (nv) after the action; None where there is none.
         impulse: Impulse of the constraints in an impact (nc), of least norm where conditions repeat each other: M dv =
             G^T impulse [N s, N m s].
-        energy_lost: Kinetic energy that the impact took [J].
+        energy_lost: Kinetic energy that the impact took; of balls that strike at once the first event has it all [J].
         energy_added: Energy that came with parameters and speeds that were set [J].
     """
 
