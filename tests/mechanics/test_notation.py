@@ -39,6 +39,7 @@ BARE = {
     "FrameState": "p_WF, R_WF, v_WFo_W, w_WF_W, a_WFo_W, alpha_WF_W of a constraint's frame, which it calls A or B",
     "RelativeMotion": "w_AL_L, v_ALo_L of a link in its parent, and the derivatives of their components",
     "Variation": "changes of w_WL_L, alpha_WL_L, a_WLo_L per unit of a coordinate or a speed",
+    "Line": "p and v of the middle of a body's line against W, its direction a (no acceleration), in W",
     "Momentum": "linear momentum, and angular momentum about Lo, in L",
 }
 
