@@ -125,6 +125,9 @@ def test_replays_are_accessible(page: Page, looked: Callable[[], None], replay: 
     for _ in range(8):
         page.mouse.wheel(0, -300)
     until(page, lambda: metre() > 1.5 * first)
+    beside.get_by_text("Plot", exact=True).click()
+    expect(beside.get_by_role("slider", name="Time [s], in the plot of ")).to_be_visible()
+    picture("replay-plot")
     looked()
     expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")  # The last that was looked at.
 
