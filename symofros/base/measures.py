@@ -40,6 +40,10 @@ class Measures(NamedTuple):
         """Measures of the columns of some speeds, in order."""
         return self._replace(speed=tuple(self.speed[k] for k in speeds))
 
+    def kinds(self, speeds: int) -> tuple[int, ...]:
+        """Kinds of so many speeds, OTHER of those that none is stated of."""
+        return (*self.speed, *(OTHER,) * speeds)[:speeds]
+
     @classmethod
     def joined(cls, parts: Iterable[tuple[int, int, Measures]], rows: int, speeds: int) -> Measures:
         """Measures of a Jacobian of blocks; speeds outside of them are of the kind OTHER.

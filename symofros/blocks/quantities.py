@@ -29,7 +29,7 @@ Quantity = Literal["q", "v", "a", "effort", "u"]
 
 def entry_units(record: ModelRecord, quantity: Quantity) -> tuple[str, ...]:
     """Units of the entries of a model's q (nq), v, a, efforts (nv) or inputs u (nu); "" where they are not known."""
-    kinds = (*record.measures.speed, *(OTHER,) * len(record.v_names))[: len(record.v_names)]
+    kinds = record.measures.kinds(len(record.v_names))
     if quantity == "u":
         efforts = dict(zip(record.v_names, entry_units(record, "effort"), strict=True))
         return tuple("" if record.driven else efforts.get(name, "") for name in record.u_names)

@@ -64,9 +64,7 @@ class Task:
         if largest.shape != (nu,) or not (largest >= 0.0).all():
             found, rule = str(self.largest)[:60], f"({nu},), none negative"
             raise _misfit("task: bounds of inputs do not fit", found, rule, "give a largest magnitude for each input")
-        steps = self.substeps
-        if isinstance(steps, bool) or not isinstance(steps, int | np.integer) or steps < 1:
-            raise _misfit("task: no number of substeps", repr(steps)[:60], "a whole number from 1 on", "substeps=1")
+        _check_count("task: no number of substeps", self.substeps, "substeps=1")
 
     def begin(self, rng: np.random.Generator) -> tuple[Array, Array, Array]:
         """First state of an episode, q (nq) and v (nv), and its parameters (npar).
@@ -186,9 +184,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
 
     def __init__(self, task: Task, num_envs: int, max_steps: int = 500) -> None:
         for name, count in (("num_envs", num_envs), ("max_steps", max_steps)):
-            if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-                what, rule = f"MechanismVectorEnv: {name} does not fit", "a whole number from 1 on"
-                raise _misfit(what, repr(count)[:60], rule, f"{name}=1 at least")
+            _check_count(f"MechanismVectorEnv: {name} does not fit", count, f"{name}=1 at least")
         self.task, self.num_envs, self._max_steps = task, num_envs, max_steps
         self.single_action_space, self.single_observation_space = task.action_space, task.observation_space
         batch_space = gymnasium.vector.utils.batch_space
@@ -331,6 +327,12 @@ def _checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> Seque
 
 def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError:
     return rules.InteropError(Problem(what, found, rule, remedy))
+
+
+def _check_count(what: str, count: object, remedy: str) -> None:
+    """Refuse what is no whole number from 1 on."""
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
+        raise _misfit(what, repr(count)[:60], "a whole number from 1 on", remedy)
 
 
 def _bounds(task: Task) -> tuple[Array, Array]:

@@ -19,7 +19,7 @@ from symofros.description.visual import MAX_VISUALS
 from symofros.description.xml_nodes import Element
 
 _TREE = ("body", "frame", "replicate")
-_SEEN_GROUPS = ("0", "1", "2")
+SEEN_GROUPS = range(3)  # Those that MuJoCo's own viewer shows at first.
 _PLACEMENT = ("pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "class", "group", "rgba", "material")
 _DRAWN_NAME = re.compile(r"symofros drawn mesh (\d{1,6}):")
 
@@ -133,7 +133,7 @@ class Meshes:
     def _in_its_place(self, geom: Element, stated: dict[str, str]) -> Iterator[Element]:
         """What places the picture of a shape that is cut out, nothing where it has none."""
         named = geom.attributes.get("mesh", "")  # By a class of defaults, it would be asked for again.
-        is_seen = stated.get("group", "0") in _SEEN_GROUPS and stated.get("type") == "mesh"
+        is_seen = stated.get("group", "0") in map(str, SEEN_GROUPS) and stated.get("type") == "mesh"
         drawn = self._drawn(named) if is_seen and len(self.drawn) < MAX_VISUALS else None
         if drawn is None:
             return

@@ -11,13 +11,12 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description.imported.geometry import rotation_of
-from symofros.description.mjcf.meshes import DrawnMesh, drawn_index
+from symofros.description.mjcf.meshes import SEEN_GROUPS, DrawnMesh, drawn_index
 from symofros.description.values import Rotation
 from symofros.description.visual import MAX_VISUALS, Visual, VisualKind, color_of
 
 _MESH = 7  # mjGEOM_MESH
 _UNSTATED = np.array([0.5, 0.5, 0.5, 1.0], dtype=np.float32)  # MuJoCo's colour of what states none.
-_SEEN = 3  # Groups that MuJoCo's own viewer shows at first are those below.
 # mjtGeom -> our kind, and which of its three sizes that has, by what factor: MuJoCo states half lengths.
 _KINDS: dict[int, tuple[VisualKind, tuple[tuple[int, float], ...]]] = {
     2: ("sphere", ((0, 1.0),)),
@@ -46,7 +45,7 @@ def visuals_of(
         if material >= 0 and np.array_equal(rgba, _UNSTATED):
             rgba = np.array(model.mat_rgba[material], dtype=float)
         pose = np.concatenate([model.geom_pos[i], model.geom_quat[i], rgba])
-        if int(model.geom_group[i]) >= _SEEN or not np.all(np.isfinite(pose)) or rgba[3] <= 0.0:
+        if int(model.geom_group[i]) not in SEEN_GROUPS or not np.all(np.isfinite(pose)) or rgba[3] <= 0.0:
             continue
         index = drawn_index(model.geom(i).name)
         if 0 <= index < len(drawn):

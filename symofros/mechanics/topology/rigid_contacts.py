@@ -109,8 +109,8 @@ class RigidBall(NamedTuple):
     def watched(self) -> tuple[Value, Value]:
         """What falls to zero where a mode ends, (40): distance or normal force; slip, or what friction has left.
 
-        But on planes the latter falls to zero, too, where the normal has come too far from its pole; of rims where they
-        lie flat.
+        The latter falls to zero, too, where the normal of a surface that is no plane has come too far from its pole,
+        and where a rim or segment comes to touch along a line.
         """
         m, one, two = _symbol(self.mode), Term(1.0), Term(2.0)
         is_open, slides, sticks = (m - one) * (m - two) / two, m * (two - m), m * (m - one) / two
@@ -126,8 +126,8 @@ class RigidBall(NamedTuple):
             limits.append(_symbol(self.pole) * _symbol(f"contact.{self.name}.nz") - Term(_POLE_LEAST))
         if self.contact.rim is not None or self.contact.segment is not None:
             limits.append(_symbol(f"contact.{self.name}.sine") - Term(_FLAT))
-        for left in limits:
-            across = across * (is_open + (one - is_open) * left)
+        for distance in limits:
+            across = across * (is_open + (one - is_open) * distance)
         return (is_open * gap + (one - is_open) * fz).value, across.value
 
 

@@ -270,7 +270,7 @@ static int32_t sym_end_modes(sym_run *r) {
         if (status != 0 ? row + 1 < r->met_end : r->event_index[row] < first) continue;
         if (status == 0 && ball >= 0) sym_note_contact(r, &done, ball);
         else sym_note_modes(r, &done, status);
-        /* What balls lose that strike at once can't be told apart: the first event has it all. */
+        /* What each ball loses that strikes with others is not known: the first event has it all. */
         if (struck) memcpy(done.v_set, r->v, (size_t)s->nv * sizeof *r->v);
         struck |= ball >= 0;
     }

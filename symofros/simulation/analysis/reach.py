@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
+from symofros.base.measures import LENGTH, ROTATION, TRANSLATION, Measures
 from symofros.runtime.constrained import natural_sizes
 from symofros.runtime.model import ArrayLike, Model
 
@@ -36,12 +36,9 @@ def reach_of(model: Model, G: Array, M: Array, par: ArrayLike | None) -> Reach:
         par: Run-time parameters.
     """
     measures = model.record.measures
-    kinds = np.full(model.nv, -1)
-    kinds[: len(measures.speed)] = measures.speed
-    lengths = np.array(measures.unit, dtype=np.intp) == LENGTH
+    kinds = np.array(measures.kinds(model.nv))
     shifts, turns = kinds == TRANSLATION, kinds == ROTATION
-    length = float(natural_sizes(G, measures)[np.ix_(lengths, turns)].max(initial=0.0)) if len(lengths) else 0.0
-    farthest = length
+    length = farthest = length_by_constraints(G, measures)
     if not length:
         mass, inertia = (float(np.diag(M)[which].max(initial=0.0)) for which in (shifts, turns))
         length = float(np.sqrt(inertia / mass)) if mass > 0.0 and inertia > 0.0 else 1.0
@@ -49,4 +46,11 @@ def reach_of(model: Model, G: Array, M: Array, par: ArrayLike | None) -> Reach:
     speeds = np.where(shifts, length, 1.0)
     for beam in model.beams(par):
         speeds[beam.in_v] = 1.0 / beam.scale
-    return Reach(speeds, np.where(shifts, farthest, speeds), np.where(lengths, length, 1.0))
+    return Reach(speeds, np.where(shifts, farthest, speeds), np.where(np.equal(measures.unit, LENGTH), length, 1.0))
+
+
+def length_by_constraints(G: Array, measures: Measures) -> float:
+    """The largest lever by which a rotation moves what constraints (nc, nv) keep in place [m]; zero where none does."""
+    lengths = np.array(measures.unit, dtype=np.intp) == LENGTH
+    turns = np.equal(measures.kinds(G.shape[1]), ROTATION)
+    return float(natural_sizes(G, measures)[np.ix_(lengths, turns)].max(initial=0.0)) if len(lengths) else 0.0

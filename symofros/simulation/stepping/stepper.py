@@ -278,10 +278,7 @@ class Stepper(BoundRun):
     @cached_property
     def _turns(self) -> Mask:
         """Whether each speed is a rotation (nv)."""
-        turns = np.zeros(self.model.nv, dtype=bool)
-        kinds = np.array(self.model.record.measures.speed, dtype=np.intp)
-        turns[: len(kinds)] = kinds == ROTATION
-        return turns
+        return np.equal(self.model.record.measures.kinds(self.model.nv), ROTATION)
 
     def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:
         """Accelerations (n, nv) and inputs (n, nu) at states of the motion; within `preserved`.

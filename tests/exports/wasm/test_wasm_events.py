@@ -51,5 +51,5 @@ def test_modules_move_as_runs_do(tmp_path: Path, case: str) -> None:
     known = sf.simulate(model, *first(model, start), t_end=t_end, events=events or None, method="rk4", dt=1e-3)
     assert len(known.events) > 1 or case == "actions"
     for span in (t_end / 10, t_end):
-        told = run("node", "main.mjs", repr(span), repr(t_end), cwd=tmp_path / "wasm").split()
-        assert np.array(told, dtype=float) == pytest.approx([*known.q[-1], *known.v[-1]], abs=1e-10)
+        printed = run("node", "main.mjs", repr(span), repr(t_end), cwd=tmp_path / "wasm").split()
+        assert np.array(printed, dtype=float) == pytest.approx([*known.q[-1], *known.v[-1]], abs=1e-10)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, vector
-from symofros.base.measures import LENGTH, ROTATION, TRANSLATION
+from symofros.base.measures import ROTATION, TRANSLATION
 from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import (
     LARGEST_STEP,
@@ -28,6 +28,7 @@ from symofros.runtime.constrained import (
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.kinematics.targets import finite_array
+from symofros.simulation.analysis.reach import length_by_constraints
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 
 Indices = npt.NDArray[np.intp]
@@ -294,8 +295,7 @@ def shift_scales(model: Model, G: Array) -> Array:
     """Size of a unit shift of each speed (nv): a radian, or the largest reach; 0 for elastic coordinates."""
     measures = model.record.measures
     kinds = np.array(measures.speed, dtype=np.intp)
-    lengths = np.array(measures.unit, dtype=np.intp) == LENGTH
-    reach = float(natural_sizes(G, measures)[np.ix_(lengths, kinds == ROTATION)].max(initial=0.0)) or 1.0
+    reach = length_by_constraints(G, measures) or 1.0
     return np.where(kinds == ROTATION, 1.0, np.where(kinds == TRANSLATION, reach, 0.0))
 
 
