@@ -71,6 +71,28 @@ def test_laws_and_starts_are_of_one_document_and_of_its_names(opened: Serve, pag
     expect(steps.window(page).get_by_label("Start of q")).to_have_value("0.4")
 
 
+@pytest.mark.parametrize(("command", "field", "text"), [("Simulate…", "Formula", "sin(t)"), ("Analyse…", "Value", "2")])
+def test_a_window_opened_before_a_new_name_is_answered_follows_it(
+    opened: Serve, page: Page, command: str, field: str, text: str
+) -> None:
+    opened("driven.yaml", content=DRIVEN)
+    steps.run(page, command)
+    steps.fill(page, f"{field} of tau", text)
+    steps.window(page).get_by_role("button", name=command.rstrip("…"), exact=True).click()
+    held: list[Route] = []
+    page.route("**/api/edit", lambda route: held.append(route))
+    name = page.get_by_label("Name of tau", exact=True)
+    name.fill("torque")
+    name.press("Enter")
+    until(page, lambda: bool(held))
+    steps.run(page, command)
+    expect(steps.window(page).get_by_label(f"{field} of tau")).to_have_value(text)
+    for route in held:
+        route.continue_()
+    expect(steps.window(page).get_by_label(f"{field} of torque")).to_have_value(text)
+    expect(steps.window(page).get_by_role("status")).to_have_count(0)
+
+
 def test_a_run_is_asked_for_by_document(opened: Serve, page: Page, beside: Path) -> None:
     beside.write_text(WAVE)
     opened("first.yaml", content=WAVE)

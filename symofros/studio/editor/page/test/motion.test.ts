@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { JsonMap } from "../src/api/types";
-import { followed, known, strangers } from "../src/model/asked";
+import { followed, known, newName, strangers } from "../src/model/asked";
 import { JOINT_KINDS } from "../src/model/joints";
 import { anglesOfTurn, inputs, quaternion, rates, startNumbers, startTexts, starts } from "../src/model/motion";
 
@@ -87,6 +87,7 @@ test("texts of names that are gone are apart from the others, and follow new nam
   const texts = { tau: "sin(t)", left: "1", empty: " " };
   expect(known(texts, ["tau", "empty"])).toEqual({ tau: "sin(t)" });
   expect(strangers(texts, ["tau", "empty"])).toEqual({ left: "1" });
-  expect(followed(texts, ["a", "tau"], ["a", "torque"])).toEqual({ torque: "sin(t)", left: "1", empty: " " });
-  expect(followed(texts, ["tau"], [])).toEqual(texts);
+  const renamed = { torque: "sin(t)", left: "1", empty: " " };
+  expect(followed(texts, newName(["a", "tau"], ["a", "torque"]))).toEqual(renamed);
+  expect(followed(texts, newName(["tau"], []))).toEqual(texts);
 });

@@ -93,9 +93,13 @@ export const known = (texts: Texts, names: readonly string[]): Record<string, st
 export const strangers = (texts: Texts, names: readonly string[]): Record<string, string> =>
   Object.fromEntries(stated(texts).filter(([name]) => !names.includes(name)));
 
-/** Texts under the names that renaming has given them; `before` and `after` are the names in order. */
-export function followed(texts: Texts, before: readonly string[], after: readonly string[]): Texts {
-  if (before.length !== after.length) return texts;
+/** The name that renaming has given to a name; `before` and `after` are all names in order. */
+export function newName(before: readonly string[], after: readonly string[]): (name: string) => string {
+  if (before.length !== after.length) return (name) => name;
   const renamed = new Map(before.map((name, i) => [name, after[i] ?? name]));
-  return Object.fromEntries(Object.entries(texts).map(([name, text]) => [renamed.get(name) ?? name, text]));
+  return (name) => renamed.get(name) ?? name;
 }
+
+/** Texts under new names. */
+export const followed = (texts: Texts, renamed: (name: string) => string): Texts =>
+  Object.fromEntries(Object.entries(texts).map(([name, text]) => [renamed(name), text]));

@@ -2,10 +2,10 @@ import { useState } from "react";
 
 import type { Analysed as Result } from "../api/jobs";
 import { startTexts } from "../model/motion";
-import { askedSimulation, keepSimulation } from "../store/asked";
+import { askedSimulation, keepSimulation, showSimulation } from "../store/asked";
 import { importText } from "../store/files";
 import { setTime, showMotion, shownMotion } from "../store/playing";
-import { now, show, update, useDocument, useStore } from "../store/store";
+import { now, update, useDocument, useStore } from "../store/store";
 import { Beams } from "./Beams";
 import { PlayBar } from "./PlayBar";
 import { Plot } from "./Plot";
@@ -45,7 +45,7 @@ function Found({ start }: { start: Record<string, number> }) {
   const { data } = useDocument();
   const simulate = (): void => {
     keepSimulation({ ...askedSimulation(), q0: startTexts(data, start) });
-    show({ kind: "simulate" });
+    showSimulation();
   };
   return (
     <p className="found">

@@ -5,9 +5,9 @@ import { badge } from "../model/bending";
 import { startTexts } from "../model/motion";
 import { allFrames } from "../model/names";
 import { scaleBar } from "../model/scale";
-import { askedSimulation, keepSimulation } from "../store/asked";
+import { askedSimulation, keepSimulation, showSimulation } from "../store/asked";
 import { setTime } from "../store/playing";
-import { now, show, update, useDocument, useStore } from "../store/store";
+import { now, update, useDocument, useStore } from "../store/store";
 import { useTheme } from "../store/theme";
 import { look, lookAway, move, shownBlock } from "../store/view";
 import { ParameterSlider } from "./ParameterSlider";
@@ -139,7 +139,7 @@ function StartHere({ view }: { view: View }) {
   if (diagram !== null) return null;
   const open = (): void => {
     keepSimulation({ ...askedSimulation(), q0: startTexts(data, view.q) });
-    show({ kind: "simulate" });
+    showSimulation();
   };
   const isClosed = view.gap === null || view.gap <= OPEN;
   return (

@@ -7,6 +7,7 @@ import { savePicture } from "../files/picture";
 import { toRedo, toUndo } from "../model/moves";
 import { tidyDiagram } from "../model/diagram_layout";
 import { tidy } from "../model/layout";
+import { showAnalysis, showSimulation } from "../store/asked";
 import { copy, paste } from "../store/clipboard";
 import { moveBlocks, redo, undo } from "../store/edits";
 import { remove } from "../store/elements";
@@ -107,12 +108,12 @@ const OF_MECHANISM: readonly Command[] = [
     help: "Compare the model with independent engines",
     start: () => void run("crosscheck"),
   },
-  { kind: "simulate", title: "Simulate…", help: "Integrate the motion", start: () => show({ kind: "simulate" }) },
+  { kind: "simulate", title: "Simulate…", help: "Integrate the motion", start: showSimulation },
   {
     kind: "analyse",
     title: "Analyse…",
     help: "Equilibrium, vibration modes, linear model",
-    start: () => show({ kind: "analyse" }),
+    start: showAnalysis,
   },
   {
     kind: "export",

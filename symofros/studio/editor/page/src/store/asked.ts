@@ -10,9 +10,11 @@ import {
   FIRST_SIMULATION,
   followed,
   known,
+  newName,
 } from "../model/asked";
 import { inputs, rates, startNumbers, starts } from "../model/motion";
-import { now, update } from "./store";
+import { allFrames } from "../model/names";
+import { now, show, update } from "./store";
 
 const here = (): string => now().document?.path ?? "";
 
@@ -59,18 +61,40 @@ export function keepRun(last: AskedRun): void {
   update(({ asked }) => ({ asked: { ...asked, run: { ...asked.run, [here()]: last } } }));
 }
 
-/** Starts and laws go with coordinates and inputs that a window has renamed. */
+/** Opens the window of simulations, or of analyses, with what was asked last. */
+export const showSimulation = (): void => show({ kind: "simulate", asked: askedSimulation() });
+export const showAnalysis = (): void => show({ kind: "analyse", asked: askedAnalysis(), state: askedSimulation() });
+
+/**
+ * What was asked goes with the names that an edit has changed, in a window that is open, too: it may have been opened
+ * before the edit was answered.
+ */
 export function followRenaming(before: Document): void {
-  const [{ document }, last] = [now(), askedSimulation()];
-  if (document === null || document.path !== before.path || last === FIRST_SIMULATION) return;
-  const along = (texts: AskedSimulation["q0"], names: (data: Document["data"]) => string[]) =>
-    followed(texts, names(before.data), names(document.data));
-  keepSimulation({
-    ...last,
-    q0: along(last.q0, (data) => starts(data).map(({ name }) => name)),
-    v0: along(last.v0, (data) => rates(data).map(({ name }) => name)),
-    inputs: along(last.inputs, (data) => inputs(data).map(({ name }) => name)),
+  const { document, dialog } = now();
+  if (document === null || document.path !== before.path) return;
+  const along = (names: (document: Document) => string[]) => newName(names(before), names(document));
+  const coordinate = along(({ data }) => named(starts(data)));
+  const speed = along(({ data }) => named(rates(data)));
+  const input = along(({ data }) => named(inputs(data)));
+  const parameter = along(({ parameters }) => named(parameters));
+  const renamed = { coordinate, speed, position: along(({ data }) => allFrames(data)) };
+  const simulation = (asked: AskedSimulation): AskedSimulation => ({
+    ...asked,
+    q0: followed(asked.q0, coordinate),
+    v0: followed(asked.v0, speed),
+    inputs: followed(asked.inputs, input),
   });
+  const analysis = (asked: AskedAnalysis): AskedAnalysis => ({
+    ...asked,
+    u: followed(asked.u, input),
+    held: asked.held.map(speed),
+    parameter: parameter(asked.parameter),
+    outputs: asked.outputs.map((output) => ({ ...output, of: renamed[output.kind](output.of) })),
+  });
+  keepSimulation(simulation(askedSimulation()));
+  keepAnalysis(analysis(askedAnalysis()));
+  if (dialog?.kind === "simulate") show({ ...dialog, asked: simulation(dialog.asked) });
+  if (dialog?.kind === "analyse") show({ ...dialog, asked: analysis(dialog.asked), state: simulation(dialog.state) });
 }
 
 /** What was asked of a document goes with it to another path. */

@@ -37,8 +37,8 @@ export type Dialog =
   | { kind: "examples"; examples: Example[] }
   | { kind: "new" }
   | { kind: "save as" }
-  | { kind: "simulate" }
-  | { kind: "analyse" }
+  | { kind: "simulate"; asked: AskedSimulation }
+  | { kind: "analyse"; asked: AskedAnalysis; state: AskedSimulation }
   | { kind: "run" }
   | { kind: "consent"; files: NativeFile[]; fault: Fault; proceed: () => void }
   | { kind: "export" }

@@ -1,14 +1,12 @@
-import { useState } from "react";
-
 import { isNumber } from "../forms/values";
-import { type AskedAnalysis, known } from "../model/asked";
+import { type AskedAnalysis, type AskedSimulation, known } from "../model/asked";
 import { inputs, rates, starts } from "../model/motion";
 import { Foot } from "../shell/Foot";
 import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
-import { askedAnalysis, askedSimulation, keepAnalysis, keepSimulation, simulationOptions } from "../store/asked";
+import { keepAnalysis, keepSimulation, simulationOptions } from "../store/asked";
 import { run } from "../store/jobs";
-import { dismiss, update, useDocument } from "../store/store";
+import { dismiss, show, update, useDocument } from "../store/store";
 import { DocsPage } from "./Help";
 import { NameTable } from "./NameTable";
 import { isComplete, OutputFields, SweepFields } from "./SweepFields";
@@ -48,11 +46,9 @@ function Held({ asked, set }: { asked: AskedAnalysis; set(part: Partial<AskedAna
 }
 
 /** What to compute about the model, and about which state. */
-export function AnalyseForm() {
+export function AnalyseForm({ asked, state }: { asked: AskedAnalysis; state: AskedSimulation }) {
   const { data } = useDocument();
-  const [asked, setAsked] = useState(askedAnalysis);
-  const [state, setState] = useState(askedSimulation);
-  const set = (part: Partial<AskedAnalysis>): void => setAsked({ ...asked, ...part });
+  const set = (part: Partial<AskedAnalysis>): void => show({ kind: "analyse", asked: { ...asked, ...part }, state });
   const q0 = known(state.q0, names(starts(data)));
   const u = known(asked.u, names(inputs(data)));
   const isFine = [...Object.values(q0), ...Object.values(u)].every(isNumber) && isComplete(asked);
@@ -114,7 +110,7 @@ export function AnalyseForm() {
             names: names(starts(data)),
             texts: state.q0,
             isRight: isNumber,
-            onChange: (texts) => setState({ ...state, q0: texts }),
+            onChange: (q0) => show({ kind: "analyse", asked, state: { ...state, q0 } }),
           },
         ]}
       />

@@ -29,9 +29,9 @@ export function Dialogs() {
     case "save as":
       return <SaveAs />;
     case "simulate":
-      return <SimulateForm />;
+      return <SimulateForm asked={dialog.asked} />;
     case "analyse":
-      return <AnalyseForm />;
+      return <AnalyseForm asked={dialog.asked} state={dialog.state} />;
     case "run":
       return <RunForm />;
     case "consent":

@@ -1,15 +1,13 @@
-import { useState } from "react";
-
 import { isNumber } from "../forms/values";
 import { type AskedSimulation, known, strangers } from "../model/asked";
 import { inputs, rates, starts } from "../model/motion";
 import { Foot } from "../shell/Foot";
 import { Row } from "../shell/Row";
 import { Window } from "../shell/Window";
-import { askedSimulation, isAdaptive, keepSimulation, simulationOptions } from "../store/asked";
+import { isAdaptive, keepSimulation, simulationOptions } from "../store/asked";
 import { run } from "../store/jobs";
 import { DocsPage } from "./Help";
-import { dismiss, useDocument, useStore } from "../store/store";
+import { dismiss, show, useDocument, useStore } from "../store/store";
 import { Events } from "./Events";
 import { LeftOut, NameTable } from "./NameTable";
 
@@ -92,11 +90,10 @@ function Given({ asked, set }: { asked: AskedSimulation; set(part: Partial<Asked
 }
 
 /** What to simulate: from where, driven by what, how long, by which method. */
-export function SimulateForm() {
+export function SimulateForm({ asked }: { asked: AskedSimulation }) {
   const { data } = useDocument();
   const methods = useStore((state) => state.catalogue?.methods) ?? [];
-  const [asked, setAsked] = useState(askedSimulation);
-  const set = (part: Partial<AskedSimulation>): void => setAsked({ ...asked, ...part });
+  const set = (part: Partial<AskedSimulation>): void => show({ kind: "simulate", asked: { ...asked, ...part } });
   const adaptive = isAdaptive(asked.method);
   const q0 = known(
     asked.q0,
