@@ -61,7 +61,7 @@ COMMANDS = {
     "stability": Command("stability.report", "Map where simulations fail, against closed forms and other engines."),
     "timing": Command(
         "timing.report",
-        "Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.",
+        "Time generated C against Pinocchio's C++, MuJoCo's C, and C by CasADi and by SymPy.",
     ),
     "rollouts": Command("studies.reports.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
     "exports": Command(

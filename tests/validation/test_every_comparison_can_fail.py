@@ -18,8 +18,7 @@ from validation.contract.quantities import MOTION_ENERGY, QUANTITIES, Quantity
 STATES = 4
 # Free motions, which take longest, are seen to fail in test_harness_can_fail.py.
 SETTINGS = Settings(STATES, first=1)
-# Every route takes part in one of them but those of files, and Exudyn's floating frame, which takes one beam alone;
-# between them they have every quantity.
+# Every route takes part in one of them but those of files; between them they have every quantity.
 MODELS_ASKED = ("floating_arm", "friction_arm", "four_bar", "spinning_beam")
 ROUTES_ASKED = {
     "pinocchio",

@@ -98,7 +98,6 @@ ROUTES: dict[str, Route] = {
     "mujoco-mjcf": Route(f"{__name__}.mujoco.mjcf", "mujoco", reads="mjcf"),
     "lagrangian": Route(f"{__name__}.lagrangian.engine", "casadi", beams=True),
     "exudyn-beams": Route(f"{__name__}.exudyn.mapped", "exudyn", beams=True, rotary=False),
-    "exudyn-frf": Route(f"{__name__}.exudyn.frf", "exudyn", beams=True),
     "vectors": Route(f"{__name__}.vectors", independent=False),
     "interpreted": Route(f"{__name__}.interpreted", independent=False),
     "description": Route(f"{__name__}.description", independent=False),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
@@ -12,8 +11,6 @@ import typer
 from ..reporting.command import Run, known
 from ..reporting.record import Data
 from . import waits
-from .contestants.programs import BuildError
-from .flexible.race import LABEL, run_flexible
 from .models import FUNCTIONS, TIMED_MODELS
 from .record import Record, as_data, read
 from .run import facts, jobs, load, prepare, run_job
@@ -33,12 +30,12 @@ def measure(
     states: Annotated[int, typer.Option(min=64, help="Random states.")] = STATES,
     resume: Annotated[bool, typer.Option("--resume", help="Leave out what the report has figures of.")] = False,
 ) -> Data:
-    """Time generated C against Pinocchio's C++, MuJoCo's C, C by CasADi and by SymPy, and Exudyn's flexible robot.
+    """Time generated C against Pinocchio's C++, MuJoCo's C, and C by CasADi and by SymPy.
 
     A part that is chosen replaces that part of the report's figures; the whole starts afresh. Ctrl-C keeps what was
     measured.
     """
-    chosen = known(models, [*TIMED_MODELS, LABEL, waits.LABEL], "--model", "model")
+    chosen = known(models, [*TIMED_MODELS, waits.LABEL], "--model", "model")
     record = read(run.folder / "timing.json") if models or peers or functions or resume else Record()
     todo = jobs(
         [name for name in chosen if name in TIMED_MODELS],
@@ -49,9 +46,8 @@ def measure(
         record if resume else None,
     )
     whole = not (models or peers or functions)
-    flexible = LABEL in models if models else whole and not (resume and record.flexible)
     first_second = waits.LABEL in models if models else whole and not (resume and record.waits)
-    measures = bool(todo) or flexible or first_second
+    measures = bool(todo) or first_second
     before, limits = load(), facts() if measures else {}
 
     def data(unfinished: Sequence[str] = ()) -> dict[str, Any]:
@@ -65,8 +61,8 @@ def measure(
             }
         return as_data(record) | {"unfinished": list(unfinished)}
 
-    left = [*([waits.LABEL] * first_second), *(job.model for job in todo), *([LABEL] * flexible)]
-    run.expect(sum(len(job.functions) for job in todo) + flexible + first_second, "compiling the engines")
+    left = [*([waits.LABEL] * first_second), *(job.model for job in todo)]
+    run.expect(sum(len(job.functions) for job in todo) + first_second, "compiling the engines")
     try:
         if first_second:
             _time_waits(record, run)
@@ -78,8 +74,6 @@ def measure(
             _time(job, record, run)
             left.remove(job.model)
             run.save(data(left))  # So that even a kill leaves what was measured.
-        if flexible:
-            _time_flexible(record, repeats, run)
     except KeyboardInterrupt:
         return data(left)
     return data()
@@ -106,14 +100,4 @@ def _time_waits(record: Record, run: Run) -> None:
         record.waits = waits.measure_waits(lambda text: run.advance(f"{waits.LABEL}: {text}", 0))
     except (RuntimeError, FileNotFoundError) as error:
         record.failed.append((waits.LABEL, "all", "symofros", str(error)))
-        run.say(f"not timed: {error}", bad=True)
-
-
-def _time_flexible(record: Record, repeats: int, run: Run) -> None:
-    run.advance(LABEL)
-    record.forget([LABEL], ["M + h"], ["exudyn"])
-    try:
-        record.flexible = [asdict(row) for row in run_flexible(repeats)]
-    except BuildError as error:
-        record.failed.append((LABEL, "M + h", "exudyn", str(error)))
         run.say(f"not timed: {error}", bad=True)

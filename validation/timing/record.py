@@ -148,7 +148,6 @@ class Record:
         costs: Costs of generated functions.
         skipped: Functions that a peer does not have: (model, function, peer, reason).
         failed: Functions that could not be timed: (model, function, peer, reason).
-        flexible: Rows of the flexible robot.
         machine: Facts of the last run: processor, peak rates, load, versions, flags.
         waits: What a user waits for before the first number, and in plain calls.
     """
@@ -157,7 +156,6 @@ class Record:
     costs: list[Made] = field(default_factory=list)
     skipped: list[Note] = field(default_factory=list)
     failed: list[Note] = field(default_factory=list)
-    flexible: list[dict[str, Any]] = field(default_factory=list)
     machine: dict[str, Any] = field(default_factory=dict)
     waits: list[Wait] = field(default_factory=list)
 

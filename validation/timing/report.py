@@ -9,7 +9,6 @@ from typing import Any
 from ..reporting.numbers import counted, times
 from ..reporting.plain import restored
 from ..reporting.record import Data, Fact, Report, Section, Table, Topic
-from .flexible.report import flexible_section
 from .measure import measure
 from .models import FUNCTIONS
 from .record import Entry, Record
@@ -70,7 +69,6 @@ def compose(data: Data) -> Report:
         (
             Section("Targets", (TARGETS_TEXT, table, ratios(best)), "targets"),
             *sections(record),
-            flexible_section(record.flexible),
         ),
         facts=(
             Fact(f"{won} of {len(best)}", "races in which the generated C is faster than the peer"),

@@ -13,5 +13,4 @@ DIFFERENCES: tuple[Difference, ...] = (
     Difference("exudyn-beams", "coordinates of beams", "amplitudes of shape functions", "places, slopes and rotations"),
     Difference("exudyn-beams", "length of beams' axes", "held to second order", "free, without stiffness"),
     Difference("exudyn-beams", "rotary inertia", "spins to second order", "spins of exact turns; of rods, ours too"),
-    Difference("exudyn-frf", "foreshortening", "as described", "none: displacement is linear in the modes"),
 )

@@ -13,10 +13,8 @@ acts across the plane, such as the weight here, does nothing. Beams stretch, whi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
@@ -24,12 +22,7 @@ import symofros as sf
 
 from ...mechanics.assembly import BASE, Mass, Mover, assemble
 from ...mechanics.geometry import Array
-from .system import ExudynSystem, assembled
 
-# Singular values below this share of the largest belong to rows of a joint that bind nothing.
-_RANK = 1e-9
-# Added to squares of frequencies, so that rigid motions leave a definite matrix [rad^2/s^2].
-_SHIFT = 100.0
 # Coordinate of a planar rigid body that is its angle.
 _ANGLE = 2
 
@@ -74,74 +67,25 @@ class Carrier(NamedTuple):
         return [*self.local, 0.0]
 
 
-@dataclass(frozen=True)
-class PlanarTree:
-    """A tree in Exudyn.
-
-    Attributes:
-        evaluated: Mass matrix and forces of the system.
-        coordinates: Number of coordinates.
-        equations: Number of algebraic equations of its joints.
-    """
-
-    evaluated: ExudynSystem
-    coordinates: int
-    equations: int
-
-    def frequencies(self, count: int) -> Array:
-        """The lowest circular frequencies about the reference configuration, undamped; rigid motions have 0."""
-        system, solver = self.evaluated.system, self.evaluated.solver
-        still = np.zeros(self.coordinates)
-        M, _ = self.evaluated.at(still, still)
-        K = self.evaluated.stiffness(still)
-        solver.ComputeJacobianAE(system, scalarFactor_ODE2=1.0, scalarFactor_ODE2_t=0.0)
-        bound = np.array(solver.GetSystemJacobian())[self.coordinates :, : self.coordinates]
-        _, sizes, Vt = np.linalg.svd(bound)
-        free = Vt[int(np.sum(sizes > _RANK * sizes[0])) :].T
-        M, K = free.T @ M @ free, free.T @ K @ free
-        # Largest eigenvalues are right to rounding: those of (K + shift M)^-1 M, which are the lowest frequencies'.
-        factor = np.linalg.inv(np.linalg.cholesky(K + _SHIFT * M))
-        inverses = np.linalg.eigvalsh(factor @ M @ factor.T)[::-1]
-        return np.sqrt(np.maximum(1.0 / inverses[:count] - _SHIFT, 0.0))
-
-
-def planar_tree(system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable]) -> PlanarTree:
-    """Exudyn's model of a planar tree.
+def populate(mbs: Any, system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable]) -> list[Carrier]:
+    """Put a planar tree into an Exudyn system that is not assembled yet.
 
     Args:
+        mbs: Exudyn's system.
         system: The description.
         angles: Angles of its hinges in the reference configuration, by joint; 0 where none is given [rad].
         cables: Cable elements of its beams, by body.
 
-    Raises:
-        ValueError: A joint or a beam is beyond what this builds; with the reason.
-    """
-    container = exudyn.SystemContainer()
-    mbs = container.AddSystem()
-    populate(mbs, system, angles, cables)
-    evaluated = assembled(container, mbs)
-    return PlanarTree(evaluated, int(evaluated.solver.GetODE2size()), int(evaluated.solver.GetAEsize()))
-
-
-def populate(mbs: Any, system: sf.System, angles: Mapping[str, float], cables: Mapping[str, Cable]) -> list[Carrier]:
-    """Put a planar tree into an Exudyn system that is not assembled yet; arguments and errors of `planar_tree`.
-
     Returns:
         The body that carries each mover of the description, in its order.
+
+    Raises:
+        ValueError: A joint or a beam is beyond what this builds; with the reason.
     """
     builder = _PlanarBuilder(mbs, system)
     for mover in assemble(system).movers:
         builder.add(mover, angles.get(mover.joint.name, 0.0), cables)
     return builder.frames
-
-
-def smallest() -> ExudynSystem:
-    """One mass on one coordinate: what a call costs before it computes anything."""
-    container = exudyn.SystemContainer()
-    mbs = container.AddSystem()
-    node = mbs.AddNode(items.Node1D(referenceCoordinates=[0.0]))
-    mbs.AddObject(items.ObjectMass1D(mass=1.0, nodeNumber=node))
-    return assembled(container, mbs)
 
 
 class _PlanarBuilder:

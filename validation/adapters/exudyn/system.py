@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import exudyn
 import numpy as np
@@ -12,9 +11,6 @@ import numpy as np
 from ...mechanics.geometry import Array
 
 VERSION: str = exudyn.__version__
-
-# What a system is asked for again and again to be timed: its constraints' errors and Jacobian are "joints".
-Part = Literal["mass_matrix", "forces", "joints"]
 
 
 @dataclass(frozen=True)
@@ -39,20 +35,6 @@ class ExudynSystem:
         self.solver.ComputeODE2RHS(self.system)
         # What follows the forces belongs to constraints, and is not computed here.
         return M, np.array(self.solver.GetSystemResidual())[: len(q)]
-
-    def repeat(self, parts: Iterable[Part], calls: int) -> None:
-        """Compute parts so many times at the state set last; no result is read."""
-        solver = self.solver
-
-        def joints(system: Any) -> None:
-            solver.ComputeAlgebraicEquations(system)
-            solver.ComputeJacobianAE(system, scalarFactor_ODE2=1.0, scalarFactor_ODE2_t=0.0)
-
-        known = {"mass_matrix": solver.ComputeMassMatrix, "forces": solver.ComputeODE2RHS, "joints": joints}
-        chosen, system = [known[part] for part in parts], self.system
-        for _ in range(calls):
-            for compute in chosen:
-                compute(system)
 
     def stiffness(self, q: Array) -> Array:
         """Minus the derivative of the forces with respect to q, at rest (n, n)."""

@@ -1,1 +1,0 @@
-"""The planar flexible robot against Exudyn at equal accuracy."""
