@@ -1,15 +1,16 @@
 """Units of formulas, by those of the parameters and inputs in them, against those that the entries have.
 
 A stiffness [N m/rad] that is stated as "m*L" of m [kg] and L [m] is no stiffness. Units are optional, so that only what
-follows from stated ones is judged: a name without a unit, a number, which may stand for a quantity (2700*b^2 of a width
-b), a unit that is not SI (mm, deg: the formula may convert it) leave a product's unit open. An angle's unit is 1 here.
+follows from stated ones is judged: a name without a unit, or a number, which may stand for a quantity (2700*b^2 of a
+width b) or convert a unit that is not SI (0.001*L of L in mm), leave a product's unit open. An angle's unit is 1 here,
+and a degree pi/180.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from math import isclose
+from typing import NamedTuple
 
 from symofros.base.names import TIME, symbol_of
 from symofros.base.units import NAMES, parse
@@ -27,10 +28,17 @@ from symofros.mechanics.topology.coordinates import (
 )
 from symofros.mechanics.topology.formulas import stated_values
 
-# Powers of kg, m, s, A, K, mol and cd; None: open.
-Powers = tuple[Fraction, ...]
 _BASE = ("kg", "m", "s", "A", "K", "mol", "cd")
-_ONE: Powers = (Fraction(0),) * len(_BASE)
+
+
+class Measure(NamedTuple):
+    """Powers of kg, m, s, A, K, mol and cd, and how much of that a number of 1 is: 0.001 of a length in mm."""
+
+    powers: tuple[Fraction, ...]
+    scale: float = 1.0
+
+
+_ONE = Measure((Fraction(0),) * len(_BASE))
 _SAME = ("abs", "min", "max")
 _RATIOS = ("sign", "atan2")
 
@@ -45,12 +53,12 @@ def unit_problems(system: System) -> Iterator[Problem]:
     Args:
         system: The description; names that it does not declare are passed over.
     """
-    known: dict[str, Powers | None] = {}
+    known: dict[str, Measure | None] = {}
     declared = [("parameter", item.name, item.unit) for item in system.parameters]
     declared += [("input", item.name, item.unit) for item in system.inputs]
     for kind, name, unit in declared:
         try:
-            known[symbol_of(name)] = _powers(unit) if unit else None
+            known[symbol_of(name)] = _measure(unit) if unit else None
         except DescriptionError as error:
             where, fault = system.origin.get((kind, name), ""), error.problem
             yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
@@ -69,16 +77,20 @@ def unit_problems(system: System) -> Iterator[Problem]:
             yield Problem(f"{stated.what}: units do not go together", f"'{stated.value}'", str(clash), _REMEDY, where)
             continue
         if actual is not None and None not in wanted and actual not in wanted:
-            yield Problem(f"{stated.what}: unit {shown(actual)}", f"'{stated.value}'", rule, _REMEDY, where)
+            remedy = _REMEDY
+            if Measure(actual.powers) in wanted:
+                rule += ", and nothing is converted"
+                remedy = f"write {actual.scale:.12g}*({stated.value}), or state values and units in SI"
+            yield Problem(f"{stated.what}: unit {shown(actual)}", f"'{stated.value}'", rule, remedy, where)
 
 
 _REMEDY = "change the formula, or the unit of a parameter in it; a parameter without a unit fits everywhere"
 
 
-def _motion_units(system: System) -> dict[str, Powers | None]:
+def _motion_units(system: System) -> dict[str, Measure | None]:
     """Units of coordinates, of speeds, and of prescribed rates."""
-    known: dict[str, Powers | None] = {}
-    rates: dict[str, Powers | None] = {}
+    known: dict[str, Measure | None] = {}
+    rates: dict[str, Measure | None] = {}
     for joint in (body.joint for body in system.bodies if body.joint is not None):
         units = joint_units(joint)
         known |= {name: _parsed(unit) for name, unit in zip(coordinate_symbols(joint), units, strict=True)}
@@ -91,28 +103,35 @@ def _motion_units(system: System) -> dict[str, Powers | None]:
     return rates | known
 
 
-def _parsed(text: str) -> Powers | None:
-    """Powers of a unit; None where the text is none, as of entries without one."""
+def _parsed(text: str) -> Measure | None:
+    """The measure of a unit; None where the text is none, as of entries without one."""
     try:
-        return _powers(text) if text else None
+        return _measure(text) if text else None
     except DescriptionError:
         return None
 
 
-def _powers(text: str) -> Powers | None:
-    """Powers of a unit of SI; None of another scale.
+def _measure(text: str) -> Measure:
+    """The measure of a unit.
 
     Raises:
         DescriptionError: The text names no unit.
     """
     unit = parse(text)
-    if not isclose(unit.scale, 1.0, rel_tol=1e-12):
-        return None
-    return tuple(map(Fraction, unit.powers[: len(_BASE)]))
+    return _scaled(tuple(map(Fraction, unit.powers[: len(_BASE)])), unit.scale)
 
 
-def shown(powers: Powers) -> str:
+def _scaled(powers: tuple[Fraction, ...], scale: float) -> Measure:
+    """A measure whose scale is without rounding, so that equal ones compare equal."""
+    return Measure(powers, float(f"{scale:.12g}"))
+
+
+def shown(measure: Measure) -> str:
     """A unit for people: the name of its dimension where it has one, or else powers of the base units."""
+    powers = measure.powers
+    if measure.scale != 1.0:
+        named = (name for name in NAMES if _parsed(name) == measure)
+        return next(named, f"{measure.scale:.6g} {shown(Measure(powers))}")
     for name in ("N", "J", "W", "Pa"):
         if tuple(map(Fraction, NAMES[name].powers[: len(_BASE)])) == powers:
             return {"J": "N m", "W": "N m/s", "Pa": "N/m^2"}.get(name, name)
@@ -126,8 +145,8 @@ def shown(powers: Powers) -> str:
     return (" ".join(over) or "1") + (f"/{' '.join(under)}" if under else "")
 
 
-def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers | None:
-    """Powers of a formula, None where they are open.
+def _unit_of(formula: Expression, known: Mapping[str, Measure | None]) -> Measure | None:
+    """The measure of a formula, None where it is open.
 
     Raises:
         _Clash: Dimensions of terms or of an argument that disagree, as a text.
@@ -145,7 +164,8 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
         if left is None or right is None:
             return None
         sign = 1 if kind == "mul" else -1
-        return tuple(a + sign * b for a, b in zip(left, right, strict=True))
+        powers = tuple(a + sign * b for a, b in zip(left.powers, right.powers, strict=True))
+        return _scaled(powers, left.scale * right.scale**sign)
     if kind == "pow" or kind == "sqrt":
         return _power(formula, args[0])
     if kind in _RATIOS:
@@ -157,18 +177,18 @@ def _unit_of(formula: Expression, known: Mapping[str, Powers | None]) -> Powers 
     return _ONE
 
 
-def _power(formula: Expression, base: Powers | None) -> Powers | None:
-    """Powers of a power or square root."""
+def _power(formula: Expression, base: Measure | None) -> Measure | None:
+    """The measure of a power or square root."""
     exponent = 0.5 if formula.kind == "sqrt" else None
     if formula.kind == "pow" and formula.args[1].kind == "number":
         exponent = formula.args[1].number
     if base is None or (exponent is None and base != _ONE):
         return None
     power = Fraction(exponent or 0.0).limit_denominator(60)
-    return tuple(power * a for a in base)
+    return _scaled(tuple(power * a for a in base.powers), base.scale ** float(power))
 
 
-def _common(formula: Expression, units: list[Powers | None]) -> Powers | None:
+def _common(formula: Expression, units: list[Measure | None]) -> Measure | None:
     stated = {unit for unit in units if unit is not None}
     if len(stated) > 1:
         parts = [f"'{arg}' in {shown(unit)}" for arg, unit in zip(formula.args, units, strict=True) if unit is not None]
