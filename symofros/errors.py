@@ -245,10 +245,10 @@ class InconsistentModelWarning(UserWarning):
     """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
 
 
-def near_name(name: str, known: Iterable[str], spelling: Callable[[str], str] = str) -> str:
-    """The question whether the nearest known name, capitals apart, was meant; "" where none is near."""
+def near_name(name: str, known: Iterable[str], spelling: Callable[[str], str] = str, likeness: float = 0.5) -> str:
+    """The question whether the nearest known name, capitals apart, was meant; "" where none is so like it."""
     candidates = {str(other).lower(): other for other in islice(known, _CANDIDATES)}
-    near = difflib.get_close_matches(str(name).lower(), candidates, n=1, cutoff=0.5)
+    near = difflib.get_close_matches(str(name).lower(), candidates, n=1, cutoff=likeness)
     return f"did you mean '{spelling(candidates[near[0]])}'?" if near else ""
 
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 from symofros.base.names import QUOTE, QUOTED_NAME, symbol_in
-from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.errors import Problem, SymofrosError, near_name
 from symofros.expr.expression import DUNDER, PLAIN_NAME, Expression
 from symofros.expr.ops import FUNCTIONS
 
@@ -46,6 +46,34 @@ _TOKEN = re.compile(
     re.ASCII,
 )
 _WORD = re.compile(r"\.?[0-9][A-Za-z0-9_.]*", re.ASCII)
+
+# Functions of other languages, and what stands for them here: a name that only looks like one of ours is another
+# function, as floor is no log.
+_STEP, _BOUNDED = "(1 + sign(x))/2", "max(low, min(high, x))"
+_RADIANS, _DEGREES = "x*pi/180", "x*180/pi"
+_OTHERWISE = {
+    **dict.fromkeys(("step", "heaviside"), _STEP),
+    **dict.fromkeys(("sgn", "signum"), "sign(x)"),
+    **dict.fromkeys(("clip", "clamp", "sat", "saturate", "saturation"), _BOUNDED),
+    **dict.fromkeys(("rad", "radians", "deg2rad"), _RADIANS),
+    **dict.fromkeys(("deg", "degrees", "rad2deg"), _DEGREES),
+    **dict.fromkeys(("sqr", "square"), "x^2"),
+    **{f"arc{name}": f"a{name}(x)" for name in ("sin", "cos", "tan")},
+    "arctan2": "atan2(y, x)",
+    "ln": "log(x)",
+    "log10": "log(x)/log(10)",
+    "log2": "log(x)/log(2)",
+    "fabs": "abs(x)",
+    "power": "x^y",
+    "cbrt": "sign(x)*abs(x)^(1/3)",
+    "hypot": "sqrt(x^2 + y^2)",
+    "sec": "1/cos(x)",
+    "csc": "1/sin(x)",
+    "cot": "1/tan(x)",
+    "asinh": "log(x + sqrt(x^2 + 1))",
+    "acosh": "log(x + sqrt(x^2 - 1))",
+    "atanh": "log((1 + x)/(1 - x))/2",
+}
 
 _PRODUCTS = "write products with '*', and numbers without units: they are in SI, angles in radians"
 
@@ -168,7 +196,7 @@ class _Reader:
     def call(self, name: str) -> Expression:
         op = FUNCTIONS.get(name)
         if op is None:
-            raise self.fail(f"'{name}' is not a function that formulas may call", did_you_mean(name, FUNCTIONS))
+            raise self.fail(f"'{name}' is not a function that formulas may call", _instead_of(name))
         self.at += 2
         args = [self.sum()]
         while self.take(","):
@@ -243,3 +271,10 @@ def _height(expression: Expression) -> int:
         height = max(height, level)
         stack += [(arg, level + 1) for arg in node.args]
     return height
+
+
+def _instead_of(name: str) -> str:
+    """The remedy for a function that formulas don't have."""
+    if name.lower() in _OTHERWISE:
+        return f"write {_OTHERWISE[name.lower()]}"
+    return near_name(name, FUNCTIONS, likeness=0.7) or f"use one of: {', '.join(FUNCTIONS)}"

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import symofros as sf
-from symofros.description.parser import MAX_DEPTH, MAX_LENGTH, ExpressionError, parse
+from symofros.description.parser import _OTHERWISE, MAX_DEPTH, MAX_LENGTH, ExpressionError, parse
 from symofros.expr.expression import Expression, evaluate
 
 NAMES = {"a": 0.7, "b": -1.3, "c": 2.1}
@@ -55,3 +55,8 @@ def test_random_text_never_crashes(text: str) -> None:
         assert problem.found and problem.rule and problem.remedy
     else:
         assert isinstance(value, float) or value.symbols() is not None
+
+
+@pytest.mark.parametrize("written", sorted(set(_OTHERWISE.values())))
+def test_what_stands_for_other_functions_is_a_formula(written: str) -> None:
+    assert parse(written).args

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from symofros.base.c_text import c_string, comment
+from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.unity import unity
 from symofros.exports.folder import Exported, write_folder
@@ -29,7 +30,22 @@ X = [q; v]. U, Parameters and t may be left out or empty: defaults, and t = 0. S
 V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.{states}
 """
 
+# Words of the languages, and what the script below calls: no function may hide it.
+_TAKEN = frozenset(
+    "classdef spmd until unwind_protect"
+    " any cd clear error exist mex mexext mkoctfile numel pwd rehash strncmp tempdir which".split()
+)
 _BUILD = """% Builds {name}, in Octave or Matlab: run it in this folder.
+% Seen from elsewhere, a function of that name is another one, which this folder hides.
+here = pwd();
+cd(tempdir());
+kind = exist('{name}');
+place = which('{name}');
+cd(here);
+if any(kind == [2 3 5 6]) && ~strncmp(place, here, numel(here))
+  error('symofros:{name}:taken', ['{name} is a function already, which this one would hide; ' ...
+    'export the model by another name, such as my_{name}']);
+end
 if exist('OCTAVE_VERSION', 'builtin')
   [output, status] = mkoctfile('--mex', '{name}_mex.c', '-o', ['{name}.' mexext()]);
   if status ~= 0
@@ -47,9 +63,12 @@ def write_mex(material: Material, folder: Path) -> Exported:
     """NAME_mex.c with what it includes, NAME.m with the help, and build_NAME.m.
 
     Raises:
-        ExportError: The folder is not ours.
+        ExportError: The folder is not ours, or Matlab has another use for the name.
     """
     name, record = material.c_name, material.record
+    if name in _TAKEN:
+        rule, remedy = "the model becomes a function of its name, which hides no other", f"for example name='my_{name}'"
+        raise ExportError(Problem("mex: the name is taken in Matlab and Octave", name, rule, remedy))
     text = _HELP.format(
         name=name,
         title=comment(record.name),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -148,3 +149,21 @@ def test_events_act_in_the_simulation_of_the_mex_function(tmp_path: Path) -> Non
     np.testing.assert_allclose(found["X"][-2:], [run_.q[-1, 0], run_.v[-1, 0]], atol=1e-12)
     with pytest.raises(sf.ExportError, match="ends the motion"):
         sf.export(BALL, "mex", tmp_path / "ends", events={"rest": sf.Event("t - 0.5", terminal=True)})
+
+
+@pytest.mark.parametrize("name", ["eval", "sphere"])
+def test_a_name_of_octaves_own_is_refused_where_it_is_built(name: str, tmp_path: Path) -> None:
+    need("octave-cli", "mkoctfile")
+    sf.export(system_of("pendulum"), "mex", tmp_path, name=name)
+    done = subprocess.run(
+        ["octave-cli", "-qf", "--eval", f"build_{name}"], cwd=tmp_path, capture_output=True, text=True
+    )
+    assert done.returncode != 0
+    assert f"{name} is a function already" in done.stderr
+    assert f"my_{name}" in done.stderr
+    assert not (tmp_path / f"{name}.mex").exists()
+
+
+def test_a_name_that_the_build_script_calls_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(sf.ExportError, match="name is taken"):
+        sf.export(system_of("pendulum"), "mex", tmp_path, name="error")
