@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import MutableMapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -145,6 +146,27 @@ class Coupling(_OnCoordinates):
                     "name a coordinate",
                 )
             )
+
+
+# Rule and remedy of joints that mimic each other in a cycle, whose ratios lock them or say nothing.
+MIMICS = "each chain of mimics ends at a joint that mimics none", "remove the <mimic> of the joint that is to lead"
+
+
+def mimic_cycle(leaders: MutableMapping[str, str], follower: str, leader: str) -> str:
+    """The cycle that one more mimic closes, as "a -> b -> a"; "" where it closes none and joins the others.
+
+    Args:
+        leaders: Names of the coordinates that others follow, by the follower's; they form no cycle.
+        follower: Name of the coordinate that follows.
+        leader: Name of the coordinate that it follows.
+    """
+    chain = [follower, leader]
+    while chain[-1] in leaders and chain[-1] != follower:
+        chain.append(leaders[chain[-1]])
+    if chain[-1] == follower:
+        return " -> ".join(chain)
+    leaders[follower] = leader
+    return ""
 
 
 def mimicry(follower: str, leader: str, multiplier: float, offset: float) -> Coupling:

@@ -102,6 +102,13 @@ def test_springs_dampers_limits_and_mimics_are_read(tmp_path: Path) -> None:
     assert first is not None and first.limits == sf.Limits(-1.0, None, 3.0, None)
 
 
+def test_joints_that_mimic_each_other_in_a_cycle_are_refused(tmp_path: Path) -> None:
+    body = link("a", "", 1) + link("b", "<pose>0 0 1 0 0 0</pose>", 1)
+    leads = {name: AXIS.format(f'<mimic joint="{other}"/>') for name, other in (("q1", "q2"), ("q2", "q1"))}
+    with pytest.raises(sf.DescriptionError, match="q2 -> q1 -> q2"):
+        load(tmp_path, document(body + joint("q1", "world", "a", leads["q1"]) + joint("q2", "a", "b", leads["q2"])))
+
+
 def test_gravity_of_a_link_can_be_switched_off(tmp_path: Path) -> None:
     off = link("a", "<gravity>false</gravity>", 2) + joint("q", "world", "a")
     model = interpreted(load(tmp_path, document(off)))

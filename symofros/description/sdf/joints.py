@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.description.closing import BLOCKED, closing_remedy
-from symofros.description.constraints import Closure, Coupling, mimicry
+from symofros.description.constraints import MIMICS, Closure, Coupling, mimic_cycle, mimicry
 from symofros.description.forces import Spring
 from symofros.description.frames import Frame
 from symofros.description.imported.geometry import Exact
@@ -196,6 +196,7 @@ class JointReader:
 
     def couplings(self) -> Iterator[Coupling]:
         """Couplings from <mimic> elements."""
+        leaders: dict[str, str] = {}
         for joint in self.joints.values():
             for k, tag in enumerate(("axis", "axis2")):
                 axis = joint.element.first(tag)
@@ -216,6 +217,9 @@ class JointReader:
                     )
                     continue
                 owner = f"joint '{joint.name}'"
+                if cycle := mimic_cycle(leaders, follower, leading):
+                    self.values.fault(mimic, f"{owner}: it mimics itself by way of others", cycle, *MIMICS)
+                    continue
                 ratio, offset, reference = (
                     self.values.one(mimic, tag, owner, default)
                     for tag, default in (("multiplier", 1.0), ("offset", 0.0), ("reference", 0.0))

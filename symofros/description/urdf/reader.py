@@ -14,7 +14,7 @@ from pathlib import Path
 
 from symofros.base.sources import Source
 from symofros.description.closing import closing_remedy
-from symofros.description.constraints import Coupling, mimicry
+from symofros.description.constraints import MIMICS, Coupling, mimic_cycle, mimicry
 from symofros.description.imported.building import system_of
 from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.imported.tree import ImportedBody, ImportedJoint, ImportedTree, Resistance
@@ -97,6 +97,7 @@ class _Importer:
         self.robot = robot
         self.options, self.mimic = options, options.mimic
         self.couplings: list[Coupling] = []
+        self.leaders: dict[str, str] = {}
         self.links: dict[str, _Link] = {}
         self.broken: set[str] = set()
         # Rotations from the frames that planar joints move to their links, whose axes are others, by the joint's name.
@@ -298,6 +299,8 @@ class _Importer:
                 "a joint with one coordinate mimics another one of the file",
                 did_you_mean(leader, single - {name}),
             )
+        elif leader is not None and (cycle := mimic_cycle(self.leaders, name, leader)):
+            self.values.fault(mimic, f"{owner}: it mimics itself by way of others", cycle, *MIMICS)
         elif leader is not None:
             self.couplings.append(mimicry(name, leader, *numbers))
             self.origin["constraint", self.couplings[-1].name] = self.values.where(mimic)
