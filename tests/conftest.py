@@ -165,7 +165,7 @@ def _draw(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the cases that are not drawn as slow; cases asked for by their ids stay, and one of each test of a file."""
     if any("[" in argument for argument in config.args):
         return
-    cases = [item.nodeid for item in items if "slow" not in item.keywords]
+    cases = [item.nodeid for item in items if item.get_closest_marker("slow") is None]
     seconds = draw.read(draw.FILE.read_text())
     gone = draw.left_out(cases, seconds, config.getoption("--draw"), named=not _folders(config))
     for item in items:
@@ -182,7 +182,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for word, why in needs.items():
         if not config.getoption(f"--{word}"):
             for item in items:
-                if word in item.keywords:
+                if item.get_closest_marker(word) is not None:  # Its keywords have the names of folders, too.
                     item.add_marker(pytest.mark.skip(reason=f"{why}; run with --{word}"))
 
 

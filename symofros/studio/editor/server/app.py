@@ -37,7 +37,7 @@ from symofros.studio.editor.jobs.film import film_of
 from symofros.studio.editor.jobs.processes import Jobs
 from symofros.studio.editor.jobs.run_table import MEDIA_TYPES, table_of
 from symofros.studio.editor.server.document_viewer import DocumentViewer
-from symofros.studio.editor.server.events import Events
+from symofros.studio.editor.server.events import Events, message
 from symofros.studio.editor.server.guard import Guard, error_body
 from symofros.studio.editor.server.relay import Relay
 
@@ -123,9 +123,11 @@ class Editor:
 
     def publish_document_change(self, request: Request) -> None:
         """Publish to the pages that the document has changed, and by which client."""
-        document = self.session.document
         client = request.headers.get("x-client", "")[:100]
-        self.events.publish("document", {"revision": document.revision, "name": document.file.name, "client": client})
+        self.events.publish("document", {**self._document_state(), "client": client})
+
+    def _document_state(self) -> Json:
+        return {"revision": self.session.document.revision, "name": self.session.document.file.name}
 
     async def exclusively(self, work: Callable[[], Any]) -> Any:
         """Run work on the document in another thread, while no other work on it runs."""
@@ -239,9 +241,13 @@ class Editor:
         return JSONResponse((await run_sync(self.jobs.cancel, request.path_params["key"])).as_json())
 
     async def listen(self, _: Request) -> Response:
-        """Tell whatever happens, as it happens; to a page, whose first job shall not wait for a worker's imports."""
+        """Tell whatever happens, as it happens; to a page, whose first job shall not wait for a worker's imports.
+
+        The document may have changed since the page asked for it.
+        """
         await run_sync(self.jobs.warm)
-        return StreamingResponse(self.events.join(), media_type="text/event-stream")
+        stream = self.events.join(message("document", self._document_state()))
+        return StreamingResponse(stream, media_type="text/event-stream")
 
     async def look(self, request: Request) -> Response:
         """The 3-D view of the present document, created or updated: its address and its sliders.

@@ -14,6 +14,11 @@ MAX_WAITING = 1000
 BEAT = 15.0  # Seconds between signs of life; a listener that has gone is noticed by them.
 
 
+def message(kind: str, data: dict[str, Any]) -> str:
+    """An event as the stream carries it."""
+    return f"event: {kind}\ndata: {json.dumps(data)}\n\n"
+
+
 class Events:
     """The listeners, each with a queue of the events it has not been sent yet."""
 
@@ -23,18 +28,20 @@ class Events:
 
     def publish(self, kind: str, data: dict[str, Any]) -> None:
         """Tell everybody; from any thread."""
-        message = f"event: {kind}\ndata: {json.dumps(data)}\n\n"
         if self._loop is not None and not self._loop.is_closed():
-            self._loop.call_soon_threadsafe(self._put, message)
+            self._loop.call_soon_threadsafe(self._put, message(kind, data))
 
-    def _put(self, message: str) -> None:
+    def _put(self, said: str) -> None:
         for queue in list(self._listeners):
             if queue.full():  # Whoever does not listen misses the oldest.
                 queue.get_nowait()
-            queue.put_nowait(message)
+            queue.put_nowait(said)
 
-    def join(self) -> AsyncIterator[str]:
+    def join(self, *present: str) -> AsyncIterator[str]:
         """Listen from now on.
+
+        Args:
+            present: Messages that say how things stand, which come first.
 
         Raises:
             EditError: Too many do already.
@@ -44,11 +51,13 @@ class Events:
         self._loop = asyncio.get_running_loop()
         queue: asyncio.Queue[str] = asyncio.Queue(MAX_WAITING)
         self._listeners.add(queue)
-        return self._told(queue)
+        return self._told(queue, present)
 
-    async def _told(self, queue: asyncio.Queue[str]) -> AsyncIterator[str]:
+    async def _told(self, queue: asyncio.Queue[str], present: tuple[str, ...]) -> AsyncIterator[str]:
         try:
             yield ": listening\n\n"
+            for said in present:
+                yield said
             while True:
                 try:
                     yield await asyncio.wait_for(queue.get(), BEAT)

@@ -110,7 +110,24 @@ def test_a_stale_change_is_made_again_on_the_newest_document(arm: Server, page: 
         page.get_by_role("tab", name="Parameters").click()
     steps.has_value(page, "L1" if how == "edit" else "L3", "0.6")
     steps.has_value(page, "m1", "2.5")
-    assert len(stale) == 2 and stale[0] < stale[1]
+    until(page, lambda: len(stale) == 2, "the change is not made again")
+    assert stale[0] < stale[1]
+
+
+def test_a_value_typed_while_a_name_is_on_its_way_goes_to_the_new_name(arm: Server, page: Page) -> None:
+    held: list[Route] = []
+    page.route("**/api/edit", lambda route: held.append(route), times=1)
+    page.get_by_label("Name of m1", exact=True).fill("mass")
+    page.keyboard.press("Tab")
+    page.keyboard.type("2.5")
+    until(page, lambda: len(held) == 1, "the name is not sent")
+    page.keyboard.press("Enter")
+    held[0].continue_()
+    steps.has_value(page, "mass", "2.5")
+    expect(page.get_by_label("Value of mass", exact=True)).to_be_focused()
+    expect(page.get_by_label("Value of m1", exact=True)).to_have_count(0)
+    steps.saved(page)
+    assert "mass: {value: 2.5" in arm.file.read_text()
 
 
 def test_a_file_that_somebody_else_wrote_is_not_overwritten_unseen(arm: Server, page: Page, picture: Picture) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import threading
 from pathlib import Path
@@ -9,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
+from starlette.requests import Request
+from starlette.responses import StreamingResponse
 from starlette.testclient import TestClient
 
 from symofros.simulation.stepping.methods import METHODS
@@ -18,7 +21,7 @@ from symofros.studio.editor.document.parts.palette import PALETTE
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.editing.data_edits import Edit
 from symofros.studio.editor.editing.yaml_edits import apply
-from symofros.studio.editor.server.app import application
+from symofros.studio.editor.server.app import Editor, application
 from tests.studio.editor.conftest import BASE, GRANTED, PORT, TOKEN
 from tests.studio.editor.texts import FILES, TEXTS
 
@@ -84,6 +87,21 @@ def test_examples_are_listed_and_begin_a_document(client: TestClient, folder: Pa
     assert (
         client.post("/api/group", json={"revision": grouped["revision"], "name": "x", "blocks": 3}).status_code == 422
     )
+
+
+def test_a_page_that_begins_to_listen_hears_how_the_document_stands(session: Session) -> None:
+    """It may have changed between the page's first request and this one."""
+
+    async def scene() -> list[str]:
+        editor = Editor(session, "")
+        session.edit({"revision": 1, "edits": [{"op": "set", "path": ["parameters", "L", "value"], "value": 2}]})
+        editor.jobs.warm = lambda: None  # type: ignore[method-assign]
+        answer = await editor.listen(Request({"type": "http"}))
+        assert isinstance(answer, StreamingResponse)
+        stream = aiter(answer.body_iterator)
+        return [str(await anext(stream)) for _ in range(2)]
+
+    assert asyncio.run(scene())[1] == 'event: document\ndata: {"revision": 2, "name": "four_bar.yaml"}\n\n'
 
 
 def test_files_are_listed_opened_and_created(client: TestClient, folder: Path) -> None:

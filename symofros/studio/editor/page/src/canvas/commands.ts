@@ -14,9 +14,8 @@ import { fileOf, goInto, openProperties, pathOf } from "./open";
 async function comment(where: Point): Promise<void> {
   const item = now().catalogue?.diagram.palette.find(({ kind }) => kind === "comment");
   if (item === undefined) return;
-  await addBlock(item, where);
-  const [id] = now().selected;
-  if (id !== undefined) openProperties(id);
+  const id = await addBlock(item, where);
+  if (id !== undefined && now().dialog === null) openProperties(id);
 }
 
 /** The commands for an element, or for the canvas where there is none; what is added comes to a place of the canvas. */

@@ -1,9 +1,10 @@
 import type { JsonMap } from "../api/types";
 import { mapAt, textAt } from "../model/paths";
 import { IconButton } from "../shell/IconButton";
-import { edit } from "../store/edits";
+import { addEntry, edit } from "../store/edits";
+import { identity } from "../store/renamed";
 import { useDocument } from "../store/store";
-import { fresh, symbols } from "../model/names";
+import { symbols } from "../model/names";
 import { Cell } from "./Cell";
 
 /** Named inputs, for formulas of efforts and loads. */
@@ -12,8 +13,7 @@ export function Inputs() {
   const fault = (name: string): string => read.find((each) => each.name === name)?.unit_fault ?? "";
   const inputs: JsonMap = mapAt(data, ["inputs"]);
   const add = (): void => {
-    const name = fresh("u1", symbols(data));
-    void edit(`add ${name}`, [{ op: "set", path: ["inputs", name], value: { unit: "N m" } }]);
+    void addEntry("inputs", "u1", symbols, () => ({ unit: "N m" }));
   };
   return (
     <div className="pane parameters">
@@ -28,7 +28,7 @@ export function Inputs() {
         </thead>
         <tbody>
           {Object.keys(inputs).map((name) => (
-            <tr key={name}>
+            <tr key={identity(["inputs", name])}>
               <th scope="row">
                 <Cell
                   value={name}

@@ -5,6 +5,7 @@ import { mapAt, textAt } from "../model/paths";
 import { modelFiles } from "../store/diagram";
 import { edit } from "../store/edits";
 import { enter } from "../store/files";
+import { identity } from "../store/renamed";
 import { show, useDocument } from "../store/store";
 import { Cell } from "./Cell";
 
@@ -53,7 +54,7 @@ export function Models() {
         const model = mapAt(models, [name]);
         const file = textAt(model, ["file"]) ?? "";
         return (
-          <section key={name} className="model-card" aria-label={`Model ${name}`}>
+          <section key={identity(["models", name])} className="model-card" aria-label={`Model ${name}`}>
             <Cell
               value={name}
               label={`Name of ${name}`}

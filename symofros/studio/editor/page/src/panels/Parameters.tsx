@@ -4,9 +4,10 @@ import type { Json, Parameter } from "../api/types";
 import { shown, typed } from "../forms/values";
 import { asTyped, keyOf } from "../model/changes";
 import { parameterChange } from "../model/parameters";
-import { fresh, symbols } from "../model/names";
+import { symbols } from "../model/names";
 import { IconButton } from "../shell/IconButton";
-import { edit } from "../store/edits";
+import { addEntry, edit } from "../store/edits";
+import { identity } from "../store/renamed";
 import { update, useDocument, useStore } from "../store/store";
 import { Cell } from "./Cell";
 import { ParameterSlider } from "./ParameterSlider";
@@ -89,16 +90,15 @@ function Row({ parameter }: { parameter: Parameter }) {
 
 /** Names and their numbers: given at run time, or hard-coded. */
 export function Parameters() {
-  const { parameters, data } = useDocument();
+  const { parameters } = useDocument();
   const units = useStore((state) => state.catalogue?.units) ?? [];
   const filter = useStore((state) => state.filter);
   const [most, setMost] = useState(PAGE);
   const named = parameters.filter(({ name }) => name.toLowerCase().includes(filter.trim().toLowerCase()));
   const left = named.length - most;
   const add = (): void => {
-    const name = fresh("p1", symbols(data));
     update({ filter: "" });
-    void edit(`add ${name}`, [{ op: "set", path: ["parameters", name], value: { value: 1 } }]);
+    void addEntry("parameters", "p1", symbols, () => ({ value: 1 }));
   };
   return (
     <div className="pane parameters">
@@ -132,7 +132,7 @@ export function Parameters() {
         </thead>
         <tbody>
           {named.slice(0, most).map((parameter) => (
-            <Row key={parameter.name} parameter={parameter} />
+            <Row key={identity(["parameters", parameter.name])} parameter={parameter} />
           ))}
         </tbody>
       </table>

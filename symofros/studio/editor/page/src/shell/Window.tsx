@@ -8,7 +8,8 @@ interface Props {
   /** Buttons at the foot. */
   foot?: ReactNode;
   onClose(): void;
-  onSubmit?: () => void;
+  /** Until what it promises has come, no other Enter or click submits. */
+  onSubmit?: () => void | Promise<void>;
   wide?: boolean;
 }
 
@@ -26,9 +27,16 @@ export function Window({ title, children, foot, onClose, onSubmit, wide = false 
     if (first instanceof HTMLInputElement) first.select();
     return () => element?.close();
   }, []);
-  const submit = (event: FormEvent): void => {
+  const isBusy = useRef(false);
+  const submit = async (event: FormEvent): Promise<void> => {
     event.preventDefault();
-    onSubmit?.();
+    if (isBusy.current) return;
+    isBusy.current = true;
+    try {
+      await onSubmit?.();
+    } finally {
+      isBusy.current = false;
+    }
   };
   return (
     <dialog
@@ -40,7 +48,7 @@ export function Window({ title, children, foot, onClose, onSubmit, wide = false 
         onClose();
       }}
     >
-      <form method="dialog" noValidate onSubmit={submit}>
+      <form method="dialog" noValidate onSubmit={(event) => void submit(event)}>
         <div className="window-head">
           <h2 id={id}>{title}</h2>
           <IconButton glyph="close" label="Close" onClick={onClose} />

@@ -4,9 +4,9 @@ import type { Edit, Json, JsonMap, PaletteItem, Point } from "../api/types";
 import { frameNames, fresh, symbols } from "../model/names";
 import { isMap, mapAt, textAt } from "../model/paths";
 import { usesOf } from "../model/uses";
-import { edit, place } from "./edits";
+import { addEntry, edit, place } from "./edits";
 import { reveal } from "./folding";
-import { now, show, update, type Anchor } from "./store";
+import { type Anchor, now, show, showUnlessBusy, update } from "./store";
 
 const data = (): JsonMap => now().document?.data ?? {};
 
@@ -45,9 +45,9 @@ function aimed(template: Json): Json {
   );
 }
 
-function attached(template: Json, on: Anchor | null, name: string): Json {
+function attached(template: Json, on: Anchor | null, name: string, data: JsonMap): Json {
   if (!isMap(template) || !isMap(template["joint"])) return template;
-  const taken = symbols(data());
+  const taken = symbols(data);
   const coordinate: JsonMap = template["joint"]["kind"] === "fixed" ? {} : { name: fresh("q1", taken) };
   const joint: JsonMap = { ...coordinate, ...template["joint"] };
   if (on !== null && on.body !== name) joint["parent"] = on.body;
@@ -62,17 +62,20 @@ export async function add(item: PaletteItem, where?: Point): Promise<void> {
     return;
   }
   const isSymbol = item.section === "parameters" || item.section === "inputs";
-  const taken = isSymbol ? symbols(data()) : Object.keys(mapAt(data(), [item.section]));
-  const name = fresh(item.name, taken);
-  const id = item.kind === "base" ? "world" : `${item.section}/${name}`;
-  if (where !== undefined) update((state) => ({ places: { ...state.places, [id]: where } }));
-  const value = item.section === "bodies" ? attached(item.template, carrier(), name) : aimed(item.template);
-  const done = await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]);
-  if (!done) return;
+  const taken = (data: JsonMap): string[] => (isSymbol ? symbols(data) : Object.keys(mapAt(data, [item.section])));
+  const idOf = (name: string): string => (item.kind === "base" ? "world" : `${item.section}/${name}`);
+  // On what is chosen now, whatever is when its turn comes.
+  const [on, aim] = [carrier(), aimed(item.template)];
+  const name = await addEntry(item.section, item.name, taken, (name, data) => {
+    if (where !== undefined) update((state) => ({ places: { ...state.places, [idOf(name)]: where } }));
+    return item.section === "bodies" ? attached(item.template, on, name, data) : aim;
+  });
+  if (name === undefined) return;
+  const id = idOf(name);
   if (where !== undefined) await place({ [id]: where });
   if (item.section === "bodies" || item.section === "nonholonomic") reveal(id);
   if (isSymbol) update({ right: "parameters" });
-  else if (item.section !== "bodies") show({ kind: "properties", path: [item.section, name] });
+  else if (item.section !== "bodies") showUnlessBusy({ kind: "properties", path: [item.section, name] });
 }
 
 /** Puts a body's joint into a frame of another body. */
@@ -93,12 +96,15 @@ export type Join = "closure" | "rod" | "spring";
 export async function join(kind: Join, first: Anchor, second: Anchor): Promise<void> {
   const section = kind === "spring" ? "connections" : "closures";
   const stem = kind === "spring" ? "spring" : kind === "rod" ? "rod" : "loop";
-  const name = fresh(stem, Object.keys(mapAt(data(), [section])));
   const more: JsonMap = kind === "spring" ? { stiffness: 100, length: 1 } : kind === "rod" ? { length: 1 } : {};
   const value = { first: anchor(first), second: anchor(second), ...more };
-  if (await edit(`add ${name}`, [{ op: "set", path: [section, name], value }])) {
-    show({ kind: "properties", path: [section, name] });
-  }
+  const name = await addEntry(
+    section,
+    stem,
+    (data) => Object.keys(mapAt(data, [section])),
+    () => value,
+  );
+  if (name !== undefined) showUnlessBusy({ kind: "properties", path: [section, name] });
 }
 
 /** Edits that take an element of the diagram away, with what cannot be without it. */

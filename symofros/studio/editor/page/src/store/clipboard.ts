@@ -6,8 +6,9 @@ import { extract, insertion } from "../model/clipboard";
 import { type BlockPart, blockInsertion, extractBlocks } from "../model/diagram_clipboard";
 import { bodyNames } from "../model/names";
 import { isMap } from "../model/paths";
+import type { Places } from "../model/places";
 import { carrier, selectedBodies } from "./bodies";
-import { change, edit, place } from "./edits";
+import { change, editInTurn, place } from "./edits";
 import { ordered } from "./requests";
 import { notify, now, update } from "./store";
 
@@ -71,16 +72,27 @@ export async function paste(): Promise<void> {
 }
 
 async function insert(part: Part): Promise<void> {
-  const { edits, bodies } = insertion(now().document?.data ?? {}, part);
-  if (await edit(`insert ${part.name}`, edits)) choose([...bodies.values()]);
+  let added: string[] = [];
+  const isDone = await editInTurn(() => {
+    const { edits, bodies } = insertion(now().document?.data ?? {}, part);
+    added = [...bodies.values()];
+    return { label: `insert ${part.name}`, edits };
+  });
+  if (isDone) choose(added);
 }
 
 async function insertBlocks(part: BlockPart): Promise<void> {
   pasted += 1;
-  const { edits, places } = blockInsertion(now().document?.data ?? {}, part, SHIFT * pasted);
-  const ids = edits.filter(({ path }) => path[0] !== "wires").map(({ path }) => path.join("/"));
-  update((state) => ({ places: { ...state.places, ...places } }));
-  if (!(await edit(`paste ${ids.length === 1 ? ids[0]?.split("/")[1] : `${ids.length} blocks`}`, edits))) return;
+  const shift = SHIFT * pasted;
+  let [ids, places]: [string[], Places] = [[], {}];
+  const isDone = await editInTurn(() => {
+    const { edits, places: found } = blockInsertion(now().document?.data ?? {}, part, shift);
+    ids = edits.filter(({ path }) => path[0] !== "wires").map(({ path }) => path.join("/"));
+    places = found;
+    update((state) => ({ places: { ...state.places, ...found } }));
+    return { label: `paste ${ids.length === 1 ? ids[0]?.split("/")[1] : `${ids.length} blocks`}`, edits };
+  });
+  if (!isDone) return;
   if (Object.keys(places).length > 0) await place(places);
   update({ selected: ids, sight: ids[0] === undefined ? null : { id: ids[0] } });
 }
@@ -92,10 +104,14 @@ function choose(bodies: readonly string[]): void {
 
 /** Puts a part of the library on the selected body, or on the ground. */
 export async function insertPart(name: string, where?: Point): Promise<void> {
-  const known = new Set(bodyNames(now().document?.data ?? {}));
+  let known = new Set<string>();
   const on = carrier() ?? { body: "world", frame: "" };
   const target = { parent: on.body, ...(on.frame === "" ? {} : { frame: on.frame }) };
-  if (!(await change("api/parts/insert", () => ({ name, ...target })))) return;
+  const ask = (): object => {
+    known = new Set(bodyNames(now().document?.data ?? {}));
+    return { name, ...target };
+  };
+  if (!(await change("api/parts/insert", ask))) return;
   const added = bodyNames(now().document?.data ?? {}).filter((body) => !known.has(body));
   if (where !== undefined && added[0] !== undefined) await place({ [`bodies/${added[0]}`]: where });
   choose(added);

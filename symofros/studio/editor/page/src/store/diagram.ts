@@ -2,9 +2,8 @@
 
 import { get } from "../api/client";
 import type { BlockItem, Diagram, Edit, FileEntry, Json, JsonMap, Path, Point, SignalNode } from "../api/types";
-import { fresh } from "../model/names";
 import { isMap, mapAt, textAt } from "../model/paths";
-import { edit, place } from "./edits";
+import { addEntry, edit, place } from "./edits";
 import { ordered } from "./requests";
 import { now, update } from "./store";
 
@@ -13,10 +12,10 @@ const diagram = (): Diagram => now().document?.diagram ?? { nodes: [], wires: []
 const nodeOf = (id: string): SignalNode | undefined => diagram().nodes.find((node) => node.id === id);
 
 /** Names that a new block, part or model must not have. */
-function taken(section: string): string[] {
-  const sections = section === "models" ? ["models"] : ["blocks", "parts"];
-  return sections.flatMap((each) => Object.keys(mapAt(data(), [each])));
-}
+const taken =
+  (section: string) =>
+  (data: JsonMap): string[] =>
+    (section === "models" ? ["models"] : ["blocks", "parts"]).flatMap((each) => Object.keys(mapAt(data, [each])));
 
 /** The folder of a file, with the stroke at its end. */
 const folder = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
@@ -43,15 +42,23 @@ async function begun(item: BlockItem): Promise<Json> {
   return value;
 }
 
-/** Adds what a palette entry says; at a place if it was dropped there, beside the others if not. */
-export async function addBlock(item: BlockItem, where?: Point): Promise<void> {
-  const name = fresh(item.name, taken(item.section));
-  const id = `${item.section}/${name}`;
-  if (where !== undefined) update((state) => ({ places: { ...state.places, [id]: where } }));
+/**
+ * Adds what a palette entry says; at a place if it was dropped there, beside the others if not.
+ *
+ * @returns Its id; undefined if it was refused.
+ */
+export async function addBlock(item: BlockItem, where?: Point): Promise<string | undefined> {
   const value = await begun(item);
-  if (!(await edit(`add ${name}`, [{ op: "set", path: [item.section, name], value }]))) return;
+  const idOf = (name: string): string => `${item.section}/${name}`;
+  const name = await addEntry(item.section, item.name, taken(item.section), (name) => {
+    if (where !== undefined) update((state) => ({ places: { ...state.places, [idOf(name)]: where } }));
+    return value;
+  });
+  if (name === undefined) return undefined;
+  const id = idOf(name);
   if (where !== undefined) await place({ [id]: where });
   update({ selected: [id], sight: { id } });
+  return id;
 }
 
 /** A signal as files name it. */
@@ -81,11 +88,10 @@ export async function link(source: string, output: string, target: string, input
 export async function look(source: string, output: string): Promise<void> {
   const from = nodeOf(source);
   if (from === undefined) return;
-  const name = fresh("scope", taken("blocks"));
   const signal = output.replaceAll(/\W/g, "_");
   const value = { kind: "scope", signals: [signal], inputs: { [signal]: signalName(from, output) } };
-  if (await edit(`add ${name}`, [{ op: "set", path: ["blocks", name], value }]))
-    update({ selected: [`blocks/${name}`], sight: { id: `blocks/${name}` } });
+  const name = await addEntry("blocks", "scope", taken("blocks"), () => value);
+  if (name !== undefined) update({ selected: [`blocks/${name}`], sight: { id: `blocks/${name}` } });
 }
 
 /** Takes blocks and wires away; wires go with the blocks that they join. */

@@ -1,12 +1,15 @@
 /** Changes of the document. The server makes them in the text of the file, and answers with the document. */
 
 import { post, type Refused } from "../api/client";
-import type { Document, Edit, Json, Path, Point } from "../api/types";
+import type { Document, Edit, Json, JsonMap, Path, Point } from "../api/types";
 import { merged } from "../model/merge";
 import { afterEdit, recorded, redoneOne, toRedo, toUndo, undoneOne } from "../model/moves";
+import { fresh } from "../model/names";
 import { at } from "../model/paths";
+import type { Places } from "../model/places";
 import { accept, acceptTheirs, explain, ordered } from "./requests";
 import { followRenaming } from "./asked";
+import { followed, noteRenamings, renamings } from "./renamed";
 import { notify, now, update } from "./store";
 
 const revision = (): number => now().document?.revision ?? 0;
@@ -30,22 +33,32 @@ function giveUp(object: string, found: string): void {
   });
 }
 
+interface Terms {
+  /** Whether it still fits a newer state of the document, on which it is made again. */
+  again?: (document: Document) => boolean;
+  /** Path of the document that it is of. */
+  of?: string | undefined;
+  /** What is done in its place when its turn comes; whether something was. */
+  instead?: () => Promise<boolean>;
+  /** Called when the server has made it, before the new document is shown. */
+  made?: () => void;
+}
+
 /**
- * A change by request, with the revision it is of; made again on a newer state if it still fits there.
+ * A change by request, with the revision it is of: `body` is asked when its turn comes, for the document as it is then.
  *
- * It is of the document that is open when it is asked for (`of`): where another one has taken its place, be it while
- * earlier requests were answered, it is made to none.
+ * It is of the document that is open when it is asked for: where another one has taken its place, be it while earlier
+ * requests were answered, it is made to none.
  */
 export async function change(
   address: string,
   body: () => object,
-  again?: (document: Document) => boolean,
-  of = now().document?.path,
+  { again, of = now().document?.path, instead, made }: Terms = {},
 ): Promise<boolean> {
   const isOther = (): boolean => now().document?.path !== of;
   const ask = (): Promise<Document> => post<Document>(address, { revision: revision(), ...body() });
   const first = async (): Promise<Document | undefined> => {
-    if (!isOther()) return ask();
+    if (!isOther()) return (await instead?.()) === true ? undefined : ask();
     giveUp(of ?? "the document", "another document was opened before this change was made");
     return undefined;
   };
@@ -72,22 +85,27 @@ export async function change(
   };
   const document = await ordered(first, stale);
   if (document === undefined) return false;
+  made?.();
   accept(document);
   if (!STEPS.includes(address)) update((state) => ({ moves: afterEdit(state.moves) }));
   return true;
 }
 
 /** All edits or none, as one step of undo. Made again on a newer document if their places are still there. */
-export async function edit(label: string, edits: Edit[]): Promise<boolean> {
+export async function edit(label: string, edits: readonly Edit[]): Promise<boolean> {
   if (edits.length === 0) return true;
   const moved = renamedPlaces(edits);
   update((state) => ({ places: { ...state.places, ...moved } }));
-  const before = now().document;
-  const isDone = await change(
-    "api/edit",
-    () => ({ label, edits }),
-    (theirs) => edits.every((each) => applies(each, theirs)),
-  );
+  let before: Document | null = null;
+  const since = renamings();
+  const present = (): Edit[] => followed(edits, since);
+  const isDone = await change("api/edit", () => ({ label, edits: present() }), {
+    again: (theirs) => present().every((each) => applies(each, theirs)),
+    made: () => {
+      before = now().document;
+      noteRenamings(present());
+    },
+  });
   if (isDone && before !== null && edits.some(({ op }) => op === "rename")) followRenaming(before);
   return isDone;
 }
@@ -105,49 +123,57 @@ function renamedPlaces(edits: readonly Edit[]): Record<string, Point> {
   );
 }
 
+/** As `edit`, of what is thought of when its turn comes: the names that earlier edits have taken are known then. */
+export const editInTurn = (step: () => { label: string; edits: Edit[] }): Promise<boolean> =>
+  change("api/edit", step, { again: () => true });
+
+/** Adds an entry to a section, under a name that none of `taken` is when its turn comes; undefined if it was refused. */
+export async function addEntry(
+  section: string,
+  stem: string,
+  taken: (data: JsonMap) => string[],
+  value: (name: string, data: JsonMap) => Json,
+): Promise<string | undefined> {
+  let name = "";
+  const isDone = await editInTurn(() => {
+    const data = now().document?.data ?? {};
+    name = fresh(stem, taken(data));
+    return { label: `add ${name}`, edits: [{ op: "set", path: [section, name], value: value(name, data) }] };
+  });
+  return isDone ? name : undefined;
+}
+
 export const setValue = (label: string, path: Path, value: Json): Promise<boolean> =>
   edit(label, [{ op: "set", path, value }]);
 
 /** The whole text, made from `base`, of the document at a path; what somebody else changed in it meanwhile is kept. */
 export const setText = (text: string, base: string, of?: string): Promise<boolean> =>
-  change(
-    "api/text",
-    () => ({ text: merged(base, text, now().document?.text ?? base) }),
-    () => true,
-    of,
-  );
+  change("api/text", () => ({ text: merged(base, text, now().document?.text ?? base) }), { again: () => true, of });
 
 const step = (): number => now().document?.step ?? 0;
 
-/** Takes back what was done last: a move of blocks, or an edit of the text. */
-export async function undo(): Promise<void> {
-  // What is on its way was done before.
-  await ordered(() => Promise.resolve());
-  const move = toUndo(now().moves, step());
-  if (move !== undefined) {
-    update((state) => ({ moves: undoneOne(state.moves) }));
-    await place(move.before);
-  } else
-    await change(
-      "api/undo",
-      () => ({}),
-      () => true,
-    );
+/** Goes back or forth by one: a move of blocks where one is due (`next`), else an edit of the text. */
+async function go(
+  address: string,
+  next: typeof toUndo,
+  gone: typeof undoneOne,
+  stand: "before" | "after",
+): Promise<void> {
+  // Decided when its turn comes: what is on its way was done before, and what is done after comes after.
+  const moved = async (): Promise<boolean> => {
+    const move = next(now().moves, step());
+    if (move === undefined) return false;
+    update((state) => ({ moves: gone(state.moves), places: { ...state.places, ...move[stand] } }));
+    await keepPlaces(move[stand]);
+    return true;
+  };
+  await change(address, () => ({}), { again: () => true, instead: moved });
 }
 
-export async function redo(): Promise<void> {
-  await ordered(() => Promise.resolve());
-  const move = toRedo(now().moves, step());
-  if (move !== undefined) {
-    update((state) => ({ moves: redoneOne(state.moves) }));
-    await place(move.after);
-  } else
-    await change(
-      "api/redo",
-      () => ({}),
-      () => true,
-    );
-}
+/** Takes back what was done last: a move of blocks, or an edit of the text. */
+export const undo = (): Promise<void> => go("api/undo", toUndo, undoneOne, "before");
+
+export const redo = (): Promise<void> => go("api/redo", toRedo, redoneOne, "after");
 
 /** Puts blocks elsewhere; undo puts them back. */
 export async function moveBlocks(places: Record<string, Point>): Promise<void> {
@@ -160,5 +186,9 @@ export async function place(places: Record<string, Point>): Promise<void> {
   const path = now().document?.path;
   update((state) => ({ places: { ...state.places, ...places } }));
   // Blocks of another document may have the same names: where they stand is none of ours.
-  await ordered(async () => now().document?.path === path && post("api/layout", { path, positions: places }));
+  await ordered(async () => now().document?.path === path && keepPlaces(places));
 }
+
+/** Has the server keep where blocks of the open document stand. */
+const keepPlaces = (positions: Places): Promise<unknown> =>
+  post("api/layout", { path: now().document?.path, positions });

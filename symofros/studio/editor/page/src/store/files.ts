@@ -6,20 +6,21 @@ import { change, setText } from "./edits";
 import { followPath } from "./asked";
 import { accept, acceptTheirs, explain, ordered } from "./requests";
 import { settle } from "./unsent";
-import { dismiss, isBegun, now, show, update } from "./store";
+import { closing, isBegun, now, show, showUnlessBusy, update } from "./store";
 
 /** Takes what the server answers as the open document; asks first if unsaved work would be lost. */
 async function replace(address: string, body: object): Promise<void> {
+  const closeAsking = closing();
   await settle();
-  const change = async (discard: boolean): Promise<void> => {
+  const change = async (discard: boolean, close = closing()): Promise<void> => {
     const document = await ordered(() => post<Document>(address, { ...body, discard }));
     if (document === undefined) return;
     accept(document);
-    dismiss();
+    close();
   };
   const { document } = now();
   if (document?.dirty === true && isBegun(document)) show({ kind: "discard", proceed: () => void change(true) });
-  else await change(false);
+  else await change(false, closeAsking);
 }
 
 export const open = (path: string): Promise<void> => replace("api/open", { path });
@@ -35,7 +36,8 @@ export async function enter(path: string): Promise<boolean> {
 export async function leave(): Promise<void> {
   await settle();
   const back = async (discard: boolean): Promise<void> => {
-    if (await change("api/leave", () => ({ discard }))) dismiss();
+    const close = closing();
+    if (await change("api/leave", () => ({ discard }))) close();
   };
   if (now().document?.dirty === true) show({ kind: "discard", proceed: () => void back(true) });
   else await back(false);
@@ -51,12 +53,12 @@ export async function importFile(file: File): Promise<void> {
 
 export async function browse(): Promise<void> {
   const answer = await ordered(() => get<{ files: FileEntry[] }>("api/files"));
-  if (answer !== undefined) show({ kind: "open", files: answer.files });
+  if (answer !== undefined) showUnlessBusy({ kind: "open", files: answer.files });
 }
 
 export async function browseExamples(): Promise<void> {
   const answer = await ordered(() => get<{ examples: Example[] }>("api/examples"));
-  if (answer !== undefined) show({ kind: "examples", examples: answer.examples });
+  if (answer !== undefined) showUnlessBusy({ kind: "examples", examples: answer.examples });
 }
 
 /** A new document that says what an example says. */

@@ -50,8 +50,11 @@ async function fetchJob(id: string): Promise<Job | undefined> {
 }
 
 function take(job: Job): void {
+  const known = now().jobs[job.kind];
+  // Answers and events cross: one that was sent before the end brings nothing new after it.
+  if (known?.id === job.id && known.state !== "running") return;
   const moves = job.kind === "simulate" || job.kind === "run" || job.kind === "analyse";
-  const isNew = moves && job.state === "done" && now().jobs[job.kind]?.state !== "done";
+  const isNew = moves && job.state === "done";
   update((state) => ({ jobs: { ...state.jobs, [job.kind]: job }, runs: withRun(state.runs, job) }));
   const { time } = now();
   if (isNew && time !== null) setTime(time);
@@ -67,7 +70,19 @@ async function follow(kind: JobKind, id: string): Promise<void> {
   }
 }
 
+// What is asked and not answered yet: a double click asks once.
+const starting = new Set<string>();
+
 export async function run(kind: JobKind, options: object = {}): Promise<void> {
+  const key = JSON.stringify([kind, options]);
+  if (starting.has(key)) return;
+  starting.add(key);
+  const id = await start(kind, options).finally(() => starting.delete(key));
+  if (id !== undefined) await follow(kind, id);
+}
+
+/** The id of a job that is started, and shown; undefined where it is not. */
+async function start(kind: JobKind, options: object): Promise<string | undefined> {
   const path = now().document?.path;
   await settle();
   const asked = async (refused: Refused): Promise<undefined> => {
@@ -80,7 +95,7 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
     async () => (now().document?.path === path ? post<{ id: string }>("api/jobs", { kind, options }) : undefined),
     asked,
   );
-  if (started === undefined || now().document?.path !== path) return;
+  if (started === undefined || now().document?.path !== path) return undefined;
   take({
     id: started.id,
     kind,
@@ -91,7 +106,7 @@ export async function run(kind: JobKind, options: object = {}): Promise<void> {
     error: null,
   });
   update(({ live }) => ({ bottom: kind, live: live?.id === started.id ? live : null }));
-  await follow(kind, started.id);
+  return started.id;
 }
 
 /** Consents to the native code of files, as they were shown; whether the server took it. */

@@ -104,6 +104,9 @@ export function explain(reason: unknown): void {
   else throw reason;
 }
 
+/** Waits until all that was asked before is answered, and the document is what came of it. */
+export const answered = (): Promise<void> => ordered(() => Promise.resolve());
+
 /** Runs `ask` when all earlier ones are answered. Undefined if it was refused and `refused` did not help. */
 export function ordered<T>(
   ask: () => Promise<T>,

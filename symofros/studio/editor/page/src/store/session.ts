@@ -6,7 +6,7 @@ import type { Catalogue } from "../api/types";
 import { fetchParts } from "./clipboard";
 import { refresh } from "./files";
 import { hear, hearSamples } from "./jobs";
-import { explain, ordered } from "./requests";
+import { answered, explain } from "./requests";
 import { notify, now, update } from "./store";
 import { pick, takePose, zoom } from "./view";
 
@@ -41,7 +41,7 @@ async function attend(): Promise<void> {
 /** Asks for the document where it has changed; our own changes come back here too, and bring nothing new. */
 async function heed(revision: number, name: string): Promise<void> {
   // The answer to a change of ours may be on its way.
-  await ordered(() => Promise.resolve());
+  await answered();
   const known = now().document;
   if (known === null || revision > known.revision || name !== known.name) await refresh();
 }

@@ -181,6 +181,23 @@ const filled = (section: Json | undefined): boolean =>
 export const show = (dialog: Dialog): void => update({ dialog });
 export const dismiss = (): void => update({ dialog: null });
 
+/** Opens a window, unless another one was opened while the server was asked: what is typed there stays. */
+export const showUnlessBusy = (dialog: Dialog): void => update((state) => (state.dialog === null ? { dialog } : {}));
+
+/**
+ * Closes the window that is open now, once what it asked for is done.
+ *
+ * @returns Whether it was still open: another one that was opened since stays.
+ */
+export function closing(): () => boolean {
+  const { dialog } = now();
+  return () => {
+    const isOpen = now().dialog === dialog;
+    if (isOpen) dismiss();
+    return isOpen;
+  };
+}
+
 let notices = 0;
 
 export function notify(fault: Fault): void {

@@ -1,5 +1,7 @@
 /** What is typed and not yet sent: sent before the document is saved, left or run. */
 
+import { answered } from "./requests";
+
 type Send = () => Promise<unknown>;
 
 const sends = new Set<Send>();
@@ -10,7 +12,8 @@ export function sentBefore(send: Send): () => void {
   return () => void sends.delete(send);
 }
 
-/** Waits until all that is typed is in the document, as far as the server takes it. */
+/** Waits until all that is typed or on its way is in the document, as far as the server takes it. */
 export async function settle(): Promise<void> {
   await Promise.all([...sends].map((send) => send()));
+  await answered();
 }

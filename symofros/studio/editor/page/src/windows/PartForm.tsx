@@ -4,7 +4,7 @@ import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { savePart } from "../store/clipboard";
-import { dismiss, useStore } from "../store/store";
+import { closing, dismiss, useStore } from "../store/store";
 
 /** Keeps bodies as a part of the user's library. */
 export function PartForm({ bodies }: { bodies: string[] }) {
@@ -12,13 +12,14 @@ export function PartForm({ bodies }: { bodies: string[] }) {
   const [name, setName] = useState(bodies[0] ?? "part");
   const exists = parts.some((part) => part.name === name.trim());
   const accept = async (): Promise<void> => {
-    if (await savePart(name.trim(), bodies)) dismiss();
+    const close = closing();
+    if (await savePart(name.trim(), bodies)) close();
   };
   return (
     <Window
       title="Save as a part"
       onClose={dismiss}
-      onSubmit={() => void accept()}
+      onSubmit={accept}
       foot={<Foot word={exists ? "Replace" : "Save"} disabled={name.trim() === ""} />}
     >
       <p className="quiet">{bodies.join(", ")}, with the parameters and inputs that they use</p>

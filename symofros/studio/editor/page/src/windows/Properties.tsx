@@ -10,7 +10,7 @@ import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
 import { enter } from "../store/files";
-import { dismiss, useDocument, useStore } from "../store/store";
+import { closing, dismiss, useDocument, useStore } from "../store/store";
 import { SYSTEM } from "../model/sections";
 import { BodyForm } from "./BodyForm";
 import { DiagramForm } from "./DiagramForm";
@@ -31,7 +31,8 @@ const NOUNS: Record<string, string> = {
 };
 
 async function goIn(file: string): Promise<void> {
-  if (await enter(file)) dismiss();
+  const close = closing();
+  if (await enter(file)) close();
 }
 
 /** The window of a block, a link or the whole system. Nothing is changed until it is accepted, as one step of undo. */
@@ -94,7 +95,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
           ...difference(at(data, ["system"]), ground, ["system"]).map((each) => asTyped(each, typed.current)),
           ...changes(path, before, draft, renames, typed.current),
         ];
-    if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) dismiss();
+    const close = closing();
+    if (await edit(isSystem ? "change the system" : `change ${name}`, edits)) close();
   };
   const isNamed = path.length > 1;
   const title = isSystem ? "System" : `${NOUNS[section] ?? "Entry"} ${isNamed ? String(path[1]) : ""}`.trim();
@@ -104,7 +106,7 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       title={title}
       wide
       onClose={dismiss}
-      onSubmit={() => void accept()}
+      onSubmit={accept}
       foot={
         <>
           <span className="hint" aria-hidden="true">

@@ -6,14 +6,12 @@ import { Row, TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
 import { setText } from "../store/edits";
 import { begin, importPath, open, save } from "../store/files";
-import { dismiss, now, show, useDocument } from "../store/store";
+import { closing, dismiss, now, show, useDocument } from "../store/store";
 
 const isModel = (path: string): boolean => /\.ya?ml$/.test(path);
 
 /** Files of other formats become documents of their own. */
-function take(path: string): void {
-  void (isModel(path) ? open(path) : importPath(path));
-}
+const take = (path: string): Promise<void> => (isModel(path) ? open(path) : importPath(path));
 
 export function OpenFile({ files }: { files: FileEntry[] }) {
   const [filter, setFilter] = useState("");
@@ -24,7 +22,7 @@ export function OpenFile({ files }: { files: FileEntry[] }) {
       onClose={dismiss}
       onSubmit={() => {
         const first = found[0];
-        if (first !== undefined) take(first.path);
+        return first === undefined ? undefined : take(first.path);
       }}
     >
       <input
@@ -36,7 +34,7 @@ export function OpenFile({ files }: { files: FileEntry[] }) {
       <ul className="files">
         {found.map(({ path, bytes, kind }) => (
           <li key={path}>
-            <button type="button" onClick={() => take(path)}>
+            <button type="button" onClick={() => void take(path)}>
               <span>{path}</span>
               <span className="quiet">
                 {kind === "diagram" ? "diagram, " : ""}
@@ -62,7 +60,7 @@ function AskPath({
   title: string;
   word: string;
   start: string;
-  onDone(path: string): void;
+  onDone(path: string): Promise<void>;
   children?: ReactNode;
 }) {
   const [path, setPath] = useState(start);
@@ -83,7 +81,7 @@ function AskPath({
 export function NewFile() {
   const [kind, setKind] = useState<"mechanism" | "diagram">("mechanism");
   return (
-    <AskPath title="New document" word="Create" start="" onDone={(path) => void begin(path, kind)}>
+    <AskPath title="New document" word="Create" start="" onDone={(path) => begin(path, kind)}>
       <Row title="Kind">
         {(id) => (
           <select id={id} value={kind} onChange={(event) => setKind(event.target.value as typeof kind)}>
@@ -99,18 +97,18 @@ export function NewFile() {
 export function SaveAs() {
   const { path } = useDocument();
   const done = async (to: string): Promise<void> => {
+    const close = closing();
     // A conflict opens a window of its own.
-    if (await save(to)) dismiss();
+    if (await save(to)) close();
   };
-  return <AskPath title="Save as" word="Save" start={path} onDone={(to) => void done(to)} />;
+  return <AskPath title="Save as" word="Save" start={path} onDone={done} />;
 }
 
 export function Discard({ proceed }: { proceed(): void }) {
   const { path } = useDocument();
   const first = async (): Promise<void> => {
-    if (!(await save())) return;
-    dismiss();
-    proceed();
+    const close = closing();
+    if ((await save()) && close()) proceed();
   };
   return (
     <Window
@@ -153,10 +151,12 @@ export function ChangedOnDisk({ disk, over, path }: { disk: string; over: string
   const { text } = useDocument();
   const [shown] = useState(text);
   const overwrite = async (): Promise<void> => {
-    if (await save(path, over)) dismiss();
+    const close = closing();
+    if (await save(path, over)) close();
   };
   const takeTheirs = async (): Promise<void> => {
-    if (await setText(disk, shown)) dismiss();
+    const close = closing();
+    if (await setText(disk, shown)) close();
   };
   return (
     <Window
