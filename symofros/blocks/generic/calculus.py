@@ -139,7 +139,11 @@ class Integrator(Block):
         found = {}
         for name, (limit, entry, leaves) in self._of_entries(context).items():
             beyond = limit.beyond(context.states["x"][entry])
-            found[name] = Crossing(beyond + limit.margin, "falling") if leaves else Crossing(beyond, "rising")
+            # What still pushes has left nothing, though a step over the instant at which it ceases errs by the margin.
+            held = context.memory[limit.name][entry]
+            stays = (beyond + limit.margin).apply("max", limit.sign * context.inputs["u"][entry])
+            left = Crossing(stays * held + held - 1.0, "falling")
+            found[name] = left if leaves else Crossing(beyond, "rising")
         if self.reset != "none":
             found["reset"] = Crossing(context.inputs["reset"], self.reset)  # type: ignore[arg-type]
         return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
@@ -41,9 +42,11 @@ from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
 from symofros.simulation.results.examination.paths import Numbers
+from symofros.simulation.results.examination.switched_motion import tolerances
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded, drive
+from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
 
 # What external blocks gave, by block and time.
@@ -158,11 +161,15 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
 
     def repeat(i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
-        o, tighter = task.options, 0.01**refinements
+        o = task.options
         once = replace(o, realtime=False)
-        if refinements:
-            dt = 0.5**refinements * h
-            once = replace(once, dt=dt) if h else replace(once, rtol=tighter * o.rtol, atol=tighter * o.atol)
+        if refinements and h:
+            once = replace(once, dt=0.5**refinements * h)
+        elif refinements:
+            rtol, atol = tolerances(o.rtol, o.atol, refinements)
+            # Steps that instants cut may err by far less than their tolerances, as finer ones would.
+            longest = 0.5 * ended.spacing if refinements > 0 else math.inf
+            once = replace(once, rtol=rtol, atol=atol, max_step=min(o.max_step, longest))
         return _resumed(replace(task, options=once, t_end=t_end, threads=1), ended, given, i)
 
     def accelerations(rows: Numbers) -> Array:
@@ -177,7 +184,11 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
 
     steps = int(ended.loop.diagram.steps) // max(1, len(parts))
     energies = Energies(ended.resolved, ended.par, task.compiled.energies)
-    return Examined(energies, states, h, task.options.atol, steps, repeat, accelerations, acted_at(met))
+    options, parts_met = task.options, 1 + len(met)
+    method, bounds = METHODS[options.method], (options.rtol, options.atol)
+    return Examined(
+        energies, states, h, method, bounds, steps, repeat, accelerations, acted_at(met), parts_met, ended.spacing
+    )
 
 
 def _rerun(task: PlannedRun, ended: Ended, given: Given) -> Rerun:

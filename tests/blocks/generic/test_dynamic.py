@@ -128,6 +128,20 @@ def test_limits_hold_whatever_the_rates(seed: int) -> None:
         assert found["x.y"][at] == pytest.approx(np.array(known), abs=3e-10)
 
 
+@pytest.mark.parametrize("dt", [0.01, 0.053, 0.1])
+def test_a_limit_is_left_once_where_the_input_ceases_to_push_within_a_step(dt: float) -> None:
+    """The input is a state: a step over its zero errs by more than how far from a limit the integral has left it."""
+    diagram = sf.Diagram("limits")
+    diagram.add(Sine(name="s", frequency=1.0))
+    diagram.add(Integrator(name="a", start=-1.0 / (2.0 * math.pi)), u="s.y")
+    diagram.add(Integrator(name="u", start=-0.02), u="a.y")
+    diagram.add(Integrator(name="x", low=-1e-3, high=1e-3), u="u.y")
+    simulation = sf.Simulation(diagram)
+    run = simulation.run(3.0, dt=dt, method="rk4", record=1.0)
+    assert len(run.crossings) == 7 and run.cost.steps < 3.0 / dt + 20 and not run.outcome.notes
+    assert simulation.interpret(3.0, dt=dt)["x.y"][-1] == pytest.approx(run["x.y"][-1], abs=1e-9)
+
+
 def test_a_reset_is_located_in_time() -> None:
     diagram = sf.Diagram("reset")
     diagram.add(Ramp(name="when", slope=1.0, start=-0.4321))

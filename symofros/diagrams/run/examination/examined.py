@@ -19,8 +19,11 @@ from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.energy_balance import EXPLODED
-from symofros.simulation.results.examination.finer_steps import HALVINGS, HeldRun, Part, States, change_of_states
+from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states
 from symofros.simulation.results.examination.paths import Numbers
+from symofros.simulation.results.examination.run import MOST_STEPS
+from symofros.simulation.results.examination.switched_motion import SwitchedMotion, whole_run_note
+from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import Window
 
@@ -37,7 +40,8 @@ _AT_JUMP = 1e-3
 _MOMENT = 1e-3
 
 # The records of a run that goes on from a record (its number) to a time, by steps that are refined so many times: they
-# are half as long each time, or have a hundredth of the tolerances; None where it does not get there.
+# are half as long each time, or have a hundredth of the tolerances; of less than none longer, or with wider tolerances;
+# None where it does not get there.
 Repeat = Callable[[int, float, int], States | None]
 # Records (n, m) of a vector -> its size.
 Norm = Callable[[Array], float]
@@ -105,7 +109,7 @@ class Energies:
 
 
 @dataclass(frozen=True)
-class Examined(HeldRun):
+class Examined(SwitchedMotion):
     """A run that has come to its end.
 
     Each mechanism is judged by itself, in its own speeds: those of others may be of another size.
@@ -114,27 +118,53 @@ class Examined(HeldRun):
         energies: Energies of its mechanisms.
         states: Records of the run: t (n), q (n, nq), v (n, nv), u (n, nu).
         dt: Step [s]; 0: it adapts.
-        atol: Absolute bound of the local error of adaptive steps.
+        method: Stepping method.
+        bounds: Relative and absolute bound of the local error of adaptive steps.
         steps: Number of steps.
         repeat: Makes a part of the run once more, from a record to a time, as it was or with finer steps.
         accelerations: Accelerations at records.
         acted: Instants at which events have acted (k) [s], in order; of each the run has records from before and after.
+        parts: Number of its parts between crossings and actions of events.
+        spacing: Shortest time between two instants, where steps end [s]; 0: it is not held as a whole.
     """
 
     energies: Energies
     states: States
     dt: float
-    atol: float
+    method: Method
+    bounds: tuple[float, float]
     steps: int
     repeat: Repeat
     accelerations: Accelerations
     acted: Array = field(default_factory=lambda: np.zeros(0))
+    parts: int = 1
+    spacing: float = 0.0
     longer = math.inf  # A loop through samples amplifies errors by no power of time: no shorter part tells.
 
     @property
     def h(self) -> float:
         """Step [s]; 0: it adapts."""
         return self.dt
+
+    @property
+    def method_order(self) -> int:
+        """Order of the method."""
+        return self.method.order
+
+    @property
+    def rtol(self) -> float:
+        """Relative bound of the local error, where steps adapt."""
+        return self.bounds[0]
+
+    @property
+    def switched(self) -> str:
+        """Its crossings, in words."""
+        return {1: "all of the run", 2: "what a crossing does"}.get(self.parts, f"what {self.parts - 1} crossings do")
+
+    @property
+    def tight(self) -> bool:
+        """Whether it is held against coarser steps first, which no instant forbids."""
+        return super().tight and 2.0 * self.mean_step <= self.spacing
 
     @property
     def layout(self) -> Layout:
@@ -192,7 +222,7 @@ class Examined(HeldRun):
 
     def halvings(self, part: Part) -> int:
         """Number of halvings: more for windows of fixed steps, which may all err in the same way over a contact."""
-        return HALVINGS if self.h and part != "part" else 1
+        return HALVINGS if self.h and part != "part" and (part != "whole" or self.short) else 1
 
     def jumps(self, fine: States) -> bool:
         """Whether the speed of a mechanism changes by half of its largest from one record to the next."""
@@ -207,7 +237,10 @@ class Examined(HeldRun):
         """Relative change of the mechanism that changes most, and the name of its block."""
         run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
         coarse, fine = at_equal_times(coarse, fine, _AT_JUMP * self.mean_step)
-        shares = ((_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v)
+        if part == "whole":
+            shares = [(_whole_change(self.layout, name, coarse, fine), name) for name in self.layout.v]
+        else:
+            shares = [(_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v]
         return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)
 
 
@@ -238,6 +271,30 @@ def at_equal_times(coarse: States, fine: States, near: float) -> tuple[States, S
     clear = apart > near
     clear[:1] = True
     return [x[i[clear]] for x in coarse[:3]], [x[j[clear]] for x in fine[:3]]
+
+
+def whole_note(run: Examined) -> str:
+    """Note on what finer steps change of all of a run; "" where that is little, or would take too many steps.
+
+    External blocks that answer to the motion would answer to another one.
+    """
+    if not run.spacing or run.external or not (run.tight or run.steps <= MOST_STEPS):
+        return ""
+    return whole_run_note(run)[0]
+
+
+def _whole_change(layout: Layout, block: str, coarse: States, fine: States) -> float:
+    """Difference of a mechanism's displacements at any instant, of speeds at the end and in the mean (18g)."""
+    moved = layout.moved(block)[1]
+    at, of_forces = moved.slice, slice(moved.slice.stop, layout.v[block].slice.stop)
+    (_, q, v), (t, q_fine, v_fine) = coarse[:3], fine[:3]
+    with np.errstate(all="ignore"):  # What has exploded overflows.
+        steps = np.broadcast_to(q_fine[0], q_fine.shape), q
+        far, apart = (np.linalg.norm(difference(layout.segments, x, q_fine)[:, at], axis=1) for x in steps)
+        fast, faster = (np.linalg.norm(x[:, at], axis=1) for x in (v_fine, v - v_fine))
+        reach, speed = max(float(far.max()), STILL * float(t[-1] - t[0]), 1e-300), max(float(fast.max()), STILL)
+        states = change_of_states(*(x[:, of_forces] for x in (v_fine, v, v_fine)))
+        return max(float(apart.max()) / reach, max(float(faster[-1]), float(faster.mean())) / speed, states)
 
 
 def _change(layout: Layout, block: str, run: States | None, coarse: States, fine: States, norm: Norm) -> float:

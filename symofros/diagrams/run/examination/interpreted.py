@@ -37,8 +37,8 @@ def notes_on_steps(run: InterpretedRun, blocks: Blocks, course: Course, called: 
         called: Blocks of Python's, as they were called.
         method: Stepping method.
     """
-    seen = _Revisited(run, blocks, course, called)
-    steps = seen.resolution(method)
+    seen = _Revisited(run, blocks, course, called, method)
+    steps = seen.resolution()
     notes = [step_size_note(steps.worst, method, course.step)] if steps.worst else []
     examined = seen.examined
     signal = run.values.__getitem__
@@ -53,10 +53,11 @@ class _Revisited:
         blocks: Its blocks.
         course: What was run.
         called: Blocks of Python's, as they were called.
+        method: Stepping method.
     """
 
-    def __init__(self, run: InterpretedRun, blocks: Blocks, course: Course, called: Called) -> None:
-        self._run, self._blocks, self._course = run, blocks, course
+    def __init__(self, run: InterpretedRun, blocks: Blocks, course: Course, called: Called, method: Method) -> None:
+        self._run, self._blocks, self._course, self._method = run, blocks, course, method
         self._called = CalledBefore(run.resolved.wired, called.given)
 
     @property
@@ -72,16 +73,17 @@ class _Revisited:
             Energies(run.resolved, self._blocks.par, self._energies_of),
             states,
             self._course.step,
-            0.0,
+            self._method,
+            (0.0, 0.0),
             run.steps,
             self._repeat,
             self._accelerations,
         )
 
-    def resolution(self, method: Method) -> Resolution:
+    def resolution(self) -> Resolution:
         """How well the time steps resolve the modes of the motion, linearised about a few recorded states."""
         run, nv, h = self._run, self._run.v.shape[1], self._course.step
-        wanted = int(min(_STATES, _SHARE * run.steps * method.tableau.stages / (2 * nv + 1)))
+        wanted = int(min(_STATES, _SHARE * run.steps * self._method.tableau.stages / (2 * nv + 1)))
         if wanted < 1 or not len(run.t):
             return Resolution(None, evident=False)
         rows = np.unique(np.linspace(0, len(run.t) - 1, wanted).astype(int))
@@ -90,7 +92,7 @@ class _Revisited:
         metric = np.broadcast_to(np.diag(moving.astype(float)), (len(rows), nv, nv))
         with np.errstate(all="ignore"):  # States that have exploded overflow.
             return resolution(
-                method,
+                self._method,
                 h,
                 run.steps,
                 [float(run.t[i]) for i in rows],

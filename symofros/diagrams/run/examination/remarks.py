@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.energy_balance import energy_note
-from symofros.diagrams.run.examination.examined import Examined
+from symofros.diagrams.run.examination.examined import Examined, whole_note
 from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.simulation.results.examination.creep import creep_note_at
@@ -43,6 +43,7 @@ def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:
         # No mode at a few states knows of contacts.
         looked_at = worst is None if run.h else _is_loose(run)
         note = (finer_steps_note(run) if looked_at else "") or energy_note(run)
+        note = note or (whole_note(run) if worst is None else "")
         return (note,) if note else ()
     except NotKeptError:  # External blocks were called more often than is kept.
         return ()
@@ -74,6 +75,6 @@ def _is_loose(run: Examined) -> bool:
     for name in layout.v:
         fastest = float(np.abs(v[:, layout.v[name].slice]).max(initial=0.0))
         moved = float(np.abs(q - q[0])[:, layout.q[name].slice].max(initial=0.0))
-        if run.atol > _ALLOWED * fastest > 0.0 and moved > _MOTION * run.atol:
+        if run.bounds[1] > _ALLOWED * fastest > 0.0 and moved > _MOTION * run.bounds[1]:
             return True
     return False

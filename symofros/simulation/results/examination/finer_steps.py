@@ -32,8 +32,9 @@ _ADDS_UP = 0.3
 
 # Records of a run: t (n), q (n, nq), v (n, nv), and what else is kept.
 States = Sequence[Array]
-# What is made once more of a run: all of a short one, a window of a longer one, a part from its start.
-Part = Literal["run", "window", "part"]
+# What is made once more of a run: all of a short one, a window of a longer one, a part from its start; the whole, over
+# all that switches, (18g).
+Part = Literal["run", "window", "part", "whole"]
 
 
 @dataclass(frozen=True)

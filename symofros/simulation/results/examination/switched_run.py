@@ -5,7 +5,6 @@ docs/theory/simulation.md, section 8, (18f) to (18j).
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -14,33 +13,22 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.simulation.events import undecided_note
-from symofros.simulation.results.examination.finer_steps import (
-    Part,
-    States,
-    change_of_states,
-    finer_words,
-    other_end_note,
-    percent,
-)
+from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states
 from symofros.simulation.results.examination.near_events import event_values, turns_near_zero
 from symofros.simulation.results.examination.run import MOST_STEPS, ExaminedRun, share_of
+from symofros.simulation.results.examination.switched_motion import SwitchedMotion, tolerances, whole_run_note
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.stepper import Stepper
-from symofros.simulation.stepping.windows import WHOLE, Window
+from symofros.simulation.stepping.windows import Window
 
 # Instants at which two runs are compared, about.
 _COMPARED = 128
-# Refinements of steps that are four times as long. Tolerances are divided, or multiplied, by so much, down to the
-# tightest; from the loosest on they are not held against wider ones.
-_COARSER, _TIGHTER, _TIGHTEST, _LOOSEST = -2, 100.0, 1e-13, 1e-4
 # What is made once more ends after so many times the steps that it should take.
 _PATIENCE = 8
-# Orders of convergence that are lower than the method's by more are stated, where errors are below what shows any.
-_LOST, _SEEN = 0.5, 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
-class SwitchedRun(ExaminedRun):
+class SwitchedRun(SwitchedMotion, ExaminedRun):
     """A run whose events may act, and that is of several parts where they have.
 
     Attributes:
@@ -64,18 +52,24 @@ class SwitchedRun(ExaminedRun):
         return float(self.states[0][-1]) - self.settings.t0
 
     @property
-    def short(self) -> bool:
-        """Whether its parts are short in the mean."""
-        return self.steps <= WHOLE * self.parts
+    def method_order(self) -> int:
+        """Order of the method."""
+        return self.settings.method.order
 
     @property
-    def window(self) -> Window:
-        """All of it."""
-        return Window(0, len(self.states[0]) - 1, float(self.states[0][-1]))
+    def rtol(self) -> float:
+        """Relative bound of the local error, where steps adapt."""
+        return self.settings.rtol
+
+    @property
+    def switched(self) -> str:
+        """Its actions of events, in words."""
+        words = {1: "what its events do", 2: "an action of an event"}
+        return words.get(self.parts, f"{self.parts - 1} actions of events")
 
     def halvings(self, part: Part) -> int:
         """Maximum number of refinements."""
-        return super().halvings(part) if self.short else 1
+        return HALVINGS if self.h and self.short else 1
 
     @cached_property
     def _rows(self) -> Any:
@@ -92,7 +86,9 @@ class SwitchedRun(ExaminedRun):
         """The same by finer steps, over all events but one that has ended it; None where these do not come there."""
         instants, times = self.states[0][self._rows], 2.0**refinements
         most = int(_PATIENCE * max(1.0, times) * self.steps) + MOST_STEPS
-        options = {"every": 0, "grid": instants, "max_steps": most, **({} if self.h else self._tolerances(refinements))}
+        options: dict[str, Any] = {"every": 0, "grid": instants, "max_steps": most}
+        if not self.h:
+            options["rtol"], options["atol"] = tolerances(self.rtol, self.settings.atol, refinements)
         begin = self.settings.t0, *self.start
         status, states = self.repeated(
             begin, float(instants[-1]), self.settings.dt / (times if self.h else 1.0), **options
@@ -109,12 +105,6 @@ class SwitchedRun(ExaminedRun):
         again.run.acts = int(again.actions is not None)
         return again
 
-    def _tolerances(self, refinements: int) -> dict[str, Any]:
-        """Tolerances of a run by finer steps, or by coarser ones."""
-        rtol = self.settings.rtol
-        refined = min(rtol, max(_TIGHTEST, rtol / _TIGHTER)) if refinements > 0 else rtol * _TIGHTER
-        return {"rtol": refined, "atol": refined / rtol * self.settings.atol}
-
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
         """Difference of displacements at any instant, of speeds at the end and in the mean (18g)."""
         (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
@@ -127,44 +117,13 @@ class SwitchedRun(ExaminedRun):
         at_end = share_of(max(float(faster[-1]), float(faster.mean())), float(fastest))
         return max(share_of(float(apart.max()), float(reach)), at_end, of_forces), ""
 
-    def error(self, share: float, refinements: int) -> float:
-        """Error of the run, by its change where steps are refined so many times (18h)."""
-        return share * self.own_share(refinements)
-
-    def own_share(self, refinements: int) -> float:
-        """Share of a difference from other steps, refined or coarser, that is the error of its own."""
-        if self.h:
-            return 1.0 / abs(1.0 - 2.0 ** (-self.settings.method.order * refinements))
-        return 1.0 if refinements > 0 else 1.0 / _TIGHTER
-
-    def order(self) -> float:
-        """Order of convergence, by what two refinements change one after the other (18i); NaN where none is seen."""
-        half, quarter = (self.fine(self.window, k, 1) for k in (1, 2))
-        if half is None or quarter is None:
-            return math.nan
-        first, second = self.change(self.coarse(self.window, 1), half, "run")[0], self.change(half, quarter, "run")[0]
-        return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
-
 
 def switched_run_note(run: SwitchedRun) -> str:
     """Note on what finer steps change of a run over its events; "" where that is little."""
     if run.settings.realtime or not run.model.nv or run.steps < 1 or not len(run.states[0]) or not run.repeatable:
         return ""
-    tight = run.settings.rtol < _LOOSEST if run.settings.adaptive else not run.short
-    if tight and _agrees(run):
-        return _near_event_note(run, _COARSER)
-    stepping, cure = (f"steps of {run.h:.4g} s", "a smaller dt") if run.h else ("the tolerances", "tighter tolerances")
-    worst = run.changed(run.window, "run")
-    if not worst.arrived:
-        return other_end_note(run, worst, f" over {_actions(run)}", stepping, cure)
-    error = run.error(worst.size, worst.refinements)
-    if not error > run.tolerance:
-        return _near_event_note(run, 1)
-    about = f", so that it errs by {'about ' * (error < 1.0)}{percent(error)}" if run.h else ""
-    return (
-        f"{stepping} do not determine the motion over {_actions(run)}: {finer_words(run, worst)}"
-        f" changes it by {percent(worst.size)}{about}{_lost_order(run, error)}; {cure}"
-    )
+    note, shown = whole_run_note(run)
+    return note or _near_event_note(run, shown)
 
 
 def _near_event_note(run: SwitchedRun, refinements: int) -> str:
@@ -180,22 +139,3 @@ def _near_event_note(run: SwitchedRun, refinements: int) -> str:
         if turn.distance < off[k - 1 : k + 1, turn.event].min():
             return undecided_note(run.stepper.events[turn.event].name, turn.t)
     return ""
-
-
-def _lost_order(run: SwitchedRun, error: float) -> str:
-    """The order of convergence in words, where it is seen and lower than that of the method."""
-    of_method = run.settings.method.order
-    order = run.order() if run.h and error < _SEEN else math.nan
-    return f", with the order {max(order, 0.0):.1f} in place of {of_method}" if order < of_method - _LOST else ""
-
-
-def _actions(run: SwitchedRun) -> str:
-    """Its actions of events, in words."""
-    words = {1: "what its events do", 2: "an action of an event"}
-    return words.get(run.parts, f"{run.parts - 1} actions of events")
-
-
-def _agrees(run: SwitchedRun) -> bool:
-    """Whether a run by coarser steps is the same within the tolerance."""
-    states = run.fine(run.window, _COARSER, 1)
-    return states is not None and run.change(run.coarse(run.window, 1), states, "run")[0] <= run.tolerance

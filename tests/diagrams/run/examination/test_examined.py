@@ -1,0 +1,130 @@
+"""Runs of diagrams are held as a whole: what is wrong by a tenth says so, what is right is quiet."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros import blocks
+from symofros.diagrams.run.examination.examined import Examined, _whole_change
+from symofros.simulation.results.examination.finer_steps import Part
+from tests.diagrams.run.examination.test_remarks import sampled_loop
+
+FINE: dict[str, Any] = {"method": "dop853", "rtol": 1e-11, "atol": 1e-12}
+
+
+@cache
+def driven(law: str) -> sf.Simulation:
+    """A mass under a sine, and under a stop with play, a relay, or walls that it strikes."""
+    force, events = {
+        "play": ("80*(min(0, 0.3 - x) + max(0, -0.3 - x))", {}),
+        "relay": ("-2*x - 6*relay", {}),
+        "walls": ("-20*x", {"strike": sf.Event("x + 0.6", "falling", action={"dx": "-0.95*dx"})}),
+    }[law]
+    diagram = sf.Diagram(law)
+    diagram.add_model("m", _mass(), start={"x": 0.3, "dx": 1.0})
+    diagram.add(blocks.ForwardDynamics(name="plant", model="m", events=events), u="force.y")
+    diagram.add(blocks.Formula(name="x", formulas={"y": "q[0]"}), q="plant.q")
+    diagram.add(blocks.Relay(name="relay", lower=-0.05, upper=0.05, on=1.0, off=-1.0), u="x.y")
+    push = blocks.Formula(name="force", formulas={"y": [f"{force} + 4*sin(4.4*t) + 0*relay"]})
+    diagram.add(push, x="x.y", relay="relay.y")
+    return sf.Simulation(diagram)
+
+
+def _mass() -> sf.System:
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True)
+    return sf.System("mass", (sf.RigidBody("mass", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0))
+
+
+def off(run: Any, right: Any) -> float:
+    """Error at the end, relative to the largest displacement and speed."""
+    x, v = right["plant.q"], right["plant.v"]
+    apart, faster = run["plant.q"][-1] - x[-1], run["plant.v"][-1] - v[-1]
+    return max(float(np.abs(apart).max() / np.abs(x - x[0]).max()), float(np.abs(faster).max() / np.abs(v).max()))
+
+
+LOOSE: dict[str, Any] = {"method": "dopri5", "atol": 1e-5}
+SYMPLECTIC: dict[str, Any] = {"method": "semi_implicit_euler"}
+
+
+@pytest.mark.parametrize(
+    ("law", "t_end", "options", "wrong"),
+    [
+        ("play", 8.0, LOOSE | {"rtol": 1e-3}, True),
+        ("play", 20.0, LOOSE | {"rtol": 1e-7}, True),
+        ("walls", 8.0, SYMPLECTIC | {"dt": 0.02}, True),
+        ("relay", 8.0, SYMPLECTIC | {"dt": 5e-3}, True),
+        ("play", 8.0, LOOSE | {"rtol": 1e-8, "atol": 1e-9}, False),
+        ("relay", 20.0, LOOSE | {"rtol": 1e-2}, False),
+        ("relay", 8.0, {"method": "rk4", "dt": 1e-3}, False),
+        ("walls", 20.0, {"method": "rk4", "dt": 0.01}, False),
+    ],
+)
+def test_what_is_wrong_by_a_tenth_bears_a_note_and_what_is_right_none(
+    law: str, t_end: float, options: dict[str, Any], wrong: bool
+) -> None:
+    """Against tolerances of 1e-11."""
+    right, run = (driven(law).run(t_end, record=0.1, **one) for one in (FINE, options))
+    error = off(run, right)
+    assert (error > 0.11) == wrong and (error < 0.01) == (not wrong), error
+    assert ["do not determine the motion of 'plant'" in note for note in run.outcome.notes] == [True] * wrong
+    assert run.outcome.ok and not right.outcome.notes
+
+
+@pytest.mark.parametrize(
+    ("options", "record", "made"),
+    [
+        ({"method": "rk4", "dt": 1e-3}, 0.1, [-2]),  # Steps four times as long say enough.
+        ({"method": "rk4", "dt": 1e-3}, 1e-3, [1]),  # Records forbid longer steps.
+        ({"method": "rk4", "dt": 1e-4}, 1e-4, []),  # So many steps are not made once more.
+        ({"method": "dopri5", "rtol": 1e-8}, 0.5, [-2]),
+        ({"method": "dopri5", "rtol": 1e-2}, 0.5, [1]),
+    ],
+)
+def test_what_a_right_run_costs(
+    options: dict[str, Any], record: float, made: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The whole is made once more one time at most."""
+    asked, change = list[int](), Examined.fine
+
+    def noted(run: Examined, window: Any, refinements: int, every: int) -> Any:
+        if window == run.window:
+            asked.append(refinements)
+        return change(run, window, refinements, every)
+
+    monkeypatch.setattr(Examined, "fine", noted)
+    run = driven("walls").run(4.0, record=record, **options)
+    assert asked == made and not run.outcome.notes and len(run.events["plant"]) > 1
+
+
+def test_what_answers_to_the_motion_is_not_held_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A function of Python's is not called again, and blocks that are interpreted are slow."""
+    parts, change = list[Part](), Examined.change
+
+    def noted(run: Examined, coarse: Any, fine: Any, part: Part) -> Any:
+        parts.append(part)
+        return change(run, coarse, fine, part)
+
+    monkeypatch.setattr(Examined, "change", noted)
+    assert sampled_loop("python").run(1.0, dt=2e-3, record=0.1).outcome.ok and "whole" not in parts
+    assert sampled_loop("formula").interpret(1.0, dt=2e-3, record=0.1).outcome.ok and "whole" not in parts
+    assert sampled_loop("formula").run(1.0, dt=2e-3, record=0.1).outcome.ok and "whole" in parts
+
+
+def test_speeds_count_at_the_end_and_in_the_mean_displacements_at_any_instant() -> None:
+    layout = driven("walls").resolved.layout
+    t, v = np.arange(11.0), np.linspace(1.0, 2.0, 11)[:, np.newaxis]
+    q, last = np.cumsum(v, axis=0), (np.arange(11) == 10)[:, np.newaxis]
+    v = np.concatenate([v, np.zeros((11, len(layout.v0) - 1))], axis=1)
+
+    def change(q_finer: Any, v_finer: Any) -> float:
+        return _whole_change(layout, "plant", [t, q, v], [t, q_finer, v_finer])
+
+    assert change(q, v) == 0.0
+    assert change(q, v * (1.0 + 0.25 * last)) == pytest.approx(0.25 / 1.25)
+    assert change(q, v * (1.0 + 0.1 * ~last)) == pytest.approx(0.1 * v[:-1].sum() / 11 / 2.09, rel=0.01)
+    assert change(q + 0.5 * (t == 3.0)[:, np.newaxis], v) == pytest.approx(0.5 / (q[-1, 0] - q[0, 0]))
