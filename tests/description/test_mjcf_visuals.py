@@ -48,16 +48,21 @@ def seen_by_mujoco(model: Any) -> Array:
 
 @pytest.mark.parametrize("inertial", INERTIAS.values(), ids=INERTIAS)
 @pytest.mark.parametrize(
-    "mesh",
+    ("mesh", "more"),
     [
-        "",
-        'scale="0.5 2 1"',
-        'scale="0.5 2 1" refpos="0.3 0.2 0.1"',
-        'scale="2 2 2" refpos="0.3 0.2 0.1" refquat="0.8 0.1 -0.5 0.3"',
+        ("", ""),
+        ('scale="0.5 2 1"', ""),
+        ('scale="0.5 2 1" refpos="0.3 0.2 0.1"', ""),
+        ('scale="2 2 2" refpos="0.3 0.2 0.1" refquat="0.8 0.1 -0.5 0.3"', ""),
+        ("", '<default><mesh scale="0.5 2 1"/></default>'),
+        (
+            'class="big" refpos="0.3 0.2 0.1"',
+            '<default><mesh scale="0.5 2 1"/><default class="big"><mesh scale="3 3 3"/></default></default>',
+        ),
     ],
 )
-def test_meshes_lie_where_mujoco_draws_them(mesh: str, inertial: str, tmp_path: Path) -> None:
-    file = written(tmp_path, mesh, inertial=inertial)
+def test_meshes_lie_where_mujoco_draws_them(mesh: str, more: str, inertial: str, tmp_path: Path) -> None:
+    file = written(tmp_path, mesh, inertial=inertial, more=more)
     (shape,) = sf.load(file).visuals["a"]
     assert shape.kind == "mesh" and shape.file == str((tmp_path / "meshes" / "part.obj").resolve())
     ours, theirs = seen_by_us(shape), seen_by_mujoco(mujoco.MjModel.from_xml_path(str(file)))

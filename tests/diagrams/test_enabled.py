@@ -154,14 +154,17 @@ def test_files_state_them(tmp_path: Path) -> None:
     assert as_data(sf.Simulation(again).resolved)["blocks"]["held_held/sum"]["kind"] == "integrator"
 
 
-# Of the input of a relay; at 7.3 rad/s it is enabled once above the one and off, once below the other and on.
-UPPER, LOWER, FAST = 0.5, -0.6, 7.3
+# Of the input of a relay. At 7.3 rad/s it is enabled once above the one and off, once below the other and on; at 7.8
+# rad/s between them, once on and once off.
+UPPER, LOWER = 0.5, -0.6
 
 
-def relay_by_hand(states: str, starts_on: bool, t: np.ndarray, t_end: float) -> tuple[np.ndarray, np.ndarray]:
-    """A relay of sin(FAST t) while WAVE enables it: its output, held between, and the integral of that."""
-    level = [(np.arcsin(UPPER) + 2 * np.pi * k) / FAST for k in range(12)]
-    fall = [(np.pi - np.arcsin(LOWER) + 2 * np.pi * k) / FAST for k in range(12)]
+def relay_by_hand(
+    states: str, starts_on: bool, fast: float, t: np.ndarray, t_end: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """A relay of sin(fast t) while WAVE enables it: its output, held between, and the integral of that."""
+    level = [(np.arcsin(UPPER) + 2 * np.pi * k) / fast for k in range(12)]
+    fall = [(np.pi - np.arcsin(LOWER) + 2 * np.pi * k) / fast for k in range(12)]
     marks = sorted([*((at, "on") for at in level), *((at, "off") for at in fall), *((at, "wave") for at in WAVE)])
     enabled, on, held = True, starts_on, 0.0
     ends, values = [0.0], [float(on)]
@@ -169,7 +172,7 @@ def relay_by_hand(states: str, starts_on: bool, t: np.ndarray, t_end: float) -> 
         if what == "wave":
             enabled = not enabled
             if enabled:
-                u = np.sin(FAST * at)
+                u = np.sin(fast * at)
                 on = starts_on if states == "reset" else on
                 on = u >= UPPER or (on and u > LOWER)
             else:
@@ -187,19 +190,20 @@ def relay_by_hand(states: str, starts_on: bool, t: np.ndarray, t_end: float) -> 
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
 @pytest.mark.parametrize("starts_on", [False, True])
 @pytest.mark.parametrize("states", ["held", "reset"])
-def test_a_relay_switches_while_it_is_enabled(states: Any, starts_on: bool, method: str) -> None:
+@pytest.mark.parametrize("fast", [7.3, 7.8])
+def test_a_relay_switches_while_it_is_enabled(fast: float, states: Any, starts_on: bool, method: str) -> None:
     """At its levels, located in time, and as it is enabled beyond one; its integral tells the instants."""
     part = sf.Diagram("part")
     part.add(blocks.Relay(name="relay", lower=LOWER, upper=UPPER, starts_on=starts_on))
     part.add_inlet("u", "relay.u")
     part.outlets = {"y": "relay"}
     diagram = whole({})
-    diagram.add(blocks.Formula(name="fast", formulas={"y": f"sin({FAST}*t)"}))
+    diagram.add(blocks.Formula(name="fast", formulas={"y": f"sin({fast}*t)"}))
     diagram.include("part", part, None, sf.Condition(enabled="signal.y", states=states), u="fast")
     diagram.add(blocks.Integrator(name="sum"), u="part.y")
     simulation = sf.Simulation(diagram)
     run = simulation.run(5.0, dt=5e-3, method=method, rtol=1e-9, atol=1e-11, record=0.0125)
-    y, total = relay_by_hand(states, starts_on, run.t, 5.0)
+    y, total = relay_by_hand(states, starts_on, fast, run.t, 5.0)
     assert run.outcome.ok and run["sum.y"] == pytest.approx(total, abs=2e-9)
     if method == "rk4" and starts_on:
         other = simulation.interpret(5.0, dt=5e-3, record=0.0125)

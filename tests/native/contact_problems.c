@@ -13,9 +13,11 @@ static double uniform(void) {
 }
 static double normal(void) { return sqrt(-2.0 * log(1.0 - uniform())) * cos(6.283185307179586 * uniform()); }
 
-/* n balls of one body, every other time, or of a mechanism of as many degrees of freedom as come: W = J M^-1 J^T, b = J a. */
+/* n balls of one body, every other time, or of a mechanism of as many degrees of freedom as come, or each between two of n
+ * masses, so that some act on others by way of a third one alone: W = J M^-1 J^T, b = J a. */
 static void draw(sym_contact_problem *p, int32_t n) {
-    const int32_t body = uniform() < 0.5, nv = body ? 6 : 3 + (int32_t)(uniform() * 3.0 * n);
+    const int32_t body = uniform() < 0.5, masses = !body && uniform() < 0.5;
+    const int32_t nv = body ? 6 : masses ? 3 * n : 3 + (int32_t)(uniform() * 3.0 * n);
     double J[SYM_MOST_FORCES][32], a[32], inverse[32];
     int32_t i, j, k;
     memset(p, 0, sizeof *p);
@@ -24,8 +26,9 @@ static void draw(sym_contact_problem *p, int32_t n) {
     for (i = 0; i < n; ++i) {
         const double x = normal(), y = normal(), z = body && uniform() < 0.5 ? -1.0 : normal(), turn = 6.283185307179586 * uniform();
         const double rows[3][6] = {{1, 0, 0, 0, z, -y}, {0, 1, 0, -z, 0, x}, {0, 0, 1, y, -x, 0}};
+        const int32_t first = (int32_t)(uniform() * n), second = (int32_t)(uniform() * n);
         for (j = 0; j < 3; ++j)
-            for (k = 0; k < nv; ++k) J[3 * i + j][k] = body ? rows[j][k] : normal();
+            for (k = 0; k < nv; ++k) J[3 * i + j][k] = body ? rows[j][k] : !masses || k / 3 == first || k / 3 == second ? normal() : 0.0;
         p->mu[i] = uniform() < 0.1 ? 0.0 : uniform();
         p->parts[i] = uniform() < 0.1, p->slides[i] = uniform() < 0.3;
         p->d[2 * i] = cos(turn), p->d[2 * i + 1] = sin(turn);

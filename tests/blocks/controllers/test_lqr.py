@@ -159,6 +159,18 @@ def test_a_first_state_that_does_not_stay_is_noted(tmp_path: Path) -> None:
     assert all(len(found) == 1 and "' accelerates by" in found[0] for found in said[0.05]), said
 
 
+@pytest.mark.parametrize(("nominal", "said"), [(2.0 * 9.81, False), (None, True), (0.0, True)])
+def test_inputs_that_hold_the_first_state_make_it_a_rest(nominal: float | None, said: bool) -> None:
+    """A mass that hangs on its input; without one it falls."""
+    slide = sf.Joint("z", "prismatic", axis=(0, 0, 1), actuated=True)
+    diagram = sf.Diagram("hold")
+    diagram.add_model("m", sf.System("mass", (sf.RigidBody("z", slide, sf.Inertia(2.0)),)))
+    given = None if nominal is None else [nominal]
+    diagram.add(LQR(name="lqr", model="m", nominal=given), q="plant.q", v="plant.v")
+    diagram.add(ForwardDynamics(name="plant", model="m"), u="lqr.u")
+    assert ["accelerates by -9.81" in note for note in resolve(diagram).notes] == [True] * said
+
+
 def test_a_floating_arm_is_regulated_along_its_manifold() -> None:
     # Its base drifts freely: what no force reaches can't be regulated, which is said.
     with pytest.raises(sf.DescriptionError, match="no gain") as caught:

@@ -9,8 +9,8 @@ import symofros as sf
 from symofros.blocks import ForwardDynamics, Hold, ModelFunction, Sequence
 from symofros.diagrams.program.compiled import resolve
 from symofros.simulation.events import CONTACT_WORDS, FRICTION_WORDS, ModeEvent
-from tests.diagrams.run.test_switching import CASES, Thrown, diagram, simulated
-from tests.simulation.rigid_scenes import G, box_system
+from tests.diagrams.run.test_switching import CASES, Case, Thrown, diagram, simulated
+from tests.simulation.rigid_scenes import G, box_system, in_shell
 from tests.simulation.test_landing import BOX, DISC
 
 
@@ -81,11 +81,20 @@ def test_forces_of_rigid_contacts_are_of_multipliers() -> None:
 FINE = {"method": "dopri5", "rtol": 1e-9, "atol": 1e-11}
 
 
-@pytest.mark.parametrize("order", [("ball", "held", "other"), ("held", "other", "ball")])
+# A ball goes round in a free shell, past the poles of its surface.
+SHELL = Case(
+    in_shell(0.1, (1, 2, 3), 2.5),
+    {},
+    2.0,
+    {"ball.px": 0.4, "ball.vy": 1.2, "ball.vz": 0.4, "ball.wx": 3.0, "ball.wy": -1.0, "ball.wz": 2.0, "shell.wx": 0.4},
+)
+
+
+@pytest.mark.parametrize("order", [("ball", "held", "shell", "other"), ("held", "other", "shell", "ball")])
 def test_modes_of_mechanisms_are_chosen_each_by_its_own_rule(order: tuple[str, ...]) -> None:
-    """A ball bounces, a slab slides, and a brake holds an arm: each as without the others."""
-    cases = {"ball": CASES["backspin"], "held": CASES["brake"], "other": CASES["slab"]}
-    of = sf.Diagram("three")
+    """A ball bounces, one goes round in a shell, a slab slides, a brake holds an arm: each as without the others."""
+    cases = {"ball": CASES["backspin"], "held": CASES["brake"], "other": CASES["slab"], "shell": SHELL}
+    of = sf.Diagram("several")
     for name in order:
         of.add_model(f"m_{name}", cases[name].system, cases[name].start, cases[name].parameters)
         of.add(ForwardDynamics(name=name, model=f"m_{name}", events=cases[name].events))
@@ -94,7 +103,7 @@ def test_modes_of_mechanisms_are_chosen_each_by_its_own_rule(order: tuple[str, .
     switching = resolved.switching(part)
     assert switching is not None
     kinds = [event.words for event in switching.events if isinstance(event, ModeEvent)]
-    assert kinds == [FRICTION_WORDS] + 10 * [CONTACT_WORDS], "as native/stepping/actions.c counts them"
+    assert kinds == [FRICTION_WORDS] + 12 * [CONTACT_WORDS], "as native/stepping/actions.c counts them"
     run = sf.Simulation(of).run(2.0, record=0.1, **FINE)
     for name in order:
         alone, here = simulated(cases[name], **FINE), run.events[name]

@@ -15,6 +15,7 @@ from scipy.integrate import solve_ivp
 
 import symofros as sf
 from symofros import blocks
+from symofros.diagrams.run.simulate import run_compiled
 from tests.diagrams.parts import Ball, Counter, Lag, Spoken, arm, moving
 from tests.models import sampled
 
@@ -356,7 +357,8 @@ def test_runs_and_simulations_are_copied_and_sent_to_other_processes(copied: Cal
     for other in (again, sent):
         np.testing.assert_array_equal(other["lag.y"], run["lag.y"])
         assert "later.y" not in other and str(other.outcome) == str(run.outcome)
-    np.testing.assert_array_equal(sent["goal.value"], np.full(21, 2.0))
+    for other in (sent, run_compiled(sent.compiled, 0.2, dt=0.01, record=0.01)):
+        np.testing.assert_array_equal(other["goal.value"], np.full(21, 2.0))
 
 
 def test_a_run_says_which_signals_it_has() -> None:

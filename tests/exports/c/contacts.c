@@ -1,7 +1,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "plan.h"
-/* A box that is drawn from one instant on, then lifted by hand. */
+/* A box that is drawn from one instant on, then lifted or thrown up by hand. */
 static void tell(const sym_instance *it, int status) {
     int i;
     printf("status %d, in sequence at %g s\nq", status, sym_instance_struck_in_sequence(it));
@@ -18,7 +18,7 @@ int main(int n, char **word) {
     it->u[0] = atof(word[1]);
     for (; i <= 20 && status == SYM_FINISHED; ++i) status = sym_instance_advance(it, 0.01 * i, 1e-3);
     tell(it, status);
-    it->u[0] = 0.0, it->q[2] += atof(word[2]);
+    it->u[0] = 0.0, it->q[2] += atof(word[2]), it->v[2] += n > 3 ? atof(word[3]) : 0.0;
     for (; i <= 30 && status == SYM_FINISHED; ++i) status = sym_instance_advance(it, 0.01 * i, 1e-3);
     tell(it, status);
     return 0;

@@ -69,11 +69,11 @@ def test_packages_move_as_runs_do(tmp_path: Path, scene: str, method: str) -> No
     assert len(known.events) > 2
 
 
-@pytest.mark.parametrize("pull", [5.0, 8.0])
-def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float) -> None:
-    """A force beyond friction lets a box slide from that call on; a box that is lifted by hand falls."""
-    mu, mass, lift = 0.3, 2.0, 0.02
-    program = packaged(tmp_path, BY_HAND, box_system(mu), {"free.pz": 0.1})
+@pytest.mark.parametrize(("pull", "chosen"), [(5.0, {}), (8.0, {"functions": ["mass_matrix"]})])
+def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float, chosen: dict[str, Any]) -> None:
+    """A force beyond friction lets a box slide from that call on; a box that is lifted by hand falls, or flies up."""
+    mu, mass, lift, up = 0.3, 2.0, 0.02, 0.8
+    program = packaged(tmp_path, BY_HAND, box_system(mu), {"free.pz": 0.1}, **chosen)
     *_, drawn, _, lifted = run(program, repr(pull), repr(lift), cwd=tmp_path).splitlines()
     first, last = (np.array(line.split()[1:], dtype=float) for line in (drawn, lifted))
     a = max(0.0, pull / mass - mu * G)
@@ -85,6 +85,10 @@ def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float)
     assert last[2] == pytest.approx(0.1, abs=1e-12)
     way = first[0] + a * 0.1 * fall + left * slides - mu * G * slides**2 / 2
     assert last[0] == pytest.approx(way, abs=1e-12)
+    # Its speeds alone are set: whatever it did, it is in the air for 2 up/g = 0.16 s.
+    thrown = np.array(run(program, repr(pull), "0", repr(up), cwd=tmp_path).splitlines()[-1].split()[1:], dtype=float)
+    wanted = [first[0] + a * 0.1**2, 0.1 + up * 0.1 - G * 0.1**2 / 2]
+    assert thrown[[0, 2]] == pytest.approx(wanted, abs=1e-12)
 
 
 @pytest.mark.parametrize(("share", "when"), [(1.0, "0"), (0.0, "-inf")])

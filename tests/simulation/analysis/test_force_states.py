@@ -156,6 +156,20 @@ def test_a_rest_far_from_the_guess_is_found_by_relaxation() -> None:
     assert [*rest.q, *rest.z] == pytest.approx([float(root[np.isreal(root)].real[0]) * f for f in (1.0, 3.0)], rel=1e-9)
 
 
+@pytest.mark.parametrize("share", [1.1, 0.9])
+def test_a_rest_is_judged_by_forces_whose_states_follow(share: float) -> None:
+    """An upright rod leans on a force that follows it late, of more than m g L a radian or of less: (7b), (22a)."""
+    moment, J = 9.81 * 0.5, 0.02 + 0.5**2
+    rod = sf.RigidBody("rod", sf.Joint("q", "revolute", axis=(0, 1, 0)), sf.Inertia(1.0, (0.5, 0, 0), (0, 0.02, 0.02)))
+    state = sf.ForceState("y", f"40*(q + {np.pi / 2} - y)")
+    holds = sf.VirtualPower("holds", {"dq": f"-{share * moment}*y"})
+    model = interpreted(sf.System("rod", (rod,), states=(state,), virtual_power=(holds,)))
+    rest = sf.equilibrium(model, [-np.pi / 2 + 1e-3])
+    assert rest.q == pytest.approx(-np.pi / 2, abs=1e-9) and rest.z == pytest.approx(0.0, abs=1e-9)
+    leaves = f"'q' leaves it at {np.sqrt(moment * (1.0 - share) / J):.3g} 1/s" if share < 1.0 else ""
+    assert [leaves in note for note in rest.notes] == [True] * (share < 1.0), rest.notes
+
+
 # Modes and linear models.
 
 

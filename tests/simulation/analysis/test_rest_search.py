@@ -130,6 +130,16 @@ def test_an_upright_rest_is_told_from_a_hanging_one() -> None:
     assert sf.equilibrium(made, [1.5]).notes == sf.equilibrium(made, [-1.5], held=["q"]).notes == ()
 
 
+@pytest.mark.parametrize("length", [0.1, 100.0])
+def test_the_speed_that_leaves_a_rest_most_is_told_by_its_reach(length: float) -> None:
+    """A rod falls on its sledge, of 1 kg each: a long one pushes it by more metres than it turns by radians."""
+    sledge = sf.RigidBody("sledge", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0))
+    inertia = sf.Inertia(1.0, (length, 0, 0), (0, 0.1 * length**2, 0.1 * length**2))
+    rod = sf.RigidBody("rod", sf.Joint("q", "revolute", "sledge", axis=(0, 1, 0)), inertia)
+    rest = sf.equilibrium(interpreted(sf.System("sledge", (sledge, rod))), [0.0, -1.5])
+    assert rate_of(rest, "q") == pytest.approx(math.sqrt(9.81 / length / (0.1 + 1.0 - 0.5)), rel=5e-3)
+
+
 @pytest.mark.parametrize("stiffness", [1e3, 1e9])
 def test_a_stiff_beam_does_not_hide_that_it_falls(stiffness: float) -> None:
     """Its own stiffness is 1e12 times that of gravity; a rod about its end: sqrt(3 g / (2 L))."""

@@ -10,7 +10,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from symofros.simulation.results.examination.narrow_parts import _BEYOND, _LOOKED_AT, _NEAR, NarrowPart, _missed, _parts
+from symofros.simulation.results.examination.narrow_parts import (
+    _BEYOND,
+    _LOOKED_AT,
+    _NEAR,
+    NarrowPart,
+    Stretch,
+    _missed,
+    _parts,
+    _stretches,
+)
 
 
 def ends(seed: int) -> np.ndarray:
@@ -51,6 +60,22 @@ def test_one_instant_alone_makes_no_part_and_many_are_bounded() -> None:
     assert _parts(t, np.array([3.2])) == []
     parts = _parts(t, np.sort(np.concatenate([np.arange(1000) + 0.3, np.arange(1000) + 0.35])))
     assert len(parts) == _LOOKED_AT and [part.step for part in parts[:3]] == [0, 1, 2]
+
+
+def test_parts_that_follow_upon_each_other_leave_out_their_sum() -> None:
+    """From the first begin to the last end, by the longest steps of any; fixed steps alone err together."""
+    t, steps = np.array([0.0, 1.0, 3.0, 4.0, 5.0, 6.0]), (0, 1, 1, 4)
+    parts = [
+        NarrowPart(k, begin, end)
+        for k, begin, end in zip(steps, (0.9, 0.0, 0.4, 0.2), (1.0, 0.1, 0.6, 0.3), strict=True)
+    ]
+    each, missed = [0.1, 0.2, 0.4, 0.1], [1.0, 0.5, 0.25, 2.0]
+    alone = [Stretch(p.step, p.begin, p.step, p.end, x / 64, m) for p, x, m in zip(parts, each, missed, strict=True)]
+    for whole, others in ((False, []), (True, [Stretch(0, 0.9, 1, 0.6, 0.4 / 64, 1.75)])):
+        for order in ([0, 1, 2, 3], [2, 3, 0, 1]):
+            found = _stretches(t, [parts[k] for k in order], [missed[k] for k in order], whole=whole)
+            wanted = [*(alone[k] for k in order), *others]
+            assert [tuple(one) for one in found] == [pytest.approx(tuple(one)) for one in wanted]
 
 
 @pytest.mark.parametrize("t0", [-40.0, 0.0, 1e3])
