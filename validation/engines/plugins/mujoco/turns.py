@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...interface import Slot
+from ..turns import solids
 from ..writing.source import HALF_TURNS, Source, Way
 
 _MATRIX = "value = np.zeros(9)\nmj.mju_quat2Mat(value, {of})"
@@ -77,7 +78,7 @@ _WAYS = {
 }
 # mju_mat2Rot stops where a step would turn by less than 1e-9.
 _STOPS = {"rotation_matrix:mju_mat2Rot": 2e-9}
-WAYS = {name: Way(native, code, _STOPS.get(name, 0.0)) for name, (native, code) in _WAYS.items()}
+WAYS = {name: Way(native, code, _STOPS.get(name, 0.0)) for name, (native, code) in _WAYS.items()} | solids.MUJOCO
 
 
 def write() -> Source:

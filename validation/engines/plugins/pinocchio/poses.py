@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
+from ..turns import solids
 from ..writing.source import Way
 
 _X = "X, Y = pin.SE3(pin.Quaternion(q).matrix(), a), pin.SE3(pin.Quaternion(q2).matrix(), tau)\n"
@@ -72,4 +73,4 @@ WAYS = {
     "spatial_momentum_cross": Way("Inertia.vxiv", f"{_I}{_V}value = I.vxiv(V).vector"),
     "spatial_inertia_rate": Way("Inertia.variation", f"{_I}{_V}value = I.variation(V)"),
     "spatial_inertia_rate:vxi, ivx": Way("Inertia.vxi, ivx", f"{_I}{_V}value = I.vxi(V) - I.ivx(V)"),
-}
+} | solids.PINOCCHIO

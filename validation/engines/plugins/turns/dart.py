@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
 from ..writing.source import HALF_TURNS, Way
+from . import solids
 
 IMPORTS = ("import dartpy as dart",)
 _R = "R, Q = (dart.math.Quaternion(*x).to_rotation_matrix() for x in (q, q2))\n"
@@ -17,48 +18,54 @@ def _flat(of: str) -> str:
     return f"X = {of}\nvalue = [*X.translation(), *X.rotation().flat]"
 
 
-WAYS = {
-    "rotation_matrix": Way("Quaternion.to_rotation_matrix", f"{_R}value = R.ravel()"),
-    "rotation_matrix:AngleAxis": Way(
-        "AngleAxis of a Quaternion",
-        "value = dart.math.AngleAxis(dart.math.Quaternion(*q)).to_rotation_matrix().ravel()",
-    ),
-    "rotation_matrix:quatToExp": Way(
-        "quatToExp, expToQuat",
-        "value = dart.math.expToQuat(dart.math.quatToExp(dart.math.Quaternion(*q))).to_rotation_matrix().ravel()",
-    ),
-    "rotation_composed": Way(
-        "Quaternion.multiply",
-        "value = dart.math.Quaternion(*q).multiply(dart.math.Quaternion(*q2)).to_rotation_matrix().ravel()",
-    ),
-    "rotation_logarithm": Way("quatToExp", "value = dart.math.quatToExp(dart.math.Quaternion(*q))"),
-    "rotation_exponential": Way("expMapRot", "value = dart.math.expMapRot(v).ravel()"),
-    "rotation_exponential:expToQuat": Way("expToQuat", "value = dart.math.expToQuat(v).to_rotation_matrix().ravel()"),
-    "rotation_exponential_of_turns": Way("expMapRot", "value = dart.math.expMapRot(16 * v).ravel()"),
-    # Its Jacobian is of the angular velocity along the axes before.
-    "rotation_vector_speeds": Way("expMapJac", "value = dart.math.expMapJac(tau).T"),
-    "rotation_half_turns": Way(
-        "Quaternion of a matrix",
-        f"{HALF_TURNS}value = [dart.math.Quaternion(H).to_rotation_matrix().ravel() for H in half_turns]",
-    ),
-    "rotation_of_rpy": Way("eulerZYXToMatrix", "value = dart.math.eulerZYXToMatrix(v[::-1]).ravel()"),
-    "rotation_of_zyz": Way("eulerZYZToMatrix", "value = dart.math.eulerZYZToMatrix(v).ravel()"),
-    "rotation_to_rpy": Way("matrixToEulerZYX", f"{_R}value = dart.math.matrixToEulerZYX(R)[::-1]"),
-    "are_rotations": Way(
-        "verifyRotation", f"{_R}value = [float(dart.math.verifyRotation(A)) for A in (R, R * [1, 1, -1], 1.25 * R)]"
-    ),
-    "pose_composed": Way("Isometry3.multiply", f"{_X}{_flat('X.multiply(Y)')}"),
-    "pose_unset": Way("Isometry3", _flat("dart.math.Isometry3()")),
-    "pose_inverse": Way("Isometry3.inverse", f"{_X}{_flat('X.inverse()')}"),
-    "pose_exponential": Way("expMap", f"{_flat('dart.math.expMap(np.r_[v2, v])')}"),
-    "spatial_inertia": Way("Inertia.getSpatialTensor", f"{_I}{_SWAPPED.format(of='I.getSpatialTensor()')}"),
-    "spatial_inertia_placed": Way(
-        "Inertia.transformed", f"{_X}{_I}{_SWAPPED.format(of='I.transformed(X).getSpatialTensor()')}"
-    ),
-} | {
-    f"rotation_matrix:matrixToEuler{one}": Way(
-        f"matrixToEuler{one}, euler{one}ToMatrix",
-        f"{_R}value = dart.math.euler{one}ToMatrix(dart.math.matrixToEuler{one}(R)).ravel()",
-    )
-    for one in _ANGLES
-}
+WAYS = (
+    {
+        "rotation_matrix": Way("Quaternion.to_rotation_matrix", f"{_R}value = R.ravel()"),
+        "rotation_matrix:AngleAxis": Way(
+            "AngleAxis of a Quaternion",
+            "value = dart.math.AngleAxis(dart.math.Quaternion(*q)).to_rotation_matrix().ravel()",
+        ),
+        "rotation_matrix:quatToExp": Way(
+            "quatToExp, expToQuat",
+            "value = dart.math.expToQuat(dart.math.quatToExp(dart.math.Quaternion(*q))).to_rotation_matrix().ravel()",
+        ),
+        "rotation_composed": Way(
+            "Quaternion.multiply",
+            "value = dart.math.Quaternion(*q).multiply(dart.math.Quaternion(*q2)).to_rotation_matrix().ravel()",
+        ),
+        "rotation_logarithm": Way("quatToExp", "value = dart.math.quatToExp(dart.math.Quaternion(*q))"),
+        "rotation_exponential": Way("expMapRot", "value = dart.math.expMapRot(v).ravel()"),
+        "rotation_exponential:expToQuat": Way(
+            "expToQuat", "value = dart.math.expToQuat(v).to_rotation_matrix().ravel()"
+        ),
+        "rotation_exponential_of_turns": Way("expMapRot", "value = dart.math.expMapRot(16 * v).ravel()"),
+        # Its Jacobian is of the angular velocity along the axes before.
+        "rotation_vector_speeds": Way("expMapJac", "value = dart.math.expMapJac(tau).T"),
+        "rotation_half_turns": Way(
+            "Quaternion of a matrix",
+            f"{HALF_TURNS}value = [dart.math.Quaternion(H).to_rotation_matrix().ravel() for H in half_turns]",
+        ),
+        "rotation_of_rpy": Way("eulerZYXToMatrix", "value = dart.math.eulerZYXToMatrix(v[::-1]).ravel()"),
+        "rotation_of_zyz": Way("eulerZYZToMatrix", "value = dart.math.eulerZYZToMatrix(v).ravel()"),
+        "rotation_to_rpy": Way("matrixToEulerZYX", f"{_R}value = dart.math.matrixToEulerZYX(R)[::-1]"),
+        "are_rotations": Way(
+            "verifyRotation", f"{_R}value = [float(dart.math.verifyRotation(A)) for A in (R, R * [1, 1, -1], 1.25 * R)]"
+        ),
+        "pose_composed": Way("Isometry3.multiply", f"{_X}{_flat('X.multiply(Y)')}"),
+        "pose_unset": Way("Isometry3", _flat("dart.math.Isometry3()")),
+        "pose_inverse": Way("Isometry3.inverse", f"{_X}{_flat('X.inverse()')}"),
+        "pose_exponential": Way("expMap", f"{_flat('dart.math.expMap(np.r_[v2, v])')}"),
+        "spatial_inertia": Way("Inertia.getSpatialTensor", f"{_I}{_SWAPPED.format(of='I.getSpatialTensor()')}"),
+        "spatial_inertia_placed": Way(
+            "Inertia.transformed", f"{_X}{_I}{_SWAPPED.format(of='I.transformed(X).getSpatialTensor()')}"
+        ),
+    }
+    | {
+        f"rotation_matrix:matrixToEuler{one}": Way(
+            f"matrixToEuler{one}, euler{one}ToMatrix",
+            f"{_R}value = dart.math.euler{one}ToMatrix(dart.math.matrixToEuler{one}(R)).ravel()",
+        )
+        for one in _ANGLES
+    }
+    | solids.DART
+)

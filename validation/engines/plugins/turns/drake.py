@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
 from ..writing.source import HALF_TURNS, Way
+from . import solids
 
 IMPORTS = ("import numpy as np", "import pydrake.all as drake")
 _R = "R, Q = (drake.RotationMatrix(drake.Quaternion(x)) for x in (q, q2))\n"
@@ -181,4 +182,4 @@ WAYS = {
     "spatial_momentum": Way(
         "SpatialInertia * SpatialVelocity", f"{_I}{_V}L = I * V\nvalue = [*L.translational(), *L.rotational()]"
     ),
-}
+} | solids.DRAKE

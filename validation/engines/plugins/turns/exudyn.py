@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
 from ..writing.source import HALF_TURNS, Way
+from . import solids
 
 IMPORTS = ("from exudyn import lieGroupBasics as lie", "from exudyn import rigidBodyUtilities as rbu")
 _R = "R, Q = rbu.EulerParameters2RotationMatrix(q), rbu.EulerParameters2RotationMatrix(q2)\n"
@@ -148,4 +149,4 @@ _PLACEMENTS = {
     "spatial_inertia_sum": Way("RigidBodyInertia +", f"{_X}{_INERTIA}I = I.Transformed(X) + I\n{_MOMENTUM}"),
     "spatial_inertia_sum:+=": Way("RigidBodyInertia +=", f"{_X}{_INERTIA}K = I.Transformed(X)\nI += K\n{_MOMENTUM}"),
 }
-WAYS = _ROTATIONS | _ROLLED | _PLACEMENTS
+WAYS = _ROTATIONS | _ROLLED | _PLACEMENTS | solids.EXUDYN

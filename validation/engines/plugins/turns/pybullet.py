@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..writing.source import Way
+from . import solids
 
 IMPORTS = ("import pybullet as p",)
 _OF = "value = p.getMatrixFromQuaternion({of})"
@@ -35,4 +36,4 @@ WAYS = {
     "pose_inverse": Way("invertTransform", _FLAT.format(of="p.invertTransform(a, q)")),
     "pose_of_point": Way("multiplyTransforms", "value = p.multiplyTransforms(a, q, v, [0, 0, 0, 1])[0]"),
     "pose_of_point:rotateVector": Way("rotateVector", "value = np.array(p.rotateVector(q, v)) + a"),
-}
+} | solids.PYBULLET

@@ -1,0 +1,351 @@
+"""Solids: their moments, distances of two, rays that meet them, in each engine's own words.
+
+Quaternions and placements are as in each engine's rotations.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+
+from ...truth.poses import MASS
+from ...truth.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
+from ..writing.source import Way
+
+# Solid -> radius and half length, half sides or semi-axes; the same with whole lengths and sides.
+_HALVES = {
+    "ball": (RADIUS,),
+    "capsule": (RADIUS, HALF),
+    "cylinder": (RADIUS, HALF),
+    "box": SIDES,
+    "ellipsoid": SIDES,
+}
+_WHOLES = _HALVES | {
+    "capsule": (RADIUS, 2 * HALF),
+    "cylinder": (RADIUS, 2 * HALF),
+    "box": tuple(2 * side for side in SIDES),
+}
+_BEYOND = f"tau + {list(BEYOND)}"
+# Sizes of the solids that moments are asked of.
+_X = "x = np.abs(v) + 0.5\n"
+
+
+def _texts(form: str, sizes: Mapping[str, tuple[float, ...]], solids: str, between: str = ", ") -> dict[str, str]:
+    """Solids' texts by a form with places for the name and the sizes; without balls called Sphere, as all call them."""
+    names = {"ball": "sphere"}
+    return {one: form.format(names.get(one, one), between.join(map(repr, sizes[one]))) for one in solids.split()}
+
+
+def _distances(native: str, solids: Mapping[str, str], text: str, name: str = "") -> dict[str, Way]:
+    """Distances of the pairs of an engine's solids.
+
+    Args:
+        native: What the engine calls them.
+        solids: Solid -> its text.
+        text: Code with ONE and OTHER for both texts.
+        name: Name of a second way.
+    """
+    return {
+        f"distance_{one}_{other}{name}": Way(native, text.replace("ONE", solids[one]).replace("OTHER", solids[other]))
+        for one, other in DISTANCES
+        if one in solids and other in solids
+    }
+
+
+def _rays(
+    native: str, solids: Mapping[str, str], text: str, name: str = "", starts: Iterable[str] = "ow"
+) -> dict[str, Way]:
+    """Rays that meet an engine's solids.
+
+    Args:
+        native: What the engine calls them.
+        solids: Solid -> its text.
+        text: Code with SOLID for its text and START for the ray's origin, after R: o, or w within the solid.
+        name: Name of a second way.
+        starts: The origins that it is asked for.
+    """
+    return {
+        f"ray_{'to' if start == 'o' else 'out_of'}_{one}{name}": Way(
+            native, text.replace("SOLID", solids[one]).replace("START", start)
+        )
+        for start in starts
+        for one in MET
+        if one in solids
+    }
+
+
+def _allowing(ways: Mapping[str, Way], slacks: Mapping[str, float]) -> dict[str, Way]:
+    """Ways with what an engine documents that they may be off by: patterns of their names -> part of the value."""
+    allowed = {name: slack for pattern, slack in slacks.items() for name in ways if re.fullmatch(pattern, name)}
+    return {name: way._replace(slack=allowed.get(name, way.slack)) for name, way in ways.items()}
+
+
+# Origin o, point w within the solid, unit direction u of the ray, from R.
+_LINE = f"o, w = {_BEYOND}, a + R @ {list(WITHIN)}\nu = (w - o) / np.linalg.norm(w - o)\n"
+
+# MuJoCo: geoms of bodies that are placed at run time.
+_GEOMS = _texts('type="{}" size="{}"', _HALVES, "ball capsule cylinder box ellipsoid", " ")
+_BODY = '<body mocap="true"><geom name="{}" {}/></body>'
+_R = "R = np.zeros(9)\nmj.mju_quat2Mat(R, q)\nR = R.reshape(3, 3)\n"
+
+
+def _mujoco_two(one: str, other: str, poses: str) -> str:
+    bodies = _BODY.format("g", one) + _BODY.format("h", other)
+    sensor = '<sensor><distance geom1="g" geom2="h" cutoff="100"/></sensor>'
+    return (
+        f"m = mj.MjModel.from_xml_string('<mujoco><worldbody>{bodies}</worldbody>{sensor}</mujoco>')\n"
+        f"d = mj.MjData(m)\nd.mocap_pos[:], d.mocap_quat[:] = {poses}\nmj.mj_forward(m, d)\n"
+    )
+
+
+_APART = _mujoco_two("ONE", "OTHER", f"[a, {_BEYOND}], [q, q2]")
+_INSIDE = _R + _mujoco_two(_GEOMS["ball"], _GEOMS["box"], f"[a + R @ {list(NEAR_FACE)}, a], [q, q]")
+_GEOM_DISTANCE = "value = [mj.mj_geomDistance(m, d, 0, 1, 100.0, None)]"
+# Size and type, as mju_rayGeom takes them.
+_SIZED = {
+    one: f"np.array({[*sizes, 0.0, 0.0][:3]}), START, u, mj.mjtGeom.mjGEOM_{'SPHERE' if one == 'ball' else one.upper()}"
+    for one, sizes in _HALVES.items()
+}
+_CAST = (
+    f"{_R}{_LINE}m = mj.MjModel.from_xml_string("
+    f"'<mujoco><worldbody>{_BODY.format('g', 'SOLID')}</worldbody></mujoco>')\n"
+    "d = mj.MjData(m)\nd.mocap_pos[:], d.mocap_quat[:] = [a], [q]\nmj.mj_forward(m, d)\n"
+    "value = [3 * mj.mj_ray(m, d, START, 3 * u, None, 1, -1, np.zeros(1, np.int32))]"
+)
+_COMPILED = (
+    f"{_X}m = mj.MjModel.from_xml_string("
+    f"f'<mujoco><worldbody><body><freejoint/><geom mass=\"{MASS}\" SOLID/></body></worldbody></mujoco>')\n"
+    "R = np.zeros(9)\nmj.mju_quat2Mat(R, m.body_iquat[1])\nR = R.reshape(3, 3)\n"
+    "value = np.diag(R @ np.diag(m.body_inertia[1]) @ R.T)"
+)
+_OF_SIZES = {
+    "box": 'type="box" size="{x[0] / 2} {x[1] / 2} {x[2] / 2}"',
+    "ellipsoid": 'type="ellipsoid" size="{x[0]} {x[1]} {x[2]}"',
+    "ball": 'type="sphere" size="{x[0]}"',
+    "shell": 'type="sphere" size="{x[0]}" shellinertia="true"',
+    "cylinder": 'type="cylinder" size="{x[0]} {x[1] / 2}"',
+    "capsule": 'type="capsule" size="{x[0]} {x[1] / 2}"',
+}
+_SYMMETRIC = "d = 1 + v**2 / (1 + v**2)\nA = R @ np.diag(d) @ R.T\nA = (A + A.T) / 2\n"
+MUJOCO = (
+    _distances("mj_geomDistance", _GEOMS, _APART + _GEOM_DISTANCE)
+    | {"distance_ball_in_box": Way("mj_geomDistance", _INSIDE + _GEOM_DISTANCE)}
+    | _distances("sensor distance", _GEOMS, f"{_APART}value = d.sensordata", ":sensor")
+    | {"distance_ball_in_box:sensor": Way("sensor distance", f"{_INSIDE}value = d.sensordata")}
+    | _rays("mju_rayGeom", _SIZED, f"{_R}{_LINE}value = [mj.mju_rayGeom(a, R.ravel(), SOLID)]")
+    | _rays("mj_ray", _GEOMS, _CAST, ":mj_ray")
+    | {
+        f"ray_normal_{one}": Way(
+            "mju_rayGeom",
+            f"{_R}{_LINE}value = np.zeros(3)\nmj.mju_rayGeom(a, R.ravel(), {_SIZED[one].replace('START', 'o')}, value)",
+        )
+        for one in ("ball", "ellipsoid")
+    }
+    | {
+        f"moments_{one}": Way("geoms that a model is compiled of", _COMPILED.replace("SOLID", text))
+        for one, text in _OF_SIZES.items()
+    }
+    | {
+        "principal_moments": Way(
+            "mju_eig3",
+            f"{_R}{_SYMMETRIC}value = np.zeros(3)\n"
+            "mj.mju_eig3(value, np.zeros(9), np.zeros(4), A.ravel())\nvalue = np.sort(value)",
+        )
+    }
+)
+
+# Pinocchio: geometry objects on the world, by coal.
+_COAL = {one: text.title() for one, text in _texts("{}({})", _WHOLES, "ball capsule cylinder box ellipsoid").items()}
+_PAIR = (
+    "import coal\ng = pin.GeometryModel()\n"
+    "for name, X, shape in (('one', X, coal.ONE), ('other', Y, coal.OTHER)):\n"
+    "    g.addGeometryObject(pin.GeometryObject(name, 0, X, shape))\n"
+    "g.addCollisionPair(pin.CollisionPair(0, 1))\ng, n = pin.GeometryData(g), g\n"
+    "pin.updateGeometryPlacements(m, d, n, g, pin.neutral(m))\n"
+    "pin.computeDistances(n, g)\nvalue = [g.distanceResults[0].min_distance]"
+)
+_TURN = "R, Q = pin.Quaternion(q).matrix(), pin.Quaternion(q2).matrix()\n"
+PINOCCHIO = (
+    _distances("computeDistances", _COAL, f"{_TURN}X, Y = pin.SE3(R, a), pin.SE3(Q, {_BEYOND})\n{_PAIR}")
+    | {
+        "distance_ball_in_box": Way(
+            "computeDistances",
+            f"{_TURN}X, Y = pin.SE3(R, a + R @ {list(NEAR_FACE)}), pin.SE3(R, a)\n"
+            + _PAIR.replace("ONE", _COAL["ball"]).replace("OTHER", _COAL["box"]),
+        )
+    }
+    | {
+        f"moments_{one}": Way(
+            f"Inertia.From{of.partition('(')[0]}", f"{_X}value = np.diag(pin.Inertia.From{of}.inertia)"
+        )
+        for one, of in {
+            "box": f"Box({MASS}, *x)",
+            "ellipsoid": f"Ellipsoid({MASS}, *x)",
+            "ball": f"Sphere({MASS}, x[0])",
+            "cylinder": f"Cylinder({MASS}, x[0], x[1])",
+            "capsule": f"Capsule({MASS}, x[0], x[1])",
+        }.items()
+    }
+    | {
+        f"moments_{one}:coal": Way(
+            "computeMomentofInertiaRelatedToCOM, computeVolume",
+            f"import coal\n{_X}shape = coal.{of}\n"
+            f"value = {MASS} * np.diag(shape.computeMomentofInertiaRelatedToCOM()) / shape.computeVolume()",
+        )
+        for one, of in {
+            "box": "Box(*x)",
+            "ellipsoid": "Ellipsoid(*x)",
+            "ball": "Sphere(x[0])",
+            "cylinder": "Cylinder(x[0], x[1])",
+            "capsule": "Capsule(x[0], x[1])",
+        }.items()
+    }
+)
+
+# Drake: geometries of a scene that stand in the world; moments by unit inertias.
+_DRAKE = {one: text.title() for one, text in _texts("{}({})", _WHOLES, "ball capsule cylinder box ellipsoid").items()}
+_SCENE = (
+    "scene = drake.SceneGraph()\nsource = scene.RegisterSource('s')\n"
+    "def placed(name, X, shape):\n"
+    "    made = scene.RegisterGeometry(source, scene.world_frame_id(), drake.GeometryInstance(X, shape, name))\n"
+    "    scene.AssignRole(source, made, drake.ProximityProperties())\n    return made\n"
+)
+_QUERY = "query = scene.get_query_output_port().Eval(scene.CreateDefaultContext())\n"
+_SIGNED = f"{_QUERY}value = [query.ComputeSignedDistancePairClosestPoints(one, other).distance]"
+_TO_POINT = (
+    f"other = placed('other', Y, drake.OTHER)\n{_QUERY}"
+    f"value = [query.ComputeSignedDistanceToPoint(p)[0].distance - {RADIUS}]"
+)
+_OF_TWO = "one, other = placed('one', X, drake.ONE), placed('other', Y, drake.OTHER)\n"
+_AT = "X, Y = drake.RigidTransform(drake.Quaternion(q), a), drake.RigidTransform(drake.Quaternion(q2), {})\n"
+_IN_BOX = (
+    f"Y = drake.RigidTransform(drake.Quaternion(q), a)\np = Y @ np.array({list(NEAR_FACE)})\n"
+    "X = drake.RigidTransform(p)\n"
+)
+# Table 4 of QueryObject.ComputeSignedDistancePairwiseClosestPoints, of solids of another size.
+_OBSERVED = {"distance_capsule_capsule": 2e-5, "distance_capsule_box": 3e-6}
+DRAKE = (
+    _allowing(
+        _distances(
+            "ComputeSignedDistancePairClosestPoints", _DRAKE, f"{_SCENE}{_AT.format(_BEYOND)}{_OF_TWO}{_SIGNED}"
+        ),
+        _OBSERVED,
+    )
+    | {
+        f"distance_ball_{other}:point": Way(
+            "ComputeSignedDistanceToPoint",
+            f"{_SCENE}{_AT.format(_BEYOND)}p = a\n{_TO_POINT.replace('OTHER', _DRAKE[other])}",
+        )
+        for other in ("capsule", "cylinder", "box")
+    }
+    | {
+        "distance_ball_in_box": Way(
+            "ComputeSignedDistancePairClosestPoints",
+            (_SCENE + _IN_BOX + _OF_TWO + _SIGNED).replace("ONE", _DRAKE["ball"]).replace("OTHER", _DRAKE["box"]),
+        ),
+        "distance_ball_in_box:point": Way(
+            "ComputeSignedDistanceToPoint", _SCENE + _IN_BOX + _TO_POINT.replace("OTHER", _DRAKE["box"])
+        ),
+    }
+    | {
+        f"moments_{one}": Way(
+            f"UnitInertia.{of.partition('(')[0]}", f"{_X}value = {MASS} * drake.UnitInertia.{of}.get_moments()"
+        )
+        for one, of in {
+            "box": "SolidBox(*x)",
+            "ellipsoid": "SolidEllipsoid(*x)",
+            "ball": "SolidSphere(x[0])",
+            "shell": "HollowSphere(x[0])",
+            "cylinder": "SolidCylinder(x[0], x[1], [0, 0, 1])",
+            "capsule": "SolidCapsule(x[0], x[1], [0, 0, 1])",
+        }.items()
+    }
+    | {
+        "principal_moments": Way(
+            "CalcPrincipalMomentsOfInertia",
+            f"R = drake.Quaternion(q).rotation()\n{_SYMMETRIC}"
+            "I = drake.RotationalInertia(*np.diag(A), A[0, 1], A[0, 2], A[1, 2])\n"
+            "value = I.CalcPrincipalMomentsOfInertia()",
+        ),
+    }
+)
+
+# DART: frames with shapes, by FCL: its own detector knows no distances, and this one no capsules, as it says.
+_DART = {
+    "ball": f"SphereShape({RADIUS})",
+    "cylinder": f"CylinderShape({RADIUS}, {2 * HALF})",
+    "box": f"BoxShape({list(_WHOLES['box'])})",
+}
+_GROUP = (
+    "group, frames = dart.collision.FCLCollisionDetector().createCollisionGroup(), []\n"
+    "for X, shape in ((X, dart.dynamics.ONE), (Y, dart.dynamics.OTHER)):\n"
+    "    frames.append(dart.dynamics.SimpleFrame(dart.dynamics.Frame.World(), f'f{len(frames)}', X))\n"
+    "    frames[-1].setShape(shape)\n    group.addShapeFrame(frames[-1])\n"
+    "result = dart.collision.DistanceResult()\n"
+    "group.distance(dart.collision.DistanceOption(False, -100.0), result)\nvalue = [result.unclampedMinDistance]"
+)
+_DART_R = "R, Q = (dart.math.Quaternion(*x).to_rotation_matrix() for x in (q, q2))\n"
+DART = _distances(
+    "CollisionGroup.distance",
+    _DART,
+    f"{_DART_R}X, Y = dart.math.Isometry3(R, a), dart.math.Isometry3(Q, {_BEYOND})\n{_GROUP}",
+) | {
+    f"moments_{one}": Way(
+        f"{of.partition('(')[0]}.computeInertia", f"{_X}value = np.diag(dart.dynamics.{of}.computeInertia({MASS}))"
+    )
+    for one, of in {
+        "box": "BoxShape(x)",
+        "ellipsoid": "EllipsoidShape(2 * x)",
+        "ball": "SphereShape(x[0])",
+        "cylinder": "CylinderShape(x[0], x[1])",
+        "capsule": "CapsuleShape(x[0], x[1])",
+    }.items()
+}
+
+# PyBullet: bodies in a world of their own.
+_BULLET = {
+    "ball": f"p.GEOM_SPHERE, radius={RADIUS}",
+    "capsule": f"p.GEOM_CAPSULE, radius={RADIUS}, height={2 * HALF}",
+    "cylinder": f"p.GEOM_CYLINDER, radius={RADIUS}, height={2 * HALF}",
+    "box": f"p.GEOM_BOX, halfExtents={list(SIDES)}",
+}
+_PLACED = "p.createMultiBody(0, p.createCollisionShape({}), -1, {}, {})"
+_BULLET_R = "R = np.reshape(p.getMatrixFromQuaternion(q), (3, 3))\n"
+_WORLD = "if not p.isConnected(): p.connect(p.DIRECT)\np.resetSimulation()\n"
+_CLOSEST = "value = [p.getClosestPoints(one, other, 100.0)[0][8]]"
+# The margin of 0.001 is within a box or a cylinder and rounds its edges (Bullet's manual, "Collision Margin"); rays end
+# where what is left has a square below 0.0001 (epsilon of btSubSimplexConvexCast.cpp).
+_MARGINS = {"distance_.*(box|cylinder)": 1e-3, "ray_.*": 3e-3}
+PYBULLET = _allowing(
+    _distances(
+        "getClosestPoints",
+        _BULLET,
+        f"{_WORLD}one, other = {_PLACED.format('ONE', 'a', 'q')}, {_PLACED.format('OTHER', _BEYOND, 'q2')}\n{_CLOSEST}",
+    )
+    | {
+        "distance_ball_in_box": Way(
+            "getClosestPoints",
+            f"{_WORLD}{_BULLET_R}one = {_PLACED.format(_BULLET['ball'], f'a + R @ {list(NEAR_FACE)}', 'q')}\n"
+            f"other = {_PLACED.format(_BULLET['box'], 'a', 'q')}\n{_CLOSEST}",
+        )
+    }
+    | _rays(
+        "rayTest",
+        _BULLET,
+        f"{_WORLD}{_BULLET_R}{_LINE}p.createMultiBody(0, p.createCollisionShape(SOLID), -1, a, q)\n"
+        "value = [16 * p.rayTest(START, START + 16 * u)[0][2]]",
+        starts="o",
+    ),
+    _MARGINS,
+)
+
+# Exudyn: moments of bodies by density or by mass.
+EXUDYN = {
+    f"moments_{one}": Way(f"Inertia{of.partition('(')[0]}", f"{_X}value = np.diag(rbu.Inertia{of}.inertiaTensor)")
+    for one, of in {
+        "box": f"Cuboid({MASS} / np.prod(x), x)",
+        "ball": f"Sphere({MASS}, x[0])",
+        "shell": f"HollowSphere({MASS}, x[0])",
+        "cylinder": f"Cylinder({MASS} / (np.pi * x[0] ** 2 * x[1]), x[1], x[0], 2)",
+    }.items()
+}
