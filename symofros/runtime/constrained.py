@@ -347,19 +347,6 @@ def _rank_on_constraints(
     return None
 
 
-def differentiate(M: Array, G: Array, slopes: list[Array], measures: Measures) -> list[Array]:
-    """The derivatives of a and lam, from those of the residual by the same arguments: -K^-1 dR/dx of each.
-
-    Args:
-        M: (nv, nv).
-        G: (nc, nv).
-        slopes: dR/dx (nv + nc, k) each.
-        measures: Measures of the rows and columns of G.
-    """
-    nv = len(M)
-    return [np.concatenate(solve(M, -slope[:nv], G, -slope[nv:], measures)[:2]) for slope in slopes]
-
-
 def project(
     terms: Callable[[Array, Array], list[Array]],
     move: Callable[[Array, Array], Array],

@@ -9,7 +9,7 @@ from ..engines.proving.pieces import Layout
 from ..engines.truth.arithmetic import exact, many_digits
 from ..engines.truth.dynamics import Truth, digits
 from ..mechanics.geometry import Array
-from .charted import stated
+from .stated import stated
 
 
 def accelerations(subject: Subject, q: Array, v: Array, tau: Array) -> Array:

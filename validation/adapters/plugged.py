@@ -9,9 +9,10 @@ import numpy as np
 from ..contract.interface import Subject, Unsupported
 from ..contract.quantities import FRAME_QUANTITIES
 from ..engines.workers import registry
-from .charted import KINDS, ChartedEngine
+from .charted import ChartedEngine
 from .charted import build as build_charted
 from .compiled import NAME as OURS
+from .stated import KINDS
 
 # States in one call: each is a call of Python at least.
 MOST_STATES = 100

@@ -12,7 +12,7 @@ from symofros.expr.instants import InstantKind, Operand, instant_operands
 from symofros.expr.numerics.evaluate import Evaluation, FunctionEvaluation, evaluate_edges
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
-from symofros.runtime.constrained import constrained, differentiate, motion, project
+from symofros.runtime.constrained import constrained, motion, project, solve
 from symofros.runtime.instants import Motion, Operands, find_instants
 
 # Places in a step at which formulas of the state are looked at, and most change of an operand between two of them by
@@ -167,7 +167,7 @@ class InterpretedKernel:
         a, lam, _ = constrained(M, r, G, c, measures)
         slopes = self._interpret(solver.parts[0], {**named, "a": a, "lam": lam}, len(a))
         states = zip(M, G, zip(*slopes, strict=True), strict=True)
-        derivatives = zip(*(differentiate(m, g, list(of), measures) for m, g, of in states), strict=True)
+        derivatives = zip(*(_derivatives(m, g, list(of), measures) for m, g, of in states), strict=True)
         return [np.array(values) for values in derivatives]
 
     def _transpose(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
@@ -182,7 +182,7 @@ class InterpretedKernel:
         (slopes,) = self._interpret(solver.parts[0], at, len(M))
         by_x, mixed = self._interpret(solver.parts[1], at, len(M))
         measures = Measures(*solver.tables)
-        moved = [differentiate(*state[:2], [state[2]], measures)[0] for state in zip(M, G, slopes, strict=True)]
+        moved = [_derivatives(*state[:2], [state[2]], measures)[0] for state in zip(M, G, slopes, strict=True)]
         half = np.einsum("nzi,nzk->nik", mixed, np.array(moved))
         regular = rank == c.shape[1]
         return [np.where(regular[:, None, None], by_x + half + half.transpose(0, 2, 1), np.nan)]
@@ -216,3 +216,16 @@ _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list
     "transpose": InterpretedKernel._transpose,
     "hessian": InterpretedKernel._hessian,
 }
+
+
+def _derivatives(M: Array, G: Array, slopes: list[Array], measures: Measures) -> list[Array]:
+    """The derivatives of a and lam, from those of the residual by the same arguments: -K^-1 dR/dx of each.
+
+    Args:
+        M: (nv, nv).
+        G: (nc, nv).
+        slopes: dR/dx (nv + nc, k) each.
+        measures: Measures of the rows and columns of G.
+    """
+    nv = len(M)
+    return [np.concatenate(solve(M, -slope[:nv], G, -slope[nv:], measures)[:2]) for slope in slopes]

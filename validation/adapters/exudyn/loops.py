@@ -18,9 +18,10 @@ from ...engines.plugins.writing.source import SourceModel, Way
 from ...mechanics.assembly import BASE, Assembly, FrameSite, anchor_name
 from ...mechanics.geometry import Array
 from ...mechanics.joint_kinds import PartKind
-from ..charted import ChartedEngine, chart_of, stated
+from ..charted import ChartedEngine, chart_of
 from ..closed import AXES
 from ..reach import armature, unrepresented
+from ..stated import stated
 
 NAME = "exudyn-loops"
 CAPABILITIES = frozenset({"forward_dynamics", "closure_gap", "frame_response"})

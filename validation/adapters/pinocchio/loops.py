@@ -20,8 +20,9 @@ from ...engines.plugins.pinocchio import WAYS, write
 from ...engines.plugins.writing.source import SourceModel, Way
 from ...mechanics.assembly import BASE, Assembly, anchor_name
 from ...mechanics.geometry import Array
-from ..charted import ChartedEngine, stated
+from ..charted import ChartedEngine
 from ..closed import AXES
+from ..stated import stated
 from . import tree as trees
 
 NAME = "pinocchio-loops"

@@ -8,7 +8,8 @@ fault of its derivatives, or of this text.
 from __future__ import annotations
 
 from ..interface import Convention, Joint, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, in_series, series
+from .writing.numbering import in_series
+from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import casadi as ca
 import numpy as np

@@ -12,7 +12,8 @@ from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, T
 from . import turns
 from .turns import dart as turning
 from .writing import copies
-from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.numbering import numbered
+from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS, has_bare_link
 
 

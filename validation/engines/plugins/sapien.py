@@ -11,7 +11,8 @@ from ..interface import SINGLE, STEP, Array, Convention, Joint, Slot, Tree, Unsu
 from . import turns
 from .newton import quaternion
 from .turns import sapien as turning
-from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.numbering import numbered
+from .writing.source import Source, SourcePlugin, Way, series
 from .writing.urdf import UNIT_AXIS, Described, describe, of_files, slots_of
 
 # Its import warns of a system without Vulkan, which nothing here draws with.

@@ -7,7 +7,8 @@ from typing import Any
 import symofros
 
 from ..interface import Convention, Joint, Link, Slot, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, numbered, series
+from .writing.numbering import numbered
+from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
 import symofros as sf

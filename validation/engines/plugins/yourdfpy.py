@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..interface import Convention, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way, numbered
+from .writing.numbering import numbered
+from .writing.source import Source, SourcePlugin, Way
 
 _OF = "value = [{} for j in moving]"
 _BODY = """value = []

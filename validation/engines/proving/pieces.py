@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..interface import Array, HasLayout, Slot, State, Tree, Unsupported
-from ..plugins.writing.source import in_series
+from ..plugins.writing.numbering import in_series
 
 # Kind of joint -> our chart of it.
 OURS = {

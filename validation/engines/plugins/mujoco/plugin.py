@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
 from ..writing import copies
-from ..writing.source import Source, SourcePlugin, attached, numbered
+from ..writing.numbering import attached, numbered
+from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
 from . import besides, flex, forces, functions, rebuilt, turns
 from . import elements as beside

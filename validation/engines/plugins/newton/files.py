@@ -5,7 +5,8 @@ from __future__ import annotations
 from importlib.util import find_spec
 
 from ...interface import Tree, Unsupported
-from ..writing.source import Source, Way, numbered
+from ..writing.numbering import numbered
+from ..writing.source import Source, Way
 from .model import builder
 from .ways import IMPORTS, ROTATION
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from ...interface import Array, End, Joint, Rows, Slot, Tree, Unsupported
 from ..writing import copies
-from ..writing.source import Source, attached, series
+from ..writing.numbering import attached
+from ..writing.source import Source, series
 from . import constraints
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of

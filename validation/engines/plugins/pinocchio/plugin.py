@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ...interface import Convention, Statement, Tree, Unsupported
-from ..writing.source import Source, SourcePlugin, is_depth_first, numbered
+from ..writing.numbering import is_depth_first, numbered
+from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS
 from . import constraints, functions, poses
 from .model import CLOSING, MODELS, write

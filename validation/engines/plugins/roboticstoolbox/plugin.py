@@ -8,7 +8,8 @@ import numpy as np
 
 from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
 from ...tree import BASE, DENAVIT, GRIPPER, MODIFIED
-from ..writing.source import Source, SourcePlugin, Way, numbered
+from ..writing.numbering import numbered
+from ..writing.source import Source, SourcePlugin, Way
 from . import denavit
 from .denavit import lacking, pose, without_tool
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ...interface import Convention, Tree, Unsupported
-from ..writing.source import HALF_TURNS, Source, SourcePlugin, Way, numbered
+from ..writing.numbering import numbered
+from ..writing.source import HALF_TURNS, Source, SourcePlugin, Way
 from . import source
 
 _R = "R, Q = mink.SO3(q), mink.SO3(q2)\n"
