@@ -28,7 +28,7 @@ from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 from symofros.simulation.analysis.reach import reach_of
 from symofros.simulation.analysis.rest_search import Balance, Search, leaving
-from symofros.simulation.analysis.states import given_configuration, given_inputs
+from symofros.simulation.analysis.states import check_search, given_configuration, given_inputs
 
 # Estimated error of a beam's theory from which it is what a search without success is blamed on.
 _BLAMED = 0.05
@@ -115,8 +115,10 @@ def equilibrium(
         BeamTheoryError: A beam is bent beyond the limit, or its theory has no equilibrium here.
         EquilibriumError: None was found; names the coordinate with the largest imbalance.
         UnknownNameError: `held` names something that is not a speed.
+        SymofrosError: tolerance or iterations is out of range.
     """
     model.record.refuse_rigid_contacts("equilibrium")
+    check_search("equilibrium", tolerance, iterations, below=1.0)
     model = model.with_precision("double")
     free = free_speeds(model, held)
     q = model.neutral() if q is None else given_configuration(model, q)

@@ -1,4 +1,4 @@
-"""States of forces at rest: their equilibria beside those of coordinates, and kinks of their rates.
+"""States of forces at rest: their equilibria beside those of coordinates, and kinks of forces and of their rates.
 
 docs/theory/states.md, sections 6 and 7.
 """
@@ -19,6 +19,9 @@ from symofros.simulation.analysis.rest_search import Balance, Search, search_res
 _STEP = 1e-7
 # Share of the larger of two slopes from which their difference is a kink, and below which a slope is zero.
 _KINK = 1e-4
+# Share of the largest force that may be rounding of a second difference, and steps whose differences tell: of a kink
+# they grow as the step, by a share of LINEAR; of a curve as its square, of a contact to the power 3/2, of rounding not.
+_ROUNDING, _STEPS, _LINEAR = 1e-13, (1.0, 10.0, 100.0), 0.3
 # Singular value, of the largest, that is zero; share of a direction from which a state is named.
 _NULL, _NAMED = 1e-9, 0.1
 _SHOWN = 8
@@ -86,22 +89,37 @@ def slopes_of_rates(
 
 
 def kink_notes(model: Model, q: Array, v: Array, u: Array, par: ArrayLike | None, t: float) -> tuple[str, ...]:
-    """A note on states whose rates have a kink in this state, where a linear model has the mean of both sides (27)."""
-    slopes = slopes_of_rates(model, q, v, u, par, t)
-    if slopes is None:
+    """A note on forces and rates of states with a kink in this state, of which a linear model has the mean slope (27).
+
+    By a kink the second difference grows as the step (28).
+    """
+    n = model.nv - len(model.record.state_names)
+    moves = np.concatenate([_STEP * k * sign * np.eye(n, model.nv) for k in _STEPS for sign in (1.0, -1.0)])
+    still = np.zeros_like(moves)
+    configurations = model.integrate(np.tile(q, (2 * len(moves) + 1, 1)), np.concatenate([still[:1], moves, still]))
+    try:
+        Q = model.generalized_force(configurations, v + np.concatenate([still[:1], still, moves]), u, par=par, t=t)
+    except SymofrosError:
         return ()
-    up, down = slopes
-    kinks = np.abs(up - down) > _KINK * np.maximum(np.abs(up), np.abs(down)).max(axis=1, keepdims=True, initial=1e-300)
-    found = np.flatnonzero(kinks.any(axis=1))
-    if not len(found):
+    # By coordinates and by speeds: (2, step, side, n, row); second differences by the step.
+    changes = (Q[1:] - Q[0]).reshape(2, len(_STEPS), 2, n, -1)
+    up, down = changes[:, 0, 0], changes[:, 0, 1]
+    by_step = changes.sum(axis=2) / np.array(_STEPS)[:, None, None]
+    kink = np.abs(by_step[:, 0])
+    slopes = np.maximum(np.abs(up), np.abs(down)).max(axis=(0, 1), initial=0.0)
+    linear = np.abs(by_step[:, 1:] - by_step[:, :1]).max(axis=1) < _LINEAR * kink
+    found = linear & (kink > _KINK * slopes + _ROUNDING * np.abs(Q).max(initial=0.0))
+    if not found.any():
         return ()
-    n, first = up.shape[1], int(found[0])
-    speed = int(np.abs(up - down)[first].argmax())
-    sides = f"{down[first, speed]:.3g} and {up[first, speed]:.3g} by '{model.names.v[speed]}'"
-    return (
-        f"rates of {_listed(model.names.v, (n + found).tolist())} have a kink here (slopes {sides}): modes are those of"
-        " the mean slope",
-    )
+    names = model.names.v
+    kind, move, row = np.unravel_index(int(np.argmax(found * kink)), kink.shape)
+    by = f"the speed of '{names[move]}'" if kind else f"'{names[move]}'"
+    sides = f"{-down[kind, move, row] / _STEP:.3g} and {up[kind, move, row] / _STEP:.3g} by {by}"
+    rows = np.flatnonzero(found.any(axis=(0, 1))).tolist()
+    forces, rates = [i for i in rows if i < n], [i for i in rows if i >= n]
+    parts = [f"forces on {_named(names, forces)}"] if forces else []
+    parts += [f"rates of {_listed(names, rates)}"] if rates else []
+    return (f"{' and '.join(parts)} have a kink here (slopes {sides}): modes are those of the mean slope",)
 
 
 def _yielding(balance: Balance, end: Search) -> list[int]:
@@ -131,5 +149,8 @@ def _resting(balance: Balance, end: Search) -> list[int]:
 
 
 def _listed(names: tuple[str, ...], indices: list[int]) -> str:
-    shown = ", ".join(f"'{names[i]}'" for i in sorted(indices)[:_SHOWN])
-    return f"states of forces {shown}" + (", ..." if len(indices) > _SHOWN else "")
+    return f"states of forces {_named(names, indices)}"
+
+
+def _named(names: tuple[str, ...], indices: list[int]) -> str:
+    return ", ".join(f"'{names[i]}'" for i in sorted(indices)[:_SHOWN]) + (", ..." if len(indices) > _SHOWN else "")

@@ -39,8 +39,8 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, rates
-            of states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, forces
+            and rates of states of forces that have a kink.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
@@ -121,7 +121,7 @@ def modes(
     size = np.abs(s)
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
-    notes = bending_notes(bendings) + (kink_notes(moving, q, v, state[2], par, t) if model.nz else ())
+    notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t)
     if not balanced:
 
         def spectrum(q: Array, v: Array) -> Complex:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from symofros.base.arrays import Array, numeric, vector
-from symofros.errors import Problem, ShapeError
+from symofros.errors import Problem, ShapeError, SymofrosError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 
@@ -34,3 +36,23 @@ def given_inputs(model: Model, u: ArrayLike | None) -> Array:
             what, rule = "a number that is not finite", f"{names} are a rotation"
             raise ShapeError(Problem(f"model '{model.record.name}': u is no motion", what, rule, "give finite numbers"))
     return at_unit_length(model.record, "u", stated)
+
+
+def check_search(what: str, tolerance: float, iterations: int = 1, *, below: float = math.inf) -> None:
+    """Refuse a tolerance that nothing meets or everything does, and a number of steps that is none.
+
+    Args:
+        what: The search.
+        tolerance: Bound of its errors.
+        iterations: Most steps.
+        below: What every error is below; 1 of relative ones.
+
+    Raises:
+        SymofrosError: It is.
+    """
+    if not 0.0 < tolerance < below:
+        rule = f"a bound of errors is above zero and {'finite' if below == math.inf else f'below {below:g}'}"
+        raise SymofrosError(Problem(f"{what}: tolerance is out of range", f"{tolerance:g}", rule, "leave it out"))
+    if iterations < 1:
+        found, rule = f"{iterations:.6g}", "the most steps that may be taken are one or more"
+        raise SymofrosError(Problem(f"{what}: iterations is out of range", found, rule, "leave it out"))

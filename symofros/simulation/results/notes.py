@@ -205,10 +205,10 @@ NOTES: Mapping[str, NoteKind] = {
         "bristles or elements that slip would carry more than they can; the coordinates move to a rest instead",
         "a guess nearer to where it rests, or less load",
     ),
-    "kink of rates": NoteKind(
-        "rates of … have a kink here (slopes …): modes are those of the mean slope",
-        "rates of states of forces differ with the direction of motion, as of bristles that are bent",
-        "modes about unbent bristles (z = 0), or a run of the motion at hand",
+    "kink of forces": NoteKind(
+        "… have a kink here (slopes …): modes are those of the mean slope",
+        "forces, or rates of states of forces, differ to both sides, as of a rope that goes slack or of bent bristles",
+        "modes about a state beside the kink, about unbent bristles (z = 0), or a run of the motion at hand",
     ),
     "loops not closed": NoteKind(
         "no start closes the loops: constraints are missed by …",

@@ -184,10 +184,30 @@ def test_bristles_that_stick_are_a_spring_and_a_place_of_rest() -> None:
 
 
 def test_a_kink_of_rates_is_noted_where_bristles_are_bent() -> None:
-    """Slopes 1 -+ s0 z/F_s by the speed, (24)."""
+    """Slopes of the rate of 1 -+ s0 z/F_s by the speed, (24), and so of the force: s1 times that, and s2."""
     found = sf.modes(block(_BRISTLES), [0.0], u=[1.5], z=[0.5 * _F_S / _S0])
     (note,) = found.notes
-    assert "rates of states of forces 'x.bristle' have a kink here (slopes 1.5 and 0.5 by 'x')" in note
+    assert note.startswith("forces on 'x' and rates of states of forces 'x.bristle' have a kink here (slopes ")
+    assert f"(slopes {-1.5 * _S1 - _S2:.3g} and {-0.5 * _S1 - _S2:.3g} by the speed of 'x')" in note
+
+
+@pytest.mark.parametrize(
+    ("force", "noted"),
+    [
+        ("-400*max(0, x)", "slopes -0 and -400 by 'x'"),  # A rope that goes slack.
+        ("-400*x - 30*abs(dx)", "slopes 30 and -30 by the speed of 'x'"),
+        ("-400*x - 30*abs(dx)*dx + 5*cos(x) - 7*dx^2 - 9e4*max(0, x)^1.5", ""),
+        ("-400*max(0, x - 1e-3)", ""),
+    ],
+)
+def test_a_kink_of_forces_is_noted_and_a_curve_is_not(force: str, noted: str) -> None:
+    notes = [
+        note
+        for note in sf.modes(block(virtual_power=(sf.VirtualPower("rope", {"dx": force}),)), [0.0]).notes
+        if "kink" in note
+    ]
+    assert [noted in note and "forces on 'x'" in note for note in notes] == [True] * bool(noted)
+    assert all(note.endswith(": modes are those of the mean slope") for note in notes)
 
 
 def test_modes_of_states_alone_have_shapes_of_their_own() -> None:

@@ -29,7 +29,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.kinematics.targets import finite_array
 from symofros.simulation.analysis.reach import length_by_constraints
-from symofros.simulation.analysis.states import given_configuration, given_inputs
+from symofros.simulation.analysis.states import check_search, given_configuration, given_inputs
 
 Indices = npt.NDArray[np.intp]
 
@@ -98,8 +98,10 @@ def assemble(
     Raises:
         AssemblyError: No such configuration was found; names the constraint that is worst.
         UnknownNameError: `held` names something that is not a speed.
-        SymofrosError: A quaternion of the guess or of the inputs is no rotation.
+        SymofrosError: A quaternion of the guess or of the inputs is no rotation; or tolerance or iterations is out of
+            range.
     """
+    check_search("assemble", tolerance, iterations)
     free = free_speeds(model, held)
     model = model.with_precision("double")
     q = model.neutral() if q is None else given_configuration(model, q)

@@ -18,7 +18,7 @@ from symofros.runtime.calls import NativeMemory, together
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
-from symofros.simulation.analysis.kinematics.inverse_kinematics import Reached, check_search, inverse_kinematics
+from symofros.simulation.analysis.kinematics.inverse_kinematics import Reached, check_starts, inverse_kinematics
 from symofros.simulation.analysis.kinematics.posture_search import DRAWN_STEPS, STARTS
 from symofros.simulation.analysis.kinematics.posture_solver import PostureSolver, Wish, solver_of
 from symofros.simulation.analysis.kinematics.restarts import default_start
@@ -30,6 +30,7 @@ from symofros.simulation.analysis.kinematics.targets import (
     task_inputs,
     wishes_of,
 )
+from symofros.simulation.analysis.states import check_search
 
 # Poses of one call of C, between looks at Ctrl-C: some hundredths of a second.
 _AT_ONCE = 256
@@ -102,11 +103,12 @@ def inverse_kinematics_batch(
     Raises:
         UnknownNameError: No such frame or speed.
         ShapeError: A target, the guess or rest does not fit, or is not of finite numbers.
-        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts or tolerance is out of
-            range.
+        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts, iterations or tolerance
+            is out of range.
     """
     model = model.with_precision("double")
-    check_search(starts, tolerance)
+    check_search("inverse kinematics", tolerance, iterations)
+    check_starts(starts)
     wishes, n = wishes_of(targets), _count(targets, q)
     poses, guesses = poses_of(targets, wishes, n), _guesses(model, q, n)
     search = Search(model, wishes, *task_inputs(model, u, par))

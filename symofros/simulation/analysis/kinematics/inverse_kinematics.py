@@ -23,10 +23,12 @@ from symofros.simulation.analysis.kinematics.posture_search import STARTS, Postu
 from symofros.simulation.analysis.kinematics.restarts import default_start
 from symofros.simulation.analysis.kinematics.targets import CLOSED_TO, Task, finite_array, rotations_checked
 from symofros.simulation.analysis.kinematics.targets import Target as Target
-from symofros.simulation.analysis.states import given_inputs
+from symofros.simulation.analysis.states import check_search, given_inputs
 
 # Beyond so many starts a target counts as out of reach: hours would pass without an answer.
 _MAX_STARTS = 100_000
+# Share of the largest rate of a motion that joints may miss, and the largest one of a frame that is taken to stand.
+_MISSED, _SLOW = 1e-3, 1e-6
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ def inverse_kinematics(
         u: Inputs, for prescribed motions.
         par: Run-time parameters.
         tolerance: Bound of the targets' largest error; constraints close to 1e-10 however large it is.
-        iterations: Most steps from one start.
+        iterations: Most steps from one start; a descent to what misses the targets by least takes its own.
         beam_limit: Estimated error of the beams' second-order theory, relative to the deflection, beyond which a
             configuration does not count as reached (docs/theory/beams.md, section 6).
         starts: Most starts; with 1 the solution is on the branch that the guess leads to, or none is found.
@@ -103,11 +105,12 @@ def inverse_kinematics(
     Raises:
         UnknownNameError: No such frame or speed.
         ShapeError: A target, the guess or rest does not fit, or is not of finite numbers.
-        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts or tolerance is out of
-            range.
+        SymofrosError: A target's matrix is not a rotation, or nothing is asked for; or starts, iterations or tolerance
+            is out of range.
     """
     model = model.with_precision("double")
-    check_search(starts, tolerance)
+    check_search("inverse kinematics", tolerance, iterations)
+    check_starts(starts)
     task = Task(model, targets, u, par)
     solver = task.solver
     free = free_speeds(model, held) if held else solver.everything
@@ -186,7 +189,7 @@ def joint_motion(
         q (n, nq), v (n, nv), v' (n, nv): of least norm where there is freedom.
 
     Raises:
-        AssemblyError: A sample is out of reach; says which.
+        AssemblyError: A sample, or its velocity or acceleration, is out of reach; says which.
         ShapeError: An array does not fit the others, or is not of finite numbers.
         SymofrosError: A matrix is not a rotation.
     """
@@ -224,21 +227,42 @@ def joint_motion(
         J = model.frame_jacobian(frame, q, par=par)[:rows]
         inverse = pseudo_inverse(J, measures)
         v = inverse @ V[i]
-        rate = model.frame_jacobian_rate(frame, q, v, par=par)[:rows]
-        motion.append((q, v, inverse @ (A[i] - rate @ v)))
+        bias = model.frame_jacobian_rate(frame, q, v, par=par)[:rows] @ v
+        a = inverse @ (A[i] - bias)
+        _refuse_missed(f"{what}: velocities", i, J @ v, V)
+        _refuse_missed(f"{what}: accelerations", i, J @ a + bias, A)
+        motion.append((q, v, a))
     qs, vs, accs = zip(*motion, strict=True)
     return np.array(qs), np.array(vs), np.array(accs)
 
 
-def check_search(starts: int, tolerance: float) -> None:
-    """Refuse a number of starts that would take hours, or is none, and a tolerance that nothing meets.
+def _refuse_missed(what: str, sample: int, found: Array, wanted: Array) -> None:
+    """Refuse rates (n, rows) that no motion of the joints has at a sample; linear and angular ones are held apart.
+
+    Raises:
+        AssemblyError: They are missed by more than numeric differentiation errs.
+    """
+    for part in (slice(0, 3), slice(3, 6)):
+        missed = float(np.abs(found[part] - wanted[sample, part]).max(initial=0.0))
+        largest = float(np.abs(wanted[:, part]).max(initial=0.0))
+        if missed > _MISSED * max(largest, _SLOW):
+            units = "of linear ones" if part.start == 0 else "of angular ones"
+            raise AssemblyError(
+                Problem(
+                    f"{what} can't be followed",
+                    f"missed by {missed:.3g} at sample {sample}, {units} that reach {largest:.3g}",
+                    "the joints can move the frame as it is to move, and rates belong to the positions",
+                    "mend the rates, leave rotations out, or keep away from singular postures",
+                )
+            )
+
+
+def check_starts(starts: int) -> None:
+    """Refuse a number of starts that would take hours, or is none.
 
     Raises:
         SymofrosError: It is.
     """
-    if not tolerance > 0.0:
-        what, rule = "inverse kinematics: tolerance is out of range", "a bound of errors [m, rad] is above zero"
-        raise SymofrosError(Problem(what, f"{tolerance:g}", rule, "leave it out for 1e-10"))
     if not 1 <= starts <= _MAX_STARTS:
         raise SymofrosError(
             Problem(

@@ -58,6 +58,18 @@ def test_a_path_in_space_becomes_a_motion_of_joints() -> None:
     assert np.abs(rate - a[inner]).max() < 1e-5 * np.abs(a).max()
 
 
+def test_rates_that_no_motion_of_the_joints_has_are_refused() -> None:
+    """A planar arm that is to leave its plane, and one that is to stretch where it is stretched."""
+    m, q = model("double_pendulum"), [0.3, 0.5]
+    frame = tip("double_pendulum")
+    for at, V, A in ((q, (0, 1, 0), (0, 0, 0)), (q, (0, 0, 0), (0, 1, 0)), ([0.3, 0.0], None, (0, 0, 0))):
+        p, R = m.frame_pose(frame, at)
+        outwards = p / np.linalg.norm(p) if V is None else np.array(V, float)
+        rates = "accelerations" if np.any(A) else "velocities"
+        with pytest.raises(sf.AssemblyError, match=f"{rates} can't be followed"):
+            sf.joint_motion(m, frame, [p], [outwards], [np.array(A, float)], q=at)
+
+
 @pytest.mark.parametrize("L", [1e-6, 1e-3, 1.0, 1e3])
 def test_a_motion_of_position_and_rotation_is_followed_by_arms_of_any_size(L: float) -> None:
     """Velocities in micrometres a second beside radians a second; the speeds were off by 1.6 rad/s."""

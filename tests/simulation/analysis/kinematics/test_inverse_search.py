@@ -174,10 +174,17 @@ def test_each_coordinate_stops_at_its_own_limit(side: float, ends: list[float]) 
     assert np.all(q >= m.record.q_lower) and np.all(q <= m.record.q_upper)
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1e-6])
-def test_tolerances_that_nothing_meets_are_refused(tolerance: float) -> None:
+@pytest.mark.parametrize("tolerance", [0.0, -1e-6, np.inf])
+def test_tolerances_that_nothing_or_everything_meets_are_refused(tolerance: float) -> None:
     model = compiled("open_chain_5r")
     for search, targets in ((sf.inverse_kinematics, 1), (sf.inverse_kinematics_batch, 2)):
         wanted = {model.names.frames[-1]: sf.Target(np.zeros((targets, 3)) if targets > 1 else np.zeros(3))}
         with pytest.raises(sf.SymofrosError, match="tolerance is out of range"):
             search(model, wanted, tolerance=tolerance)
+        with pytest.raises(sf.SymofrosError, match="iterations is out of range"):
+            search(model, wanted, iterations=0)
+    for search in (sf.assemble, sf.equilibrium):
+        with pytest.raises(sf.SymofrosError, match="tolerance is out of range"):
+            search(model, tolerance=tolerance)
+        with pytest.raises(sf.SymofrosError, match="iterations is out of range"):
+            search(model, iterations=0)
