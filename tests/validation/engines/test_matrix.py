@@ -128,6 +128,16 @@ def test_a_range_in_the_unit_of_angles_and_ranges_of_joints_in_another_order_are
         assert judge("planted", reading.tree, "joint_limits", planted, one.want).verdict == "wrong"
 
 
+@pytest.mark.parametrize("named", ["limited false", "limited false, autolimits false", "zeros", "zeros, limited auto"])
+def test_a_range_that_limits_nothing_is_none_and_a_reader_that_keeps_it_is_red(named: str) -> None:
+    reading = _FILES[f"mjcf: range without limits: {named}"]
+    job = Job("mujoco", reading.tree, ("joint_limits_of_some",), SEED, form=reading.form, text=reading.text)
+    (one,) = judged(OWN["mujoco"], job, Truths())
+    assert one.want is not None and one.cell.verdict == "right"
+    kept = np.vstack([np.asarray(one.answer.value)[:1], [-0.5, 1.25]])
+    assert judge("planted", reading.tree, "joint_limits_of_some", kept, one.want).verdict == "wrong"
+
+
 def test_digits_that_are_lost_about_a_far_origin_are_seen() -> None:
     verdicts = {
         engine: next(cells(OWN[engine], trees()["base 10 km away"], ("mass_matrix_inverse",))).verdict

@@ -106,6 +106,21 @@ def _limits_of_some() -> Iterator[tuple[str, Reading]]:
         )
 
 
+def _limits_of_none() -> Iterator[tuple[str, Reading]]:
+    """Ranges that are no limits: `limited` says so, or, where it leaves that to the range, both ends are zero."""
+    first = hung(FIRST, limits=(-1.0, 0.75))
+    a = JOINT_A.replace("/>", ' limited="true" range="-1 0.75"/>') + MA
+    by_hand = '<compiler angle="radian" autolimits="false"/>'
+    for name, stated, head in (
+        ("limited false", 'limited="false" range="-0.5 1.25"', RADIAN),
+        ("limited false, autolimits false", 'limited="false" range="-0.5 1.25"', by_hand),
+        ("zeros", 'range="0 0"', RADIAN),
+        ("zeros, limited auto", 'limited="auto" range="0 0"', RADIAN),
+    ):
+        text = file(a, f'<joint axis="0 1 0" {stated}/>{MB}', head)
+        yield _of(f"range without limits: {name}", text, first, NEXT, asked=LIMITED_OF_SOME)
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name."""
-    return dict([*_losses(), *_limits(), *_limits_of_some()])
+    return dict([*_losses(), *_limits(), *_limits_of_some(), *_limits_of_none()])

@@ -77,6 +77,10 @@ WAYS = {
         "getPositionLowerLimits, getPositionUpperLimits",
         "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",
     ),
+    "joint_limits_of_some": Way(
+        "getPositionLowerLimits, getPositionUpperLimits",
+        "x = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]\nvalue = np.where(np.isfinite(x), x, 0.0)",
+    ),
     "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
     "joint_wrenches_driven": Way(
         "computeForwardDynamics, getBodyForce",

@@ -202,6 +202,14 @@ WAYS |= {
         "GetPositionLowerLimits, GetPositionUpperLimits",
         "value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()]",
     ),
+    "joint_limits_of_some": Way(
+        "GetPositionLowerLimits, GetPositionUpperLimits",
+        """x, value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()], np.zeros((p.num_velocities(), 2))
+for j in (p.get_joint(k) for k in p.GetJointIndices()):
+    if j.num_positions() == j.num_velocities():
+        own = x[j.position_start() : j.position_start() + j.num_positions()]
+        value[j.velocity_start() : j.velocity_start() + len(own)] = np.where(np.isfinite(own), own, 0.0)""",
+    ),
     "joint_wrenches": Way(
         "reaction_forces",
         f"{_DRIVEN}{_HELD}",

@@ -100,6 +100,12 @@ for k in sensed:
         "joint_limit_lower, joint_limit_upper",
         "value = np.c_[m.joint_limit_lower.numpy(), m.joint_limit_upper.numpy()]",
     ),
+    # Newton states no limit as 1e10.
+    "joint_limits_of_some": Way(
+        "joint_limit_lower, joint_limit_upper",
+        "x = np.c_[m.joint_limit_lower.numpy(), m.joint_limit_upper.numpy()]\n"
+        "value = np.where(np.abs(x) < 1e9, x, 0.0)",
+    ),
     "joint_frictions": Way("joint_friction", "value = m.joint_friction.numpy()"),
     "joint_stiffnesses": Way("mujoco.dof_passive_stiffness", "value = m.mujoco.dof_passive_stiffness.numpy()"),
 }

@@ -71,6 +71,14 @@ value = pin.rnea(m, d, q, 0 * v, 0 * v) - pin.rnea(m, d, q, 0 * v, 0 * v, pin.St
     "joint_limits": Way(
         "lowerPositionLimit, upperPositionLimit", "value = np.c_[m.lowerPositionLimit, m.upperPositionLimit]"
     ),
+    "joint_limits_of_some": Way(
+        "lowerPositionLimit, upperPositionLimit",
+        """x, value = np.c_[m.lowerPositionLimit, m.upperPositionLimit], np.zeros((m.nv, 2))
+for j in m.joints[1:]:
+    if j.nq == j.nv:
+        own = x[j.idx_q : j.idx_q + j.nq]
+        value[j.idx_v : j.idx_v + j.nv] = np.where(np.abs(own) < 1e300, own, 0.0)""",
+    ),
     "joint_frictions": Way(
         "friction, upperDryFrictionLimit", "value = m.friction if hasattr(m, 'friction') else m.upperDryFrictionLimit"
     ),
