@@ -2,9 +2,9 @@
 
 Rigid trees and loops are stated to the engine's plug-in of the matrix (`charted`, `validation/engines`). Every plug-in
 can be asked for by its name (`plugged`); an engine that takes part in every check, or that does more than plug-ins
-state, has one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package; its
-adapter has `build(subject) -> Engine | Unsupported`, with methods named as the quantities it offers
-(`contract/quantities.py`). The steps: docs/architecture.md, "To add".
+state, has one folder here and one row of ROUTES. The folder's `__init__` imports without the engine's package, and
+its DIFFERENCES state where conventions are not ours; its adapter has `build(subject) -> Engine | Unsupported`,
+with methods named as the quantities it offers (`contract/quantities.py`). The steps: docs/architecture.md, "To add".
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from typing import Literal
 
 import symofros as sf
 
+from ..contract.conventions import Difference
 from ..contract.interface import EngineFactory, Format, Subject
 
 # Which of our models of a description an engine is compared with; see `comparison.variants`.
@@ -137,6 +138,12 @@ def factory_of(name: str, overrides: Mapping[str, EngineFactory | Missing] | Non
     """
     override = (overrides or {}).get(name)
     return route_of(name).load() if override is None else override
+
+
+def differences() -> tuple[Difference, ...]:
+    """Every difference of conventions, as the engines' folders state them; this imports no engine."""
+    folders = dict.fromkeys(route.module.rpartition(".")[0] for route in ROUTES.values())
+    return tuple(row for folder in folders if folder != __name__ for row in import_module(folder).DIFFERENCES)
 
 
 def has_beams(system: sf.System) -> bool:

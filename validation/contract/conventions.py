@@ -24,6 +24,16 @@ from ..mechanics.geometry import (
     skew,
 )
 
+
+class Difference(NamedTuple):
+    """One convention that an engine states otherwise."""
+
+    engine: str
+    what: str
+    symofros_convention: str
+    engine_convention: str
+
+
 # What MuJoCo's free joint is; one of its free joints on a moving link is three slides, then a ball.
 FREE_WXYZ = "free wxyz, linear before and angular after"
 SLIDES_AND_BALL = "three lengths + quaternion wxyz, body speeds"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.adapters import ROUTES
+from validation.adapters import ROUTES, differences
 
 PACKAGES = {route.package for route in ROUTES.values()} - {""}
 ROOT = Path(__file__).parents[3]
@@ -20,15 +20,23 @@ def test_the_command_line_imports_no_engine() -> None:
 import sys
 import validation.__main__
 print(*sys.modules)
+from validation.adapters import differences
+differences()
+print(*sys.modules)
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT)
-    started = set(run.stdout.split())
-    assert not PACKAGES & started and "scipy" not in started
+    started, asked = (set(line.split()) for line in run.stdout.splitlines())
+    assert not PACKAGES & asked and "scipy" not in started
 
 
 @pytest.mark.parametrize("name", ROUTES)
 def test_every_row_names_an_adapter_that_exists(name: str) -> None:
     assert find_spec(ROUTES[name].module) is not None
+
+
+def test_differences_are_stated_by_the_engines_of_the_table() -> None:
+    assert {row.engine for row in differences()} <= set(ROUTES)
+    assert all(row.symofros_convention != row.engine_convention for row in differences())
 
 
 def test_the_command_check_imports_no_engine_that_it_does_not_ask(tmp_path: Path) -> None:

@@ -1,5 +1,8 @@
-"""Lagrange's equations by CasADi's automatic differentiation: the second opinion on beams.
+"""Lagrange's equations by CasADi's automatic differentiation: the second opinion on beams."""
 
-It keeps all terms of beams, and differentiates functions stated by the user's formulas as they are; ours are
-interpolated.
-"""
+from ...contract.conventions import Difference
+
+DIFFERENCES = (
+    Difference("lagrangian", "terms of beams", "up to the order described", "all: compared with our model of all"),
+    Difference("lagrangian", "functions stated by the user's formulas", "interpolated", "differentiated as they are"),
+)
