@@ -16,6 +16,8 @@ from symofros.runtime.model import JointTerm, Model
 _RANK = 1e-9
 # Of the largest column: smaller ones are zero but for rounding.
 _ROUNDING = 1e-12
+# Share of the largest effort that is left, worth a note.
+_LEFT_OUT = 1e-6
 # Largest number of samples and seed.
 _MOST = 1_000_000
 
@@ -28,11 +30,13 @@ class BaseParameters:
         independent: Columns of Y that are linearly independent (b).
         combine: The base parameters from all parameters (b, columns).
         columns: Names of all parameters, in the order of the columns of Y: `Model.regressor_columns`.
+        notes: Remarks: a share of M a + h that no parameters give, as Y has no columns of armatures, rotors and beams.
     """
 
     independent: tuple[int, ...]
     combine: Array
     columns: tuple[str, ...]
+    notes: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -53,8 +57,8 @@ class BaseParameters:
         return text
 
     def __str__(self) -> str:
-        """One line a base parameter."""
-        return "\n".join(self.names)
+        """One line a base parameter, and the remarks."""
+        return "\n".join((*self.names, *self.notes))
 
 
 @checked
@@ -83,14 +87,32 @@ def base_parameters(
     count = samples or max(20, 3 * len(columns) // model.nv)
     states = [model.random_state(rng) for _ in range(count)]
     q, v = (np.array(x) for x in zip(*states, strict=True))
-    Y = model.regressor(q, v, rng.normal(size=v.shape), joint_terms=joint_terms).reshape(-1, len(columns))
+    a = rng.normal(size=v.shape)
+    Y = model.regressor(q, v, a, joint_terms=joint_terms).reshape(-1, len(columns))
     scale = np.abs(Y).max(axis=0)
     seen = np.flatnonzero(scale > _ROUNDING * scale.max(initial=0.0))
     order = _independent(Y[:, seen] / scale[seen])
     independent = sorted(int(seen[i]) for i in order)
     combine, *_ = np.linalg.lstsq(Y[:, independent], Y, rcond=None)
     combine[np.abs(combine) < _RANK] = 0.0
-    return BaseParameters(tuple(independent), np.asarray(combine, dtype=np.float64), columns)
+    notes = _left_out_notes(model, (q, v, a), Y[:, independent])
+    return BaseParameters(tuple(independent), np.asarray(combine, dtype=np.float64), columns, notes)
+
+
+def _left_out_notes(model: Model, states: tuple[Array, Array, Array], Y: Array) -> tuple[str, ...]:
+    """A note on efforts at the samples (count nv) that no base parameters give (count nv, b)."""
+    if not (model.has("mass_matrix") and model.has("bias")):
+        return ()
+    q, v, a = states
+    efforts = (np.einsum("...ij,...j->...i", model.mass_matrix(q), a) + model.bias(q, v)).ravel()
+    missed = float(np.abs(efforts - Y @ np.linalg.lstsq(Y, efforts)[0]).max(initial=0.0))
+    share = missed / max(float(np.abs(efforts).max(initial=0.0)), 1e-300)
+    if share <= _LEFT_OUT:
+        return ()
+    return (
+        f"no parameters give all of M a + h: {100.0 * share:.2g} % of the largest effort is left; armatures have"
+        " columns by joint_terms=('armature',), gyroscopic moments of rotors and beams have none",
+    )
 
 
 def _independent(Y: Array) -> list[int]:

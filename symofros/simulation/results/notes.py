@@ -210,6 +210,11 @@ NOTES: Mapping[str, NoteKind] = {
         "forces, or rates of states of forces, differ to both sides, as of a rope that goes slack or of bent bristles",
         "modes about a state beside the kink, about unbent bristles (z = 0), or a run of the motion at hand",
     ),
+    "efforts left out": NoteKind(
+        "no parameters give all of M a + h: … % of the largest effort is left; …",
+        "base parameters of a model with armatures, rotors or beams, which have no columns",
+        "the columns of `joint_terms`, or a model of the rigid links",
+    ),
     "loops not closed": NoteKind(
         "no start closes the loops: constraints are missed by …",
         "inverse kinematics finds no posture on the constraints",

@@ -102,3 +102,16 @@ def test_invalid_terms_of_the_regressor_are_refused(given: dict[str, Any], words
     m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
     with pytest.raises(sf.SymofrosError, match=words):
         m.regressor([0.1, 0.2], [0.0, 0.0], [0.0, 0.0], **given)
+
+
+@pytest.mark.parametrize(("name", "noted"), [("rx90", 0), ("gyroscope", 1), ("flexible_pendulum", 1)])
+def test_efforts_that_no_parameters_give_are_noted(name: str, noted: int) -> None:
+    base = sf.base_parameters(sf.compile(MODELS[name], FUNCTIONS))
+    assert [note.startswith("no parameters give all of M a + h: ") for note in base.notes] == [True] * noted
+    assert str(base).endswith("gyroscopic moments of rotors and beams have none") == bool(noted)
+
+
+def test_armatures_are_noted_where_their_columns_are_left_out() -> None:
+    model = sf.compile(MODELS["puma560"], FUNCTIONS)
+    assert len(sf.base_parameters(model).notes) == 1
+    assert not sf.base_parameters(model, joint_terms=("armature",)).notes
