@@ -276,3 +276,28 @@ def test_a_slider_crank_whose_pin_has_a_clearance() -> None:
         assert {one.name for one in run.events} >= {"pin strikes", "pin opens"} or len(run.events) > 5
         assert all(one.energy_lost > -1e-12 for one in run.events) and run.kinetic_energy[-1] < run.kinetic_energy[0]
     assert states[0] == pytest.approx(states[1], abs=1e-6)
+
+
+@cache
+def rolling_balls() -> sf.Model:
+    """Two balls of 1 kg on the ground, in a plane: one may roll into the other."""
+    bodies, contacts = list[sf.RigidBody](), list[sf.Contact]()
+    for name in "ab":
+        x = sf.RigidBody(f"x{name}", sf.Joint(f"x{name}", "prismatic", axis=(1, 0, 0)))
+        z = sf.RigidBody(f"z{name}", sf.Joint(f"z{name}", "prismatic", axis=(0, 0, 1), parent=x.name))
+        turning = sf.Joint(f"angle{name}", "revolute", axis=(0, 1, 0), parent=z.name)
+        bodies += [x, z, sf.RigidBody(name, turning, sf.Inertia(1.0, moments=(4e-3,) * 3))]
+        contacts.append(sf.Contact(f"floor_{name}", (name, None), GROUND, restitution=0.0, friction=0.5, radius=0.1))
+    sizes: dict[str, Any] = {"surface": "sphere", "radius": 0.1, "surface_radius": 0.1}
+    contacts.append(sf.Contact("pair", ("b", None), ("a", None), restitution=0.0, friction=0.5, **sizes))
+    return sf.compile(sf.System("rolling", tuple(bodies), connections=tuple(contacts)))
+
+
+@pytest.mark.parametrize(("steps", "most"), [({"method": "dopri5"}, 2000), ({"method": "rk4", "dt": 1e-3}, 16000)])
+def test_balls_that_roll_behind_each_other_are_idle(steps: dict[str, Any], most: int) -> None:
+    """The one lifts the other by friction, lets it go, again and again; then both roll at one speed, by no force."""
+    run = sf.simulate(rolling_balls(), [0, 0.1, 0, 0.5, 0.1, 0], [1, 0, 10, 0, 0, 0], 1.0, **steps)
+    assert run.outcome.ok and all("persists" in note for note in run.outcome.notes), run.outcome
+    assert run.statistics.evaluations < most and 8 <= len(run.events) <= 10
+    assert run.v[-1] == pytest.approx([0.2967645, 0.0, 2.967645, 0.2967645, 0.0, 2.967645], abs=2e-7)
+    assert run.q[-1, [1, 4]] == pytest.approx(0.1, abs=1e-9) and run.q[-1, 3] - run.q[-1, 0] == pytest.approx(0.2)

@@ -5,8 +5,10 @@ enum { SYM_MOST_STRIKES = 10000, SYM_TILT = 6, SYM_SINE = 7 }; /* entries of a b
 #define SYM_SLOW 1e-5
 /* Share of the speed with which a ball began to slide that is left by the turning of its path where it comes to rest. */
 #define SYM_SLIP_LEFT 1e-6
-/* Distance by which a ball that grazes a plane may pass it, at first [m]. */
+/* Distance by which a ball that grazes a plane may pass it, at first, and one that stays on it without a force: a gap of less
+ * is known to too few digits for its rate [m]. */
 #define SYM_GRAZES 1e-13
+#define SYM_IDLES 1e-10
 /* Cosine between a normal and its pole from which on a pole stays as it is. */
 #define SYM_POLE_STAYS -0.25
 /* Sine of the angle below which a rim lies on its plane, or a segment along its surface, and touches along a line. */
@@ -245,7 +247,7 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
 /* Whether an open ball stays on its surface without a force: neither its speed nor its acceleration takes it away or presses it. */
 static int32_t sym_is_idle(const sym_contact_problem *p, int32_t ball) {
     const int32_t n = 3 * p->n, row = 3 * ball + 2;
-    double c = p->b[row], size = fabs(c);
+    double c = p->b[row], size = fmax(fabs(c), p->size);
     int32_t j;
     if (p->mode[ball] != SYM_OPEN || p->parts[ball]) return 0;
     for (j = 0; j < n; ++j) c += p->W[n * row + j] * p->f[j], size += fabs(p->W[n * row + j] * p->f[j]);
@@ -280,10 +282,11 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
         const double *W = at.problem.W + 9 * i * at.problem.n + 3 * i;
-        double *known = sym_ball_memory(s, at.of[i]);
+        double *known = sym_ball_memory(s, at.of[i]), *acted_at = r->acted_at + sym_first_contact_event(r) + 2 * at.of[i];
+        acted_at[0] = fmax(acted_at[0], r->t), acted_at[1] = fmax(acted_at[1], r->t);
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
-        if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_GRAZES, at.apart[i]);
+        if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_IDLES, at.apart[i]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
         if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(at.struck[i] ? 0.0 : SYM_GRAZES, at.apart[i]) - at.gap[i];
         par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
