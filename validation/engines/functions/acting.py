@@ -108,6 +108,7 @@ def _measured() -> dict[str, Function]:
             "forces (nv) that do what the wrench (1, -2, 3; 0.5, -0.25, 0.75) does at each frame, along its axes",
             derived.applied_wrenches,
         ),
+        "applied_wrenches_dq": ("derivative of applied_wrenches by q (nv, nv)", derived.applied_wrenches_dq),
         "wrench_sensors": (
             "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
             derived.wrench_sensors,

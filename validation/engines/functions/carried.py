@@ -1,8 +1,8 @@
-"""Wholes of trees and of subtrees, links as another sees them, rates of coordinates."""
+"""Wholes of trees and of subtrees, links as another sees them, points of links, rates of coordinates."""
 
 from __future__ import annotations
 
-from ..truth import carried, derived
+from ..truth import carried, derived, points
 from .function import Function, functions_of
 
 
@@ -52,4 +52,18 @@ def _relative() -> dict[str, Function]:
     return functions_of(rows)
 
 
-CARRIED = _wholes() | _relative()
+def _points() -> dict[str, Function]:
+    """A point of each link (`points.POINT`), along the world's axes."""
+    rows = {
+        "point_jacobians": ("Jacobians (L, 3, nv)", points.jacobians),
+        "point_velocities": ("velocities (L, 3)", points.velocities),
+        "point_accelerations": ("accelerations (L, 3)", points.accelerations),
+        "point_velocity_products": ("accelerations at a = 0 (L, 3)", points.products),
+        "point_velocities_dq": ("derivatives of the velocities by q (L, 3, nv)", points.velocities_dq),
+        "point_accelerations_dq": ("derivatives of the accelerations by q (L, 3, nv)", points.accelerations_dq),
+        "point_accelerations_dv": ("derivatives of the accelerations by v (L, 3, nv)", points.accelerations_dv),
+    }
+    return functions_of(rows)
+
+
+CARRIED = _wholes() | _relative() | _points()

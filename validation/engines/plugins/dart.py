@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
+from ..truth.points import POINT
 from . import turns
 from .turns import dart as turning
 from .writing import copies
@@ -156,6 +157,24 @@ WAYS |= {
     "mass_centre_acceleration": Way("getCOMLinearAcceleration", f"{_QVA}value = s.getCOMLinearAcceleration()"),
     "mechanical_energy": Way(
         "computeKineticEnergy, computeLagrangian", f"{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()"
+    ),
+}
+
+# Of a point of each link.
+_POINT = f"x, W = np.array({list(POINT)}), dart.dynamics.Frame.World()\n"
+WAYS |= {
+    "point_jacobians": Way(
+        "getLinearJacobian, of a point", f"{_Q}{_POINT}value = [s.getLinearJacobian(b, x, W) for b in links]"
+    ),
+    "point_velocities": Way(
+        "getLinearVelocity, of a point", f"{_QV}{_POINT}value = [b.getLinearVelocity(x, W, W) for b in links]"
+    ),
+    "point_accelerations": Way(
+        "getLinearAcceleration, of a point", f"{_QVA}{_POINT}value = [b.getLinearAcceleration(x, W, W) for b in links]"
+    ),
+    "point_velocity_products": Way(
+        "getLinearJacobianDeriv, of a point",
+        f"{_QV}{_POINT}value = [s.getLinearJacobianDeriv(b, x, W) @ v for b in links]",
     ),
 }
 

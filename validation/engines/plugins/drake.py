@@ -13,6 +13,7 @@ from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree,
 from . import turns
 from .loops import drake_forces as forces
 from .loops import drake_gradients as gradients
+from .loops import drake_points as points
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
 from .writing import copies, urdf
@@ -62,7 +63,6 @@ _FRAMES = f"{_KV}frames = [b.body_frame() for b in links]\n"
 _JACOBIANS = (
     "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, {about}), 3, axis=0) for f in frames]"
 )
-
 WAYS = {
     "mass_matrix": Way("CalcMassMatrix", f"{Q}value = p.CalcMassMatrix(c)"),
     "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
@@ -359,7 +359,7 @@ PLUGIN = SourcePlugin(
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
     ways=forces.continuous(
-        WAYS | copies.of_model(WAYS, _COPIED, _OF_COPIES) | gradients.WAYS | forces.WAYS | turning.WAYS
+        WAYS | copies.of_model(WAYS, _COPIED, _OF_COPIES) | gradients.WAYS | points.WAYS | forces.WAYS | turning.WAYS
     ),
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},

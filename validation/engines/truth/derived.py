@@ -152,6 +152,11 @@ def applied_wrenches(truth: Truth, s: Point) -> Exact:
     return total
 
 
+def applied_wrenches_dq(truth: Truth, s: Point) -> Exact:
+    """Derivative of `applied_wrenches` by q (nv, nv)."""
+    return truth.kinematics.tangent(lambda q: applied_wrenches(truth, s._replace(q=q)), s.q)
+
+
 def solid_inertia(truth: Truth, s: Point) -> Exact:
     """Mass, mass centre, moments about it (10) of the only link, along the world's axes."""
     (link,), ((R, p),) = truth.tree.links, truth.kinematics.poses(s.q)

@@ -6,7 +6,7 @@ from ..writing.source import Way
 from .drake_forces import QV
 
 
-def _gradient(result: str, seeds: str) -> str:
+def gradient(result: str, seeds: str) -> str:
     """Derivatives by Drake's automatic differentiation."""
     return f"""from pydrake.autodiffutils import AutoDiffXd, ExtractGradient, InitializeAutoDiff
 ad = p.ToAutoDiffXd()
@@ -20,8 +20,8 @@ ad.SetVelocities(d, v_)
 value = ExtractGradient(out)"""
 
 
-_BY_Q = "q_ = InitializeAutoDiff(q, N).flatten()\nv_ = InitializeAutoDiff(v, np.zeros((len(v), len(v)))).flatten()"
-_BY_V = "q_ = InitializeAutoDiff(q, 0 * N).flatten()\nv_ = InitializeAutoDiff(v, np.eye(len(v))).flatten()"
+BY_Q = "q_ = InitializeAutoDiff(q, N).flatten()\nv_ = InitializeAutoDiff(v, np.zeros((len(v), len(v)))).flatten()"
+BY_V = "q_ = InitializeAutoDiff(q, 0 * N).flatten()\nv_ = InitializeAutoDiff(v, np.eye(len(v))).flatten()"
 _INVERSE = """from pydrake.multibody.tree import MultibodyForces_
 applied = MultibodyForces_[AutoDiffXd](ad)
 ad.CalcForceElementsContribution(d, applied)
@@ -30,23 +30,21 @@ _FORWARD = """port = ad.get_applied_generalized_force_input_port()
 port.FixValue(d, InitializeAutoDiff(tau, np.zeros((len(v), len(v)))).flatten())
 out = ad.EvalTimeDerivatives(d).CopyToVector()[len(q):]"""
 # Entries that depend on nothing have no derivatives.
-_EACH = """
+EACH = """
 many = np.array(out, dtype=object)
 out = np.r_[many.ravel(), InitializeAutoDiff(v * 0, np.eye(len(v))).flatten()]"""
-_WHOLE = "\nvalue = value[: many.size].reshape(*many.shape, -1)"
+WHOLE = "\nvalue = value[: many.size].reshape(*many.shape, -1)"
 _POSES = """poses = [ad.EvalBodyPoseInWorld(d, ad.get_body(b.index())) for b in links]
 out = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]"""
 WAYS = {
-    "mass_matrix_dq": Way(
-        "CalcMassMatrix, AutoDiffXd", _gradient(f"out = ad.CalcMassMatrix(d){_EACH}", _BY_Q) + _WHOLE
-    ),
-    "link_poses_dq": Way("EvalBodyPoseInWorld, AutoDiffXd", _gradient(_POSES + _EACH, _BY_Q) + _WHOLE),
-    "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_Q)),
-    "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", _gradient(_INVERSE, _BY_V)),
-    "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_Q)),
-    "forward_dynamics_dv": Way("EvalTimeDerivatives, AutoDiffXd", _gradient(_FORWARD, _BY_V)),
+    "mass_matrix_dq": Way("CalcMassMatrix, AutoDiffXd", gradient(f"out = ad.CalcMassMatrix(d){EACH}", BY_Q) + WHOLE),
+    "link_poses_dq": Way("EvalBodyPoseInWorld, AutoDiffXd", gradient(_POSES + EACH, BY_Q) + WHOLE),
+    "inverse_dynamics_dq": Way("CalcInverseDynamics, AutoDiffXd", gradient(_INVERSE, BY_Q)),
+    "inverse_dynamics_dv": Way("CalcInverseDynamics, AutoDiffXd", gradient(_INVERSE, BY_V)),
+    "forward_dynamics_dq": Way("EvalTimeDerivatives, AutoDiffXd", gradient(_FORWARD, BY_Q)),
+    "forward_dynamics_dv": Way("EvalTimeDerivatives, AutoDiffXd", gradient(_FORWARD, BY_V)),
     "gravity_dq": Way(
         "CalcGravityGeneralizedForces, AutoDiffXd",
-        _gradient("out = -ad.CalcGravityGeneralizedForces(d)", _BY_Q),
+        gradient("out = -ad.CalcGravityGeneralizedForces(d)", BY_Q),
     ),
 }

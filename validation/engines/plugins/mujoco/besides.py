@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from ...interface import STEP
+from ...truth.points import POINT
 from ..writing.source import Way
 from .forces import COPY, QV, QVA, Q
 
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor J, b in zip(value, bs):\n    "
+_AT_POINT = f"def at(b): return d.xpos[b] + d.xmat[b].reshape(3, 3) @ {list(POINT)}\n"
 _STEPPED = f"{COPY}n.opt.timestep = {STEP}\n"
 _FULL = "mj.mjtState.mjSTATE_INTEGRATION"
 _COPIED = (
@@ -42,6 +44,16 @@ WAYS = {
         "            w, u = d.cdof[k].reshape(2, 3) * v[k]\n"
         "            row += [*(u + np.cross(w, d.xpos[b] - d.subtree_com[m.body_rootid[b]])), *w]\n"
         "        place = m.body_parentid[place]",
+    ),
+    "point_jacobians": Way(
+        "mj_jac, of a point",
+        f"{Q}{_AT_POINT}value = np.zeros((len(bs), 3, m.nv))\n"
+        "for J, b in zip(value, bs): mj.mj_jac(m, d, J, None, at(b), b)",
+    ),
+    "point_velocity_products": Way(
+        "mj_jacDot, of a point",
+        f"{QV}{_AT_POINT}value = np.zeros((len(bs), 3, m.nv))\n"
+        "for J, b in zip(value, bs): mj.mj_jacDot(m, d, J, None, at(b), b)\nvalue = value @ v",
     ),
     "inverse_dynamics_acted": Way("mj_inverse", f"{QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
     "forward_dynamics:mj_setState": Way("mj_getState, mj_setState", f"{_COPIED}mj.mj_forward(m, e)\nvalue = e.qacc"),

@@ -7,7 +7,7 @@ from ...truth.derived import WRENCH
 from ..writing import copies
 from ..writing.source import HALF_TURNS, Way
 
-_FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
+FRAMES = {"local": "pin.LOCAL", "aligned": "pin.LOCAL_WORLD_ALIGNED", "world": "pin.WORLD"}
 _FK = "pin.forwardKinematics(m, d, q, v, a)\npin.updateFramePlacements(m, d)\n"
 _FK_D = "pin.computeForwardKinematicsDerivatives(m, d, q, v, a)\npin.updateFramePlacements(m, d)\n"
 _CENTROIDAL = "value = pin.computeCentroidalDynamicsDerivatives(m, d, q, v, a)"
@@ -146,7 +146,7 @@ for j in m.joints[1:]:
     "difference_dq": Way("dDifference", "value = pin.dDifference(m, q, pin.integrate(m, q, v2), pin.ARG0)"),
     "difference_dq2": Way("dDifference", "value = pin.dDifference(m, q, pin.integrate(m, q, v2), pin.ARG1)"),
 }
-for _frame, _rf in _FRAMES.items():
+for _frame, _rf in FRAMES.items():
     _names = ALIGNED if _frame == "aligned" else (f"jacobian_{_frame}", f"jacobian_rate_{_frame}", f"velocity_{_frame}")
     WAYS |= {
         _names[0]: Way(
@@ -248,7 +248,7 @@ WAYS |= {
         + "value = pin.computeGeneralizedGravity(m, d, q) - pin.computeStaticTorque(m, d, q, pin.StdVec_Force(given))",
     ),
 }
-for _frame, _rf in _FRAMES.items():
+for _frame, _rf in FRAMES.items():
     _own = ALIGNED[0] if _frame == "aligned" else f"jacobian_{_frame}"
     _derived = f"{_FK_D}value = np.array([pin.getFrame{{}}Derivatives(m, d, f, {_rf})[{{}}] for f in fs])"
     WAYS |= {
