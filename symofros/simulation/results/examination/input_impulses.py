@@ -168,11 +168,11 @@ def _law(stepper: Stepper, state: tuple[Array, Array], t: Array) -> Array:
     return evaluated(stepper, "law", rows, len(t))
 
 
-def evaluated(stepper: Stepper, slot: str, given: dict[str, Array], n: int) -> Array:
-    """The first output of a function of the run at n states, given by group."""
-    kernel = stepper.kernels[slot]
+def evaluated(stepper: Stepper, slot: str, given: dict[str, Array], n: int, par: Array | None = None) -> Array:
+    """The first output of a function of the run at n states, given by group; by its parameters, or others (npar)."""
+    kernel, par = stepper.kernels[slot], stepper.par if par is None else par
     inputs = [given[group] if group in given else np.zeros((1, size)) for group, size in kernel.signature.inputs]
-    return np.asarray(kernel.run(n, kernel.prepare(stepper.par[np.newaxis]), inputs)[0], dtype=np.float64)
+    return np.asarray(kernel.run(n, kernel.prepare(par[np.newaxis]), inputs)[0], dtype=np.float64)
 
 
 def nodes(method: Method) -> tuple[Array, Array, float]:

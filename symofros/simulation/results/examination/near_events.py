@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -16,7 +15,8 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Shares of an event's range within which a turn is near to zero, and is there by rounding.
 _NEAR, _ROUNDING = 0.1, 1e-9
-_WORD = re.compile(r"\w+")
+# What actions set is changed by so much of one and of itself, up and down, to see which events depend on it.
+_FAR = 1.3
 
 
 class Turn(NamedTuple):
@@ -33,26 +33,29 @@ class Turn(NamedTuple):
     distance: float
 
 
-def event_values(stepper: Stepper, states: States) -> Array:
-    """Values of the events (n, n_events) at states, by the present parameters."""
+def event_values(stepper: Stepper, states: States, par: Array | None = None) -> Array:
+    """Values of the events (n, n_events) at states, by the present parameters or others (npar)."""
     t, q, v, u = states
-    return evaluated(stepper, "events", {"q": q, "v": v, "u": u, "t": t[:, np.newaxis]}, len(t))
+    return evaluated(stepper, "events", {"q": q, "v": v, "u": u, "t": t[:, np.newaxis]}, len(t), par)
 
 
-def _judged(stepper: Stepper) -> Iterator[int]:
-    """Events whose values are those of the state alone, whatever actions have set."""
-    set_by_actions = {name for event in stepper.events for name in event.action or ()} & set(stepper.model.names.par)
-    for i, event in enumerate(stepper.events):
-        if not isinstance(event, ModeEvent) and set_by_actions.isdisjoint(_WORD.findall(str(event.formula))):
-            yield i
+def _judged(stepper: Stepper, states: States, values: Array) -> Mask:
+    """Whether values (n, n_events) are those of the state alone, whatever actions have set (n_events)."""
+    judged: Mask = np.array([not isinstance(event, ModeEvent) for event in stepper.events])
+    set_by_actions = {name for event in stepper.events for name in event.action or ()}
+    which = np.array([name in set_by_actions for name in stepper.model.names.par], dtype=bool)
+    for far in (_FAR, -_FAR) if which.any() and judged.any() else ():
+        par = np.where(which, stepper.par + far * (1.0 + np.abs(stepper.par)), stepper.par)
+        judged &= (event_values(stepper, states, par) == values).all(axis=0)
+    return judged
 
 
 def turns_near_zero(stepper: Stepper, states: States) -> list[Turn]:
     """Turns near to zero, each by the parabola through three records."""
-    judged = [] if stepper.system.events_of_reactions else list(_judged(stepper))
-    if len(states[0]) < 3 or not judged:
+    if len(states[0]) < 3 or stepper.system.events_of_reactions:
         return []
     t, values = states[0], event_values(stepper, states)
+    judged = np.flatnonzero(_judged(stepper, states, values)).tolist()
     return [turn for i in judged for turn in _turns(i, stepper.events[i].sign, t, values[:, i])]
 
 

@@ -1,36 +1,37 @@
-"""Turns of events near to zero, by parabolas (docs/theory/simulation.md, (18j))."""
+"""Which events are looked at where they turn: those that depend on nothing that actions set."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from symofros.simulation.results.examination.near_events import _NEAR, _ROUNDING, Turn, _turns
+import symofros as sf
+from symofros.simulation.results.examination import switched_run
+from symofros.simulation.results.examination.near_events import _judged, event_values
+from symofros.simulation.results.examination.switched_run import SwitchedRun
+from tests.simulation.rigid_scenes import ball_system
 
-
-@given(
-    seed=st.integers(0, 10**6),
-    at=st.floats(-0.4, 0.4),
-    share=st.floats(1e-3, 0.9),
-    side=st.sampled_from([-1.0, 1.0]),
-    t0=st.sampled_from([0.0, 1e3]),
-)
-def test_a_turn_is_the_vertex_of_a_parabola(seed: int, at: float, share: float, side: float, t0: float) -> None:
-    """Between records at any distances; of an event that counts on the way to zero, and not of one that leaves it."""
-    t = np.cumsum(np.random.default_rng(seed).uniform(0.05, 0.3, 16))
-    t += t0 - t[8]
-    bend = 2.0
-    reach = bend * np.ptp((t - t0 - at) ** 2)
-    distance = share * _NEAR * reach
-    g = side * (distance + bend * (t - t0 - at) ** 2)
-    for sign in (0, -int(side)):
-        assert list(_turns(3, sign, t, g)) == [pytest.approx(Turn(3, t0 + at, distance), rel=1e-6, abs=1e-9)]
-    assert not list(_turns(3, int(side), t, g))
+EVENTS = {
+    "lower": sf.Event("contact.floor.gap - 0.3", "falling"),  # By the radius, which its text does not name.
+    "named": sf.Event("free.pz + 0*r - 0.2", "falling"),  # It names it, and does not depend on it.
+    "height": sf.Event("free.pz - 0.2", "falling"),
+    "later": sf.Event("t - 0.35 + k", "rising"),
+    "shrinks": sf.Event("t - 0.3", action={"r": 0.05, "k": 0.001, "free.wz": 1.0}),
+}
 
 
-@pytest.mark.parametrize("share", [1.01 * _NEAR, 0.5 * _ROUNDING])
-def test_a_turn_far_from_zero_or_there_by_rounding_is_none(share: float) -> None:
-    t = np.linspace(-1.0, 1.0, 9)
-    assert not list(_turns(0, 0, t, share + t**2))
+def test_events_that_depend_on_what_actions_set_are_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By what the formulas depend on, not by their words."""
+    stated = ball_system()
+    (floor,) = stated.connections
+    parameters = (sf.Parameter("r", 0.1), sf.Parameter("k", 0.0))
+    smaller = replace(stated, parameters=parameters, connections=(replace(floor, radius=sf.formula("r")),))
+    runs = list[SwitchedRun]()
+    monkeypatch.setattr(switched_run, "_near_event_note", lambda run, _: runs.append(run) or "")
+    sf.simulate(sf.compile(smaller), {"free.pz": 1.0}, {}, 0.4, method="rk4", dt=0.01, events=EVENTS)
+    (run,) = runs
+    values = event_values(run.stepper, run.states)
+    judged = np.flatnonzero(_judged(run.stepper, run.states, values))
+    assert [run.stepper.events[i].name for i in judged] == ["named", "height", "shrinks"]
