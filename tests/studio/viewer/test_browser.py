@@ -15,7 +15,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from tests.studio.pictures import shot
-from tests.studio.waiting import PATIENCE, until
+from tests.studio.waiting import PATIENCE, at_rest, until
 
 pytestmark = pytest.mark.browser
 
@@ -121,7 +121,7 @@ def swung() -> tuple[np.ndarray, np.ndarray]:
 
 
 def click_at(plot: Any, share: float) -> None:
-    box = plot.bounding_box()
+    box = at_rest(plot)
     plot.click(position={"x": 1 + share * (box["width"] - 2), "y": box["height"] / 2})
 
 

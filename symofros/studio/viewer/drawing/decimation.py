@@ -1,4 +1,4 @@
-"""Meshes with fewer corners that stay within a stated distance of what they were."""
+"""Meshes with fewer corners: within a stated distance of what they were, or with a stated number of triangles."""
 
 from __future__ import annotations
 
@@ -82,6 +82,35 @@ def decimated(mesh: Mesh, tolerance: float) -> Mesh:
         is_open[faces[changed[faces].any(axis=1)]] = True
     kept, faces = np.unique(faces, return_inverse=True)
     return Mesh(vertices[kept], faces.reshape(-1, 3))
+
+
+def clustered(mesh: Mesh, most: int) -> tuple[Mesh, float]:
+    """A mesh of at most `most` triangles, possibly none: corners in one cell of a grid become one, amid them.
+
+    Args:
+        mesh: Mesh with finite corners, which may state colors.
+        most: Number of triangles.
+
+    Returns:
+        The mesh, and the largest distance by which a corner has moved [m].
+    """
+    low, length = mesh.vertices.min(axis=0), float(np.ptp(mesh.vertices, axis=0).max()) or 1.0
+    cells = max(1.0, np.sqrt(most / 2))  # Along the longest side.
+    while True:
+        place = np.minimum(cells * ((mesh.vertices - low) / length), cells - 0.5).astype(np.int64)
+        known, of = np.unique(place @ (int(cells) + 1) ** np.arange(3), return_inverse=True)
+        faces = of[mesh.faces]
+        is_kept = (faces != faces[:, [1, 2, 0]]).all(axis=1)
+        # Of equal ones that are seen from the same side, one; each begins with its least corner.
+        turned = np.take_along_axis(faces, (faces.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+        _, first = np.unique(turned[is_kept] @ len(known) ** np.arange(3), return_index=True)
+        if len(first) <= most:
+            break
+        cells = max(1.0, cells / np.sqrt(2.0))
+    index = np.flatnonzero(is_kept)[first]
+    middle = np.stack([np.bincount(of, weights=x) for x in mesh.vertices.T], axis=1) / np.bincount(of)[:, None]
+    moved = float(np.linalg.norm(middle[of] - mesh.vertices, axis=1).max())
+    return Mesh(middle, faces[index], None if mesh.colors is None else mesh.colors[index]), moved
 
 
 def _collapses(

@@ -15,6 +15,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
+from symofros.studio.viewer.drawing.decimation import clustered
 from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
@@ -35,10 +36,13 @@ def visual_mesh(visual: Visual) -> Mesh | None:
     if visual.kind == "mesh":
         try:
             file = Path(visual.file)
+            stated, note = _read(file, file.stat().st_mtime_ns)
             with np.errstate(all="ignore"):  # What overflows is not finite, and refused as such.
-                mesh = _scaled(_read(file, file.stat().st_mtime_ns), size)
+                mesh = _scaled(stated, size)
             if not np.all(np.isfinite(mesh.vertices)):
                 raise ValueError(f"corners beyond all numbers at a scale of {size}")
+            if note:
+                warnings.warn(f"view: mesh '{file.name}' is drawn coarser: {note}", stacklevel=2)
             return mesh
         except (OSError, ValueError) as error:
             warnings.warn(f"view: mesh '{Path(visual.file).name}' is not drawn: {str(error)[:200]}", stacklevel=2)
@@ -58,8 +62,8 @@ def _scaled(mesh: Mesh, factors: Array) -> Mesh:
 
 
 @lru_cache(maxsize=256)
-def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is read again.
-    """A mesh's file.
+def _read(file: Path, changed: int) -> tuple[Mesh, str]:  # A file that was changed since is read again.
+    """A mesh's file, and in words how it is drawn coarser than it is; "" if it is not.
 
     Raises:
         OSError: It can't be read.
@@ -75,11 +79,17 @@ def _read(file: Path, changed: int) -> Mesh:  # A file that was changed since is
         raise ValueError(f"more than {MAX_BYTES} bytes")
     mesh = read_collada(data, MAX_FACES) if file.suffix.lower() == ".dae" else _loaded(file, data)
     vertices, faces = mesh.vertices, mesh.faces
-    if not 0 < len(faces) <= MAX_FACES or not np.all(np.isfinite(vertices)):
-        raise ValueError(f"{len(faces)} triangles; 1 to {MAX_FACES} with finite corners")
+    if not len(faces) or not np.all(np.isfinite(vertices)):
+        raise ValueError(f"{len(faces)} triangles; 1 or more with finite corners")
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise ValueError("a triangle without a corner")
-    return mesh
+    if len(faces) <= MAX_FACES:
+        return mesh, ""
+    coarse, moved = clustered(mesh, MAX_FACES)
+    if not len(coarse.faces):
+        raise ValueError(f"{len(faces)} triangles, of which no {MAX_FACES} are left that show its shape")
+    share = moved / float(np.ptp(vertices, axis=0).max())
+    return coarse, f"{len(faces)} triangles by {len(coarse.faces)}, corners off by up to {share:.1%} of its length"
 
 
 def _loaded(file: Path, data: bytes) -> Mesh:

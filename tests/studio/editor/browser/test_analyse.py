@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Faults, Picture, Serve, Server
 from tests.studio.pictures import shot
-from tests.studio.waiting import lies_within, until
+from tests.studio.waiting import at_rest, lies_within, until
 
 pytestmark = pytest.mark.browser
 
@@ -76,7 +76,7 @@ def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults
     steps.run(page, "Analyse…")
     steps.window(page).get_by_label("Sweep").check()
     steps.window(page).get_by_label("Parameter", exact=True).select_option("L2")
-    assert steps.window(page).get_by_label("From", exact=True).input_value() == "0.2"
+    expect(steps.window(page).get_by_label("From", exact=True)).to_have_value("0.2")
     assert not faults()
     steps.window(page).get_by_role("button", name="Analyse", exact=True).click()
     expect(steps.results(page).get_by_role("img", name="Frequencies over L2: mode 1, mode 2")).to_be_visible(
@@ -95,8 +95,7 @@ def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults
     plot = steps.results(page).get_by_role("img", name="q1: L2 = 0.2")
     last = plot.locator(".tick text").last
     expect(last).to_have_text("5")
-    box = plot.bounding_box()
-    assert box is not None
+    box = at_rest(plot)
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 60)
     page.mouse.down()
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 60, steps=3)

@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 from tests.late import require
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Serve
+from tests.studio.waiting import until
 
 pytestmark = pytest.mark.browser
 
@@ -26,10 +27,12 @@ def test_the_flexible_robot_moves_on_without_the_server(opened: Serve, page: Pag
     time = inner.locator("#time")
     expect(time).to_be_visible(timeout=JOB)
     server.kill()
-    before = float(time.inner_text().split()[0])
+
+    def reached() -> float:
+        return float(time.inner_text().split()[0])
+
+    before = reached()
     inner.get_by_role("slider", name="q1", exact=True).fill("3")  # An effort of the first motor.
-    page.wait_for_timeout(1500)
+    until(page, lambda: reached() > before + 0.2, "it does not go on")
     inner.get_by_role("button", name="Pause").click()
-    after = float(time.inner_text().split()[0])
-    assert after > before + 0.2
     assert inner.locator("#said").inner_text() == ""

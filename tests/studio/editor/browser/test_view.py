@@ -23,10 +23,12 @@ PANEL = '[class*="tabler-icon-cloud"]'  # viser's sign of the connection, at the
 def slide(page: Page, label: str, value: float) -> dict[str, float]:
     """Put a slider somewhere; where the coordinates are then."""
 
-    def is_last(answer: Response) -> bool:
-        return answer.url.endswith("/api/pose")
+    moved = f'"{label.partition(" [")[0]}"'
 
-    with page.expect_response(is_last) as answered:
+    def is_of_slider(answer: Response) -> bool:
+        return answer.url.endswith("/api/pose") and moved in (answer.request.post_data or "")
+
+    with page.expect_response(is_of_slider) as answered:
         page.get_by_role("slider", name=label, exact=True).fill(str(value))
     found: dict[str, float] = answered.value.json()["q"]
     return found

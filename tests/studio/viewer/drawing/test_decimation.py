@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from symofros.studio.viewer.drawing.decimation import decimated
+from symofros.studio.viewer.drawing.decimation import clustered, decimated
 from symofros.studio.viewer.drawing.meshes import Mesh
 from tests.late import late
 
@@ -99,3 +99,21 @@ def test_what_is_no_surface_stays(faces: list[list[int]]) -> None:
     mesh = Mesh(np.random.default_rng(3).normal(size=(5, 3)), np.array(faces))
     after = decimated(mesh, 10.0)
     np.testing.assert_array_equal(after.vertices[after.faces], mesh.vertices[mesh.faces])
+
+
+@pytest.mark.parametrize("most", [5000, 300, 12, 1])
+def test_a_mesh_is_clustered_to_as_many_triangles_as_are_drawn(most: int) -> None:
+    """No corner moves by more than what is said; each triangle keeps its color, and the side that it is seen from."""
+    ball = of(creation.icosphere(subdivisions=5))
+    top = ball.vertices[ball.faces].mean(axis=1)[:, 2] > 0.0
+    colors = np.where(top[:, None], [255, 0, 0], [0, 0, 255]).astype(np.int16)
+    after, moved = clustered(ball._replace(colors=colors), most)
+    assert len(after.faces) <= most and moved <= np.sqrt(3) * 2.0 / np.sqrt(most / 64)
+    assert after.colors is not None and len(after.colors) == len(after.faces)
+    if most >= 300:
+        assert len(after.faces) > most / 8 and volume(after) == pytest.approx(4 / 3 * np.pi, rel=12 / most**0.5 / 4)
+        middles = after.vertices[after.faces].mean(axis=1)
+        assert np.array_equal(middles[:, 2] > moved, (middles[:, 2] > moved) & (after.colors[:, 0] == 255))
+        assert distances(after.vertices[:: len(after.vertices) // 30], ball).max() <= moved
+    same, nothing = clustered(of(creation.box((1.0, 1.0, 1.5))), 12)
+    assert nothing == 0.0 and len(same.faces) == 12 and volume(same) == pytest.approx(1.5)

@@ -20,7 +20,10 @@ from symofros.studio.viewer.drawing import visual_meshes
 from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
+from tests.late import late
 from tests.studio.viewer.drawing.test_meshes import volume
+
+creation = late("trimesh.creation", "view")
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
@@ -103,6 +106,20 @@ def test_too_large_ones_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(visual_meshes, "MAX_BYTES", 100)
     with pytest.warns(UserWarning, match="more than 100 bytes"):
         assert visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(tmp_path / "m.stl"))) is None
+
+
+def test_one_of_too_many_triangles_is_drawn_coarser_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "ball.stl"
+    ball = creation.icosphere(subdivisions=5)
+    file.write_bytes(ball.export(file_type="stl"))
+    monkeypatch.setattr(visual_meshes, "MAX_FACES", 5000)
+    for _ in range(2):  # Also where it has been read before.
+        with pytest.warns(UserWarning, match=r"'ball.stl' is drawn coarser: 20480 triangles by \d+, .* [1-5]\.\d%"):
+            mesh = visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file)))
+    assert mesh is not None and 1000 < len(mesh.faces) <= 5000
+    assert volume(mesh) == pytest.approx(4 / 3 * np.pi, rel=0.02)
 
 
 def test_bodies_look_as_their_file_says() -> None:
