@@ -48,16 +48,19 @@ class Signal(metaclass=CheckedCalls):
         object.__setattr__(self, "t", np.ascontiguousarray(t))
         object.__setattr__(self, "values", np.ascontiguousarray(values))
         times = values.shape[0 if values.ndim == 1 else -2] if values.ndim else 0
-        good = t.ndim == 1 and len(t) > 0 and times == len(t)
-        if not good or not np.all(np.isfinite(t)) or not np.all(np.diff(t) > 0) or not np.all(np.isfinite(values)):
-            raise ShapeError(
-                Problem(
-                    "signal: not samples over time",
-                    f"t {t.shape}, values {values.shape}",
-                    "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite",
-                    "sort the samples, drop repeated times",
-                )
-            )
+        if t.ndim != 1 or not len(t) or times != len(t):
+            found, remedy = f"t {t.shape}, values {values.shape}", "give one row of values for each time"
+        elif not np.all(np.isfinite(t)) or not np.all(np.isfinite(values)):
+            name, bad = ("values", values) if np.all(np.isfinite(t)) else ("t", t)
+            at = tuple(map(int, np.argwhere(~np.isfinite(bad))[0]))
+            found, remedy = f"{bad[at]} in {name} at {at}", "mend the samples, or leave them out"
+        elif not np.all(np.diff(t) > 0):
+            i = int(np.argmin(np.diff(t) > 0))
+            found, remedy = f"t[{i}] = {t[i]:.12g}, then {t[i + 1]:.12g}", "sort the samples, drop repeated times"
+        else:
+            return
+        rule = "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite"
+        raise ShapeError(Problem("signal: not samples over time", found, rule, remedy))
 
 
 # Instants that differ by less, relative to themselves, are one, and zero is one with less than that [s]; as in

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -92,3 +94,17 @@ def test_a_sample_that_begins_at_zero_counts_from_there(
     np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-12 if method == "rk4" else 2e-5)
     if method == "rk4":
         np.testing.assert_array_equal(run[cart.names.u[0]], VALUES)
+
+
+@pytest.mark.parametrize(
+    ("t", "values", "said"),
+    [
+        ([0.0, 1.0], [[1.0, 2.0]], r"values \(1, 2\).*\n.*\n.*one row of values for each time"),
+        ([0.0, 1.0], [[1.0, 2.0], [np.nan, 2.0]], r"nan in values at \(1, 0\).*\n.*\n.*mend the samples"),
+        ([0.0, np.inf], [1.0, 2.0], r"inf in t at \(1,\)"),
+        ([0.0, 2.0, 1.0], [1.0, 2.0, 3.0], r"t\[1\] = 2, then 1.*\n.*\n.*sort the samples"),
+    ],
+)
+def test_what_is_wrong_with_samples_is_named(t: list[float], values: list[Any], said: str) -> None:
+    with pytest.raises(sf.ShapeError, match=said):
+        sf.Signal(t, values)

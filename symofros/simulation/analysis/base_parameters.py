@@ -76,6 +76,9 @@ def base_parameters(
         seed: Seed of the random states.
         joint_terms: Terms of the joints that are parameters as well: "viscous", "coulomb", "armature" of
             `Model.regressor`.
+
+    Raises:
+        ArgumentError: samples or seed is out of range, or samples are too few to tell.
     """
     model = model.with_precision("double")
     for name, value, least in (("samples", samples, 1), ("seed", seed, 0)):
@@ -92,6 +95,13 @@ def base_parameters(
     scale = np.abs(Y).max(axis=0)
     seen = np.flatnonzero(scale > _ROUNDING * scale.max(initial=0.0))
     order = _independent(Y[:, seen] / scale[seen])
+    if len(order) == len(Y):
+        what, rule = (
+            "base_parameters: samples are too few",
+            "equations outnumber base parameters, or some are missed",
+        )
+        found = f"{count} samples give {len(Y)} equations, all independent"
+        raise ArgumentError(Problem(what, found, rule, "more samples, or leave it out"))
     independent = sorted(int(seen[i]) for i in order)
     combine, *_ = np.linalg.lstsq(Y[:, independent], Y, rcond=None)
     combine[np.abs(combine) < _RANK] = 0.0

@@ -115,3 +115,11 @@ def test_armatures_are_noted_where_their_columns_are_left_out() -> None:
     model = sf.compile(MODELS["puma560"], FUNCTIONS)
     assert len(sf.base_parameters(model).notes) == 1
     assert not sf.base_parameters(model, joint_terms=("armature",)).notes
+
+
+def test_samples_that_are_too_few_to_tell_are_refused() -> None:
+    """Six equations a sample: five miss six of 36 base parameters."""
+    model = sf.compile(MODELS["rx90"], FUNCTIONS)
+    with pytest.raises(sf.ArgumentError, match="5 samples give 30 equations, all independent"):
+        sf.base_parameters(model, samples=5)
+    assert len(sf.base_parameters(model, samples=7).names) == 36
