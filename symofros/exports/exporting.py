@@ -258,7 +258,7 @@ def _material(
     instants, constrained = described.has_instants, described.record.nc > 0
     if target in _STEPPED and instants:
         needs = (*needs, OPERANDS)
-    if not stepping.method.family.batched:
+    if not stepping.method.family.rigid_contacts:
         described.record.refuse_rigid_contacts(f"export: '{target}' by '{stepping.method.name}'", by_method=True)
     if described.record.sticking or described.record.rigid_contacts:
         needs = (*needs, "constraint")

@@ -322,16 +322,16 @@ class ModelRecord:
 
         Args:
             what: What does not.
-            by_method: Whether it does by an explicit method.
+            by_method: Whether it does by other methods.
 
         Raises:
             SymofrosError: There are some.
         """
         if self.rigid_contacts:
             found = f"contact of '{self.rigid_contacts[0].name}' is rigid"
-            method = "an explicit method, such as dopri5 or rk4; or " if by_method else ""
+            method = "rodas4 or implicit_euler, which are implicit, dopri5 or rk4; or " if by_method else ""
             remedy = f"{method}a compliant contact: stiffness in place of restitution"
-            raise _no_modes(f"{what}: rigid contact", found, f"{_CHOOSE}, by explicit methods", remedy)
+            raise _no_modes(f"{what}: rigid contact", found, f"{_CHOOSE}, by explicit and Rosenbrock methods", remedy)
 
     def refuse_states(self, what: str) -> None:
         """Refuse states of forces where nothing takes them.

@@ -1,9 +1,10 @@
-"""Scenes of rigid contacts: a mass, a ball, a rod, a box on a plane."""
+"""Scenes of rigid contacts: a mass, a ball, a rod, a box, a disc on a plane."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from math import cos, sin
 from typing import Any
 
 import symofros as sf
@@ -95,6 +96,21 @@ def in_shell(friction: float, axis: tuple[float, float, float] = (1, 0, 0), angl
     contact = sf.Contact("wall", ("ball", None), ("shell", "hollow"), restitution=0.0, friction=friction, **sizes)
     bodies = [sphere("ball", 1.0, 0.1), shell]
     return sf.System("in_shell", bodies, gravity=(0, 0, 0), connections=[contact])
+
+
+RADIUS, MASS = 0.1, 0.5
+
+
+def disc_system(friction: float, e: float = 0.0, half: float = 0.0, incline: float = 0.0) -> sf.System:
+    """A homogeneous disc on its rim or, with half a length, a cylinder on its two rims; x is down the incline."""
+    across = MASS * (RADIUS**2 / 4 + half**2 / 3)
+    body = sf.RigidBody(
+        "disc", sf.Joint("free", "free"), sf.Inertia(MASS, moments=(across, across, MASS * RADIUS**2 / 2))
+    )
+    points = [(0, 0, z) for z in ((-half, half) if half else (0.0,))]
+    contact = sf.Contact("rim", ("disc", None), GROUND, restitution=e, friction=friction, points=points, rim=RADIUS)
+    gravity = (G * sin(incline), 0.0, -G * cos(incline))
+    return sf.System("disc", (body,), gravity=gravity, connections=(contact,))
 
 
 def three_feet() -> sf.System:

@@ -325,15 +325,12 @@ def test_what_is_refused(tmp_path: Path) -> None:
     assert sf.simulate(ball(), inside, t_end=0.1).outcome.kind == "input failed"
     model, system = ball(), ball_system()
     refused = {
-        "rodas4": lambda: sf.simulate(model, rested(model, 0.3), t_end=0.1, method="rodas4"),
         "equilibrium": lambda: sf.equilibrium(model),
         "export": lambda: sf.export(system, "sfunction", tmp_path / "s"),
     }
     for call in refused.values():
         with pytest.raises(sf.SymofrosError, match="is rigid"):
             call()
-    with pytest.raises(sf.SymofrosError, match="explicit method, such as dopri5"):
-        refused["rodas4"]()
     with pytest.raises(sf.SymofrosError, match="restitution"):
         sf.Contact("c", ("ball", None), GROUND)
     with pytest.raises(sf.SymofrosError, match="exponent"):

@@ -99,6 +99,54 @@ def test_a_stick_rocks_across_a_log(surface: str) -> None:
     assert turned.min() == pytest.approx(-angle, abs=1e-3) and sqrt(turned.var()) > 0.2
 
 
+def along(shift: float) -> sf.Model:
+    """A capsule that lies along another one, `shift` beside it, and may tilt: points at both ends of both touch."""
+    moves = sf.RigidBody("moves", sf.Joint("x", "prismatic", axis=(1, 0, 0), position=(0, 0, shift)))
+    inertia = sf.Inertia(1.0, moments=(0.05, 0.05, 0.001))
+    lies = sf.RigidBody("lies", sf.Joint("tilt", "revolute", axis=(0, 1, 0), parent="moves"), inertia)
+    base = sf.RigidBody("base", sf.Joint("base", "fixed"))
+    contacts = [
+        sf.Contact(
+            f"ends of {first}",
+            (first, None),
+            (second, None),
+            restitution=0.0,
+            radius=radius,
+            points=((0, 0, -half), (0, 0, half)),
+            surface="capsule",
+            surface_radius=surface,
+            length=length,
+        )
+        for first, second, radius, half, surface, length in (
+            ("lies", "base", RADIUS, HALF, 0.2, 0.6),
+            ("base", "lies", 0.2, 0.3, RADIUS, 2 * HALF),
+        )
+    ]
+    return sf.compile(sf.System("along", [base, moves, lies], gravity=(-G, 0, 0), connections=contacts))
+
+
+def test_capsules_that_lie_along_each_other_touch_by_points_at_their_ends() -> None:
+    """At the two ends of their overlap, -0.2 and 0.3, as on a flat face: they carry what statics says."""
+    model = along(0.2)
+    start = [0.2 + RADIUS, 0.0]
+    run = sf.simulate(model, start, t_end=0.2, **FINE)
+    assert run.events == () and np.abs(run.q - start).max() < 1e-12
+    # Ends of the one that lies, of the base: 0.4 and 0.1 from its middle on either side.
+    assert run.contact_forces().push[-1] == pytest.approx([0.2 * G, 0.0, 0.0, 0.8 * G], abs=1e-9)
+
+
+def test_a_capsule_tips_over_the_end_of_the_one_below() -> None:
+    """Its middle is 0.05 beyond that end: it turns about that end at once, and its energy stays."""
+    model, arm = along(0.35), 0.05
+    run = sf.simulate(model, [0.2 + RADIUS, 0.0], t_end=0.15, **FINE)
+    force = run.contact_forces().push
+    assert force[0] == pytest.approx([0.0, 0.0, 0.0, G / (1 + arm**2 / 0.05)], abs=1e-9)
+    assert np.ptp(run.kinetic_energy + run.potential_energy) < 1e-9 and abs(run.q[-1, 1]) > 0.05
+    # On the line that touches the base's end, 0.2 + 0.05 from its centre.
+    x, tilt = run.q.T
+    assert (x * np.cos(tilt) + arm * np.sin(tilt) * np.sign(tilt[-1])) == pytest.approx(0.2 + RADIUS, abs=1e-9)
+
+
 def test_segments_that_lie_along_a_surface_are_said() -> None:
     """Parallel capsules touch along a line; and what segments do not meet is refused."""
     model = two("capsule")

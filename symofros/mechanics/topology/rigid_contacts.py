@@ -125,7 +125,8 @@ class RigidBall(NamedTuple):
         if self.contact.surface != "plane":
             limits.append(_symbol(self.pole) * _symbol(f"contact.{self.name}.nz") - Term(_POLE_LEAST))
         if self.contact.rim is not None or self.contact.segment is not None:
-            limits.append(_symbol(f"contact.{self.name}.sine") - Term(_FLAT))
+            sine = _symbol(f"contact.{self.name}.sine")
+            limits.append(sine * sine - Term(_FLAT * _FLAT))  # Smooth in a step over zero, which the sine is not.
         for distance in limits:
             across = across * (is_open + (one - is_open) * distance)
         return (is_open * gap + (one - is_open) * fz).value, across.value

@@ -9,13 +9,14 @@ typedef struct sym_contact_scratch {
     double *effect;       /* (3 n, nv) what unit forces on them add */
     double *v;            /* (nv) speeds */
     double *kept_a, *kept_lam; /* (nv), (nc) */
+    double *drag;         /* (n, nv) generalised friction by unit normal forces on balls that slide; of implicit steps */
 } sym_contact_scratch;
 
 /* Where the parts begin from a base on. Returns how many entries all of them have. */
 static size_t sym_lay_out_contacts(const sym_system *s, double *base, sym_contact_scratch *at) {
     const size_t n = (size_t)s->n_contacts, nv = (size_t)s->nv, nc = (size_t)s->nc;
-    const size_t sizes[] = {(size_t)s->npar, nv, nc, n * nv, n * nc, nv, 3 * n * nv, nv, nv, nc};
-    double **const parts[] = {&at->par, &at->a, &at->lam, &at->change_a, &at->change_lam, &at->free_a, &at->effect, &at->v, &at->kept_a, &at->kept_lam};
+    const size_t sizes[] = {(size_t)s->npar, nv, nc, n * nv, n * nc, nv, 3 * n * nv, nv, nv, nc, n * nv};
+    double **const parts[] = {&at->par, &at->a, &at->lam, &at->change_a, &at->change_lam, &at->free_a, &at->effect, &at->v, &at->kept_a, &at->kept_lam, &at->drag};
     size_t i, end = 0;
     for (i = 0; i < sizeof sizes / sizeof *sizes; end += sizes[i++])
         if (base != NULL) *parts[i] = base + end;

@@ -122,18 +122,24 @@ static int sym_settled_now(const sym_run *r, int32_t i) {
     return r->system->n_contacts > 0 && i >= sym_first_contact_event(r) && r->acted_at[i] >= r->t;
 }
 
+/* Share of a step after which a ball that rises from its surface is above it by more than rounding. */
+#define SYM_EVENT_RISES 1e-6
+
 /* Whether event i is met at x by rounding alone: a strike has left the bodies on each other, or a little apart, where the step
- * begins, and half way to x they have not moved apart by more; a ball of a rigid contact is not beyond zero at the end of the
- * step either. Returns 0 or a status. */
+ * begins, and half way to x they have not moved apart by more; a ball of a rigid contact is above zero soon after x, or not
+ * beyond it at the end of the step either. Returns 0 or a status. */
 static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, int32_t *is) {
     const sym_run *r = step->run;
     const double end = r->event_values[(SYM_EVENT_NODES - 1) * r->system->n_events + i];
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
     const int settled = r->actions != NULL && sym_settled_now(r, i);
     int32_t status, stays = 1;
     *is = 0;
     if (r->actions == NULL || (!settled && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
     status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
     if (status != 0 || !*is || !settled || !(end < 0.0)) return status;
+    if (x + SYM_EVENT_RISES < 1.0) status = sym_event_values_within_step(step, x + SYM_EVENT_RISES, values);
+    if (status != 0 || (x + SYM_EVENT_RISES < 1.0 && values[i] > 0.0)) return status;
     status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
     *is = stays;
     return status;

@@ -5,6 +5,9 @@
  * the derivative of G v - b by q. */
 enum { SYM_TERM_M, SYM_TERM_G, SYM_TERM_R_Q, SYM_TERM_R_V, SYM_TERM_R_U, SYM_TERM_RATE_Q };
 
+static void sym_evaluate_sliding_terms(sym_run *r);
+static void sym_add_drag(const sym_run *r, double *matrix);
+
 /* Derivatives of the residual at the evaluation point, through the inputs that a law gives as well. Returns 0 or a
  * status. */
 static int32_t sym_evaluate_jacobian(sym_run *r) {
@@ -12,7 +15,8 @@ static int32_t sym_evaluate_jacobian(sym_run *r) {
     const int32_t nv = s->nv, rows = nv + s->nc;
     double *R_q, *R_v;
     int32_t i, j, k;
-    sym_evaluate(&s->implicit_terms);
+    if (s->n_contacts > 0) sym_evaluate_sliding_terms(r);
+    else sym_evaluate(&s->implicit_terms);
     ++r->jacobians;
     R_q = s->implicit_terms.out[SYM_TERM_R_Q], R_v = s->implicit_terms.out[SYM_TERM_R_V];
     if (s->law.function != NULL) {
@@ -63,6 +67,7 @@ static int32_t sym_rosenbrock_matrix(sym_run *r, double g, sym_implicit_workspac
     }
     for (i = 0; i < nv; ++i)
         for (j = 0; j < nc; ++j) w->matrix[SYM_INDEX(i, n, nv + j)] = -G[SYM_INDEX(j, nv, i)];
+    if (s->n_contacts > 0) sym_add_drag(r, w->matrix);
     for (i = nv; i < n; ++i)
         for (j = nv; j < n; ++j) w->matrix[SYM_INDEX(i, n, j)] = 0.0;
     return sym_eliminate(nv, n, s->group, nv + r->rank, w->matrix, w->scale, r->pivots, r->pivots + n);

@@ -156,16 +156,19 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
     int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0, acts = 0;
-    double stop_x = 2.0;
+    double stop_x = 2.0, energies[2] = {0.0, 0.0};
     status = sym_load_projected_state(r, t1, w->y1);
-    if (status == 0 && r->project) status = sym_judge_projection(r);
     if (status != 0) return status;
+    if (r->project) memcpy(energies, s->project.out[4], sizeof energies);
     sym_store_end_state(s, w);
     if (s->n_events > 0) {
         status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
         cut = stop_x <= 1.0, ended = r->terminal_event >= 0, acts = ended && sym_acts_at_cut(r);
+        if (cut && r->project) memcpy(energies, s->project.out[4], sizeof energies); /* what lies behind is not gone through */
     }
+    if (r->project) status = sym_judge_projection(r, energies);
+    if (status != 0) return status;
     if (r->record_every == 0) {
         const double up_to = cut ? stop_x : 1.0, same = acts ? SYM_GRID_ACTED * fabs(r->t + stop_x * h) / h : 0.0;
         status = sym_record_grid_within_step(r, w, h, &dense_ready, up_to - same);

@@ -1,4 +1,4 @@
-/* Forces of rigid contacts while balls slide (docs/theory/constraints.md, section 15, (41)). */
+/* Forces of rigid contacts while balls slide, and their derivatives (docs/theory/constraints.md, section 15, (41), (41a)). */
 
 /* Coefficient of friction of a ball: of parameters alone, so that it is that of any evaluation of its state. */
 static double sym_friction_of(const sym_system *s, int32_t ball) {
@@ -103,4 +103,65 @@ static int32_t sym_add_sliding(sym_run *r, const double *par) {
     for (j = 0; j < n; ++j)
         for (i = 0; i < 2; ++i) s->lam[s->contacts[which[j]].row[i]] = -sym_friction_of(s, which[j]) * d[j][i] * f[j];
     return sym_all_finite(s->nv, s->a) ? 0 : SYM_DIVERGED;
+}
+
+/* Terms of one ball that slides, (41a), in the outputs of implicit_terms with its rows across the normal, which become zero. drag
+ * (nv): what a unit normal force has as generalised friction. */
+static void sym_slope_of_friction(sym_run *r, int32_t ball, double *drag) {
+    const sym_system *s = r->system;
+    const sym_rigid_contact *of = s->contacts + ball;
+    const int32_t nv = s->nv, nu = s->nu, x = of->row[0], y = of->row[1];
+    double *const *terms = s->implicit_terms.out;
+    double *const rows[] = {terms[SYM_TERM_G], terms[SYM_TERM_RATE_Q], terms[SYM_TERM_R_Q] + SYM_INDEX(nv, nv, 0), terms[SYM_TERM_R_V] + SYM_INDEX(nv, nv, 0)};
+    const double *slip = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * ball + 1, *G_x = rows[0] + SYM_INDEX(x, nv, 0), *G_y = rows[0] + SYM_INDEX(y, nv, 0);
+    const double *u_x = rows[1] + SYM_INDEX(x, nv, 0), *u_y = rows[1] + SYM_INDEX(y, nv, 0), mu = sym_friction_of(s, ball);
+    const double *known = sym_ball_memory(s, ball);
+    double d[2], turn = 0.0;
+    int32_t i, j;
+    size_t k;
+    sym_slip_direction(r->par, of, slip, known, d);
+    if (hypot(slip[0], slip[1]) > fmax(SYM_RESTS_AT, known[2])) /* the slip, against d where it has passed rest */
+        turn = mu * s->lam[of->row[2]] / (slip[0] * d[0] + slip[1] * d[1]);
+    for (i = 0; i < nv; ++i) {
+        const double across = turn * (d[0] * G_y[i] - d[1] * G_x[i]);
+        drag[i] = mu * (d[0] * G_x[i] + d[1] * G_y[i]);
+        for (j = 0; j < nv; ++j) {
+            terms[SYM_TERM_R_V][SYM_INDEX(i, nv, j)] += across * (d[0] * G_y[j] - d[1] * G_x[j]);
+            terms[SYM_TERM_R_Q][SYM_INDEX(i, nv, j)] += across * (d[0] * u_y[j] - d[1] * u_x[j]);
+        }
+    }
+    for (k = 0; k < sizeof rows / sizeof *rows; ++k)
+        for (j = 0; j < nv; ++j) rows[k][SYM_INDEX(x, nv, j)] = rows[k][SYM_INDEX(y, nv, j)] = 0.0;
+    for (j = 0; j < nu; ++j) terms[SYM_TERM_R_U][SYM_INDEX(nv + x, nu, j)] = terms[SYM_TERM_R_U][SYM_INDEX(nv + y, nu, j)] = 0.0;
+}
+
+/* implicit_terms at the evaluation point, whose accelerations and multipliers are known, with friction of balls that slide. */
+static void sym_evaluate_sliding_terms(sym_run *r) {
+    const sym_system *s = r->system;
+    const sym_contact_scratch scratch = sym_scratch_of_contacts(r);
+    int32_t i, sliding = 0;
+    memcpy(scratch.par, r->par, (size_t)s->npar * sizeof *r->par);
+    for (i = 0; i < s->n_contacts; ++i) {
+        double *mode = scratch.par + s->contacts[i].mode;
+        if (*mode == SYM_SLIDES) *mode = SYM_STICKS, sliding = 1; /* for the rows across its normal */
+    }
+    if (sliding) sym_prepare_call(&s->implicit_terms, scratch.par);
+    sym_evaluate(&s->implicit_terms);
+    if (!sliding) return;
+    sym_prepare_call(&s->implicit_terms, r->par);
+    sym_evaluate(&s->contact_state);
+    for (i = 0; i < s->n_contacts; ++i)
+        if (r->par[s->contacts[i].mode] == SYM_SLIDES) sym_slope_of_friction(r, i, scratch.drag + (size_t)i * (size_t)s->nv);
+}
+
+/* Friction by the normal forces of balls that slide, in the columns of these in the matrix (nv + nc, nv + nc) of (5). */
+static void sym_add_drag(const sym_run *r, double *matrix) {
+    const sym_system *s = r->system;
+    const int32_t nv = s->nv, n = nv + s->nc;
+    const double *drag = sym_scratch_of_contacts(r).drag;
+    int32_t b, i;
+    for (b = 0; b < s->n_contacts; ++b, drag += nv) {
+        if (r->par[s->contacts[b].mode] != SYM_SLIDES) continue;
+        for (i = 0; i < nv; ++i) matrix[SYM_INDEX(i, n, nv + s->contacts[b].row[2])] += drag[i];
+    }
 }

@@ -321,9 +321,9 @@ static int32_t sym_project_point(sym_system *s) {
     return 0;
 }
 
-/* Count the energy that the last projection took. Returns 0 or SYM_ENERGY_LOST (docs/theory/simulation.md, section 6). */
-static int32_t sym_judge_projection(sym_run *r) {
-    const double *energies = r->system->project.out[4];
+/* Count the energy that a projection took, and that of the motion. Returns 0 or SYM_ENERGY_LOST (docs/theory/simulation.md,
+ * section 6). */
+static int32_t sym_judge_projection(sym_run *r, const double *energies) {
     r->lost_energy += energies[0];
     if (energies[1] > r->kinetic_energy) r->kinetic_energy = energies[1];
     return r->lost_energy > r->loss_limit * r->kinetic_energy ? SYM_ENERGY_LOST : 0;

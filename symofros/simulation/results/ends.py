@@ -117,7 +117,8 @@ ENDS: dict[int, End] = {
         "beyond theory",
         "a rim of a rigid contact lies on its plane, or a segment along its surface, to 0.6 degrees: it"
         " touches all along",
-        "points along the rim or segment in its place, on which a body can lie: `points` without `rim` or `segment`",
+        "points along the rim or segment in its place, on which a body can lie: `points` without `rim` or `segment`;"
+        " of capsules that lie along each other, at the ends of both",
     ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."

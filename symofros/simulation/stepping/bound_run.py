@@ -119,7 +119,7 @@ class BoundRun:
         system.contacts = memory.own("sym_rigid_contact[]", rows)
         if not balls:
             return
-        if not self.method.family.batched:
+        if not self.method.family.rigid_contacts:
             self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'", by_method=True)
         self._bind("contact_state", self.model.contact_state())
         system.contact_work = memory.zeros(int(self.native.sym_contact_work_size(system)))

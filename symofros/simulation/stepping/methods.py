@@ -34,6 +34,7 @@ class Family:
         batched: Whether many trajectories can be stepped at once in the lanes of vectors.
         multistep: Whether past steps are kept, so that a state must not be changed between steps.
         keeps_constraints: Whether the constraints are among the equations it solves, so that nothing else keeps them.
+        rigid_contacts: Whether it follows the modes of rigid contacts, and friction of those that slide.
         trees_only: Whether constraints and prescribed joints are out of its reach.
         amplification: Factor by which a step multiplies a mode exp(z t/h), of the tableau and z; None where past steps
             count.
@@ -44,6 +45,7 @@ class Family:
     batched: bool = False
     multistep: bool = False
     keeps_constraints: bool = False
+    rigid_contacts: bool = False
     trees_only: bool = False
     amplification: Callable[[Tableau, complex], complex] | None = None
 
@@ -54,9 +56,11 @@ class Family:
 
 
 FAMILIES: dict[Kind, Family] = {
-    "explicit": Family(batched=True, amplification=amplification.explicit),
-    "semi_implicit": Family(batched=True, amplification=amplification.semi_implicit),
-    "rosenbrock": Family(("implicit_terms",), implicit=True, amplification=amplification.rosenbrock),
+    "explicit": Family(batched=True, rigid_contacts=True, amplification=amplification.explicit),
+    "semi_implicit": Family(batched=True, rigid_contacts=True, amplification=amplification.semi_implicit),
+    "rosenbrock": Family(
+        ("implicit_terms",), implicit=True, rigid_contacts=True, amplification=amplification.rosenbrock
+    ),
     "alpha": Family(("implicit_terms", "residual"), implicit=True, amplification=amplification.alpha),
     "variational": Family(
         ("implicit_terms", "momentum"), implicit=True, trees_only=True, amplification=amplification.midpoint

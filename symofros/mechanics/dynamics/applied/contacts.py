@@ -94,7 +94,8 @@ def _touching(
         p_WC = p_WC + reach.reach
     distance, gradient = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))
     normal = second.R_WF.times(gradient)
-    p_WP = p_WC - normal.scaled(distance)
+    # Of rigid balls as in (38a), beside the surface too: what slides and what sticks have one point there.
+    p_WP = p_WC - normal.scaled(radius if contact.rigid else distance)
     gap = g.sub(distance, radius)
     # Of points fixed to the two bodies at the point of contact.
     at_first, at_second = (_velocity_at(g, frames.velocity(end), p_WP - frames.pose(end).p_WF) for end in ends)
