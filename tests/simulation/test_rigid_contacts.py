@@ -297,7 +297,8 @@ def test_a_stepper_makes_the_same_bits_and_can_be_set_back() -> None:
     # It still slides at the end: the instants of the spiral in which a slip vanishes are those of rounding.
     q, v = rested(model, 0.15), [1.1, 0.75, 0, 0.2, 0.1, 2.15]
     run = sf.simulate(model, q, v, t_end=0.4, dt=1e-3, method="rk4")
-    assert len(run.events) > 4
+    # Two feet land at once: rounding decides whether one or both are listed.
+    assert len({round(found.t, 9) for found in run.events}) == 4
     stepper = sf.Stepper(model, dt=1e-3, method="rk4")
     stepper.reset(q, v)
     stepper.step(steps=250)
