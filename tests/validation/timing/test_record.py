@@ -58,7 +58,6 @@ def test_a_record_survives_its_file(tmp_path: Path) -> None:
         [made()],
         [("panda", "bias", "sympy", "too large")],
         [("panda", "bias", "casadi", "no compiler")],
-        [],
         {"cores": 2},
         [Wait("import symofros", "", 0.15, 0.1), Wait("first M", "panda", 0.3, None)],
     )
