@@ -21,7 +21,7 @@ MEASURES: dict[Surface, tuple[str, ...]] = {
 }
 HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
-# What points of contact move along, the surfaces that it meets, and what stands in for it elsewhere.
+# What points of contact move along, the surfaces that it meets (no surface meets both), and what stands in elsewhere.
 _MOVING: tuple[tuple[str, tuple[Surface, ...], str], ...] = (
     ("rim", ("plane",), "a plane and restitution; or points along the rim"),
     ("segment", ("sphere", "cylinder", "capsule"), "its two ends as points, as on a plane; or points along it"),
@@ -139,8 +139,6 @@ class Contact:
                 found = f"{'inside ' if self.inside else ''}a {self.surface}, {'rigid' if self.rigid else 'compliant'}"
                 rule = f"a {label} meets a {', '.join(surfaces)} from outside, as a rigid contact"
                 return Problem(f"{what}: {label}", found, rule, remedy)
-        if self.rim is not None and self.segment is not None:
-            return Problem(f"{what}: rim and segment", "both", "a contact is of one of them", "state two contacts")
         if self.exponent not in EXPONENTS:
             rule = f"one of {', '.join(f'{x:g}' for x in EXPONENTS)}"
             return Problem(f"{what}: exponent", repr(self.exponent)[:80], rule, "1.5 for balls (Hertz)")

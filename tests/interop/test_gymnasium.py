@@ -31,6 +31,12 @@ def test_gymnasium_checker_reports_nothing(task: Any) -> None:
         check_env(sf.interop.gymnasium.MechanismEnv(task), skip_render_check=True)
 
 
+def test_a_cart_pole_fails_on_either_side(task: Any) -> None:
+    """Beyond 2.4 m, or 12 degrees."""
+    q = np.array([[0.0, 0.0], [2.39, 0.2], [-2.39, -0.2], [2.41, 0.0], [-2.41, 0.0], [0.0, 0.22], [0.0, -0.22]])
+    assert task.fails(q, 0.0 * q).tolist() == [False] * 3 + [True] * 4
+
+
 def test_vector_environments_equal_single_ones_bitwise(task: Any) -> None:
     envs = sf.interop.gymnasium.MechanismVectorEnv(task, 5)
     first, _ = envs.reset(seed=4)

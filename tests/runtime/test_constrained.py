@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import symofros as sf
 from symofros.base.measures import ANGLE, FORMULA, LENGTH, OTHER, ROTATION, TRANSLATION, Measures
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.constrained import (
@@ -138,3 +141,16 @@ def test_rows_that_fade_take_no_part_in_steps_towards_the_constraints(size: floa
     M, r, G, c, *_ = fading_terms(q)
     assert solve(M, r, G, c, FADING)[2] == 3
     assert fading_rank(q) == 2
+
+
+@pytest.mark.parametrize("backend", ["interpreter", "tape"])
+@pytest.mark.parametrize("scale", [1e-30, 1e20])
+def test_a_coupling_holds_whatever_its_formula_is_multiplied_by(scale: float, backend: Any) -> None:
+    """It has no unit in which anything would be small: a mass that falls draws another one along."""
+    falls, drawn = (
+        sf.RigidBody(name, sf.Joint(name, "prismatic", axis=axis), sf.Inertia(1.0))
+        for name, axis in (("z", (0, 0, 1)), ("x", (1, 0, 0)))
+    )
+    line = sf.Coupling("line", f"{scale!r}*(z - x)")
+    model = sf.compile(sf.System("drawn", (falls, drawn), constraints=(line,)), sf.Options(backend=backend))
+    np.testing.assert_allclose(model.forward_dynamics([0, 0], [0, 0], []), [-9.81 / 2] * 2, rtol=1e-12)

@@ -97,3 +97,15 @@ def test_speed_jumps_from_prescribed_motion_are_not_faults_of_the_run() -> None:
 
     run = sf.simulate(m, [0.0], [0.0], t_end=0.1, dt=1e-3, u=law)
     assert run.outcome.kind == "finished", str(run.outcome)
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rodas4"])
+def test_a_singular_posture_of_a_rejected_step_is_none_of_the_motion(method: str) -> None:
+    """A wall turns back what glides, before the condition would have no direction; steps that are tried go on there."""
+    x = sf.RigidBody("x", sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True), sf.Inertia(1.0))
+    y = sf.RigidBody("y", sf.Joint("y", "prismatic", axis=(0, 1, 0)), sf.Inertia(1.0))
+    line = sf.Coupling("line", "max(0, 2 - x)*y")
+    glides = sf.compile(sf.System("wall", (x, y), gravity=(0, 0, 0), constraints=(line,)))
+    run = sf.simulate(glides, [0, 0], [1, 0], 8.0, u={"x": "-1000*max(0, x - 1.5)"}, method=method)  # type: ignore[arg-type]
+    assert run.statistics.rejected > 0 and run.q[:, 0].max() < 1.6
+    assert run.statistics.rank_min == 1 and not run.outcome.notes

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import symofros as sf
 from symofros.blocks import Sequence
 from symofros.blocks.inputs import sequences
+from symofros.diagrams.wiring import surroundings, wire
 from tests.blocks.support import run
 
 T = np.array([0.0, 0.05, 0.2])
@@ -58,6 +60,9 @@ def test_a_saved_run_is_read_as_it_was_written(tmp_path: Path) -> None:
     np.testing.assert_array_equal(again["read.y"], again["wave.y"])
     np.testing.assert_array_equal(again["read.one"], again["wave.rate"][:, 1])
     assert [again.unit(f"read.{name}") for name in outputs] == ["rad", "rad/s", ""]
+    read = diagram.blocks["read"]
+    stated = replace(read, units={"y": "m", "mixed": "1/s"}).ports(surroundings(wire(diagram), "read"))
+    assert [port.unit for port in stated.outputs] == ["m", "rad/s", "1/s"], "stated ones count first"
     # A column that the file's author called so keeps its name.
     (tmp_path / "own.csv").write_text("t,F [N]\n0,1\n1,2\n")
     assert Sequence(name="s", file=str(tmp_path / "own.csv"), outputs={"F": "F [N]"}).samples()["F"].values.shape == (

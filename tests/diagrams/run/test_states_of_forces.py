@@ -13,6 +13,8 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros import blocks
+from symofros.diagrams.program.compiled import resolve
+from symofros.diagrams.run.examination import interpreted as interpreted_runs
 
 _LUGRE = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05, viscous=0.3)
 _FLOOR = sf.Contact("floor", ("ball", None), ("world", None), 1e4, exponent=1.0, dissipation=2.0, friction=0.5,
@@ -219,3 +221,45 @@ def test_events_know_them() -> None:
     alone = sf.compile(slide(_LUGRE, states=(sf.ForceState("T", rate),)))
     drag = model.generalized_force([0.0], v, [0.0], z=z) - alone.generalized_force([0.0], v, [0.0], z=z)
     assert run["plant.friction"][-1] == pytest.approx(drag, rel=1e-9)
+
+
+def test_speeds_of_mechanisms_are_motion_and_states_of_forces_and_blocks_are_none() -> None:
+    """Whatever stands before them, as a free body, which has more coordinates than speeds."""
+    body = sf.RigidBody("body", sf.Joint("free", "free"), sf.Inertia(1.0, moments=(1.0, 1.0, 1.0)))
+    of = sf.Diagram("several")
+    of.add_model("b", sf.System("body", (body,)))
+    of.add(blocks.ForwardDynamics(name="flies", model="b"))
+    of.add(blocks.Constant(name="one", value=1.0))
+    of.add(blocks.Integrator(name="sum"), u="one")
+    of.add_model("m", system("formula"))
+    of.add(blocks.ForwardDynamics(name="plant", model="m"), u="one")
+    layout = resolve(of).layout
+    moving = {block: layout.moving[place.slice].tolist() for block, place in layout.v.items()}
+    assert moving == {"flies": [True] * 6, "plant": [True, False]}
+    assert len(layout.moving) == 9 and layout.moving.sum() == 7
+
+
+def test_the_linearised_step_of_an_interpreted_run_is_of_displacements_speeds_and_states(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """h times the rates of (x, h v), and of a state by itself: m x'' + c x' + k x = 0, T' = -3 T."""
+    h, m, k, c, decay = 1e-3, 1.5, 50.0, 2.0, 3.0
+    found, resolution = list[Any](), interpreted_runs.resolution
+
+    def heard(*given: Any, **named: Any) -> Any:
+        found.append(given[4](0))
+        return resolution(*given, **named)
+
+    monkeypatch.setattr(interpreted_runs, "resolution", heard)
+    rate: Any = f"-{decay}*T"
+    of = sf.Diagram("oscillator")
+    of.add_model(
+        "m", slide(sf.Spring(k), sf.Damper(c), states=(sf.ForceState("T", rate),)), {"x": 0.2, "dx": 0.3, "T": 0.01}
+    )
+    of.add(blocks.ForwardDynamics(name="plant", model="m"))
+    sf.Simulation(of).interpret(0.1, dt=h)
+    ((_, matrix, motion),) = found
+    wanted = np.zeros((4, 4))
+    wanted[0, 2], wanted[2, 0], wanted[2, 2], wanted[3, 3] = 1.0, -h * h * k / m, -h * c / m, -h * decay
+    np.testing.assert_allclose(matrix, wanted, atol=1e-9)
+    np.testing.assert_allclose(motion[[0, 2]], [0.3 * h, -h * h * (c * 0.3 + k * 0.2) / m], rtol=1e-9)

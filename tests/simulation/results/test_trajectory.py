@@ -95,3 +95,12 @@ def test_reactions_hold_the_parameters_that_events_have_set(method: str) -> None
     held = run.joint_wrenches()
     np.testing.assert_allclose(held[:, 0, :3], np.outer(m, [3.0, 0.0, 9.81]), atol=1e-8)
     np.testing.assert_allclose(held[:, 1, :3], np.outer(m, [0.0, 0.0, 2.0 * 9.81]), atol=1e-8)
+
+
+def test_contact_forces_of_a_run_are_by_its_parameters() -> None:
+    """A mass that lies on a compliant ground, softer than the description says."""
+    mass = sf.RigidBody("z", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(2.0))
+    foot = sf.Contact("foot", ("z", None), ("world", None), sf.formula("k"), exponent=1.0)
+    model = sf.compile(sf.System("mass", (mass,), (sf.Parameter("k", 1e6),), connections=(foot,)))
+    run = sf.simulate(model, [-2.0 * 9.81 / 500.0], t_end=0.01, dt=1e-3, par=[500.0])
+    np.testing.assert_allclose(run.contact_forces().push[:, 0], 2.0 * 9.81, rtol=1e-9)

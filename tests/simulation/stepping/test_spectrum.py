@@ -35,7 +35,7 @@ def spectrum(model: sf.Model, q: Any, v: Any, u: Any = None, step: float = STEP)
     stepper = Stepper(model, METHODS["rk4"], plan, (), model.parameter_values)
     settings.apply(stepper)
     inputs = stepper.inputs_at(0.0, np.asarray(q), np.asarray(v))
-    seen = stepper.spectrum(0.0, np.asarray(q), np.asarray(v), inputs, step, 2 * model.nv)
+    seen = stepper.spectrum(0.0, np.asarray(q), np.asarray(v), inputs, step, 2 * model.nv, stepper.moving)
     assert seen is not None
     return seen
 
@@ -119,3 +119,21 @@ def test_a_satellite_in_orbit_has_slow_modes_alone(kind: str, spin: float) -> No
     q, v = (np.array([given.get(k, 0.0) for k in keys]) for given, keys in ((start, model.names.q), (speeds, names)))
     seen = spectrum(model, q, v, step=1.0)
     assert np.abs(np.linalg.eigvals(seen[1])).max() < 0.1
+
+
+@pytest.mark.parametrize("warmth", [1e3, 1e9])
+def test_a_state_has_a_scale_of_its_own_whichever_way_it_goes(warmth: float) -> None:
+    """Beside a vibration: its rate is its own, and it hides nothing of the motion as it falls or rises fast."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(2.25e6), sf.Damper(0.5)))
+    body, state = sf.RigidBody("body", joint, sf.Inertia(1.0)), sf.ForceState("T", sf.formula("-40*T"))
+    model = sf.compile(sf.System("warm", (body,), gravity=(0, 0, 0), states=(state,))).carried
+    fast, sizes = np.sqrt(2.25e6 - 0.25**2), []
+    for sign in (1.0, -1.0):
+        x = sign * 1e-5, sign * 1e-3
+        _, matrix, motion = spectrum(model, [x[0], 0.0], [x[1], sign * warmth], step=1e-3)
+        values = np.linalg.eigvals(matrix) / 1e-3
+        wanted = np.array([-40.0, -0.25 - 1j * fast, -0.25 + 1j * fast, 0.0])
+        np.testing.assert_allclose(np.sort_complex(values), wanted, atol=1e-4)
+        sizes.append(np.linalg.norm(motion))
+    of_motion = np.hypot(1e-3 * x[1], 1e-6 * (2.25e6 * x[0] + 0.5 * x[1]))
+    assert sizes == pytest.approx([np.sqrt(2.0) * of_motion] * 2, rel=1e-4)  # The state counts as much as the motion.

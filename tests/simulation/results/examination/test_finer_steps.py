@@ -14,6 +14,7 @@ from symofros.simulation.results.examination.finer_steps import (
     HeldRun,
     Part,
     States,
+    change_of_states,
     finer_steps_note,
     percent,
 )
@@ -187,3 +188,16 @@ def test_windows_between_distant_records_are_made_twice(steps: int, interval: in
     window = windows(t, np.zeros((len(t), 1)), H, steps)[0]
     span = H * (25 if steps == 5000 else 200)
     assert (window.last, window.t_end) == ((None, span) if made_twice else (1, t[1]))
+
+
+def test_states_change_in_the_mean_by_a_share_of_half_their_range() -> None:
+    """The worst of them counts, whatever its unit; one that stands still is compared with rounding of what it is."""
+    t = np.linspace(0.0, 1.0, 11)
+    run = np.stack([300.0 + 4.0 * t, 1e-6 * np.cos(6.0 * np.pi * t), np.full(11, 2.0)], axis=1)
+    off = np.zeros((5, 3))
+    assert change_of_states(run, run[:5], run[:5]) == 0.0
+    off[:, 0] = [0.1, -0.1, 0.3, 0.0, 0.0]
+    assert change_of_states(run, run[:5], run[:5] + off) == pytest.approx(0.1 / 2.0, rel=1e-9)
+    off[:, 1] = 2e-7
+    assert change_of_states(run, run[:5], run[:5] + off) == pytest.approx(0.2, rel=1e-6)
+    assert change_of_states(run[:, 2:], run[:5, 2:], run[:5, 2:] + 1e-12) == pytest.approx(1e-12 / 2e-11, rel=1e-3)
