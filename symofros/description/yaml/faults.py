@@ -41,6 +41,7 @@ _KINDS = {
     "int_from_float": _WHOLE,
     "int_parsing": _WHOLE,
     "string_type": ("a text", "put it in quotes"),
+    "string_too_short": ("a text of one character or more", "write a name"),
     "bool_type": ("true or false", "write true or false"),
     "list_type": ("a list", "write it as [x, y, z]"),
     "dict_type": _MAPPING,

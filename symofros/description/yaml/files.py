@@ -222,7 +222,7 @@ class _Merger:
                 f"{what}: {'there is no such file' if kind == 'no such file' else f'it is {kind}'}",
                 text[:100],
                 "an included file exists, and is a regular one",
-                did_you_mean(target.name, sorted(there)),
+                did_you_mean(target.name, sorted(there)) or "put the file there, or drop the include",
             )
         return None
 

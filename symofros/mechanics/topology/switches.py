@@ -56,8 +56,9 @@ def switch_problems(system: System) -> Iterator[Problem]:
         name, where = switch.constraint, system.origin.get(("switch", switch.constraint), "")
         what = f"switch of '{name}'"
         if name not in constraints:
-            remedy = did_you_mean(name, constraints)
-            yield Problem(f"{what}: no such constraint", ", ".join(constraints) or "none", "it exists", remedy, where)
+            found, rule = ", ".join(constraints) or "no constraints", "a switch is of a constraint of the system"
+            remedy = did_you_mean(name, constraints) or "state the constraint, or drop the switch"
+            yield Problem(f"{what}: no such constraint", found, rule, remedy, where)
         elif name in seen:
             yield Problem(f"{what}: there are two", name, "a constraint has one switch", "keep one", where)
         elif switch.pose == "moment" and not offset_names(constraints[name]) and not rotation_names(constraints[name]):
