@@ -12,7 +12,7 @@ from validation.engines.interface import Slot, State
 from validation.engines.models import single
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.poses import ASIDE, AWAY, BESIDE, CENTRE, MASS, MOMENTS
+from validation.engines.truth.poses import ASIDE, AWAY, BACK, BESIDE, CENTRE, MASS, MOMENTS, SEQUENCES
 
 Array = NDArray[np.float64]
 _TURNS = single.trees()["rotations"]
@@ -209,3 +209,24 @@ def test_the_nearer_and_the_same_way() -> None:
     assert np.allclose(rotation[:, 2], away / np.linalg.norm(away)) and np.allclose(rotation.T @ rotation, np.eye(3))
     assert abs(rotation[:, 0] @ (_STATE.v2 + ASIDE)) < 1e-12 < rotation[:, 1] @ (_STATE.v2 + ASIDE)
     assert list(_of("are_rotations")) == [1.0, 0.0, 0.0]
+
+
+def test_three_angles_are_of_turns_about_axes() -> None:
+    for axes, row in zip(SEQUENCES, _of("rotations_of_three_angles"), strict=True):
+        one, two, three = (_about("xyz".index(axis), angle) for axis, angle in zip(axes, _STATE.v, strict=True))
+        np.testing.assert_allclose(row, (one @ two @ three).flat, atol=1e-14)
+
+
+def test_rotations_on_end_have_a_pitch_of_a_quarter_turn() -> None:
+    x, _, z = _STATE.v
+    for sign, row in zip((1, -1), _of("rotations_on_end"), strict=True):
+        np.testing.assert_allclose(row, (_about(2, z) @ _about(1, sign * np.pi / 2) @ _about(0, x)).flat, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("name", "u"), [("rotation_of_z", _STATE.v + AWAY), ("rotation_of_z_back", _STATE.v / 64 + BACK)]
+)
+def test_the_shortest_turn_is_about_the_normal_of_both(name: str, u: Array) -> None:
+    R, normal = _of(name).reshape(3, 3), np.cross([0.0, 0.0, 1.0], u)
+    np.testing.assert_allclose(R[:, 2], u / np.linalg.norm(u), atol=1e-14)
+    np.testing.assert_allclose(R @ normal, normal, atol=1e-12)

@@ -52,6 +52,19 @@ def _parameters() -> dict[str, Function]:
         "rotation_matrix_rate_of_rpy": ("their rates as v changes by a (9)", poses.rate_of_rpy),
         "rotation_to_rpy": ("roll, pitch, yaw of R = Rz Ry Rx, the pitch within a quarter turn (3)", poses.to_rpy),
         "rotation_of_zyz": ("rows of Rz(v[0]) Ry(v[1]) Rz(v[2]) (9)", poses.of_zyz),
+        "rotations_of_three_angles": (
+            "rows of the turns by v about successive axes, for twelve sequences of these (12, 9)",
+            poses.of_three_angles,
+        ),
+        "rotations_on_end": (
+            "rows of Rz(v[2]) Ry(p) Rx(v[0]), p a quarter turn up and down, once they are angles (2, 9)",
+            poses.on_end,
+        ),
+        "rotation_of_z": ("rows of the shortest turn of z along v + (4, -8, 8) (9)", poses.of_z),
+        "rotation_of_z_back": (
+            f"rows of the shortest turn of z along v / 64 + {poses.BACK} (9)",
+            poses.of_z_back,
+        ),
         "zyz_speeds": ("B: w = B x' along the axes before, of these angles x = v (3, 3)", poses.zyz_speeds),
         "are_rotations": (
             "1, 0, 0: whether R, R with a column turned round, 1.25 R are rotations",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Slot, Statement, Tree, Unsupported
 from ..truth.poses import CENTRE, MASS, MOMENTS
-from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
+from .writing.source import HALF_TURNS, ON_END, Source, SourcePlugin, Way
 
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"
 _HALF = "u = v + np.array([4.0, -8.0, 8.0])\nH = 2 * np.outer(u, u) / (u @ u) - np.eye(3)\n"
@@ -105,6 +105,7 @@ WAYS |= {
     "rotation_of_rpy:UnitQuaternion": Way(
         "UnitQuaternion.RPY", "import spatialmath as cls\nvalue = cls.UnitQuaternion.RPY(v).R.ravel()"
     ),
+    "rotations_on_end": Way("tr2rpy", f"{ON_END}value = [sm.rpy2r(sm.tr2rpy(H)).ravel() for H in on_end]"),
     "rotation_to_rpy": Way("tr2rpy", "value = sm.tr2rpy(sm.q2r(q))"),
     "rotation_to_rpy:UnitQuaternion": Way(
         "UnitQuaternion.rpy", "import spatialmath as cls\nvalue = np.ravel(cls.UnitQuaternion(q).rpy())"

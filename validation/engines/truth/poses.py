@@ -21,6 +21,8 @@ from .turns import rotation_vector, speeds, turn, turned_by
 
 # What directions have added, so that they never vanish and are never along each other.
 AWAY, ASIDE, BESIDE = (4.0, -8.0, 8.0), (8.0, 4.0, 4.0), (8.0, -4.0, 4.0)
+# A direction that is nearly -z.
+BACK = (0.0625, 0.03125, -1.0)
 # Mass, mass centre, moments about it of a body that is no tree's.
 MASS, CENTRE = 2.0, (0.25, -0.5, 0.125)
 MOMENTS = ((0.5, 0.0625, -0.03125), (0.0625, 0.375, 0.125), (-0.03125, 0.125, 0.625))
@@ -202,6 +204,42 @@ def angles_of(R: Exact) -> Exact:
 def of_zyz(t: Truth, s: Point) -> Exact:
     """Rows of Rz(v[0]) Ry(v[1]) Rz(v[2]) (9)."""
     return (_about(2, s.v[0]) @ _about(1, s.v[1]) @ _about(2, s.v[2])).reshape(9)
+
+
+# Axes of three turns, each of which the ones before have turned.
+SEQUENCES = tuple("xyz xzy yxz yzx zxy zyx xyx xzx yxy yzy zxz zyz".split())
+
+
+def of_three_angles(t: Truth, s: Point) -> Exact:
+    """Rows of the turns by v[0], v[1], v[2] about the axes of each of SEQUENCES (12, 9)."""
+    turned = [[_about("xyz".index(axis), angle) for axis, angle in zip(axes, s.v, strict=True)] for axes in SEQUENCES]
+    return np.array([(one @ two @ three).reshape(9) for one, two, three in turned])
+
+
+def on_end(t: Truth, s: Point) -> Exact:
+    """Rows of Rz(v[2]) Ry(p) Rx(v[0]) with the pitch p a quarter turn, up and down (2, 9)."""
+    rows = []
+    for sign in (Decimal(1), Decimal(-1)):
+        pitch = rotation(eye(3)[1], Decimal(0), sign)
+        rows.append((_about(2, s.v[2]) @ pitch @ _about(0, s.v[0])).reshape(9))
+    return np.array(rows)
+
+
+def _shortest(u: Exact) -> Exact:
+    """Rows of the shortest turn of z into the direction of u, which is not -z (9)."""
+    x = _unit(u)
+    S = skew(cross(eye(3)[2], x))  # Of the sine of the angle; its cosine is x[2].
+    return (eye(3) + S + S @ S / (1 + x[2])).reshape(9)
+
+
+def of_z(t: Truth, s: Point) -> Exact:
+    """Rows of the shortest turn of z along v + AWAY (9)."""
+    return _shortest(s.v + exact(AWAY))
+
+
+def of_z_back(t: Truth, s: Point) -> Exact:
+    """Rows of the shortest turn of z along v / 64 + BACK (9)."""
+    return _shortest(s.v / 64 + exact(BACK))
 
 
 def zyz_speeds(t: Truth, s: Point) -> Exact:

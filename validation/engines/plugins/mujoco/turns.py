@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...interface import Slot
+from ...truth.poses import BACK, SEQUENCES
 from ..turns import solids
 from ..writing.source import HALF_TURNS, Source, Way
 
@@ -15,6 +16,12 @@ _BY_AXIS = f"{_LENGTH}{_QUATERNION}mj.mju_axisAngle2Quat(x, axis, angle)\n{_MATR
 _INTEGRATED = f"x = np.array([1.0, 0, 0, 0])\nmj.mju_quatIntegrate(x, {{of}}, 1.0)\n{_MATRIX.format(of='x')}"
 _OF_TAU = _LENGTH.format(of="tau") + f"{_QUATERNION}mj.mju_axisAngle2Quat(x, axis, angle)\n"
 _D = "value = np.zeros((3, 3))\n"
+_POSED = f"p, R = np.zeros(3), np.zeros(9)\n{_QUATERNION}mj.{{call}}\nmj.mju_quat2Mat(R, x)\nvalue = [*p, *R]"
+_SEQUENCES = (
+    f"{_QUATERNION}value = np.zeros((12, 9))\nfor row, axes in zip(value, {SEQUENCES}):\n"
+    "    mj.mju_euler2Quat(x, {angles}, {axes})\n    mj.mju_quat2Mat(row, x)"
+)
+_OF_Z = f"{_QUATERNION}mj.mju_quatZ2Vec(x, {{u}})\n{_MATRIX.format(of='x')}"
 _WAYS = {
     "rotation_matrix": ("mju_quat2Mat", _MATRIX.format(of="q")),
     "rotation_matrix:mju_rotVecQuat": (
@@ -68,6 +75,19 @@ _WAYS = {
         "mjd_subQuat",
         f"{_OF_TAU}{_D}mj.mjd_subQuat(x, np.array([1.0, 0, 0, 0]), value, np.zeros((3, 3)))",
     ),
+    "pose_composed": ("mju_mulPose", _POSED.format(call="mju_mulPose(p, x, a, q, tau, q2)")),
+    "pose_inverse": ("mju_negPose", _POSED.format(call="mju_negPose(p, x, a, q)")),
+    "pose_of_point": ("mju_trnVecPose", "value = np.zeros(3)\nmj.mju_trnVecPose(value, a, q, v)"),
+    "quaternion_rates_fixed": ("mju_derivQuat", f"{_QUATERNION}mj.mju_derivQuat(x, q, v)\nvalue = x"),
+    "rotation_of_rpy": ("mju_euler2Quat", f"{_QUATERNION}mj.mju_euler2Quat(x, v, 'XYZ')\n{_MATRIX.format(of='x')}"),
+    "rotation_of_zyz": ("mju_euler2Quat", f"{_QUATERNION}mj.mju_euler2Quat(x, v, 'zyz')\n{_MATRIX.format(of='x')}"),
+    "rotations_of_three_angles": ("mju_euler2Quat", _SEQUENCES.format(angles="v", axes="axes")),
+    "rotations_of_three_angles:extrinsic": (
+        "mju_euler2Quat, about fixed axes",
+        _SEQUENCES.format(angles="v[::-1].copy()", axes="axes[::-1].upper()"),
+    ),
+    "rotation_of_z": ("mju_quatZ2Vec", _OF_Z.format(u="v + [4.0, -8.0, 8.0]")),
+    "rotation_of_z_back": ("mju_quatZ2Vec", _OF_Z.format(u=f"v / 64 + {list(BACK)}")),
     "twist_transform": (
         "mju_transformSpatial",
         "R = np.zeros(9)\nmj.mju_quat2Mat(R, q)\nR, value = R.reshape(3, 3), np.zeros((6, 6))\n"

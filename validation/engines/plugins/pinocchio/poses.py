@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from ...truth.poses import CENTRE, MASS, MOMENTS
+from ...truth.poses import BACK, CENTRE, MASS, MOMENTS
 from ..turns import solids
-from ..writing.source import Way
+from ..writing.source import ON_END, Way
 
 _X = "X, Y = pin.SE3(pin.Quaternion(q).matrix(), a), pin.SE3(pin.Quaternion(q2).matrix(), tau)\n"
 _V = "V = pin.Motion(v, v2)\n"
 _I = f"I = pin.Inertia({MASS}, np.array({list(CENTRE)}), np.array({[*map(list, MOMENTS)]}))\n"
+_OF_Z = "value = pin.Quaternion.FromTwoVectors(np.eye(3)[2], {u}).matrix().ravel()"
 _EYE = "np.stack([{of}.vector for e in np.eye(6)], axis=1)"
 
 
@@ -44,6 +45,19 @@ WAYS = {
     "twist_cross": Way("Motion.action", f"{_V}value = V.action"),
     "twist_cross:cross": Way("Motion.cross", f"{_V}value = {_EYE.format(of='V.cross(pin.Motion(e))')}"),
     "rotation_of_rpy": Way("rpy.rpyToMatrix", "from pinocchio import rpy\nvalue = rpy.rpyToMatrix(v).ravel()"),
+    "rotations_on_end": Way(
+        "rpy.matrixToRpy",
+        f"from pinocchio import rpy\n{ON_END}value = [rpy.rpyToMatrix(rpy.matrixToRpy(H)).ravel() for H in on_end]",
+    ),
+    "rotation_of_z": Way("Quaternion.FromTwoVectors", _OF_Z.format(u="v + [4.0, -8.0, 8.0]")),
+    "rotation_of_z_back": Way("Quaternion.FromTwoVectors", _OF_Z.format(u=f"v / 64 + {list(BACK)}")),
+    "rotation_matrix": Way("Quaternion.toRotationMatrix", "value = pin.Quaternion(q).toRotationMatrix().ravel()"),
+    "rotation_exponential:exp3_quat": Way(
+        "exp3_quat", "value = pin.Quaternion(pin.exp3_quat(v)).toRotationMatrix().ravel()"
+    ),
+    "rotation_logarithm:AngleAxis": Way(
+        "AngleAxis of a matrix", "x = pin.AngleAxis(pin.Quaternion(q).matrix())\nvalue = x.angle * x.axis"
+    ),
     "rotation_to_rpy": Way(
         "rpy.matrixToRpy", "from pinocchio import rpy\nvalue = rpy.matrixToRpy(pin.Quaternion(q).matrix())"
     ),

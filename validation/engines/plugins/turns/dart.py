@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...truth.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, Way
+from ...truth.poses import CENTRE, MASS, MOMENTS, SEQUENCES
+from ..writing.source import HALF_TURNS, ON_END, Way
 from . import solids
 
 IMPORTS = ("import dartpy as dart",)
@@ -47,6 +47,14 @@ WAYS = (
         ),
         "rotation_of_rpy": Way("eulerZYXToMatrix", "value = dart.math.eulerZYXToMatrix(v[::-1]).ravel()"),
         "rotation_of_zyz": Way("eulerZYZToMatrix", "value = dart.math.eulerZYZToMatrix(v).ravel()"),
+        "rotations_on_end": Way(
+            "matrixToEulerZYX, eulerZYXToMatrix",
+            f"{ON_END}value = [dart.math.eulerZYXToMatrix(dart.math.matrixToEulerZYX(H)).ravel() for H in on_end]",
+        ),
+        "rotations_of_three_angles": Way(
+            "euler...ToMatrix",
+            f"value = [getattr(dart.math, f'euler{{s.upper()}}ToMatrix')(v).ravel() for s in {SEQUENCES}]",
+        ),
         "rotation_to_rpy": Way("matrixToEulerZYX", f"{_R}value = dart.math.matrixToEulerZYX(R)[::-1]"),
         "are_rotations": Way(
             "verifyRotation", f"{_R}value = [float(dart.math.verifyRotation(A)) for A in (R, R * [1, 1, -1], 1.25 * R)]"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, Way
+from ..writing.source import HALF_TURNS, ON_END, Way
 from . import solids
 
 IMPORTS = ("import numpy as np", "import pydrake.all as drake")
@@ -121,6 +121,26 @@ WAYS = {
     "rotation_of_rpy": Way("RollPitchYaw", "value = drake.RollPitchYaw(v).ToRotationMatrix().matrix().ravel()"),
     "rotation_of_rpy:ToQuaternion": Way(
         "RollPitchYaw.ToQuaternion", "value = drake.RollPitchYaw(v).ToQuaternion().rotation().ravel()"
+    ),
+    "rotations_on_end": Way(
+        "RollPitchYaw of a RotationMatrix",
+        f"{ON_END}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel()"
+        " for H in on_end]",
+    ),
+    "quaternion_rates": Way(
+        "CalculateQuaternionDtFromAngularVelocityExpressedInB",
+        "from pydrake.math import CalculateQuaternionDtFromAngularVelocityExpressedInB as rates\n"
+        "value = rates(drake.Quaternion(q), v)",
+    ),
+    "rpy_rates:CalcAngularVelocityInChildFromRpyDt": Way(
+        "CalcAngularVelocityInChildFromRpyDt",
+        "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
+        "value = np.linalg.inv(np.stack("
+        "[R @ A.CalcAngularVelocityInChildFromRpyDt(e) for e in np.eye(3)], axis=1))",
+    ),
+    "rotation_matrix:ProjectToRotationMatrix": Way(
+        "RotationMatrix.ProjectToRotationMatrix",
+        f"{_R}value = drake.RotationMatrix.ProjectToRotationMatrix(2 * R.matrix()).matrix().ravel()",
     ),
     "rotation_to_rpy": Way("RollPitchYaw", f"{_R}value = drake.RollPitchYaw(R).vector()"),
     "rpy_rates": Way(

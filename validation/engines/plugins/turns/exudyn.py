@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, Way
+from ..writing.source import HALF_TURNS, ON_END, Way
 from . import solids
 
 IMPORTS = ("from exudyn import lieGroupBasics as lie", "from exudyn import rigidBodyUtilities as rbu")
@@ -96,6 +96,10 @@ _ROTATIONS = {
 # other way round and about the axes of its own.
 _ROLLED = {
     "rotation_of_rpy": Way("RotXYZ2RotationMatrix", "value = rbu.RotXYZ2RotationMatrix(-v).T.ravel()"),
+    "rotations_on_end": Way(
+        "RotationMatrix2RotXYZ",
+        f"{ON_END}value = [rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(H.T)).T.ravel() for H in on_end]",
+    ),
     "rotation_to_rpy": Way("RotationMatrix2RotXYZ", f"{_R}value = -rbu.RotationMatrix2RotXYZ(R.T)"),
     "rpy_rates": Way("RotXYZ2GLocal", "value = np.linalg.inv(rbu.RotXYZ2GLocal(-v))"),
     "rpy_rates:RotXYZ2G": Way("RotXYZ2G", "value = np.linalg.inv(rbu.RotXYZ2RotationMatrix(-v).T @ rbu.RotXYZ2G(-v))"),

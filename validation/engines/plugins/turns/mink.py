@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...interface import Convention, Tree, Unsupported
 from ..writing.numbering import numbered
-from ..writing.source import HALF_TURNS, Source, SourcePlugin, Way
+from ..writing.source import HALF_TURNS, ON_END, Source, SourcePlugin, Way
 from . import source
 
 _R = "R, Q = mink.SO3(q), mink.SO3(q2)\n"
@@ -36,6 +36,11 @@ _ROTATIONS = {
     "rotation_vector_rates_fixed": Way("SO3.ljacinv", "value = mink.SO3.ljacinv(v)"),
     "rotation_halfway": Way("SO3.interpolate", _R + _MATRIX.format(of="R.interpolate(Q, 0.25)")),
     "rotation_of_rpy": Way("SO3.from_rpy_radians", _MATRIX.format(of="mink.SO3.from_rpy_radians(*v)")),
+    "rotations_on_end": Way(
+        "SO3.as_rpy_radians",
+        f"{ON_END}value = [mink.SO3.from_rpy_radians(*mink.SO3.from_matrix(H).as_rpy_radians()).as_matrix().ravel()"
+        " for H in on_end]",
+    ),
     "rotation_to_rpy": Way("SO3.as_rpy_radians", f"{_R}value = [*R.as_rpy_radians()]"),
     "rotation_matrix:inverse": Way("SO3.inverse", f"{_R}value = R.inverse().as_matrix().T.ravel()"),
 }
@@ -47,6 +52,9 @@ _PLACEMENTS = {
     "pose_of_point": Way("SE3.apply", f"{_X}value = X.apply(v)"),
     "pose_logarithm": Way("SE3.log", f"{_X}value = X.log()"),
     "pose_difference": Way("SE3.minus", f"{_X}value = Y.minus(X)"),
+    "pose_difference:rminus": Way("SE3.rminus", f"{_X}value = Y.rminus(X)"),
+    "pose_composed:rplus": Way("SE3.rplus", f"{_X}{_flat('X.rplus(Y.log())')}"),
+    "pose_composed:lplus": Way("SE3.lplus", f"{_X}{_flat('Y.lplus(X.log())')}"),
     "pose_exponential": Way("SE3.exp", f"{_V}{_flat('mink.SE3.exp(V)')}"),
     "pose_halfway": Way("SE3.interpolate", f"{_X}{_flat('X.interpolate(Y, 0.25)')}"),
     "pose_exponential_speeds": Way("SE3.rjac", f"{_V}value = mink.SE3.rjac(V)"),

@@ -32,6 +32,15 @@ HALF_TURNS = """from itertools import product
 turned_about = [np.array(u, float) for u in product(range(-2, 3), repeat=3) if u > (0, 0, 0)]
 half_turns = [2 * np.outer(u, u) / (u @ u) - np.eye(3) for u in turned_about]
 """
+# Statements that make the matrices of `truth.poses.on_end`: their zeros and ones are exact.
+ON_END = """(c, x), (d, z) = ((np.cos(angle), np.sin(angle)) for angle in (v[0], v[2]))
+on_end = [
+    np.array([[d, -z, 0], [z, d, 0], [0, 0, 1.0]])
+    @ np.array([[0, 0, s], [0, 1.0, 0], [-s, 0, 0]])
+    @ np.array([[1.0, 0, 0], [0, c, -x], [0, x, c]])
+    for s in (1.0, -1.0)
+]
+"""
 
 
 class Way(NamedTuple):
