@@ -72,6 +72,15 @@ def test_a_bouncing_ball_comes_to_rest(method: str) -> None:
     assert run.lam[-1, 0] == pytest.approx(0.4 * G, rel=1e-12)
 
 
+@pytest.mark.parametrize("method", ["dopri5", "dop853"])
+def test_no_step_over_the_end_of_a_slip_is_rejected(method: Any) -> None:
+    """It is as smooth beyond rest as before (41b)."""
+    run = sf.simulate(point(0.5), None, [3.0, 1.2, 0.0], 1.0, method=method)
+    (sticks,) = run.events
+    assert sticks.t == pytest.approx(np.hypot(3.0, 1.2) / (0.5 * G), abs=1e-12)
+    assert run.statistics.rejected == 0
+
+
 def test_a_ball_with_backspin_slides_until_it_rolls() -> None:
     """Friction mu m g acts until v = R w: at (v0 - R w0) 2/(7 mu g), with (5 v0 + 2 R w0)/7."""
     v0, spin, mu, r = 2.0, -30.0, 0.5, 0.1
