@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess
 from tests.models import compiled as model
+from tests.models import interpreted
 from tests.simulation.mechanisms import links
 
 
@@ -60,8 +62,7 @@ def test_a_path_in_space_becomes_a_motion_of_joints() -> None:
 
 def test_rates_that_no_motion_of_the_joints_has_are_refused() -> None:
     """A planar arm that is to leave its plane, and one that is to stretch where it is stretched."""
-    m, q = model("double_pendulum"), [0.3, 0.5]
-    frame = tip("double_pendulum")
+    m, frame, q = interpreted(MODELS["double_pendulum"]), "tip", [0.3, 0.5]
     for at, V, A in ((q, (0, 1, 0), (0, 0, 0)), (q, (0, 0, 0), (0, 1, 0)), ([0.3, 0.0], None, (0, 0, 0))):
         p, R = m.frame_pose(frame, at)
         outwards = p / np.linalg.norm(p) if V is None else np.array(V, float)
