@@ -97,6 +97,19 @@ def test_a_wrench_without_the_share_of_the_joint_is_a_red_cell(name: str) -> Non
     assert judge("planted", tree, "wrench_sensors_driven", answer, wanted.want).verdict == "wrong"
 
 
+@pytest.mark.parametrize(
+    "name", ["sensors on hinges that a tendon pulls", "sensors on hinges that a tendon over points pulls"]
+)
+def test_what_holds_a_link_makes_up_for_a_tendon_between_links(name: str) -> None:
+    tree = SENSED[name]
+    (wanted,), (bare,) = (
+        _judged("mujoco", one, "wrench_sensors").values() for one in (tree, replace(tree, tendons=()))
+    )
+    assert wanted.cell.verdict == bare.cell.verdict == "right" and wanted.want is not None
+    answer = np.asarray(bare.answer.value)
+    assert judge("planted", tree, "wrench_sensors", answer, wanted.want).verdict == "wrong"
+
+
 @pytest.mark.parametrize("reading", ["accelerometers", "angular_accelerations", "wrench_sensors"])
 def test_a_reading_that_keeps_the_forces_of_before_is_a_red_cell(reading: str) -> None:
     ways = [f"{reading}_driven", f"{reading}_driven:mj_step2 again"]

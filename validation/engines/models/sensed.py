@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import Actuator, End, Joint, Link, Tree
+from ..interface import Actuator, End, Joint, Link, Tendon, Tree
 from .kinds import OBLIQUE, link, placed, shifted, turned
 
 _HINGE = Joint("revolute", axis=OBLIQUE)
@@ -27,6 +27,7 @@ def _of_forces() -> list[Tree]:
     """Joints that act on both of their links, which no sensor tells from what holds the link: losses, springs, motors.
 
     What armature adds to the mass matrix is in no link: sensors read what the links' own masses take.
+    A tendon between links is none of what holds them.
     """
     damped, geared = replace(_HINGE, damping=0.75), replace(_HINGE, armature=(0.75,))
     sprung = replace(_HINGE, damping=0.5, stiffness=3.0, rest=0.25)
@@ -36,7 +37,13 @@ def _of_forces() -> list[Tree]:
         Actuator("a", gear=3.0, control=0.75),
         Actuator("b", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5),
     )
+    first, last = End("a", p=(0.25, 0.125, 0.25)), End("c", p=(-0.25, 0.5, 0.125))
+    straight = Tendon("path", (first, last), stiffness=40.0, damping=0.5, rest=0.25)
+    over = replace(straight, ends=(End("", p=(-1.0, 0.125, 0.25)), first, last))
+    pulled, bent = "sensors on hinges that a tendon pulls", "sensors on hinges that a tendon over points pulls"
     return [
+        replace(_sensed(pulled, _HINGE, _HINGE, _HINGE), tendons=(straight,)),
+        replace(_sensed(bent, _HINGE, _HINGE, _HINGE), tendons=(over,)),
         _sensed("sensors on damped hinges", damped, damped, damped),
         _sensed("sensors on springs and dampers", sprung, slide, sprung),
         _sensed("sensors beyond a damped ball", _HINGE, Joint("ball", damping=0.5), damped),

@@ -80,9 +80,17 @@ def velocities_seen(truth: Truth, s: Point) -> Exact:
 
 
 def joint_wrenches(truth: Truth, s: Point) -> Exact:
-    """Wrench (force; moment) of each joint on its link's subtree, about the link's origin, in link axes (L, 6)."""
+    """Wrench (force; moment) of each joint on its link's subtree, about the link's origin, in link axes (L, 6).
+
+    What straight tendons do to links is no part of it: what holds a link makes up for it.
+    """
     poses = truth.kinematics.poses(s.q)
     held = truth.wrenches(truth.motions(s.q, s.v, s.a), poses, list(truth.inertias))
+    places = [link.name for link in truth.tree.links]
+    for name, point, force in truth.own.pulls(s.q, s.v):
+        if name:
+            k = places.index(name)
+            held[k] = held[k] - np.concatenate([force, cross(point - poses[k][1], force)])
     for k, link in reversed(list(enumerate(truth.kinematics.tree.links))):
         if link.parent >= 0:
             force, moment = held[k][:3], held[k][3:]

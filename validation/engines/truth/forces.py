@@ -12,6 +12,8 @@ What actuators make together along a joint stays within the joint's limits.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from ..interface import Actuator, End, Muscle, Tendon, Tree
@@ -114,6 +116,26 @@ class Forces:
                 weight = exact(link.mass)[()] * exact(self.tree.gravity)
                 Q = Q - exact(link.compensation)[()] * (J[:3].T @ weight)
         return Q + drag(self._kinematics, self.tree.medium, q, v) if self.tree.medium else Q
+
+    def pulls(self, q: Exact, v: Exact) -> list[tuple[str, Exact, Exact]]:
+        """What straight tendons do to links, or to the world "": the link, the point (3), the force there (3).
+
+        Of points x_k of a path with l = sum |x_k+1 - x_k|, the virtual work -T dl leaves x_k with the force
+        T (u_k - u_k-1), where T is the tension, k (l - rest) + c l', and u_k the direction from x_k to x_k+1, zero
+        beyond the ends.
+        """
+        forces = []
+        for tendon, (length, J) in zip(self.tree.tendons, self.lines(q), strict=True):
+            if tendon.kind != "path":  # A coupling acts along its joints.
+                continue
+            stiffness, damping, rest = exact((tendon.stiffness, tendon.damping, tendon.rest))
+            tension = stiffness * (length - rest) + damping * (J @ v)
+            points = [self._kinematics.held(q, end).p for end in tendon.ends]
+            steps = [after - before for before, after in pairwise(points)]
+            along = [zeros(3), *(step / root(step @ step) for step in steps), zeros(3)]
+            for end, point, before, after in zip(tendon.ends, points, along, along[1:], strict=False):
+                forces.append((end.link, point, tension * (after - before)))
+        return forces
 
     def stored(self, q: Exact) -> Exact:
         """Energy of springs along coordinates and tendons, zero where they have no force."""
