@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.measures import ROTATION
 from symofros.runtime.manifold import retract
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.examination.finer_steps import States
@@ -159,6 +160,9 @@ def _power(run: ExaminedRun, step: float, states: States) -> Array:
     # A fast motion changes its speeds within less than a step that does not follow it.
     pace = _norms(v).max() / np.maximum(_norms(a), 1e-300)
     moment = _MOMENT * step * np.clip(pace / step, _SHORTEST, 1.0)
+    # Nor is a force the same over more than a small angle.
+    turning = np.abs(v[:, np.array(model.record.measures.speed) == ROTATION]).max(axis=1, initial=0.0)
+    moment = np.minimum(moment, _MOMENT / np.maximum(turning, 1e-300))
     ends = []
     for s in (moment, -moment):
         q_s, v_s = retract(model.record.segments, q, s[:, np.newaxis] * v), v + s[:, np.newaxis] * a

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.simulation.results.examination.energy_balance import _REPEATED, _between, _norms
+from symofros.simulation.results.examination.energy_balance import _REPEATED, _between, _norms, _power
+from tests.models import interpreted
 from tests.simulation.mechanisms import slide
 
 CART = slide(actuated=True)
@@ -33,6 +34,16 @@ def test_a_force_that_depends_on_time_is_work(method: str, force: str) -> None:
     run = sf.simulate(sf.compile(slide(loads=(sf.Load((force, 0, 0)),))), t_end=2.0, method=method)
     exact = 2.0 * (1.0 - np.cos(2.0)) if "sin" in force else 4.0
     assert run.v[-1, 0] == pytest.approx(exact, rel=1e-5) and not run.outcome.notes, run.outcome
+
+
+def test_weight_does_no_work_on_what_turns_many_times_in_a_step() -> None:
+    """2e5 rad/s and steps of 1000 s: the power was taken over 2e5 rad, in which speeds of one instant gain 1e6 W."""
+    joint = sf.Joint("q", "revolute", axis=(0, 1, 0))
+    pendulum = sf.RigidBody("arm", joint, sf.Inertia(2.0, (0.25, 0, 0), (0.01, 0.05, 0.05)))
+    model = interpreted(sf.System("pendulum", [pendulum]))
+    run: Any = SimpleNamespace(model=model, stepper=SimpleNamespace(par=np.zeros(0)))
+    states = [np.zeros(1), np.array([[0.3]]), np.array([[2e5]]), np.zeros((1, 0))]
+    assert abs(_power(run, 1e3, states)[0]) < 1e-3 * 2.0 * 9.81 * 0.25 * 2e5
 
 
 @pytest.mark.parametrize("method", [*METHODS, "generalized_alpha"])
