@@ -9,6 +9,7 @@ from .forces import COPY, QV, QVA, Q
 
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor J, b in zip(value, bs):\n    "
 _AT_POINT = f"def at(b): return d.xpos[b] + d.xmat[b].reshape(3, 3) @ {list(POINT)}\n"
+_SET = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
 _STEPPED = f"{COPY}n.opt.timestep = {STEP}\n"
 _FULL = "mj.mjtState.mjSTATE_INTEGRATION"
 _COPIED = (
@@ -55,6 +56,22 @@ WAYS = {
         f"{QV}{_AT_POINT}value = np.zeros((len(bs), 3, m.nv))\n"
         "for J, b in zip(value, bs): mj.mj_jacDot(m, d, J, None, at(b), b)\nvalue = value @ v",
     ),
+    "forward_dynamics:mj_fwdAcceleration": Way(
+        "mj_fwdPosition, mj_fwdVelocity, mj_fwdActuation, mj_fwdAcceleration",
+        f"{_SET}for stage in (mj.mj_fwdPosition, mj.mj_fwdVelocity, mj.mj_fwdActuation, mj.mj_fwdAcceleration):\n"
+        "    stage(m, d)\nvalue = d.qacc_smooth",
+    ),
+    "forward_dynamics:mj_forwardSkip": Way(
+        "mj_forwardSkip",
+        f"{_SET}d.qfrc_applied[:], d.qvel[:] = 0 * tau, 0 * v\nmj.mj_forward(m, d)\n"
+        "d.qfrc_applied[:], d.qvel[:] = tau, v\nmj.mj_forwardSkip(m, d, mj.mjtStage.mjSTAGE_POS, 1)\nvalue = d.qacc",
+    ),
+    "inverse_dynamics:mj_inverseSkip": Way(
+        "mj_inverseSkip",
+        f"{_SET}d.qvel[:] = 0 * v\nmj.mj_inverse(m, d)\nd.qvel[:], d.qacc[:] = v, a\n"
+        "mj.mj_inverseSkip(m, d, mj.mjtStage.mjSTAGE_POS, 1)\nvalue = d.qfrc_inverse",
+    ),
+    "bias:mj_rne": Way("mj_rne without accelerations", f"{QVA}value = np.zeros(m.nv)\nmj.mj_rne(m, d, 0, value)"),
     "inverse_dynamics_acted": Way("mj_inverse", f"{QVA}mj.mj_inverse(m, d)\nvalue = d.qfrc_inverse"),
     "forward_dynamics:mj_setState": Way("mj_getState, mj_setState", f"{_COPIED}mj.mj_forward(m, e)\nvalue = e.qacc"),
     "step_dampers_implicit:mj_setState": Way(

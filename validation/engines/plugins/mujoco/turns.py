@@ -18,7 +18,7 @@ _OF_TAU = _LENGTH.format(of="tau") + f"{_QUATERNION}mj.mju_axisAngle2Quat(x, axi
 _D = "value = np.zeros((3, 3))\n"
 _POSED = f"p, R = np.zeros(3), np.zeros(9)\n{_QUATERNION}mj.{{call}}\nmj.mju_quat2Mat(R, x)\nvalue = [*p, *R]"
 _SEQUENCES = (
-    f"{_QUATERNION}value = np.zeros((12, 9))\nfor row, axes in zip(value, {SEQUENCES}):\n"
+    f"{_QUATERNION}value = np.zeros((12, 9))\nfor row, order in zip(value, {SEQUENCES}):\n"
     "    mj.mju_euler2Quat(x, {angles}, {axes})\n    mj.mju_quat2Mat(row, x)"
 )
 _OF_Z = f"{_QUATERNION}mj.mju_quatZ2Vec(x, {{u}})\n{_MATRIX.format(of='x')}"
@@ -81,10 +81,10 @@ _WAYS = {
     "quaternion_rates_fixed": ("mju_derivQuat", f"{_QUATERNION}mj.mju_derivQuat(x, q, v)\nvalue = x"),
     "rotation_of_rpy": ("mju_euler2Quat", f"{_QUATERNION}mj.mju_euler2Quat(x, v, 'XYZ')\n{_MATRIX.format(of='x')}"),
     "rotation_of_zyz": ("mju_euler2Quat", f"{_QUATERNION}mj.mju_euler2Quat(x, v, 'zyz')\n{_MATRIX.format(of='x')}"),
-    "rotations_of_three_angles": ("mju_euler2Quat", _SEQUENCES.format(angles="v", axes="axes")),
+    "rotations_of_three_angles": ("mju_euler2Quat", _SEQUENCES.format(angles="v", axes="order")),
     "rotations_of_three_angles:extrinsic": (
         "mju_euler2Quat, about fixed axes",
-        _SEQUENCES.format(angles="v[::-1].copy()", axes="axes[::-1].upper()"),
+        _SEQUENCES.format(angles="v[::-1].copy()", axes="order[::-1].upper()"),
     ),
     "rotation_of_z": ("mju_quatZ2Vec", _OF_Z.format(u="v + [4.0, -8.0, 8.0]")),
     "rotation_of_z_back": ("mju_quatZ2Vec", _OF_Z.format(u=f"v / 64 + {list(BACK)}")),
