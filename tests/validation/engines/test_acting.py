@@ -9,7 +9,7 @@ import pytest
 
 from validation.engines.causes.cause import stated
 from validation.engines.functions import STEPS
-from validation.engines.interface import ORIGIN, STEP, Tree, Unsupported
+from validation.engines.interface import ORIGIN, STEP, End, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
@@ -108,6 +108,13 @@ def test_what_holds_a_link_makes_up_for_a_tendon_between_links(name: str) -> Non
     assert wanted.cell.verdict == bare.cell.verdict == "right" and wanted.want is not None
     answer = np.asarray(bare.answer.value)
     assert judge("planted", tree, "wrench_sensors", answer, wanted.want).verdict == "wrong"
+
+
+def test_what_holds_a_link_that_a_tendon_wraps_around_is_refused() -> None:
+    wrapped = next(one for one in acting.passive().values() if any(tendon.wraps for tendon in one.tendons))
+    tree = replace(wrapped, sensors=(End(wrapped.links[0].name),))
+    (cell,) = cells(OWN["mujoco"], tree, ("wrench_sensors",))
+    assert cell.verdict == "plug-in" and "wraps around" in cell.words
 
 
 @pytest.mark.parametrize("reading", ["accelerometers", "angular_accelerations", "wrench_sensors"])

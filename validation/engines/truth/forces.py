@@ -123,7 +123,12 @@ class Forces:
         Of points x_k of a path with l = sum |x_k+1 - x_k|, the virtual work -T dl leaves x_k with the force
         T (u_k - u_k-1), where T is the tension, k (l - rest) + c l', and u_k the direction from x_k to x_k+1, zero
         beyond the ends.
+
+        Raises:
+            ValueError: A tendon wraps around a surface, which pushes on its link besides.
         """
+        if any(tendon.wraps for tendon in self.tree.tendons):
+            raise ValueError("what a tendon does to a surface that it wraps around is not worked out")
         forces = []
         for tendon, (length, J) in zip(self.tree.tendons, self.lines(q), strict=True):
             if tendon.kind != "path":  # A coupling acts along its joints.
