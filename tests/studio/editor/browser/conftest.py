@@ -26,6 +26,21 @@ NODE = (20, 19)
 LOOKS = 4  # By axe, a second apart.
 # Where pictures for docs/editor.md go, when they are wanted.
 PICTURES = os.environ.get("SYMOFROS_PICTURES")
+# By how much the server's answers and events come later to the page, each at most [ms]: a busy machine does that.
+LATE = int(os.environ.get("SYMOFROS_LATE", "0"))
+_DELAY = """{
+const later = setTimeout.bind(window), get = window.fetch.bind(window), add = EventTarget.prototype.addEventListener;
+const pause = () => new Promise((done) => later(done, Math.random() * %d / 2));
+window.fetch = async (...asked) => {
+  await pause();
+  return get(...asked).finally(pause);
+};
+let before = Promise.resolve();
+EventSource.prototype.addEventListener = function (kind, hear) {
+  const heard = (event) => (before = before.then(pause).then(() => hear(event)));
+  add.call(this, kind, kind === "error" ? hear : heard);
+};
+}"""
 
 
 class Server:
@@ -89,7 +104,7 @@ def page(chromium: Browser) -> Iterator[Page]:
         viewport={"width": 1280, "height": 760}, color_scheme="light", reduced_motion="reduce"
     )
     context.grant_permissions(["clipboard-read", "clipboard-write"])
-    page = context.new_page()
+    page = _delayed(context.new_page())
     page.set_default_timeout(60_000)  # Software rendering on a busy machine.
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -120,10 +135,16 @@ def arm(opened: Serve) -> Server:
 @pytest.fixture
 def other(arm: Server, chromium: Browser) -> Iterator[Page]:
     """Another page on the server of the double pendulum."""
-    page = chromium.new_page()
+    page = _delayed(chromium.new_page())
     steps.open_editor(page, arm.url)
     yield page
     page.close()
+
+
+def _delayed(page: Page) -> Page:
+    if LATE:
+        page.add_init_script(_DELAY % LATE)
+    return page
 
 
 def _is_ours(kind: str, text: str) -> bool:
