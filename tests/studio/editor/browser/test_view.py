@@ -23,7 +23,8 @@ PANEL = '[class*="tabler-icon-cloud"]'  # viser's sign of the connection, at the
 def slide(page: Page, label: str, value: float) -> dict[str, float]:
     """Put a slider somewhere; where the coordinates are then."""
 
-    moved = f'"{label.partition(" [")[0]}"'
+    # A coordinate, a parameter, or the exaggeration.
+    moved = f'"{label.removesuffix(", slider").partition(" [")[0]}"'
 
     def is_of_slider(answer: Response) -> bool:
         return answer.url.endswith("/api/pose") and moved in (answer.request.post_data or "")
