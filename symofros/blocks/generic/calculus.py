@@ -149,7 +149,7 @@ class Integrator(Block):
         return found
 
     def crossed(self, context: EvaluationContext, which: str) -> Values:
-        """Back to the start; at a limit, exactly; or away from it."""
+        """Back to the start; at a limit, exactly, or as far from it as has left it."""
         x = context.states["x"]
         if which == "reset":
             first = x * 0.0 + np.asarray(self.start, dtype=np.float64)
@@ -158,9 +158,9 @@ class Integrator(Block):
         own = np.zeros(x.shape)
         own[entry] = 1.0
         at_limit = context.memory[limit.name] * (1.0 - own)
-        return (
-            {limit.name: at_limit} if leaves else {limit.name: at_limit + own, "x": x * (1.0 - own) + limit.value * own}
-        )
+        at_limit = at_limit if leaves else at_limit + own
+        place = limit.value - limit.sign * limit.margin * leaves
+        return {limit.name: at_limit, "x": x * (1.0 - own) + place * own}
 
     @cached_property
     def _limits(self) -> dict[str, _Limit]:
