@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, sin
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
-from tests.simulation.rigid_scenes import GROUND, WITHOUT_ANSWER, box, rested, three_feet
+from tests.simulation.rigid_scenes import GROUND, WITHOUT_ANSWER, G, box, box_system, rested, three_feet
 
 
 def settled(run: sf.Trajectory) -> None:
@@ -84,3 +86,22 @@ def test_strikes_in_sequence_for_want_of_another_answer_are_noted(share: float, 
     ]
     said = "several balls struck one after the other at t = 0 s, as no motion was found in which they do at once"
     assert [sum(note.startswith(said) for note in one.notes) for one in outcomes] == [heard] * 3, outcomes
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5"])
+def test_a_box_that_a_closure_takes_where_it_stands_is_held_and_let_go(method: Any) -> None:
+    """Held in all directions its feet can't move, whatever presses them: let go, it stands on them again."""
+    every = ("x", "y", "z")
+    hold = sf.Closure("hold", GROUND, ("box", None), every, rotations=every)
+    switch = sf.Switch("hold", "grip", "moment")
+    described = replace(
+        box_system(0.3), parameters=(sf.Parameter("grip", 0.0),), constraints=(hold,), switches=(switch,)
+    )
+    m = sf.compile(described)
+    takes, gives = (sf.Event(f"t - {t}", action={"grip": grip}) for t, grip in ((0.0501, 1), (0.0801, 0)))
+    begin, events = {"free.vx": 1.0}, {"takes": takes, "gives": gives}
+    run = sf.simulate(m, rested(m, 0.1), begin, t_end=0.2, dt=1e-3, method=method, events=events)
+    stop = 0.0501 - 0.5 * 0.3 * G * 0.0501**2
+    assert run.outcome.ok
+    np.testing.assert_allclose(run.q[-1], [stop, 0, 0.1, 0, 0, 0, 1], atol=1e-9)
+    np.testing.assert_allclose(run.v[run.t > 0.0502], 0.0, atol=1e-9)

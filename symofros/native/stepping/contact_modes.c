@@ -191,10 +191,22 @@ static int32_t sym_solve_part(sym_contact_problem *p, const int32_t *part, int32
     return status;
 }
 
+/* No ball is pressed: all are open. */
+static void sym_leave_without_forces(sym_contact_problem *p) {
+    int32_t i;
+    for (i = 0; i < p->n; ++i) p->mode[i] = SYM_OPEN;
+    for (i = 0; i < 3 * p->n; ++i) p->f[i] = 0.0, p->c[i] = p->b[i];
+    p->shared = 0;
+}
+
 /* Forces and modes that agree with Coulomb's law, part by part. Returns 0 or a status. */
 static int32_t sym_solve_contacts(sym_contact_problem *p, int32_t unique) {
     int32_t part[SYM_MOST_CONTACTS], i, j, k, status = 0;
     for (i = 0, p->size = 0.0; i < 3 * p->n; ++i) p->size = fmax(p->size, fabs(p->b[i]));
+    if (p->size <= SYM_HELD_POINTS) {
+        sym_leave_without_forces(p);
+        return 0;
+    }
     for (i = 0, p->shared = 0; i < p->n; ++i) {
         part[i] = i;
         for (j = 0; j < i; ++j) {

@@ -10,6 +10,8 @@ enum { SYM_DIRECT_TURNS = 25, SYM_MOST_REFINEMENTS = 12 };
 #define SYM_FORCE_ROUNDING 1e-12
 #define SYM_CONTACT_ROUNDING 1e-10
 #define SYM_MARGIN_ROUNDING 1e-9
+/* What points that other constraints hold do by rounding [m/s^2, m/s]. */
+#define SYM_HELD_POINTS 1e-13
 
 typedef struct sym_contact_problem { /* c = W f + b, of n balls: x, y and normal of each */
     int32_t n;

@@ -251,7 +251,7 @@ static int32_t sym_is_idle(const sym_contact_problem *p, int32_t ball) {
     int32_t j;
     if (p->mode[ball] != SYM_OPEN || p->parts[ball]) return 0;
     for (j = 0; j < n; ++j) c += p->W[n * row + j] * p->f[j], size += fabs(p->W[n * row + j] * p->f[j]);
-    return fabs(c) <= SYM_FORCE_ROUNDING * size;
+    return fabs(c) <= fmax(SYM_HELD_POINTS, SYM_FORCE_ROUNDING * size);
 }
 
 /* Impacts and modes of rigid contacts at the present state, as of sym_settle_contacts. *again: whether speeds of balls have been
