@@ -42,7 +42,7 @@ from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.beams import omitted_rotary_inertia
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.remarks import rounded_rotations
+from symofros.mechanics.topology.remarks import rotation_remarks
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree, build_tree
 from symofros.runtime.background import BackgroundCompilation
@@ -223,8 +223,8 @@ class Compilation:
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""
         chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
-        rounded = (text for text in rounded_rotations(self.system) if text not in self.system.notes)
-        for text in (*inconsistencies(self.system), *rounded, *self._held_beams()):
+        remarks = (text for text in rotation_remarks(self.system) if text not in self.system.notes)
+        for text in (*inconsistencies(self.system), *remarks, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
         toolchain, on_tape = _choose_toolchain(self.options)
         background = None

@@ -24,7 +24,7 @@ from symofros.errors import Argument, DescriptionError, Problem, did_you_mean
 from symofros.mechanics.topology.graph import find_problems, name_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
-from symofros.mechanics.topology.remarks import rounded_rotations
+from symofros.mechanics.topology.remarks import rotation_remarks
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
@@ -124,7 +124,7 @@ def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
         raise DescriptionError(in_order([*reading.problems, *problems]))
     system = reading.system
     units = [f"{problem.what}: {problem.found}; {problem.rule}" for problem in unit_problems(system)]
-    remarks = [*units, *rounded_rotations(system)]
+    remarks = [*units, *rotation_remarks(system)]
     return replace(system, notes=(*system.notes, *remarks)) if remarks else system, reading.sources
 
 

@@ -18,6 +18,8 @@ from symofros.simulation.results.examination.run import ExaminedRun
 # A power is a difference over this share of a step, or of the time in which the largest speed arises where that is
 # shorter; but not shorter than this share of that.
 _MOMENT, _SHORTEST = 1e-3, 1e-60
+# Difference of two energies, over their parts, that is rounding: no power.
+_ROUNDING = 1e-15
 # Growth of speeds that no mechanism explains.
 EXPLODED = 1e6
 # Kinetic energy, over the first, up to which growth is held against the work of forces.
@@ -163,12 +165,15 @@ def _power(run: ExaminedRun, step: float, states: States) -> Array:
     # Nor is a force the same over more than a small angle.
     turning = np.abs(v[:, np.array(model.record.measures.speed) == ROTATION]).max(axis=1, initial=0.0)
     moment = np.minimum(moment, _MOMENT / np.maximum(turning, 1e-300))
-    ends = []
+    ends, size = [], np.zeros(len(t))
     for s in (moment, -moment):
         q_s, v_s = retract(model.record.segments, q, s[:, np.newaxis] * v), v + s[:, np.newaxis] * a
         kinetic = model.kinetic_energy(q_s, v_s, u=u, par=par)
-        ends.append(kinetic + model.potential_energy(q_s, u=u, par=par, t=t + s, z=model.states_of(v_s)))
-    rate: Array = (ends[0] - ends[1]) / (2.0 * moment)
+        potential = model.potential_energy(q_s, u=u, par=par, t=t + s, z=model.states_of(v_s))
+        ends.append(kinetic + potential)
+        size += np.abs(kinetic) + np.abs(potential)
+    change = ends[0] - ends[1]
+    rate: Array = np.where(np.abs(change) > _ROUNDING * size, change, 0.0) / (2.0 * moment)
     if model.nc:
         violated = model.constraint_rate(q, v, u=u, par=par, t=t)  # Zero of what is released, as of balls that slide.
         rate = rate - np.einsum("ij,ij->i", lam, violated)
