@@ -7,12 +7,14 @@ from collections.abc import Callable
 from symofros.expr.packs.check import check_packs
 from symofros.expr.program import Program
 from symofros.generator.passes.chain import chain_sums
-from symofros.generator.passes.stage import check_staged, hoist_parameters
+from symofros.generator.passes.stage import check_parameters_unread, check_staged, hoist_parameters
 
-# In order: a pass, and the check of its post-condition. Packs are verified after each pass besides.
+# In order: a pass, and the check of its post-condition. Packs are verified after each pass besides. In chains terms
+# cancel that were apart, which leaves further values to parameters alone.
 PIPELINE: tuple[tuple[Callable[[Program], Program], Callable[[Program], None]], ...] = (
     (hoist_parameters, check_staged),
-    (chain_sums, check_staged),
+    (chain_sums, check_parameters_unread),
+    (hoist_parameters, check_staged),
 )
 
 

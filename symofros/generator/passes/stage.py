@@ -17,13 +17,15 @@ def hoist_parameters(program: Program) -> Program:
     """Split every function at the border between parameters and the rest.
 
     Args:
-        program: Unstaged.
+        program: Unstaged, or staged and changed since.
 
     Returns:
         The program with `init` and `pre` filled in; its functions' outputs are unchanged.
     """
     graph = program.graph
     fixed = _parameter_only(graph)
+    if not fixed:
+        return replace(program, sizes={**program.sizes, "pre": 0})
     border: set[int] = set()
     for function in program.functions:
         edges = function.edges()
@@ -46,8 +48,8 @@ def _parameter_only(graph: Graph) -> set[int]:
     return fixed
 
 
-def check_staged(program: Program) -> None:
-    """Verify the post-condition.
+def check_parameters_unread(program: Program) -> None:
+    """Verify that functions read no parameters.
 
     Raises:
         AssertionError: A function still reads `par`.
@@ -58,3 +60,18 @@ def check_staged(program: Program) -> None:
             for arg in map(abs, graph.args[node]):
                 if arg not in program.pre and arg in graph.slot:
                     assert graph.slot[arg].group != "par", f"{function.name} reads par at node {node}"
+
+
+def check_staged(program: Program) -> None:
+    """Verify the post-condition.
+
+    Raises:
+        AssertionError: A function still reads `par`, or computes what only parameters determine.
+    """
+    check_parameters_unread(program)
+    graph, pre = program.graph, program.pre
+    for function in program.functions if pre else ():
+        for node in needed_nodes(graph, function.edges(), pre):
+            args = graph.args[node]
+            alone = bool(args) and all(abs(arg) in pre or graph.is_constant(arg) for arg in args)
+            assert not alone, f"{function.name} computes node {node}, which only parameters determine"

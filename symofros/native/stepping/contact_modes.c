@@ -194,7 +194,10 @@ static int32_t sym_solve_part(sym_contact_problem *p, const int32_t *part, int32
 /* No ball is pressed: all are open. */
 static void sym_leave_without_forces(sym_contact_problem *p) {
     int32_t i;
-    for (i = 0; i < p->n; ++i) p->mode[i] = SYM_OPEN;
+    for (i = 0; i < p->n; ++i) {
+        p->mode[i] = SYM_OPEN;
+        if (!p->slides[i]) p->d[2 * i] = 1.0, p->d[2 * i + 1] = 0.0;
+    }
     for (i = 0; i < 3 * p->n; ++i) p->f[i] = 0.0, p->c[i] = p->b[i];
     p->shared = 0;
 }

@@ -3,7 +3,9 @@ from __future__ import annotations
 import numpy as np
 
 import symofros as sf
+from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import needed_nodes
+from symofros.expr.program import Function, Output, Program
 from symofros.generator.passes import run_passes
 from symofros.generator.passes.count import count_operations, count_program
 from symofros.generator.passes.stage import hoist_parameters
@@ -40,3 +42,16 @@ def test_an_output_that_is_a_parameter_needs_no_work_per_call() -> None:
     model = sf.compile(sf.System("s", [slider], [sf.Parameter("m", 3.0)]))
     np.testing.assert_array_equal(model.mass_matrix([0.5]), [[3.0]])
     np.testing.assert_array_equal(model.with_parameters(m=4.0).mass_matrix([[0.5], [0.6]]), [[[4.0]], [[4.0]]])
+
+
+def test_what_is_left_to_parameters_by_terms_that_cancel_is_hoisted() -> None:
+    """3 (q0 + p0 p1 + q1 - q0 - q1) q2: a vector by states has no place for the product of a number and a parameter."""
+    g = Graph()
+    p, q = [g.input("par", i) for i in range(2)], [g.input("q", i) for i in range(3)]
+    left, right = g.add(g.add(q[0], g.mul(*p)), q[1]), g.add(q[0], q[1])
+    edge = g.mul(g.mul(g.constant(3.0), g.sub(left, right)), q[2])
+    outputs = (Output("y", (1,), (edge,)),)
+    program = run_passes(Program("p", g, {"q": 3, "par": 2}, (Function("f", "", ("q", "par"), outputs),)))
+    function = program.functions[0]
+    (node,) = needed_nodes(program.graph, function.edges(), program.pre)
+    assert sorted(abs(arg) in program.pre for arg in program.graph.args[node]) == [False, True]
