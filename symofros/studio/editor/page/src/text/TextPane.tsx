@@ -1,5 +1,4 @@
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
-import { yaml } from "@codemirror/lang-yaml";
 import { bracketMatching, indentOnInput } from "@codemirror/language";
 import { type Diagnostic, lintGutter, setDiagnostics } from "@codemirror/lint";
 import { highlightSelectionMatches, search, searchKeymap } from "@codemirror/search";
@@ -15,6 +14,7 @@ import { reveal } from "../store/folding";
 import { now, update, useDocument, useStore } from "../store/store";
 import { sentBefore } from "../store/unsent";
 import { appearance } from "./appearance";
+import { yaml } from "./language";
 import { markedLines, markLines } from "./marked_lines";
 
 const PAUSE = 400;
