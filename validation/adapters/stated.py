@@ -1,4 +1,4 @@
-"""A rigid description as a neutral tree, as engines of the matrix are stated theirs."""
+"""A rigid description as a neutral tree, the form that engines of the matrix take."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import poses
+from ..truth import lines, poses
 from .function import Function, functions_of
 
 
@@ -82,33 +82,33 @@ def _parameters() -> dict[str, Function]:
 def _lines() -> dict[str, Function]:
     """The line through a along v + (4, -8, 8), the one through tau along v2 + (8, 4, 4); moments are x cross d."""
     rows = {
-        "line": ("moment and unit direction of the first line (6)", poses.line),
-        "line_placed": ("the same of that line, given in Y, in the frame that Y is in (6)", poses.line_placed),
-        "line_nearest": ("its point nearest to tau (3)", poses.line_nearest),
-        "line_nearest_to_origin": ("its point nearest to the origin (3)", poses.line_nearest_to_origin),
-        "lines_apart": ("distance of the two lines (1)", poses.lines_apart),
+        "line": ("moment and unit direction of the first line (6)", lines.line),
+        "line_placed": ("the same of that line, given in Y, in the frame that Y is in (6)", lines.line_placed),
+        "line_nearest": ("its point nearest to tau (3)", lines.line_nearest),
+        "line_nearest_to_origin": ("its point nearest to the origin (3)", lines.line_nearest_to_origin),
+        "lines_apart": ("distance of the two lines (1)", lines.lines_apart),
         "lines_perpendicular": (
             "moment and unit direction of the line at right angles through both (6)",
-            poses.common_perpendicular,
+            lines.common_perpendicular,
         ),
-        "line_of_plane": ("its point in the plane through tau, normal to v2 + (8, -4, 4) (3)", poses.line_of_plane),
+        "line_of_plane": ("its point in the plane through tau, normal to v2 + (8, -4, 4) (3)", lines.line_of_plane),
         "line_of_planes": (
             "moment, unit direction of the line of the planes through a, tau, normal to (4, -8, 8), (8, 4, 4) (6)",
-            poses.line_of_planes,
+            lines.line_of_planes,
         ),
-        "planes_meet": ("the point of these and the one through v2 normal to (8, -4, 4) (3)", poses.planes_meet),
+        "planes_meet": ("the point of these and the one through v2 normal to (8, -4, 4) (3)", lines.planes_meet),
         "plane_of_points": (
             "distance of the origin from the plane of the first line and tau (1)",
-            poses.plane_of_points,
+            lines.plane_of_points,
         ),
         "plane_of_lines": (
             "distance of the origin from the plane of the first line that is parallel to the second (1)",
-            poses.plane_of_lines,
+            lines.plane_of_lines,
         ),
-        "screw_pitch": ("advance for a radian of the twist (a; v + (4, -8, 8)) (1)", poses.screw_pitch),
-        "screw_line": ("moment and unit direction of the line that it turns about (6)", poses.screw_line),
-        "screw_pole": ("the point of that line nearest to the origin (3)", poses.screw_pole),
-        "screw_of_line": ("twist of unit angular part about the first line, of pitch 3/8 (6)", poses.screw_of_line),
+        "screw_pitch": ("advance for a radian of the twist (a; v + (4, -8, 8)) (1)", lines.screw_pitch),
+        "screw_line": ("moment and unit direction of the line that it turns about (6)", lines.screw_line),
+        "screw_pole": ("the point of that line nearest to the origin (3)", lines.screw_pole),
+        "screw_of_line": ("twist of unit angular part about the first line, of pitch 3/8 (6)", lines.screw_of_line),
     }
     return functions_of(rows, "turns")
 

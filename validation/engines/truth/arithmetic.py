@@ -115,11 +115,15 @@ def quaternion_rotation(w: Exact, x: Exact, y: Exact, z: Exact) -> Exact:
     return eye(3) + (2 * w * turned + 2 * (turned @ turned)) / (w * w + u @ u)
 
 
+def normalised(vector: Exact) -> Exact:
+    """A vector at unit length."""
+    return vector / root(vector @ vector)
+
+
 @lru_cache(maxsize=256)
 def unit(axis: tuple[float, ...]) -> Exact:
     """A direction at unit length, to all digits."""
-    vector = exact(axis)
-    return vector / root(vector @ vector)
+    return normalised(exact(axis))
 
 
 def orthonormal(rows: object) -> Exact:
