@@ -23,7 +23,7 @@ def test_skipped_tests_are_counted_by_requirement() -> None:
 
 
 def test_files_that_are_skipped_by_each_worker_count_once() -> None:
-    assert summary({"extra usd": ["tests/description/test_usd.py"] * 2}) == "left out: 1 for extra usd"
+    assert summary({"extra usd": ["tests/description/usd/test_usd.py"] * 2}) == "left out: 1 for extra usd"
 
 
 def test_a_missing_package_skips_with_its_extra() -> None:

@@ -1,7 +1,7 @@
 """How formulas are read, or why they are not, and what is wrong with files, as text.
 
 Cases: formulas.txt and unclear.txt, one formula a line; faults.txt, one change a line of a sound file, "old => new".
-For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt; usd.txt, in calls of usd_models.py) a line is such a
+For foreign formats (mjcf.txt, sdf.txt, urdf.txt, mimic.txt; usd.txt, in calls of usd/models.py) a line is such a
 change, too, or what a file has beside a sound one, "+ ...", or in its place. What is said of it is a line of notes, or
 the fault with its place. Cases of *_read.txt are whole files, or what is inside, and what is read of them.
 """
@@ -21,7 +21,10 @@ import pytest
 import symofros as sf
 from symofros.description.parser import ExpressionError, parse
 from symofros.expr.expression import evaluate
-from tests.description import mjcf_models, sdf_models, urdf_models, usd_models
+from tests.description.mjcf import models as mjcf_models
+from tests.description.sdf import models as sdf_models
+from tests.description.urdf import models as urdf_models
+from tests.description.usd import models as usd_models
 from tests.late import require
 from tests.models import interpreted
 from tests.program_text import Case, assert_golden, golden_cases

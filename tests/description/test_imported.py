@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from symofros.description.imported.stops import PERIOD, apparent_inertias
 from symofros.loading import load_with_sources
-from tests.description.usd_models import body, joint, stage
+from tests.description.usd.models import body, joint, stage
 
 MOMENTS = 'ixx="0.1" iyy="0.2" izz="0.15" ixy="0" ixz="0" iyz="0"'
 LINK = f'<link name="{{}}"><inertial><origin xyz="0 0 -0.3"/><mass value="2"/><inertia {MOMENTS}/></inertial></link>'

@@ -10,8 +10,9 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.description import sdf_models, usd_models
 from tests.description.hostile_names import HOSTILE, hostile_system
+from tests.description.sdf import models as sdf_models
+from tests.description.usd import models as usd_models
 
 ROOT = Path(__file__).parents[2]
 SEEDS = range(300)

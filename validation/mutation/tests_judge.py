@@ -65,7 +65,7 @@ _MIRRORS = {
     "symofros/description/yaml": ("tests/description", "tests/description/test_files.py"),
     "symofros/description/urdf": (
         "tests/description",
-        "tests/description/test_urdf_kinds.py",
+        "tests/description/urdf/test_kinds.py",
         "tests/description/test_packages.py",
     ),
     "symofros/diagrams/run/simulate.py": (

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import symofros as sf
 from symofros.__main__ import app as symofros_app
 from symofros.commands.reading import ReadingOptions
-from tests.description.mjcf_models import MODELS, document
+from tests.description.mjcf.models import MODELS, document
 from tests.models import sampled
 from tests.validation.subjects import subject_of
 from validation.__main__ import app

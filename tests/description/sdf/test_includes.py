@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from symofros.description.sdf import includes
 from tests.description.reading import refused
-from tests.description.sdf_models import MODELS, document, link
+from tests.description.sdf.models import MODELS, document, link
 from tests.models import interpreted
 
 WHEEL = '<sdf version="1.9"><model name="wheel">{}</model></sdf>'

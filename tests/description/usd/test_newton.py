@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.description.usd_models import body, joint, prim, stage
+from tests.description.usd.models import body, joint, prim, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")

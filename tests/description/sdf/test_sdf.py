@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from tests.description import reading
-from tests.description.sdf_models import MODELS, document, link
+from tests.description.sdf.models import MODELS, document, link
 from tests.models import interpreted
 
 load = partial(reading.load, name="model.sdf")

@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.yaml.files import read_yaml
-from tests.description.test_mjcf import FLOOR, STATES, Reference, close, write
+from tests.description.mjcf.test_mjcf import FLOOR, STATES, Reference, close, write
 
 ARM = """
     <compiler angle="radian"/>

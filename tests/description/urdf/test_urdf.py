@@ -11,7 +11,8 @@ import pytest
 
 import symofros as sf
 from symofros.description.closing import closing_remedy
-from tests.description import reading, urdf_models
+from tests.description import reading
+from tests.description.urdf import models as urdf_models
 from validation.inputs.cases import robot_case
 
 ROBOT, MIMIC = map(urdf_models.document, (urdf_models.ROBOT, urdf_models.MIMIC))

@@ -11,7 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.description.mjcf import files as mjcf_files
-from tests.description.mjcf_models import MODELS, PENDULUM, document
+from tests.description.mjcf.models import MODELS, PENDULUM, document
 from tests.description.reading import faults
 from validation.mechanics.geometry import quaternion_matrix
 

@@ -10,7 +10,7 @@ import pytest
 
 import symofros as sf
 from symofros.base.rotations import axis_rotation, quaternion_matrix
-from tests.description.usd_models import ARM, HALF, LOCKED, body, freedoms, joint, stage
+from tests.description.usd.models import ARM, HALF, LOCKED, body, freedoms, joint, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")

@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from symofros.description.usd.stage import warnings_of
 from symofros.description.workers import MAX_PRINTED, answer_of
-from tests.description.usd_models import ARM, body, joint, stage
+from tests.description.usd.models import ARM, body, joint, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")

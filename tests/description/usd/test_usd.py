@@ -15,7 +15,7 @@ from symofros.description.usd import stage as usd_stage
 from symofros.description.usd.masses import _unit_shape
 from symofros.description.usd.reader import names_of
 from symofros.description.usd.usd_worker import shortest
-from tests.description.usd_models import ARM, HALF, LOCKED, body, freedoms, joint, placed, prim, shape, stage
+from tests.description.usd.models import ARM, HALF, LOCKED, body, freedoms, joint, placed, prim, shape, stage
 from tests.late import require
 
 require("pxr.Usd", "usd")
