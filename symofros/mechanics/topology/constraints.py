@@ -87,15 +87,28 @@ def constraint_problems(
         anchors = [item.first, item.second] if isinstance(item, BETWEEN_FRAMES) else [item.anchor]
         for anchor in anchors:
             yield from anchor_problems(what, anchor, bodies, base, broken, where)
-        names = {base.name if name == WORLD else name for name, _ in anchors}
-        if len(anchors) == 2 and len(names) == 1:
-            yield Problem(
-                f"{what}: both frames are on body '{anchors[0][0]}'",
-                f"'{anchors[0][1]}', '{anchors[1][1]}'",
-                "a closure joins two different bodies",
-                "name a frame of another body",
-                where,
-            )
+        if isinstance(item, BETWEEN_FRAMES):
+            yield from same_body_problems(what, (item.first, item.second), base, where)
+
+
+def same_body_problems(what: str, anchors: tuple[Anchor, Anchor], base: Body, where: str) -> Iterator[Problem]:
+    """Two frames of one body, between which nothing can move.
+
+    Args:
+        what: The thing that names them, for the message.
+        anchors: (body, frame) of both.
+        base: The base, which "world" stands for.
+        where: "file:line".
+    """
+    (first, of_first), (second, of_second) = anchors
+    if len({base.name if name == WORLD else name for name in (first, second)}) == 1:
+        yield Problem(
+            f"{what}: both frames are on body '{first}'",
+            ", ".join("the body frame" if frame is None else f"'{frame}'" for frame in (of_first, of_second)),
+            "it joins frames of two bodies, which can move against each other",
+            "name a frame of another body",
+            where,
+        )
 
 
 def _slopes(value: Value, names: Collection[str] | None) -> bool:

@@ -1,4 +1,4 @@
-"""Checks of contacts: two bodies, and numbers that a ball and a surface can have."""
+"""Checks of contacts: numbers that a ball and a surface can have."""
 
 from __future__ import annotations
 
@@ -25,19 +25,6 @@ _SIGNS: dict[str, tuple[Sign, str, str]] = {
     "bristle_damping": ("positive", "bristles that are bent too far relax by their damping", "give one above zero"),
     "minimum_velocity": ("positive", "friction is smoothed over a speed above zero", "give a small one, such as 0.001"),
 }
-
-
-def contact_problems(system: System) -> Iterator[Problem]:
-    """Contacts of a body with itself."""
-    for contact in system.contacts:
-        if contact.first[0] == contact.second[0]:
-            yield Problem(
-                f"contact '{contact.name}': balls and surface are on one body",
-                f"'{contact.first[0]}'",
-                "a contact is between two bodies that move against each other",
-                "choose a frame of another body, or 'world'",
-                system.origin.get(("connection", contact.name), ""),
-            )
 
 
 def contact_conditions(system: System) -> Iterator[Condition]:

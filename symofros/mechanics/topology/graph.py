@@ -18,8 +18,13 @@ from symofros.errors import Argument, DescriptionError, Problem, did_you_mean, f
 from symofros.expr.expression import CONSTANTS
 from symofros.mechanics.topology.beams import beam_conditions, beam_number_problems, beam_problems
 from symofros.mechanics.topology.conditions import violations
-from symofros.mechanics.topology.constraints import anchor_problems, constraint_conditions, constraint_problems
-from symofros.mechanics.topology.contacts import contact_conditions, contact_problems
+from symofros.mechanics.topology.constraints import (
+    anchor_problems,
+    constraint_conditions,
+    constraint_problems,
+    same_body_problems,
+)
+from symofros.mechanics.topology.contacts import contact_conditions
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
 from symofros.mechanics.topology.frames import frame_remedy, frames_of
@@ -316,9 +321,13 @@ class _Checker:
         for connection in self.system.connections:
             kind = "connection" if isinstance(connection, Connection) else "contact"
             where, what = self.where("connection", connection.name), f"{kind} '{connection.name}'"
-            for anchor in (connection.first, connection.second):
+            anchors = (connection.first, connection.second)
+            for anchor in anchors:
                 yield from anchor_problems(what, anchor, self.bodies, self.base, self.broken, where)
-        yield from contact_problems(self.system)
+            # A beam deforms: its frames move against each other, as a bowstring's ends do.
+            bends = isinstance(connection, Connection) and isinstance(self.bodies.get(anchors[0][0]), Beam)
+            if anchors[0] == anchors[1] or not bends:
+                yield from same_body_problems(what, anchors, self.base, where)
         yield from rigid_contact_problems(self.system)
         yield from self._unique("constraint", [item.name for item in self.system.constraints])
         yield from constraint_problems(self.system, self.bodies, self.base, self.broken)

@@ -8,7 +8,8 @@ and a degree pi/180.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from symofros.base.units import NAMES, parse
 from symofros.description.beams.beam import STATION
 from symofros.description.system import System
 from symofros.errors import DescriptionError, Problem
-from symofros.expr.expression import Expression
+from symofros.expr.expression import CONSTANTS, Expression
 from symofros.mechanics.topology.coordinates import (
     coordinate_symbols,
     joint_units,
@@ -32,14 +33,27 @@ _BASE = ("kg", "m", "s", "A", "K", "mol", "cd")
 
 
 class Measure(NamedTuple):
-    """Powers of kg, m, s, A, K, mol and cd, and how much of that a number of 1 is: 0.001 of a length in mm."""
+    """Powers of kg, m, s, A, K, mol and cd, and how much of that a number of 1 is: 0.001 of a length in mm.
+
+    `numbers` is the product of the numbers among its factors, which leave it open; None where there are none.
+    """
 
     powers: tuple[Fraction, ...]
     scale: float = 1.0
+    numbers: float | None = None
+
+    @property
+    def unconverted(self) -> Measure | None:
+        """The measure itself, without its numbers where those do not convert its scale to SI; None where they may."""
+        if self.numbers is None:
+            return self
+        if self.scale == 1.0 or not math.isfinite(self.numbers) or self.numbers == 0.0:
+            return None
+        size = math.log(abs(self.numbers))
+        return Measure(self.powers, self.scale) if abs(size) < abs(size - math.log(self.scale)) else None
 
 
 _ONE = Measure((Fraction(0),) * len(_BASE))
-_SAME = ("abs", "min", "max")
 _RATIOS = ("sign", "atan2")
 
 
@@ -62,6 +76,7 @@ def unit_problems(system: System) -> Iterator[Problem]:
         except DescriptionError as error:
             where, fault = system.origin.get((kind, name), ""), error.problem
             yield Problem(f"{kind} '{name}': no such unit", fault.found, fault.rule, fault.remedy, where)
+    known |= {name: _number(value) for name, value in CONSTANTS.items()}
     known |= {TIME: _parsed("s"), STATION: _parsed("m"), "xi": _ONE} | _motion_units(system)
     if not any(known.get(symbol_of(name)) for _, name, _ in declared):
         return
@@ -76,6 +91,7 @@ def unit_problems(system: System) -> Iterator[Problem]:
         except _Clash as clash:
             yield Problem(f"{stated.what}: units do not go together", f"'{stated.value}'", str(clash), _REMEDY, where)
             continue
+        actual = _judged(actual, {unit.powers for unit in wanted if unit is not None})
         if actual is not None and None not in wanted and actual not in wanted:
             remedy = _REMEDY
             if Measure(actual.powers) in wanted:
@@ -121,9 +137,9 @@ def _measure(text: str) -> Measure:
     return _scaled(tuple(map(Fraction, unit.powers[: len(_BASE)])), unit.scale)
 
 
-def _scaled(powers: tuple[Fraction, ...], scale: float) -> Measure:
+def _scaled(powers: tuple[Fraction, ...], scale: float, numbers: float | None = None) -> Measure:
     """A measure whose scale is without rounding, so that equal ones compare equal."""
-    return Measure(powers, float(f"{scale:.12g}"))
+    return Measure(powers, float(f"{scale:.12g}"), numbers)
 
 
 def shown(measure: Measure) -> str:
@@ -131,7 +147,7 @@ def shown(measure: Measure) -> str:
     powers = measure.powers
     if measure.scale != 1.0:
         named = (name for name in NAMES if _parsed(name) == measure)
-        return next(named, f"{measure.scale:.6g} {shown(Measure(powers))}")
+        return next(named, f"{measure.scale:.6g} {shown(Measure(powers))}".removesuffix(" 1"))
     for name in ("N", "J", "W", "Pa"):
         if tuple(map(Fraction, NAMES[name].powers[: len(_BASE)])) == powers:
             return {"J": "N m", "W": "N m/s", "Pa": "N/m^2"}.get(name, name)
@@ -153,11 +169,13 @@ def _unit_of(formula: Expression, known: Mapping[str, Measure | None]) -> Measur
     """
     kind = formula.kind
     if kind == "number":
-        return None
+        return _number(formula.number)
     if kind == "symbol":
         return known.get(formula.name)
     args = [_unit_of(argument, known) for argument in formula.args]
-    if kind == "neg" or kind in _SAME or kind in ("add", "sub"):
+    if kind in ("neg", "abs"):
+        return args[0]
+    if kind in ("add", "sub", "min", "max"):
         return _common(formula, args)
     if kind in ("mul", "div"):
         left, right = args
@@ -165,13 +183,14 @@ def _unit_of(formula: Expression, known: Mapping[str, Measure | None]) -> Measur
             return None
         sign = 1 if kind == "mul" else -1
         powers = tuple(a + sign * b for a, b in zip(left.powers, right.powers, strict=True))
-        return _scaled(powers, left.scale * right.scale**sign)
+        return _scaled(powers, left.scale * right.scale**sign, _product(left.numbers, right.numbers, sign))
     if kind == "pow" or kind == "sqrt":
         return _power(formula, args[0])
     if kind in _RATIOS:
         _common(formula, args)
         return _ONE
     for argument, unit in zip(formula.args, args, strict=True):
+        unit = _judged(unit, {_ONE.powers})
         if unit is not None and unit != _ONE:
             raise _Clash(f"the argument of {kind} is a ratio or an angle; '{argument}' is in {shown(unit)}")
     return _ONE
@@ -185,12 +204,37 @@ def _power(formula: Expression, base: Measure | None) -> Measure | None:
     if base is None or (exponent is None and base != _ONE):
         return None
     power = Fraction(exponent or 0.0).limit_denominator(60)
-    return _scaled(tuple(power * a for a in base.powers), base.scale ** float(power))
+    numbers = None if base.numbers is None else _product(1.0, abs(base.numbers), float(power))
+    return _scaled(tuple(power * a for a in base.powers), base.scale ** float(power), numbers)
+
+
+def _number(value: float) -> Measure:
+    return Measure(_ONE.powers, 1.0, value)
+
+
+def _product(left: float | None, right: float | None, power: float) -> float | None:
+    """The numbers of left times right to a power, NaN where they have no product; None where there are none."""
+    if left is None and right is None:
+        return None
+    try:
+        return math.prod((1.0 if left is None else left, math.pow(1.0 if right is None else right, power)))
+    except (ValueError, OverflowError):
+        return math.nan
+
+
+def _judged(unit: Measure | None, powers: Collection[tuple[Fraction, ...]]) -> Measure | None:
+    """What is known of a unit: of an open one, that it is not converted, where it has powers that are looked for."""
+    if unit is None or (unit.numbers is not None and unit.powers not in powers):
+        return None
+    return unit.unconverted
 
 
 def _common(formula: Expression, units: list[Measure | None]) -> Measure | None:
-    stated = {unit for unit in units if unit is not None}
+    closed = {unit.powers for unit in units if unit is not None and unit.numbers is None}
+    judged = [_judged(unit, closed) for unit in units]
+    stated = {unit for unit in judged if unit is not None}
     if len(stated) > 1:
-        parts = [f"'{arg}' in {shown(unit)}" for arg, unit in zip(formula.args, units, strict=True) if unit is not None]
+        pairs = zip(formula.args, judged, strict=True)
+        parts = [f"'{argument}' in {shown(unit)}" for argument, unit in pairs if unit is not None]
         raise _Clash(f"terms have one unit: {', '.join(parts)}")
-    return stated.pop() if stated else None
+    return stated.pop() if stated else next((unit for unit in units if unit is not None and unit.unconverted), None)

@@ -15,7 +15,7 @@
 
 /* What NAME_actuator_efforts returns, beside the number of independent combinations of efforts that move nothing. */
 enum {
-    SYM_EFFORTS_UNKNOWN = -1,      /* an actuator is neither an input nor a speed, or a function is missing */
+    SYM_EFFORTS_UNKNOWN = -1,      /* an actuator is no input or speed, or named twice; or a function is missing */
     SYM_EFFORTS_INCONSISTENT = -2, /* the motion violates phi = 0, G v = b or G a = gamma */
     SYM_EFFORTS_SINGULAR = -3,     /* the mass matrix has no inverse on the motions that constraints allow */
     SYM_EFFORTS_SHORT = -4,        /* the actuators can't produce the motion */

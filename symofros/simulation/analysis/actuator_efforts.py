@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -105,8 +106,8 @@ def actuator_efforts(
         UnknownNameError: An actuator is neither an input nor a speed.
         ShapeError: An array does not fit.
         SymofrosError: A quaternion among the inputs is no rotation.
-        ActuationError: The motion violates the constraints, or these actuators can't produce it; says where, and by
-            how much.
+        ActuationError: An actuator is named twice, the motion violates the constraints, or these actuators can't
+            produce it; says where, and by how much.
     """
     model = model.with_precision("double")
     names = _names(model, actuators)
@@ -168,7 +169,17 @@ def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
                     did_you_mean(name, known) or "name one of these",
                 )
             )
-    return tuple(dict.fromkeys(actuators))
+    twice = [name for name, times in Counter(actuators).items() if times > 1]
+    if twice:
+        raise ActuationError(
+            Problem(
+                f"model '{model.record.name}': an actuator is named more than once",
+                ", ".join(f"'{name}'" for name in twice),
+                "each actuator has one effort, in the order of their names",
+                "name each once",
+            )
+        )
+    return tuple(actuators)
 
 
 def _vector(name: str, values: npt.ArrayLike, size: int) -> Array:

@@ -140,3 +140,16 @@ def test_motions_that_actuators_cannot_produce_are_refused(tmp_path: Path) -> No
     # One number a line, alone: what the call returned; -2 is SYM_EFFORTS_INCONSISTENT.
     answers = done.stdout.splitlines()[1::4]
     assert [int(answer) for answer in answers] == [0, -2, -2, -2]
+
+
+def test_an_actuator_named_twice_is_refused(tmp_path: Path) -> None:
+    name, m = "double_pendulum", compiled("double_pendulum")
+    sf.export(MODELS[name], "c", tmp_path, frames=[])
+    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 2, "joints": 0, "states": 1, "sections": 0}
+    (tmp_path / "main.c").write_text(
+        PROGRAM.substitute(name=name, actuators="SYM_ON_SPEED(1), SYM_ON_SPEED(1)", prescribed="", **sizes)
+    )
+    build(tmp_path, "reactions")
+    given = " ".join(["0.1"] * (m.nq + 2 * m.nv + m.nu) + ["1.0", "1.0", "0.0"])
+    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
+    assert int(done.stdout.splitlines()[1]) == -1  # SYM_EFFORTS_UNKNOWN

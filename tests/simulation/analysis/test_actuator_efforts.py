@@ -191,6 +191,13 @@ def test_efforts_that_act_alike_are_redundant() -> None:
     assert result.efforts == pytest.approx(1.7 / 0.58 * np.array([0.3, 0.7]), rel=1e-9)
 
 
+def test_an_actuator_named_twice_is_refused() -> None:
+    """It would have one column of efforts, and those behind it another place than their names."""
+    m = sf.compile(MODELS["double_pendulum"], INTERPRETED)
+    with pytest.raises(sf.ActuationError, match="named more than once\n  found:  'q1'"):
+        sf.actuator_efforts(m, [0.1, 0.2], [0, 0], [0, 0], ["q1", "q1", "q2"])
+
+
 def test_prescribed_motions_are_not_actuators() -> None:
     arm = sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1))
     bodies = [
