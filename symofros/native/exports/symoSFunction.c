@@ -9,7 +9,8 @@
  *                    'energy'            in q, v         out T, V
  *     Parameters     the model's, or [] for the defaults
  *
- * Ports of no width (u of a model without inputs, lam of one without loops) are left out.
+ * Ports of no width (u of a model without inputs, lam of one without loops) are left out. Parameters hold for a simulation, at
+ * whose start the states are brought onto the constraints; beams bent beyond their theory at the end of a step end it.
  */
 #if !defined(_WIN32) && !defined(_POSIX_C_SOURCE)
 #define _POSIX_C_SOURCE 199309L
@@ -55,6 +56,7 @@ static void mdlInitializeSizes(SimStruct *S) {
     int kind = 0, i, n = 0;
     ssSetNumSFcnParams(S, 3);
     if (ssGetNumSFcnParams(S) != ssGetSFcnParamsCount(S)) return; /* Simulink reports it */
+    for (i = 0; i < 3; ++i) ssSetSFcnParamTunable(S, i, SS_PRM_NOT_TUNABLE);
     plant = chosen(S, &kind);
     if (plant == NULL) {
         ssSetErrorStatus(S, "symoSFunction: no such ModelName or ModelFunction; see symoSFunction.c and symo_models.h");
@@ -64,6 +66,10 @@ static void mdlInitializeSizes(SimStruct *S) {
     if (mxGetNumberOfElements(ssGetSFcnParam(S, 2)) != 0 &&
         mxGetNumberOfElements(ssGetSFcnParam(S, 2)) != (size_t)m->npar) {
         ssSetErrorStatus(S, "symoSFunction: Parameters has one number a parameter of the model, or is []");
+        return;
+    }
+    if (kind == KINEMATICS && plant->n_frames == 0) {
+        ssSetErrorStatus(S, "symoSFunction: kinematics of a model that was exported with frames=[]; export it with some");
         return;
     }
     ssSetNumContStates(S, kind == DIRECT ? m->nq + m->nv : 0);
@@ -127,12 +133,16 @@ static void mdlStart(SimStruct *S) {
 #define MDL_INITIALIZE_CONDITIONS
 static void mdlInitializeConditions(SimStruct *S) {
     int kind = 0;
-    const sym_plant *plant = chosen(S, &kind);
-    const sym_model *m = plant->model();
+    sym_instance *instance = ssGetPWork(S)[0];
+    const sym_model *m = chosen(S, &kind)->model();
     real_T *x = ssGetContStates(S);
-    if (kind != DIRECT) return;
-    memcpy(x, plant->q_start, (size_t)m->nq * sizeof *x);
-    memcpy(x + m->nq, plant->v_start, (size_t)m->nv * sizeof *x);
+    if (kind != DIRECT || instance == NULL) return;
+    memcpy(instance->q, instance->plant->q_start, (size_t)m->nq * sizeof *x);
+    memcpy(instance->v, instance->plant->v_start, (size_t)m->nv * sizeof *x);
+    if (instance->refused < 0 && sym_instance_project(instance) != 0)
+        ssSetErrorStatus(S, "symoSFunction: these Parameters keep the start off the constraints; export with a start near them");
+    memcpy(x, instance->q, (size_t)m->nq * sizeof *x);
+    memcpy(x + m->nq, instance->v, (size_t)m->nv * sizeof *x);
 }
 
 /* The instance's point: from the states, and from the ports. */
@@ -198,6 +208,15 @@ static void mdlOutputs(SimStruct *S, int_T tid) {
         out[0] = ssGetOutputPortRealSignal(S, 1);
         call(S, instance, "potential_energy", NULL, out);
     }
+}
+
+#define MDL_UPDATE
+static void mdlUpdate(SimStruct *S, int_T tid) {
+    int kind = 0;
+    sym_instance *instance = here(S, &kind);
+    (void)tid;
+    if (kind == DIRECT && sym_instance_judge_beams(instance) != 0)
+        ssSetErrorStatus(S, "symoSFunction: a beam bends beyond its theory; divide it, or state theory: strain");
 }
 
 #define MDL_DERIVATIVES

@@ -101,3 +101,39 @@ def test_unknown_model_names_or_functions_of_the_block_are_refused(
     name, folder = block
     with pytest.raises(AssertionError, match="no such ModelName or ModelFunction"):
         run("./block", words[0].replace("MODEL", name), words[1], "0", "1", cwd=folder)
+
+
+def test_the_start_keeps_constraints_of_other_parameters(tmp_path: Path) -> None:
+    """Two cranks joined by a rod: another length moves the start, which stood 0.07 m off the condition."""
+    link, axis = sf.Inertia(1.0, (0.5, 0, 0), (0.1, 0.1, 0.1)), (0, 1, 0)
+    end = [sf.Frame("end", (1, 0, 0))]
+    bodies = [
+        sf.RigidBody("left", sf.Joint("q1", "revolute", axis=axis), link, end),
+        sf.RigidBody("right", sf.Joint("q2", "revolute", axis=axis, position=(2, 0, 0)), link, end),
+    ]
+    rod = sf.Rod("rod", ("left", "end"), ("right", "end"), length="R")
+    system = sf.System("cranks", bodies, [sf.Parameter("R", 2.0)], constraints=[rod])
+    sf.export(system, "sfunction", tmp_path / "cranks", start={"q1": 0.3})
+    compiled(tmp_path / "cranks", "cranks")
+    model = sf.compile(system).with_parameters(R=1.9)
+    q, v, *_ = ports(run("env", "BLOCK_PARAMETERS=1.9", "./block", "cranks", "direct_dynamics", "0", "1", cwd=tmp_path))
+    assert np.abs(model.constraint(q)).max() < 1e-12
+    assert np.abs(q - 0.3).max() < 0.3 and not v.any()
+
+
+def test_a_beam_bent_beyond_its_theory_ends_the_simulation(tmp_path: Path) -> None:
+    boom = sf.Beam("boom", sf.Joint("clamp", "fixed"), length=1.0, rhoA=1.0, EI_z="EI", bend_y=3)
+    system = sf.System("falling", [boom], [sf.Parameter("EI", 50.0)], gravity=(0, -9.81, 0))
+    sf.export(system, "sfunction", tmp_path / "falling")
+    compiled(tmp_path / "falling", "falling")
+    words = ("./block", "falling", "direct_dynamics", "0.5", "1e-3")
+    assert len(ports(run("env", "BLOCK_PARAMETERS=50", *words, cwd=tmp_path))) == 3
+    with pytest.raises(AssertionError, match="a beam bends beyond its theory"):
+        run("env", "BLOCK_PARAMETERS=1", *words, cwd=tmp_path)
+
+
+def test_kinematics_without_frames_are_refused(tmp_path: Path) -> None:
+    sf.export(system_of("four_bar"), "sfunction", tmp_path / "four_bar", start=STARTS["four_bar"], frames=[])
+    compiled(tmp_path / "four_bar", "four_bar")
+    with pytest.raises(AssertionError, match="exported with frames=.."):
+        run("./block", "four_bar", "kinematics", "0", "1", *["0"] * 6, cwd=tmp_path)

@@ -49,6 +49,7 @@ int main(int argc, char **argv) {
     block.parameters[0] = &name, block.parameters[1] = &function, block.parameters[2] = &parameters;
     block.given_parameters = 3;
     mdlInitializeSizes(&block);
+    if (block.error == NULL && block.held_parameters != 3) block.error = "parameters can be tuned, and are read at the start";
     if (block.error != NULL) {
         printf("%s\n", block.error);
         return 1;
@@ -69,7 +70,11 @@ int main(int argc, char **argv) {
     x = at, at += block.n_states;
     memcpy(x, block.states, (size_t)block.n_states * sizeof *x);
     count = (long)(atof(argv[3]) / atof(argv[4]) + 0.5);
-    for (k = 0; k < count && block.n_states > 0; ++k) step(&block, x, (double)k * atof(argv[4]), atof(argv[4]), at);
+    for (k = 0; k < count && block.n_states > 0 && block.error == NULL; ++k) {
+        step(&block, x, (double)k * atof(argv[4]), atof(argv[4]), at);
+        outputs(&block, x, (double)(k + 1) * atof(argv[4]));
+        mdlUpdate(&block, 0);
+    }
     outputs(&block, x, atof(argv[3]));
     for (i = 0; i < block.n_outputs; ++i) {
         for (j = 0; j < block.output_width[i]; ++j) printf("%.17g ", block.output[i][j]);

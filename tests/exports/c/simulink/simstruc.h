@@ -18,7 +18,7 @@ typedef struct mxArray {
 enum { MOST_PORTS = 4 };
 
 typedef struct SimStruct {
-    int wanted_parameters, given_parameters, n_states, n_inputs, n_outputs, n_pointers;
+    int wanted_parameters, given_parameters, held_parameters, n_states, n_inputs, n_outputs, n_pointers;
     const mxArray *parameters[3];
     int input_width[MOST_PORTS], output_width[MOST_PORTS];
     double *states, *rates, *input[MOST_PORTS], *output[MOST_PORTS], t, sample_time;
@@ -32,6 +32,8 @@ typedef struct SimStruct {
 #define ssGetNumSFcnParams(S) ((S)->wanted_parameters)
 #define ssGetSFcnParamsCount(S) ((S)->given_parameters)
 #define ssGetSFcnParam(S, i) ((S)->parameters[i])
+#define SS_PRM_NOT_TUNABLE 0
+#define ssSetSFcnParamTunable(S, i, yes) ((S)->held_parameters += (yes) == SS_PRM_NOT_TUNABLE)
 #define ssSetErrorStatus(S, words) ((S)->error = (words))
 #define ssSetNumContStates(S, n) ((S)->n_states = (n))
 #define ssSetNumDiscStates(S, n) ((void)(S), (void)(n))
