@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from validation.engines.functions import FUNCTIONS
 from validation.engines.functions.carried import CARRIED
-from validation.engines.interface import Slot, State
+from validation.engines.interface import Slot, State, vector
 from validation.engines.models import hostile, urdf_files
 from validation.engines.models.readers import BODY
 from validation.engines.proving.pieces import Layout
@@ -150,3 +150,28 @@ def test_what_the_first_link_sees() -> None:
 
 def test_all_of_them_are_asked_of_any_tree() -> None:
     assert not any(function.needs for function in CARRIED.values())
+
+
+@pytest.mark.parametrize("frame", ["local", "aligned", "world"])
+def test_a_placement_moves_what_it_carries(frame: str) -> None:
+    """Along each axis of the frame before a joint: the difference that a small displacement of it makes."""
+    regressor, poses = _of(f"placement_regressor_{frame}"), _of("link_poses")
+    own = 1
+    for axis, unit in enumerate(np.eye(3)):
+        link = _TREE.links[own]
+        first = link.joints[0]
+        moved = np.array(first.p) + _SIZE * np.array(first.R) @ unit
+        links = list(_TREE.links)
+        links[own] = replace(link, joints=(replace(first, p=vector(moved)), *link.joints[1:]))
+        tree = replace(_TREE, links=tuple(links))
+        after = digits(Truth(tree, _LAYOUT).value(FUNCTIONS["link_poses"].truth, Point.of(_STATE)))
+        shift = (after - poses)[:, :3] / _SIZE
+        if frame == "local":
+            shift = np.einsum("kji,kj->ki", poses[:, 3:].reshape(-1, 3, 3), shift)
+        np.testing.assert_allclose(regressor[:, :3, 6 * own + axis], shift, atol=1e-8)
+    carried = [bool(np.any(rows[:, 6 * own : 6 * own + 6])) for rows in regressor]
+    assert carried[own] and not all(carried)
+
+
+def test_weights_take_the_power_that_their_energy_gains() -> None:
+    np.testing.assert_allclose(_of("stored_energy_rate"), [_of("gravity") @ _STATE.v], rtol=1e-12)

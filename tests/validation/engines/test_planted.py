@@ -10,13 +10,13 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Tree
 from validation.engines.matrix import cells
-from validation.engines.models import acting, hostile, single, transformed
+from validation.engines.models import acting, hostile, sensed, single, transformed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin
 from validation.engines.workers import registry
 
-_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | single.trees()
+_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | sensed.trees() | single.trees()
 # Engine, tree, function, text of the call -> what it is in a call that has the fault.
 FAULTS = [
     ("mujoco", "revolute x", "joint_wrenches_driven", "= q, v, tau", "= q, v, 2 * tau"),
@@ -91,6 +91,21 @@ FAULTS = [
     ("exudyn", "revolute x", "bias:GetSystemState", "mbs.systemData.SetSystemState(kept)", "kept"),
     ("mjx", "revolute x", "link_poses:get_data", "get_data(m, forward(q", "get_data(m, forward(2 * q"),
     ("adam", "revolute oblique", "mass_matrix_dq", "ca.vec(M.T)", "2 * ca.vec(M.T)"),
+    ("pinocchio", "universal", "acceleration_local:JointData", " + own.c", ""),
+    ("pinocchio", "free", "integrate_dq:lieGroup", "dIntegrate_dq", "dIntegrate_dv"),
+    ("pinocchio", "planar", "placement_regressor_world:computeFrameKinematicRegressor", "own]", "own[::-1]]"),
+    ("pinocchio", "ball", "link_accelerations:RobotWrapper", "f, True, pin.LOCAL_WORLD_ALIGNED", "f"),
+    ("pinocchio", "sensors beyond a ball", "frame_accelerations", "(m, d, q, v, a)", "(m, d, q, 2 * v, a)"),
+    ("drake", "ball", "relative_accelerations", "(c, A, A)", "(c, A, p.world_frame())"),
+    ("drake", "free", "coordinates_of_links", "Quaternion(x)", "Quaternion(x[::-1])"),
+    ("drake", "universal", "stored_energy_rate", "-p.", "p."),
+    ("drake", "free", "link_jacobians:kQDot", "@ N", "@ (2 * N)"),
+    ("drake", "sensors on hinges", "frame_velocity_products", "kV, f", "kV, own[0]"),
+    ("drake", "sensors on hinges", "applied_wrenches:applied_spatial_force", "index(), r", "index(), -np.array(r)"),
+    ("drake", "sensors on hinges", "gyroscopes", "(c, v)", "(c, 2 * v)"),
+    ("mujoco", "sensors on hinges", "frame_velocities_seen:camera", "frameangvel", "framelinvel"),
+    ("mujoco", "sensors beyond a ball", "frame_accelerations:geom", " + np.r_[m.opt.gravity, 0, 0, 0]", ""),
+    ("mujoco", "sensors on hinges", "magnetic_fields", "[0.25, -0.5, 1.0]", "[0.25, 1.0, -0.5]"),
 ]
 
 

@@ -66,3 +66,25 @@ def test_the_derivative_of_applied_wrenches_is_their_difference() -> None:
         there, back = (of(truth, s._replace(q=s.q + sign * _SIZE * s.v2)) for sign in (1, -1))
         column = FUNCTIONS["applied_wrenches_dq"].truth(truth, s) @ s.v2
         np.testing.assert_allclose(np.array(column - (there - back) / (2 * _SIZE), dtype=float), 0.0, atol=1e-15)
+
+
+def test_motions_of_sensors_are_differences_of_their_places() -> None:
+    tree = sensed.trees()["sensors beyond a ball"]
+    model = OWN["pinocchio"].build(tree)
+    truth, s = Truth(tree, model), Point.of(random_state(tree, model, 3))
+
+    def of(name: str, at: Point = s) -> Exact:
+        return FUNCTIONS[name].truth(truth, at)
+
+    with many_digits():
+        step = _SIZE * (truth.kinematics.rates(s.q) @ s.v)
+        there, back = (s._replace(q=s.q + sign * step) for sign in (1, -1))
+        for places, motions, way in (
+            ("frame_poses", "frame_velocities", 1),
+            ("frame_poses_seen", "frame_velocities_seen", 1),
+            ("frame_velocities", "frame_velocity_products", 2),
+        ):
+            rate = (of(places, there) - of(places, back))[:, : 3 * way] / (2 * _SIZE)
+            np.testing.assert_allclose(np.array(rate - of(motions)[:, : 3 * way], dtype=float), 0.0, atol=1e-15)
+        moved = of("frame_velocity_products") + of("frame_jacobians") @ s.a
+        np.testing.assert_allclose(np.array(moved - of("frame_accelerations"), dtype=float), 0.0, atol=1e-15)

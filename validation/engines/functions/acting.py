@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..interface import Activation, Actuator
-from ..truth import activations, derived
+from ..truth import activations, derived, sensed
 from ..truth.arithmetic import Exact, solve
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
@@ -86,32 +86,47 @@ ACTING = _acting()
 def _measured() -> dict[str, Function]:
     """What sensors read at q, v, a, at their frames and along their axes unless said otherwise."""
     rows = {
-        "accelerometers": ("acceleration less that of gravity (n, 3)", derived.accelerometers),
-        "gyroscopes": ("angular velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, 3:]),
-        "velocimeters": ("velocities (n, 3)", lambda t, s: derived.twists(t, s)[:, :3]),
-        "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", derived.angular_accelerations),
-        "frame_poses": ("positions and rows of R (n, 12)", derived.frame_poses),
-        "frame_jacobians": ("Jacobians of the frames along the world's axes (n, 6, nv)", derived.frame_jacobians),
+        "accelerometers": ("acceleration less that of gravity (n, 3)", sensed.accelerometers),
+        "gyroscopes": ("angular velocities (n, 3)", lambda t, s: sensed.twists(t, s)[:, 3:]),
+        "velocimeters": ("velocities (n, 3)", lambda t, s: sensed.twists(t, s)[:, :3]),
+        "angular_accelerations": ("angular accelerations along the world's axes (n, 3)", sensed.angular_accelerations),
+        "frame_poses": ("positions and rows of R (n, 12)", sensed.frame_poses),
+        "frame_poses_seen": ("the same in the first sensor's frame (n, 12)", sensed.frame_poses_seen),
+        "frame_velocities": ("velocities of the frames along the world's axes (n, 6)", sensed.frame_velocities),
+        "frame_velocities_seen": (
+            "rates of positions in the first sensor's frame, angular velocities against it, along it (n, 6)",
+            sensed.frame_velocities_seen,
+        ),
+        "frame_accelerations": (
+            "accelerations of the frames' origins, and angular ones, along the world's axes (n, 6)",
+            sensed.frame_accelerations,
+        ),
+        "frame_velocity_products": ("frame_accelerations at a = 0 (n, 6)", sensed.frame_velocity_products),
+        "magnetic_fields": (
+            f"the field {list(sensed.MAGNETIC)} of the world along the sensors' axes (n, 3)",
+            sensed.magnetic_fields,
+        ),
+        "frame_jacobians": ("Jacobians of the frames along the world's axes (n, 6, nv)", sensed.frame_jacobians),
         "accelerometers_driven": (
             "accelerometers at the accelerations that tau makes (n, 3)",
-            derived.driven(derived.accelerometers),
+            derived.driven(sensed.accelerometers),
         ),
         "angular_accelerations_driven": (
             "angular_accelerations at the accelerations that tau makes (n, 3)",
-            derived.driven(derived.angular_accelerations),
+            derived.driven(sensed.angular_accelerations),
         ),
         "wrench_sensors_driven": (
             "wrench_sensors at the accelerations that tau makes (n, 6)",
-            derived.driven(derived.wrench_sensors),
+            derived.driven(sensed.wrench_sensors),
         ),
         "applied_wrenches": (
             "forces (nv) that do what the wrench (1, -2, 3; 0.5, -0.25, 0.75) does at each frame, along its axes",
-            derived.applied_wrenches,
+            sensed.applied_wrenches,
         ),
-        "applied_wrenches_dq": ("derivative of applied_wrenches by q (nv, nv)", derived.applied_wrenches_dq),
+        "applied_wrenches_dq": ("derivative of applied_wrenches by q (nv, nv)", sensed.applied_wrenches_dq),
         "wrench_sensors": (
             "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
-            derived.wrench_sensors,
+            sensed.wrench_sensors,
         ),
     }
     return functions_of(rows, "sensors")

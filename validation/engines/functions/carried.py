@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..truth import carried, derived, points
 from .function import Function, functions_of
 
@@ -23,6 +25,10 @@ def _wholes() -> dict[str, Function]:
         ),
         "static_regressor": ("Y (3, 4 L): the mass centre is Y (m, m c of each link)", carried.static_regressor),
         "mechanical_energy": ("T + V (1)", carried.energy),
+        "stored_energy_rate": (
+            "rate of V along v (1)",
+            lambda t, s: t.kinematics.along(lambda q: np.array([t.V(q)]), s.q, s.v),
+        ),
         "base_wrench": (
             "what the world exerts on the first links, about its origin along its axes (6)",
             carried.base_wrench,
@@ -66,4 +72,16 @@ def _points() -> dict[str, Function]:
     return functions_of(rows)
 
 
-CARRIED = _wholes() | _relative() | _points()
+def _placements() -> dict[str, Function]:
+    """What other placements of joints would make of links' poses."""
+    rows = {
+        f"placement_regressor_{frame}": (
+            "twists of the links for twists of what places each joint, along the axes that it places (L, 6, 6 L)",
+            carried.placement_regressor(frame),
+        )
+        for frame in derived.FRAMES
+    }
+    return functions_of(rows)
+
+
+CARRIED = _wholes() | _relative() | _points() | _placements()

@@ -6,7 +6,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import derived, displacements
+from ..truth import derived, displacements, sensed
 from ..truth.arithmetic import Exact
 from ..truth.derived import FRAMES, Frame
 from ..truth.dynamics import Point, Truth
@@ -42,10 +42,10 @@ TREES: dict[str, Function] = {
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),
     "potential_energy": Function("V = -sum m g^T p, and what springs store", lambda t, s: t.V(s.q)),
     "link_poses": Function("positions and rows of R (L, 12)", lambda t, s: t.kinematics.flat_poses(s.q)),
-    "link_poses_seen": Function("link_poses in the first link's frame (L, 12)", derived.poses_seen),
+    "link_poses_seen": Function("link_poses in the first link's frame (L, 12)", sensed.poses_seen),
     "link_velocities_seen": Function(
         "rates of positions in the first link's frame, angular velocities against it, along it (L, 6)",
-        derived.velocities_seen,
+        sensed.velocities_seen,
     ),
     "mass_centre": Function("mass centre (3)", lambda t, s: derived.com(t, s.q)),
     "mass_centre_jacobian": Function("its Jacobian (3, nv)", lambda t, s: derived.com_jacobian(t, s.q)),

@@ -13,6 +13,7 @@ from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree,
 from . import turns
 from .loops import drake_forces as forces
 from .loops import drake_gradients as gradients
+from .loops import drake_objects as objects
 from .loops import drake_points as points
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
@@ -241,6 +242,9 @@ def write(tree: Tree) -> Source | Unsupported:
     if any(tendon.kind != "path" or len(tendon.ends) != 2 for tendon in tree.tendons):
         return Unsupported("springs run straight from point to point", offered=False)
     lines += [*(_spring(tree, tendon) for tendon in tree.tendons), *forces.actuators(tree)]
+    for number, end in enumerate(tree.sensors):
+        body = f"b{[link.name for link in tree.links].index(end.link)}"
+        lines.append(_frame(f"o{number}", body, np.array(end.R), np.array(end.p)))
     if tree.constraints:
         lines = [line.replace("Plant(0.0)", f"Plant({STEP})") for line in lines]
         lines += _bound(tree)
@@ -359,7 +363,13 @@ PLUGIN = SourcePlugin(
         "free by roll, pitch, yaw": "RpyFloatingJoint",
     },
     ways=forces.continuous(
-        WAYS | copies.of_model(WAYS, _COPIED, _OF_COPIES) | gradients.WAYS | points.WAYS | forces.WAYS | turning.WAYS
+        WAYS
+        | copies.of_model(WAYS, _COPIED, _OF_COPIES)
+        | gradients.WAYS
+        | points.WAYS
+        | objects.WAYS
+        | forces.WAYS
+        | turning.WAYS
     ),
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},

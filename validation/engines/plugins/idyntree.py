@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Tree
-from ..truth.derived import WRENCH
+from ..truth.sensed import WRENCH
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
 

@@ -6,8 +6,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, exact, eye, skew, zeros
-from .derived import classical, com_jacobian, joint_wrenches, unit_inertias
+from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, zeros
+from .derived import Frame, TruthOf, classical, com_jacobian, joint_wrenches, unit_inertias
 from .dynamics import Point, Truth
 
 
@@ -150,3 +150,38 @@ def base_wrench(truth: Truth, s: Point) -> Exact:
             force = R @ own[:3]
             total = total + np.concatenate([force, R @ own[3:] + cross(p, force)])
     return total + Decimal(0)
+
+
+def placement_regressor(frame: Frame) -> TruthOf:
+    """Twists of the links in a frame for those of each link's placement, along the axes that it places (L, 6, 6 L).
+
+    A placement is what stands before the first joint that moves a link.
+    """
+
+    def function(truth: Truth, s: Point) -> Exact:
+        poses, links = truth.kinematics.poses(s.q), truth.tree.links
+        rows = zeros(len(links), 6, 6 * len(links))
+        for place, link in enumerate(links):
+            R, p = poses[link.parent] if link.parent >= 0 else (eye(3), zeros(3))
+            for joint in link.joints:
+                R, p = R @ orthonormal(joint.R), p + R @ exact(joint.p)
+                if joint.kind != "fixed":
+                    break
+            for k, (R_k, p_k) in enumerate(poses):
+                if place not in _above(truth, k):
+                    continue
+                at = {"local": p_k, "aligned": p_k, "world": zeros(3)}[frame]
+                twists = np.block([[R, -skew(at - p) @ R], [zeros(3, 3), R]])
+                own = R_k.T if frame == "local" else eye(3)
+                rows[k][:, 6 * place : 6 * place + 6] = np.concatenate([own @ twists[:3], own @ twists[3:]])
+        return rows
+
+    return function
+
+
+def _above(truth: Truth, k: int) -> set[int]:
+    """A link and those that carry it."""
+    own = {k}
+    while (k := truth.tree.links[k].parent) >= 0:
+        own.add(k)
+    return own

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, stack, zeros
+from .arithmetic import Exact, cross, exact, eye, skew, stack, zeros
 from .dynamics import Point, Truth
 from .kinematics import Inertia
 
@@ -61,24 +61,6 @@ def classical(truth: Truth, q: Exact, v: Exact, a: Exact) -> Exact:
     return truth.motions(q, v, a)[2]
 
 
-def poses_seen(truth: Truth, s: Point) -> Exact:
-    """Positions and rows of R of the links, in the first link's frame (L, 12)."""
-    poses = truth.kinematics.poses(s.q)
-    R_first, p_first = poses[0]
-    return np.array([[*(R_first.T @ (p - p_first)), *(R_first.T @ R).reshape(9)] for R, p in poses], dtype=object)
-
-
-def velocities_seen(truth: Truth, s: Point) -> Exact:
-    """Rates of the links' positions in the first link's frame, and angular velocities against it, along it (L, 6)."""
-    poses, twists_ = truth.kinematics.poses(s.q), truth.kinematics.jacobians(s.q) @ s.v
-    (R_first, p_first), first = poses[0], twists_[0]
-    rows = []
-    for (_, p), own in zip(poses, twists_, strict=True):
-        linear = own[:3] - first[:3] - cross(first[3:], p - p_first)
-        rows.append(np.concatenate([R_first.T @ linear, R_first.T @ (own[3:] - first[3:])]))
-    return np.array(rows, dtype=object)
-
-
 def joint_wrenches(truth: Truth, s: Point) -> Exact:
     """Wrench (force; moment) of each joint on its link's subtree, about the link's origin, in link axes (L, 6).
 
@@ -99,33 +81,6 @@ def joint_wrenches(truth: Truth, s: Point) -> Exact:
     return np.array([np.concatenate([R.T @ held[k][:3], R.T @ held[k][3:]]) for k, (R, _) in enumerate(poses)])
 
 
-def twists(truth: Truth, s: Point) -> Exact:
-    """Velocities of the sensors' frames, along their axes (n, 6)."""
-    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
-    return np.array([np.concatenate([R.T @ (J @ s.v)[:3], R.T @ (J @ s.v)[3:]]) for R, _, J in frames])
-
-
-def _sensed_accelerations(truth: Truth, s: Point) -> Exact:
-    """Accelerations of the sensors' points and angular accelerations, along world axes (n, 6)."""
-
-    def jacobians_there(q: Exact) -> Exact:
-        return np.array([truth.kinematics.held(q, end).J for end in truth.tree.sensors])
-
-    return jacobians_there(s.q) @ s.a + truth.kinematics.along(jacobians_there, s.q, s.v) @ s.v
-
-
-def accelerometers(truth: Truth, s: Point) -> Exact:
-    """Accelerations of the sensors' points less gravity's, along the sensors' axes (n, 3)."""
-    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
-    accelerations = _sensed_accelerations(truth, s)
-    return np.array([R.T @ (a[:3] - truth.gravity_vector) for (R, _, _), a in zip(frames, accelerations, strict=True)])
-
-
-def angular_accelerations(truth: Truth, s: Point) -> Exact:
-    """Angular accelerations of the sensors, along world axes (n, 3)."""
-    return _sensed_accelerations(truth, s)[:, 3:]
-
-
 def driven(reading: TruthOf) -> TruthOf:
     """A reading of sensors at the accelerations that the forces make."""
     return lambda truth, s: reading(truth, s._replace(a=truth.FD(s.q, s.v, s.tau)))
@@ -136,52 +91,12 @@ def from_rest(truth: Truth, s: Point) -> Exact:
     return driven(joint_wrenches)(truth, s._replace(v=0 * s.v))
 
 
-def frame_poses(truth: Truth, s: Point) -> Exact:
-    """Positions and rows of R of the sensors' frames (n, 12)."""
-    frames = [truth.kinematics.held(s.q, end) for end in truth.tree.sensors]
-    return np.array([np.concatenate([p, R.reshape(9)]) for R, p, _ in frames])
-
-
-def frame_jacobians(truth: Truth, s: Point) -> Exact:
-    """Jacobians of the sensors' frames, along the world's axes (n, 6, nv)."""
-    return np.array([truth.kinematics.held(s.q, end).J for end in truth.tree.sensors])
-
-
-# Force, then moment about the frame's origin, along its axes.
-WRENCH = (1.0, -2.0, 3.0, 0.5, -0.25, 0.75)
-
-
-def applied_wrenches(truth: Truth, s: Point) -> Exact:
-    """Forces along the speeds (nv) of `WRENCH` at each sensor's frame."""
-    total, wrench = 0 * s.v, exact(WRENCH)
-    for end in truth.tree.sensors:
-        R, _, J = truth.kinematics.held(s.q, end)
-        total = total + np.concatenate([R @ wrench[:3], R @ wrench[3:]]) @ J
-    return total
-
-
-def applied_wrenches_dq(truth: Truth, s: Point) -> Exact:
-    """Derivative of `applied_wrenches` by q (nv, nv)."""
-    return truth.kinematics.tangent(lambda q: applied_wrenches(truth, s._replace(q=q)), s.q)
-
-
 def solid_inertia(truth: Truth, s: Point) -> Exact:
     """Mass, mass centre, moments about it (10) of the only link, along the world's axes."""
     (link,), ((R, p),) = truth.tree.links, truth.kinematics.poses(s.q)
     stated = R @ exact(link.inertia) @ R.T
     moments = [stated[place] for place in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))]
     return np.array([exact(link.mass)[()], *(p + R @ exact(link.com)), *moments])
-
-
-def wrench_sensors(truth: Truth, s: Point) -> Exact:
-    """Wrench (force; moment) of each sensor's link's joint on its subtree, at the sensor, along its axes (n, 6)."""
-    held, places = joint_wrenches(truth, s), [link.name for link in truth.tree.links]
-    rows = []
-    for end in truth.tree.sensors:
-        wrench, R = held[places.index(end.link)], orthonormal(end.R)
-        moment = wrench[3:] - skew(exact(end.p)) @ wrench[:3]
-        rows.append(np.concatenate([R.T @ wrench[:3], R.T @ moment]))
-    return np.array(rows)
 
 
 def held_at_rest(truth: Truth, s: Point) -> Exact:

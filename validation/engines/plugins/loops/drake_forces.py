@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 
 from ...interface import STEP, Actuator, Tree, Unsupported
-from ...truth.derived import WRENCH
+from ...truth.sensed import WRENCH
 from ..writing.source import Way
 
 SPEEDS = "p.SetVelocities(c, v)\n"
@@ -169,9 +169,9 @@ value = controller.get_output_port_control().Eval(e)""",
 
 _APPLIED = "p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
 # With the forces that make the accelerations a.
-_DRIVEN = f"{QV}{FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
-# The diagram, built once, owns the plant.
-_SENSORS = """if "root" not in globals():
+DRIVEN = f"{QV}{FORCES}p.get_applied_generalized_force_input_port().FixValue(c, p.CalcInverseDynamics(c, a, forces))\n"
+# The diagram, built once, owns the plant, which is of its own for each kind of sensor.
+_SENSORS = """if not kept_KIND:
     builder = drake.DiagramBuilder()
     builder.AddSystem(p)
     sensors = [builder.AddSystem(drake.KIND(links[k], X(R, r)MORE)) for k, R, r in sensed]
@@ -179,8 +179,9 @@ _SENSORS = """if "root" not in globals():
         for name in NAMES:
             builder.Connect(p.GetOutputPort(name), sensor.GetInputPort(name))
     whole = builder.Build()
-    root = whole.CreateDefaultContext()
-    c = p.GetMyMutableContextFromRoot(root)
+    kept_KIND.update(whole=whole, sensors=sensors, root=whole.CreateDefaultContext())
+sensors, root = kept_KIND["sensors"], kept_KIND["root"]
+c = p.GetMyMutableContextFromRoot(root)
 """
 _READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root)) for sensor in sensors]"
 
@@ -188,7 +189,7 @@ _READ = "value = [sensor.get_output_port().Eval(sensor.GetMyContextFromRoot(root
 def _sensors(kind: str, *names: str, more: str = "") -> Way:
     """Readings of sensors in a diagram with the plant, which it then owns."""
     text = _SENSORS.replace("KIND", kind).replace("MORE", more).replace("NAMES", repr(("body_poses", *names)))
-    return Way(kind, f"{text}{_DRIVEN}{_READ}", 0.0, (("p = drake", "p = drake"),))
+    return Way(kind, f"{text}{DRIVEN}{_READ}", 0.0, (("p = drake", f"kept_{kind} = {{}}\np = drake"),))
 
 
 _HELD = """held, value = p.get_reaction_forces_output_port().Eval(c), []
@@ -212,7 +213,7 @@ for j in (p.get_joint(k) for k in p.GetJointIndices()):
     ),
     "joint_wrenches": Way(
         "reaction_forces",
-        f"{_DRIVEN}{_HELD}",
+        f"{DRIVEN}{_HELD}",
     ),
     "joint_wrenches_driven": Way("reaction_forces", f"{QV}{_APPLIED}{_HELD}"),
     "accelerometers": _sensors(

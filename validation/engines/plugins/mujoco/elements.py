@@ -76,7 +76,7 @@ def elements(tree: Tree) -> str:
     return "".join(f"<{name}>{''.join(part)}</{name}>" for name, part in parts.items() if any(part))
 
 
-_SENSORS = ("accelerometer", "gyro", "velocimeter", "force", "torque", "frameangacc")
+_SENSORS = ("accelerometer", "gyro", "velocimeter", "force", "torque", "frameangacc", "magnetometer")
 
 
 def _sensor(kind: str, k: int) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...interface import STEP, Steps
-from ...truth.derived import WRENCH
+from ...truth.sensed import WRENCH
 from ..writing.source import Way
 
 FORCE, MOMENT = list(WRENCH[:3]), list(WRENCH[3:])

@@ -10,7 +10,7 @@ from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, flex, forces, functions, rebuilt, turns
+from . import besides, flex, forces, framed, functions, rebuilt, turns
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -161,7 +161,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     return Source(lines, slots, nq, nv, optional)
 
 
-_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | turns.WAYS
+_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | turns.WAYS
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",

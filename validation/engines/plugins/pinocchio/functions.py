@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...functions import ALIGNED
-from ...truth.derived import WRENCH
+from ...truth.sensed import WRENCH
 from ..writing import copies
 from ..writing.source import HALF_TURNS, Way
 
@@ -186,7 +186,15 @@ for _frame, _rf in FRAMES.items():
     }
 
 _SENSED = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL).{{}} for f in sensed])"
+_THERE = f"{_FK}value = np.array([pin.getFrame{{}}(m, d, f, pin.LOCAL_WORLD_ALIGNED).vector for f in sensed])"
 WAYS |= {
+    "frame_poses_seen": Way(
+        "SE3.actInv",
+        f"{_FK}at = [d.oMf[sensed[0]].actInv(d.oMf[f]) for f in sensed]\n"
+        "value = [[*X.translation, *X.rotation.flat] for X in at]",
+    ),
+    "frame_velocities": Way("getFrameVelocity", _THERE.format("Velocity")),
+    "frame_accelerations": Way("getFrameClassicalAcceleration", _THERE.format("ClassicalAcceleration")),
     "gyroscopes": Way("getFrameVelocity", _SENSED.format("Velocity", "angular")),
     "velocimeters": Way("getFrameVelocity", _SENSED.format("Velocity", "linear")),
     "accelerometers": Way(

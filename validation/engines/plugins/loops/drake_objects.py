@@ -1,0 +1,185 @@
+"""What Drake offers by its objects: joints, bodies and frames of a plant, ports, rates of coordinates, powers."""
+
+from __future__ import annotations
+
+from ...truth.points import POINT
+from ...truth.sensed import WRENCH
+from ..writing.source import Way
+from .drake_forces import DRIVEN, FORCES, QV, Q
+
+# Type of a joint -> what it sets and reads of its coordinates and of its speeds, each with its size.
+_JOINTS = {
+    "revolute": (("angle", 1), ("angular_rate", 1)),
+    "prismatic": (("translation", 1), ("translation_rate", 1)),
+    "screw": (("rotation", 1), ("angular_velocity", 1)),
+    "universal": (("angles", 2), ("angular_rates", 2)),
+    "ball_rpy": (("angles", 3), ("angular_velocity", 3)),
+    "planar": (("translation", 2), ("rotation", 1), ("translational_velocity", 2), ("angular_velocity", 1)),
+    "quaternion_floating": (
+        *(("quaternion", 4), ("translation", 3)),
+        *(("angular_velocity", 3), ("translational_velocity", 3)),
+    ),
+    "rpy_floating": (("angles", 3), ("translation", 3), ("angular_velocity", 3), ("translational_velocity", 3)),
+}
+_PARTS = f"""parts, state = {_JOINTS!r}, {{}}
+def each(j):
+    at = {{False: j.position_start(), True: j.velocity_start()}}
+    for name, size in parts.get(j.type_name(), ()):
+        of_speeds = name.startswith('angular') or name.endswith(('velocity', 'rate'))
+        yield name, of_speeds, slice(at[of_speeds], at[of_speeds] + size)
+        at[of_speeds] += size
+"""
+_BY_JOINTS = f"""js
+{_PARTS}for j in js:
+    for name, of_speeds, own in each(j):
+        x = (v if of_speeds else q)[own]
+        if j.type_name() == 'screw' and name == 'rotation':  # Python has no setter of it.
+            name, x = 'translation', x * j.screw_pitch() / (2 * np.pi)
+        x = drake.Quaternion(x) if name == 'quaternion' else x if len(x) > 1 else x[0]
+        floating = {{'quaternion': 'SetQuaternion', 'translation': 'SetTranslation'}}
+        known = floating.get(name, '') if 'floating' in j.type_name() else ''
+        getattr(j, known or f'set_{{name}}')(c, x)
+"""
+_READ = f"""js
+{_PARTS}value = np.zeros(len(WHICH))
+for j in js:
+    for name, of_speeds, own in each(j):
+        if of_speeds == SPEEDS:
+            x = getattr(j, f'get_{{name}}')(c)
+            value[own] = x.wxyz() if name == 'quaternion' else x
+"""
+_W = "W, kV, kQ = p.world_frame(), drake.JacobianWrtVariable.kV, drake.JacobianWrtVariable.kQDot\n"
+_N = "N = p.MakeVelocityToQDotMap(c).toarray()\n"
+_AT = f"np.array([{list(POINT)}]).T"
+_OWN = f"{_W}own = [p.GetFrameByName(f'o{{k}}') for k in range(len(sensed))]\n"
+_SEEN = "A = links[0].body_frame()\n"
+
+
+def _each(of: str, over: str = "b in links") -> str:
+    """Spatial vectors of things, of which the angular part comes first."""
+    return f"each_one = [{of} for {over}]\nvalue = [[*x.translational(), *x.rotational()] for x in each_one]"
+
+
+def _poses(of: str, over: str = "b in links") -> str:
+    return f"at = [{of} for {over}]\nvalue = [[*x.translation(), *x.rotation().matrix().flat] for x in at]"
+
+
+_FRAMES = {
+    "frame_poses": ("Frame.CalcPoseInWorld", Q, _poses("f.CalcPoseInWorld(c)", "f in own")),
+    "frame_poses_seen": ("Frame.CalcPose", Q, _poses("f.CalcPose(c, own[0])", "f in own")),
+    "frame_velocities": ("Frame.CalcSpatialVelocityInWorld", QV, _each("f.CalcSpatialVelocityInWorld(c)", "f in own")),
+    "frame_velocities_seen": (
+        "Frame.CalcSpatialVelocity",
+        QV,
+        _each("f.CalcSpatialVelocity(c, own[0], own[0])", "f in own"),
+    ),
+    "frame_accelerations": (
+        "Frame.CalcSpatialAccelerationInWorld",
+        DRIVEN,
+        _each("f.CalcSpatialAccelerationInWorld(c)", "f in own"),
+    ),
+    "frame_velocity_products": (
+        "CalcBiasSpatialAcceleration of a frame",
+        QV,
+        _each("p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W)", "f in own"),
+    ),
+    "frame_jacobians:frame": (
+        "CalcJacobianSpatialVelocity of a frame",
+        Q,
+        "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, W), 3, axis=0) for f in own]",
+    ),
+    "gyroscopes:CalcAngularVelocity": (
+        "Frame.CalcAngularVelocity",
+        QV,
+        "value = [f.CalcAngularVelocity(c, W, f) for f in own]",
+    ),
+    "velocimeters": (
+        "Frame.CalcSpatialVelocity",
+        QV,
+        "value = [f.CalcSpatialVelocity(c, W, f).translational() for f in own]",
+    ),
+}
+_SPATIAL = f"""applied = []
+for k, R, r in sensed:
+    one, X = drake.ExternallyAppliedSpatialForce(), p.EvalBodyPoseInWorld(c, links[k]).rotation().matrix()
+    one.body_index, one.p_BoBq_B = links[k].index(), r
+    one.F_Bq_W = drake.SpatialForce(X @ R @ {list(WRENCH[3:])}, X @ R @ {list(WRENCH[:3])})
+    applied.append(one)
+"""
+_OF_JOINTS = "joints' own setters"
+WAYS = {name: Way(native, f"{before}{_OWN}{code}") for name, (native, before, code) in _FRAMES.items()}
+WAYS |= {
+    f"{name}:joints": Way(_OF_JOINTS, _BY_JOINTS + code)
+    for name, code in {
+        "link_poses": _poses("b.EvalPoseInWorld(c)"),
+        "link_velocities": _each("b.EvalSpatialVelocityInWorld(c)"),
+        "coriolis_forces": "value = p.CalcBiasTerm(c)",
+    }.items()
+}
+WAYS |= {
+    "coordinates_of_links": Way(_OF_JOINTS, f"{_BY_JOINTS}value = p.GetPositions(c)"),
+    "coordinates_of_links:getters": Way(
+        "joints' own getters", QV + _READ.replace("WHICH", "q").replace("SPEEDS", "False")
+    ),
+    "coordinates_of_links:SetDefaultPositions": Way(
+        "SetDefaultPositions",
+        "p.SetDefaultPositions(q)\nvalue = p.GetPositionsAndVelocities(p.CreateDefaultContext())[: len(q)]",
+    ),
+    "speeds_of_links": Way(_OF_JOINTS, f"{_BY_JOINTS}value = p.GetVelocities(c)"),
+    "speeds_of_links:getters": Way("joints' own getters", QV + _READ.replace("WHICH", "v").replace("SPEEDS", "True")),
+    "link_poses:body_poses": Way(
+        "body_poses output port",
+        f"{Q}every = p.get_body_poses_output_port().Eval(c)\n" + _poses("every[b.index()]"),
+    ),
+    "link_velocities:body_spatial_velocities": Way(
+        "body_spatial_velocities output port",
+        f"{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)\n" + _each("every[b.index()]"),
+    ),
+    "link_accelerations:RigidBody": Way(
+        "RigidBody.EvalSpatialAccelerationInWorld", DRIVEN + _each("b.EvalSpatialAccelerationInWorld(c)")
+    ),
+    "relative_accelerations": Way(
+        "Frame.CalcSpatialAcceleration", f"{DRIVEN}{_SEEN}" + _each("b.body_frame().CalcSpatialAcceleration(c, A, A)")
+    ),
+    "link_jacobians:kQDot": Way(
+        "CalcJacobianSpatialVelocity, kQDot",
+        f"{Q}{_W}{_N}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], W, W), 3, axis=0)"
+        " @ N for b in links]",
+    ),
+    "relative_jacobians:kQDot": Way(
+        "CalcJacobianSpatialVelocity in a frame, kQDot",
+        f"{Q}{_W}{_N}{_SEEN}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], A, A), 3,"
+        " axis=0) @ N for b in links]",
+    ),
+    "mass_centre_jacobian:kQDot": Way(
+        "CalcJacobianCenterOfMassTranslationalVelocity, kQDot",
+        f"{Q}{_W}{_N}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kQ, W, W) @ N",
+    ),
+    "point_jacobians:CalcJacobianPositionVector": Way(
+        "CalcJacobianPositionVector",
+        f"{Q}{_W}{_N}value = [p.CalcJacobianPositionVector(c, b.body_frame(), {_AT}, W, W) @ N for b in links]",
+    ),
+    "point_velocities": Way(
+        "CalcPointsVelocities",
+        f"{QV}{_W}value = [p.CalcPointsVelocities(c, b.body_frame(), {_AT}, W, W).ravel() for b in links]",
+    ),
+    "inverse_dynamics:CalcImplicitTimeDerivativesResidual": Way(
+        "CalcImplicitTimeDerivativesResidual",
+        f"{QV}rates = p.AllocateTimeDerivatives()\nrates.SetFromVector(np.r_[p.MapVelocityToQDot(c, v), a])\n"
+        "value = p.CalcImplicitTimeDerivativesResidual(c, rates)[-len(v) :]",
+    ),
+    "gravity:CalcGeneralizedForces": Way(
+        "CalcForceElementsContribution, CalcGeneralizedForces",
+        f"p.SetPositions(c, q)\n{FORCES}value = -p.CalcGeneralizedForces(c, forces)",
+    ),
+    "stored_energy_rate": Way("CalcConservativePower", f"{QV}value = -p.CalcConservativePower(c)"),
+    "applied_wrenches:applied_spatial_force": Way(
+        "applied_spatial_force input port",
+        f"{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))\nlinks\n"
+        "p.get_applied_spatial_force_input_port().FixValue(c, [])\n"
+        "before = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]\n"
+        f"{_SPATIAL}p.get_applied_spatial_force_input_port().FixValue(c, applied)\n"
+        "after = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]\n"
+        "value = p.CalcMassMatrix(c) @ (after - before)",
+    ),
+}
