@@ -28,6 +28,8 @@ LOOKS = 4  # By axe, a second apart.
 PICTURES = os.environ.get("SYMOFROS_PICTURES")
 # By how much the server's answers and events come later to the page, each at most [ms]: a busy machine does that.
 LATE = int(os.environ.get("SYMOFROS_LATE", "0"))
+# How many times slower the page's own code runs: a busy machine does that, too.
+SLOW = float(os.environ.get("SYMOFROS_SLOW_PAGE", "1"))
 _DELAY = """{
 const later = setTimeout.bind(window), get = window.fetch.bind(window), add = EventTarget.prototype.addEventListener;
 const pause = () => new Promise((done) => later(done, Math.random() * %d / 2));
@@ -104,7 +106,7 @@ def page(chromium: Browser) -> Iterator[Page]:
         viewport={"width": 1280, "height": 760}, color_scheme="light", reduced_motion="reduce"
     )
     context.grant_permissions(["clipboard-read", "clipboard-write"])
-    page = _delayed(context.new_page())
+    page = _hindered(context.new_page())
     page.set_default_timeout(60_000)  # Software rendering on a busy machine.
     errors: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -135,15 +137,17 @@ def arm(opened: Serve) -> Server:
 @pytest.fixture
 def other(arm: Server, chromium: Browser) -> Iterator[Page]:
     """Another page on the server of the double pendulum."""
-    page = _delayed(chromium.new_page())
+    page = _hindered(chromium.new_page())
     steps.open_editor(page, arm.url)
     yield page
     page.close()
 
 
-def _delayed(page: Page) -> Page:
+def _hindered(page: Page) -> Page:
     if LATE:
         page.add_init_script(_DELAY % LATE)
+    if SLOW > 1:
+        page.context.new_cdp_session(page).send("Emulation.setCPUThrottlingRate", {"rate": SLOW})
     return page
 
 

@@ -186,6 +186,11 @@ def has_value(page: Page, name: str, value: str) -> None:
 def open_view(page: Page) -> np.ndarray:
     """Open the 3-D pane, and wait until the mechanism is drawn: its picture."""
     run(page, "3-D")
+    return drawn(page)
+
+
+def drawn(page: Page) -> np.ndarray:
+    """The picture in the 3-D pane, once the mechanism is drawn."""
     page.frame_locator("iframe.view").locator("canvas").first.wait_for(timeout=1000 * PATIENCE)
     until(page, lambda: bool((shot(page) < 200).any(axis=2).sum() >= MANY), "nothing is drawn")
     return settled(page)

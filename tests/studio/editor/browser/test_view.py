@@ -235,3 +235,15 @@ def test_forces_of_a_run_are_drawn_at_its_time(
     picture(f"forces-{theme}")
     pose.get_by_label("Forces").click()
     until(page, lambda: red(settled(page)) <= red(still) + 10, "arrows are still drawn")
+
+
+def test_the_view_is_back_with_the_server(opened: Serve, serve: Serve, page: Page) -> None:
+    server = opened("arm.yaml", source=steps.PENDULUM)
+    steps.open_view(page)
+    server.kill()
+    expect(page.get_by_text("The server does not answer")).to_be_visible()
+    serve("arm.yaml", port=server.port)
+    expect(page.get_by_text("The server does not answer")).to_have_count(0)
+    before = steps.drawn(page)
+    assert slide(page, "q1 [rad]", 1.0)["q1"] == pytest.approx(1.0, abs=0.01)
+    changed(page, before)

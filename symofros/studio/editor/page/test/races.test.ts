@@ -1,8 +1,9 @@
 import { beforeEach, expect, test, vi } from "vitest";
 
 import type { Job } from "../src/api/jobs";
-import type { Edit, JsonMap } from "../src/api/types";
+import type { Edit, JsonMap, View } from "../src/api/types";
 import type { Moves } from "../src/model/moves";
+import { expected } from "../src/model/pose";
 
 // What the modules ask of the browser when they are loaded.
 const storage = { getItem: () => null, setItem: () => undefined };
@@ -20,6 +21,7 @@ const { open } = await import("../src/store/files");
 const { hear, run } = await import("../src/store/jobs");
 const { identity } = await import("../src/store/renamed");
 const { closing, now, OF_NEW_DOCUMENT, show, update } = await import("../src/store/store");
+const { look, move, shownView } = await import("../src/store/view");
 
 interface Asked {
   address: string;
@@ -201,4 +203,56 @@ test("a job that is over stays so, whatever comes late", async () => {
   expect(now().jobs.compile?.state).toBe("done");
   hear(job);
   expect(now().jobs.compile?.state).toBe("done");
+});
+
+const stand = (q1: number) => ({ q: { q1 }, exaggeration: 1, frames: false, forces: false, gap: null, beams: [] });
+const refusal = { error: { object: "", found: "", rule: "", remedy: "" } };
+const slider = (): number | undefined => expected(shownView() as View, now().posing).q["q1"];
+
+test("a slider stands where it was put until the view does", async () => {
+  update({ view: { address: "view/", ...stand(0) } as unknown as View });
+  void move({ q: { q1: 1 } });
+  void move({ q: { q1: 2 }, frames: true });
+  expect(slider()).toBe(2);
+  await answer({ ...stand(1), why: "" });
+  expect(slider()).toBe(2);
+  expect(expected(shownView() as View, now().posing).frames).toBe(true);
+  await answer({ ...stand(1.5), why: "a loop" }); // As near as it gets.
+  expect([slider(), now().stuck]).toEqual([1.5, "a loop"]);
+});
+
+test("a pose that is refused takes no later one with it, and no slider stays there", async () => {
+  update({ view: { address: "view/", ...stand(0) } as unknown as View });
+  void move({ q: { q1: 1 } });
+  void move({ dark: true });
+  await answer(refusal, 422);
+  expect(slider()).toBe(0);
+  expect((await answer({ ...stand(0), why: "" })).body).toMatchObject({ dark: true });
+});
+
+test("a reset is after the sliders that wait", async () => {
+  void move({ dark: true });
+  void move({ q: { q1: 1 }, dark: false });
+  void move({ reset: true });
+  await answer({ ...stand(0), why: "" });
+  expect((await answer({ ...stand(0), why: "" })).body).toEqual({ reset: true, dark: false });
+});
+
+test("a picture that was asked for before a pose is not taken for one after it", async () => {
+  void look();
+  void move({ q: { q1: 1 } });
+  const [picture] = asked.splice(0, 1);
+  await answer({ ...stand(1), why: "" });
+  asked.push(picture as Asked);
+  await answer({ address: "view/", ...stand(0) });
+  await answer({ ...stand(1), why: "" });
+  expect(slider()).toBe(1);
+});
+
+test("what waits for a view is of the document that it was asked for", async () => {
+  void move({ q: { q1: 1 } });
+  void move({ q: { q1: 2 } });
+  update({ ...OF_NEW_DOCUMENT, document: made("other.yaml") as never });
+  await answer({ ...stand(1), why: "" });
+  expect([asked, now().posing]).toEqual([[], {}]);
 });

@@ -1,6 +1,6 @@
 /** Requests that move the 3-D view: which of them still hold when a later one comes. */
 
-import type { Pose } from "../api/types";
+import type { Pose, View } from "../api/types";
 
 /** What of a pose is no state: colours, marks, frames, a handle. It holds whatever state comes after. */
 function looksOf(pose: Pose): Pose {
@@ -8,11 +8,11 @@ function looksOf(pose: Pose): Pose {
   return looks;
 }
 
-/** A pose after one that waits, as one that says both; of a run's instant and the sliders the later one holds. */
+/** A pose after one that waits, as one that says both; of a run's instant, a reset and the sliders the later one holds. */
 export function merged(waiting: Pose | null, pose: Pose): Pose {
   if (waiting === null) return pose;
   const isOfRun = waiting.run !== undefined || pose.run !== undefined;
-  if (isOfRun) return { ...looksOf(waiting), ...pose };
+  if (isOfRun || pose.reset === true) return { ...looksOf(waiting), ...pose };
   return { ...waiting, ...pose, q: { ...waiting.q, ...pose.q }, par: { ...waiting.par, ...pose.par } };
 }
 
@@ -23,4 +23,10 @@ export function requestsOf(pose: Pose): Pose[] {
   const looks = looksOf(pose);
   const instant: Pose = { run, ...(t === undefined ? {} : { t }), ...(block === undefined ? {} : { block }) };
   return Object.keys(looks).length > 0 ? [looks, instant] : [instant];
+}
+
+/** Where the sliders and boxes of a view stand while a pose that they asked for is not answered: where they were put. */
+export function expected(view: View, asked: Pose): View {
+  const { q, exaggeration = view.exaggeration, frames = view.frames, forces = view.forces } = asked;
+  return { ...view, q: { ...view.q, ...q }, exaggeration, frames, forces };
 }

@@ -4,6 +4,7 @@ import type { Coordinate, Fault, View } from "../api/types";
 import { badge } from "../model/bending";
 import { startTexts } from "../model/motion";
 import { allFrames } from "../model/names";
+import { expected } from "../model/pose";
 import { scaleBar } from "../model/scale";
 import { askedSimulation, keepSimulation, showSimulation } from "../store/asked";
 import { setTime } from "../store/playing";
@@ -27,7 +28,7 @@ interface SlideProps {
   move(value: number): void;
 }
 
-/** One slider between its limits. It stands where it is dragged to, otherwise where the view does. */
+/** One slider between its limits. It stands where it is held, otherwise where it was put or the view stands. */
 function Slide({ name, unit, low, high, value, move }: SlideProps) {
   const [dragged, setDragged] = useState<number | null>(null);
   const finish = (): void => setDragged(null);
@@ -51,6 +52,7 @@ function Slide({ name, unit, low, high, value, move }: SlideProps) {
           move(next);
         }}
         onPointerUp={finish}
+        onPointerCancel={finish}
         onKeyUp={finish}
         onBlur={finish}
       />
@@ -141,12 +143,13 @@ function StartHere({ view }: { view: View }) {
     keepSimulation({ ...askedSimulation(), q0: startTexts(data, view.q) });
     showSimulation();
   };
+  const isPosing = useStore(({ posing }) => Object.keys(posing.q ?? {}).length > 0);
   const isClosed = view.gap === null || view.gap <= OPEN;
   return (
     <button
       type="button"
       className="small"
-      disabled={!isClosed}
+      disabled={!isClosed || isPosing}
       title="Simulate from the pose that is shown: its coordinates are the starts"
       onClick={open}
     >
@@ -165,6 +168,10 @@ function showForces(forces: boolean): void {
 /** Sliders of the coordinates, of how much bending is exaggerated, of parameters. */
 function Controls({ view }: { view: View }) {
   const { parameters } = useDocument();
+  const put = expected(
+    view,
+    useStore(({ posing }) => posing),
+  );
   const movable = parameters.filter(({ name, number }) => number !== null && view.run_time.includes(name));
   const elastic = view.coordinates.filter((one) => one.elastic);
   return (
@@ -176,13 +183,13 @@ function Controls({ view }: { view: View }) {
         <label>
           <input
             type="checkbox"
-            checked={view.frames}
+            checked={put.frames}
             onChange={({ target }) => void move({ frames: target.checked, labels: target.checked })}
           />{" "}
           Frames
         </label>
         <label title="Forces and moments at joints, constraints and contacts of the newest simulation, as arrows">
-          <input type="checkbox" checked={view.forces} onChange={({ target }) => showForces(target.checked)} /> Forces
+          <input type="checkbox" checked={put.forces} onChange={({ target }) => showForces(target.checked)} /> Forces
         </label>
         <Dragged />
         <StartHere view={view} />
@@ -194,7 +201,7 @@ function Controls({ view }: { view: View }) {
         </p>
       ))}
       <Bending view={view} />
-      <Coordinates view={view} chosen={view.coordinates.filter((one) => !one.elastic)} />
+      <Coordinates view={put} chosen={view.coordinates.filter((one) => !one.elastic)} />
       {view.flexible ? (
         <>
           <Slide
@@ -202,12 +209,12 @@ function Controls({ view }: { view: View }) {
             unit=""
             low={0}
             high={MOST_EXAGGERATION}
-            value={view.exaggeration}
+            value={put.exaggeration}
             move={(exaggeration) => void move({ exaggeration })}
           />
           <details>
             <summary>Elastic coordinates</summary>
-            <Coordinates view={view} chosen={elastic} />
+            <Coordinates view={put} chosen={elastic} />
           </details>
         </>
       ) : null}
@@ -275,8 +282,12 @@ export function ViewPane() {
   const { revision, path, diagram } = useDocument();
   const view = useStore((state) => state.view);
   const block = useStore((state) => state.block);
-  useEffect(() => void look(), [revision, path, block]);
-  useEffect(() => lookAway, []);
+  // A server that was gone knows nothing of the view.
+  const isLinked = useStore(({ link }) => link === "ok");
+  useEffect(() => lookAway, [isLinked]);
+  useEffect(() => {
+    if (isLinked) void look();
+  }, [isLinked, revision, path, block]);
   const theme = useTheme();
   const isShown = view !== null && "address" in view;
   useEffect(() => {

@@ -14,6 +14,7 @@ import type {
   NativeFile,
   Path,
   Point,
+  Pose,
   View,
 } from "../api/types";
 import type { AskedAnalysis, AskedRun, AskedSimulation } from "../model/asked";
@@ -89,6 +90,8 @@ export interface OfDocument {
   block: string;
   /** What the 3-D view shows, while its pane is open; a fault: why it shows nothing. */
   view: View | Fault | null;
+  /** What it was asked for and has not answered yet. */
+  posing: Pose;
   /** Why it did not go where it was moved to. */
   stuck: string;
 }
@@ -135,6 +138,7 @@ export const OF_NEW_DOCUMENT: OfDocument = {
   leftText: null,
   block: "",
   view: null,
+  posing: {},
   stuck: "",
 };
 

@@ -22,16 +22,20 @@ export function shownBlock(): string {
 }
 
 let asked = 0;
+// Answers to poses so far: a picture that was derived before one of them does not know it.
+let stands = 0;
 
 /** Brings the view up to the document as it is. */
 export async function look(): Promise<void> {
   asked += 1;
-  const turn = asked;
+  const [turn, before] = [asked, stands];
   const path = now().document?.path;
   const isPast = (): boolean => turn !== asked || now().document?.path !== path;
   try {
     const view = await get<View>(`api/view?block=${encodeURIComponent(shownBlock())}`);
-    if (!isPast()) update({ view, stuck: "" });
+    if (isPast()) return;
+    update({ view, stuck: "" });
+    if (stands !== before) await move({});
   } catch (reason) {
     if (isPast()) return;
     if (reason instanceof Refused && reason.status === 422) update({ view: reason.fault });
@@ -50,7 +54,7 @@ export function pick(element: string): void {
   if (shownView() !== null && document?.diagram === null && elementIds(document).has(element)) reveal(element);
 }
 
-/** Takes over where the view stands after somebody dragged a frame in it. */
+/** Takes over where the view stands after a request, or after somebody dragged a frame in it. */
 export function takePose({ why, ...stand }: Posed): void {
   const view = shownView();
   if (view !== null) update({ view: { ...view, ...stand }, stuck: why });
@@ -61,10 +65,20 @@ export function zoom(height: number | null): void {
   if (view !== null) update({ view: { ...view, height } });
 }
 
-let next: Pose | null = null;
-// Path of the document that it is of.
-let of: string | undefined;
-let moving = false;
+/** A pose of a document at a path. */
+interface Asked {
+  pose: Pose;
+  of: string | undefined;
+}
+
+let sent: Asked | null = null;
+let next: Asked | null = null;
+
+/** A pose if it is of the open document. */
+const ours = (asked: Asked | null): Pose | null =>
+  asked !== null && asked.of === now().document?.path ? asked.pose : null;
+
+const notePosing = (): void => update({ posing: merged(ours(sent), ours(next) ?? {}) });
 
 /** Shows a run's state at a time. */
 export function seek(run: string, t: number, block: string): void {
@@ -73,28 +87,28 @@ export function seek(run: string, t: number, block: string): void {
 
 /** Moves the view; while one request is on its way, the newest of each value waits. */
 export async function move(pose: Pose): Promise<void> {
-  if (of !== now().document?.path) next = null;
-  next = merged(next, pose);
-  of = now().document?.path;
-  if (moving) return;
-  moving = true;
+  next = { pose: merged(ours(next), pose), of: now().document?.path };
+  notePosing();
+  if (sent !== null) return;
   try {
-    while (next !== null) {
-      const sent: Pose = next;
-      next = null;
-      const path = now().document?.path;
-      if (of !== path) break; // A pose of a document that was left since.
-      for (const request of requestsOf(sent)) {
-        const { why, ...stand } = await post<Posed>("api/pose", request);
-        const view = shownView();
-        if (view !== null && now().document?.path === path) update({ view: { ...view, ...stand }, stuck: why });
-      }
+    while (ours(next) !== null) {
+      [sent, next] = [next as Asked, null];
+      for (const request of requestsOf(sent.pose)) await ask(request, sent.of);
+      sent = null;
+      notePosing();
     }
+  } finally {
+    sent = null;
+  }
+}
+
+async function ask(request: Pose, of: string | undefined): Promise<void> {
+  try {
+    const stand = await post<Posed>("api/pose", request);
+    stands += 1;
+    if (now().document?.path === of) takePose(stand);
   } catch (reason) {
-    next = null;
     // A pose of what is no longer there is of no use; the view follows the document anyway.
     if (!(reason instanceof Refused && reason.status === 422)) explain(reason);
-  } finally {
-    moving = false;
   }
 }
