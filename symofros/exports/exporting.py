@@ -40,10 +40,10 @@ from symofros.expr import OPERANDS
 from symofros.generator import InterpretedUnit
 from symofros.loading import load
 from symofros.mechanics.topology import OTHER_FUNCTIONS
-from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
+from symofros.simulation.options import SimulationOptions
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
@@ -65,7 +65,8 @@ _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, st
 # Functions of reactions, in packages of C alone.
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
-_STEPPING: dict[str, Any] = {"method": "rk4", "dt": 1e-3, "rtol": 1e-6, "atol": 1e-8, "beam_limit": BEAM_LIMIT}
+_OF_RUNS = ("method", "rtol", "atol", "beam_limit")
+_STEPPING: dict[str, Any] = {"dt": 1e-3} | {name: getattr(SimulationOptions(), name) for name in _OF_RUNS}
 _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
@@ -121,7 +122,7 @@ def export(
             follows are by default what it states for its runs; otherwise rk4.
         dt: Step of that method [s]; of an adaptive one the first. 1e-3 by default.
         rtol: Relative error of an adaptive method's step. 1e-6 by default.
-        atol: Absolute bound of the local error of adaptive methods. 1e-8 by default.
+        atol: Absolute bound of the local error of adaptive methods. 1e-9 by default.
         beam_limit: Estimated error of the beams' theory beyond which stepping fails, by default as in `simulate`; from
             0.01 on FMUs log a warning.
         events: Name -> formula or Event, with actions as of `simulate`, which the steps of "c", "fmu2", "fmu3" and

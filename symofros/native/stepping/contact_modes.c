@@ -175,7 +175,7 @@ static int32_t sym_solve_part(sym_contact_problem *p, const int32_t *part, int32
     for (i = 0; i < m; ++i) {
         const int32_t ball = which[i];
         own.mu[i] = p->mu[ball], own.parts[i] = p->parts[ball], own.slides[i] = p->slides[ball], own.last[i] = p->last[ball];
-        own.d[2 * i] = p->slides[ball] ? p->d[2 * ball] : 1.0, own.d[2 * i + 1] = p->slides[ball] ? p->d[2 * ball + 1] : 0.0;
+        memcpy(own.d + 2 * i, p->d + 2 * ball, 2 * sizeof *own.d);
         memcpy(own.b + 3 * i, p->b + 3 * ball, 3 * sizeof *own.b);
         for (j = 0; j < m; ++j)
             for (k = 0; k < 3; ++k)
@@ -194,10 +194,7 @@ static int32_t sym_solve_part(sym_contact_problem *p, const int32_t *part, int32
 /* No ball is pressed: all are open. */
 static void sym_leave_without_forces(sym_contact_problem *p) {
     int32_t i;
-    for (i = 0; i < p->n; ++i) {
-        p->mode[i] = SYM_OPEN;
-        if (!p->slides[i]) p->d[2 * i] = 1.0, p->d[2 * i + 1] = 0.0;
-    }
+    for (i = 0; i < p->n; ++i) p->mode[i] = SYM_OPEN;
     for (i = 0; i < 3 * p->n; ++i) p->f[i] = 0.0, p->c[i] = p->b[i];
     p->shared = 0;
 }

@@ -89,7 +89,7 @@ static int32_t sym_strike(sym_run *r, sym_touching *at, double still, const doub
     sym_contact_problem *p = &at->problem;
     const int32_t n = 3 * p->n;
     int32_t round, i, j, k, elastic = 0, alone = p->n == 1;
-    for (i = 0; i < p->n; ++i) elastic |= e[i] > 0.0, p->parts[i] = p->slides[i] = 0;
+    for (i = 0; i < p->n; ++i) elastic |= e[i] > 0.0;
     memcpy(p->b, at->u, (size_t)n * sizeof *at->u);
     if (!elastic && !alone) {
         if (sym_solve_contacts(p, 0) == 0) {
@@ -143,6 +143,7 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
         if (state[SYM_SINE] < SYM_FLAT) return SYM_FLAT_RIM;
         at->of[n] = i, at->problem.mu[n] = state[4];
+        at->problem.parts[n] = at->problem.slides[n] = 0, at->problem.d[2 * n] = 1.0, at->problem.d[2 * n + 1] = 0.0;
         at->apart[n] = met == NULL ? 0.0 : par[s->contacts[i].apart]; /* as it has become, where others are met */
         if (met != NULL && met[i] > 0.0) at->apart[n] = fmin(fmax(SYM_GRAZES, 2.0 * at->apart[n]), SYM_TOUCHING);
         at->gap[n] = state[0];
