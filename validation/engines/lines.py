@@ -105,6 +105,8 @@ class Tendon:
         rest: Length at which the spring has no force.
         armature: Mass that moves with the length.
         wraps: Surfaces on its way; of a "path" only.
+        limits: Least and greatest length; () for none.
+        friction: Greatest force of dry friction against its rate.
     """
 
     kind: str
@@ -115,6 +117,8 @@ class Tendon:
     rest: float = 0.0
     armature: float = 0.0
     wraps: tuple[Wrap, ...] = ()
+    limits: tuple[float, ...] = ()
+    friction: float = 0.0
 
 
 @dataclass(frozen=True)

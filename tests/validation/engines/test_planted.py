@@ -10,13 +10,13 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Tree
 from validation.engines.matrix import cells
-from validation.engines.models import acting, hostile, sensed, single, transformed
+from validation.engines.models import acting, hostile, sensed, single, soft, transformed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin
 from validation.engines.workers import registry
 
-_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | sensed.trees() | single.trees()
+_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | sensed.trees() | single.trees() | soft.trees()
 # Engine, tree, function, text of the call -> what it is in a call that has the fault.
 FAULTS = [
     ("mujoco", "revolute x", "joint_wrenches_driven", "= q, v, tau", "= q, v, 2 * tau"),
@@ -105,6 +105,16 @@ FAULTS = [
     ("drake", "sensors on hinges", "gyroscopes", "(c, v)", "(c, 2 * v)"),
     ("mujoco", "sensors on hinges", "frame_velocities_seen:camera", "frameangvel", "framelinvel"),
     ("mujoco", "sensors beyond a ball", "frame_accelerations:geom", " + np.r_[m.opt.gravity, 0, 0, 0]", ""),
+    ("mujoco", "hinge below its limit", "limited_acceleration", "q, v, tau", "q, 2 * v, tau"),
+    ("mujoco", "limits beside friction", "limiting_forces", "= q, v, tau", "= q, 2 * v, tau"),
+    (
+        "mujoco",
+        "tendons with dry friction",
+        "limiting_forces:mj_mulJacTVec",
+        "d.efc_force)",
+        "d.efc_force[::-1].copy())",
+    ),
+    ("mujoco", "hinges beyond limits", "limited_inverse", "value = d.qfrc_inverse", "value = d.qfrc_inverse + d.qacc"),
     ("mujoco", "sensors on hinges", "magnetic_fields", "[0.25, -0.5, 1.0]", "[0.25, 1.0, -0.5]"),
 ]
 

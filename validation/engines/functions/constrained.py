@@ -7,10 +7,11 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import constraints
+from ..models.soft import ASKED
+from ..truth import constraints, soft
 from ..truth.arithmetic import Exact, exact
 from ..truth.dynamics import Point, Truth
-from .function import Function
+from .function import Function, functions_of
 
 
 def _at_rest(t: Truth, s: Point) -> Exact:
@@ -94,4 +95,14 @@ def _derivatives(name: str, of: Callable[[Truth, Exact, Exact, Exact], Exact]) -
     }
 
 
-CONSTRAINED = _constrained()
+def _limited() -> dict[str, Function]:
+    """Of trees whose limits and dry friction act (`soft`)."""
+    rows = {
+        "limited_acceleration": ("accelerations (nv)", soft.acceleration),
+        "limiting_forces": ("what limits and friction do along the speeds (nv)", soft.forces),
+        "limited_inverse": ("forces (nv) that inverse dynamics find at these accelerations: tau", lambda t, s: s.tau),
+    }
+    return functions_of(rows, ASKED)
+
+
+CONSTRAINED = _constrained() | _limited()

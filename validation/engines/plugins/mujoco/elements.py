@@ -86,6 +86,8 @@ def _sensor(kind: str, k: int) -> str:
 
 def _spring(one: Tendon) -> str:
     heavy = f' armature="{one.armature!r}"' if one.armature else ""
+    heavy += f' limited="true" range="{_text(one.limits)}"' if one.limits else ""
+    heavy += f' frictionloss="{one.friction!r}"' if one.friction else ""
     return f' stiffness="{one.stiffness!r}" damping="{one.damping!r}" springlength="{one.rest!r}"{heavy}'
 
 
@@ -162,6 +164,12 @@ def forces(joint: Joint) -> str:
     made = "".join(f' {name}="{value!r}"' for name, value in stated.items() if value)
     limits = f' actuatorfrclimited="true" actuatorfrcrange="{_text(joint.force_limits)}"' if joint.force_limits else ""
     return made + limits
+
+
+def limits(joint: Joint) -> str:
+    """The attributes that state a joint's limits and dry friction."""
+    made = f' limited="true" range="{_text(joint.limits)}"' if joint.limits else ""
+    return made + (f' frictionloss="{joint.friction!r}"' if joint.friction else "")
 
 
 def controls(tree: Tree) -> list[str]:

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
+from ...models.soft import ASKED
 from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, flex, forces, framed, functions, rebuilt, turns
+from . import besides, flex, forces, framed, functions, rebuilt, soft, turns
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -161,7 +162,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     return Source(lines, slots, nq, nv, optional)
 
 
-_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | turns.WAYS
+_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | soft.WAYS | turns.WAYS
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",
@@ -196,6 +197,7 @@ PLUGIN = SourcePlugin(
         "scaled welds": "equality/weld torquescale",
         "points by bodies": "equality/connect anchor",
         "a lone body": "efc_diagApprox",
+        ASKED: "limited, range, frictionloss",
         "a medium": "density, viscosity, wind",
         "actuators": "general, motor, position, velocity",
         "activations": "dyntype, dynprm, actearly, actrange",
