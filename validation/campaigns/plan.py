@@ -142,6 +142,12 @@ class SweepPlan(_OfFiles):
     def _sound(self) -> SweepPlan:
         if (self.motion is None) != (self.quantity == "frequencies"):
             raise ValueError("'motion' belongs to quantity 'end_state', which needs it")
+        idle = {"modes", "held"} & self.model_fields_set
+        if idle and self.motion is not None:
+            raise ValueError(f"'{min(idle)}' belongs to quantity 'frequencies'")
+        twice = sorted(self.over.keys() & self.inputs.keys())
+        if twice:
+            raise ValueError(f"'{twice[0]}' is swept and stated among 'inputs': state it once")
         points_of(self.over, self.design, self.points, self.seed, 0, 0)  # Says what is wrong with the design.
         return self
 

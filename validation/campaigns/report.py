@@ -74,7 +74,9 @@ def _share(row: Data) -> float:
 def _swept(data: Data) -> Report:
     plan, ranges = data["plan"], data["ranges"].items()
     rest = "" if data["ok"] else f"; {data['points'] - data['done']} could not be evaluated"
-    reasons = Bullets(tuple(f"{number} points: {why}" for why, number in data["failed"].items()))
+    remarks = {f"{data['first_note']} (the first of column `notes`)": data["noted"]} if data["noted"] else {}
+    counts = [*data["failed"].items(), *remarks.items()]
+    reasons = Bullets(tuple(f"{counted(number, 'point')}: {why}" for why, number in counts))
     rows = ((name, *(formatted(one[end], ".6g") for end in ("min", "max"))) for name, one in ranges)
     return Report(
         "Campaign",

@@ -79,7 +79,7 @@ def checked(rows: pa.Table) -> dict[str, Any]:
 
 
 def swept(rows: pa.Table) -> dict[str, Any]:
-    """Summary of a sweep: range of each result, and number of failed points by reason."""
+    """Summary of a sweep: range of each result, numbers of failed points by reason and of points with notes."""
     failed = Counter(rows["outcome"].to_pylist())
     done = failed.pop(DONE, 0)
     first = rows.column_names.index("outcome")
@@ -87,4 +87,13 @@ def swept(rows: pa.Table) -> dict[str, Any]:
         name for name in rows.column_names[:first] if name not in ("batch", "point") and not name.startswith("over:")
     ]
     ranges = {name: pc.min_max(rows[name]).as_py() for name in results}
-    return {"ok": not failed, "points": rows.num_rows, "done": done, "failed": dict(failed), "ranges": ranges}
+    noted = [text for text in rows["notes"].to_pylist() if text]
+    remarks = {"noted": len(noted), "first_note": noted[0].partition("\n")[0] if noted else ""}
+    return {
+        "ok": not failed,
+        "points": rows.num_rows,
+        "done": done,
+        "failed": dict(failed),
+        **remarks,
+        "ranges": ranges,
+    }

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 import pyarrow as pa
 
 import symofros as sf
@@ -15,6 +16,8 @@ from .design import points_of
 from .plan import SweepPlan
 
 DONE = "done"
+# Rate of growth relative to |s| that is more than rounding of an undamped mode.
+GROWTH = 1e-7
 
 
 class Sweeper:
@@ -43,6 +46,7 @@ class Sweeper:
                 )
         self.q = placed("start.q", model.neutral(), names.q, plan.start.get("q", {}))
         self.v = placed("start.v", np.zeros(model.nv), names.v, plan.start.get("v", {}))
+        placed("held", np.zeros(model.nv), names.v, dict.fromkeys(plan.held, 0.0))
         self.u = placed("inputs", np.zeros(model.nu), names.u, plan.inputs)
         self.par = np.array([model.parameters[name] for name in names.par])
 
@@ -54,18 +58,33 @@ class Sweeper:
         return [f"{kind}:{name}" for kind in "qv" for name in getattr(self.model.names, kind)]
 
     def table(self, batch: int, first: int, count: int) -> pa.Table:
-        """The points first ... first + count - 1; results of those that fail are null."""
+        """The points first ... first + count - 1; results of those that fail are null, `notes` empty without any."""
         plan = self.plan
         points = points_of(plan.over, plan.design, plan.points, plan.seed, first, count)
         par, u = self._spread(points)
-        results, outcomes = (self._frequencies if plan.quantity == "frequencies" else self._motions)(par, u)
+        refused = [self._refusal(values) for values in par]
+        allowed = np.array([not words for words in refused])
+        results, outcomes, notes = np.full((count, len(self.columns)), np.nan), refused, [""] * count
+        if allowed.any():
+            evaluated = self._frequencies if plan.quantity == "frequencies" else self._motions
+            results[allowed], ends, remarks = evaluated(par[allowed], u[allowed])
+            for row, outcome, remark in zip(np.flatnonzero(allowed).tolist(), ends, remarks, strict=True):
+                outcomes[row], notes[row] = outcome, "\n".join(remark)
         columns = {
             "batch": pa.array([batch] * count, pa.int64()),
             "point": pa.array(range(first, first + count), pa.int64()),
         }
         columns |= {f"over:{name}": pa.array(points[:, k]) for k, name in enumerate(plan.over)}
         columns |= {name: pa.array(results[:, k], from_pandas=True) for k, name in enumerate(self.columns)}
-        return pa.table(columns | {"outcome": pa.array(outcomes, pa.string())})
+        return pa.table(columns | {"outcome": pa.array(outcomes, pa.string()), "notes": pa.array(notes, pa.string())})
+
+    def _refusal(self, par: Array) -> str:
+        """Why the description does not allow parameters (npar), in a line; empty where it does."""
+        try:
+            self.model.checked_parameters(par)
+        except sf.ParameterError as error:
+            return "; ".join(map(str.strip, str(error).splitlines()[:2]))
+        return ""
 
     def _spread(self, points: Array) -> tuple[Array, Array]:
         """Parameters (n, npar) and inputs (n, nu) of points."""
@@ -77,22 +96,26 @@ class Sweeper:
                 u[:, self.model.names.u.index(name)] = points[:, k]
         return par, u
 
-    def _frequencies(self, par: Array, u: Array) -> tuple[Array, list[str]]:
-        """Lowest frequencies about the equilibrium near the start [rad/s] (points, modes), ascending, and outcomes."""
-        frequencies, outcomes = np.full((len(par), self.plan.modes), np.nan), []
+    def _frequencies(self, par: Array, u: Array) -> tuple[Array, list[str], list[list[str]]]:
+        """Lowest frequencies about the equilibrium near the start [rad/s] (points, modes); outcomes, notes."""
+        count = self.plan.modes
+        frequencies, outcomes, notes = np.full((len(par), count), np.nan), [], [list[str]() for _ in par]
         for row, (values, inputs) in enumerate(zip(par, u, strict=True)):
             try:
                 rest = sf.equilibrium(self.model, self.q, self.v, inputs, held=self.plan.held, par=values)
-                lowest = sf.modes(self.model, rest.q, rest.v, inputs, par=values).frequencies[: self.plan.modes]
+                modes = sf.modes(self.model, rest.q, rest.v, inputs, par=values)
             except sf.EquilibriumError as error:
                 outcomes.append(str(error).partition("\n")[0])
                 continue
+            lowest = modes.frequencies[:count]
             frequencies[row, : len(lowest)] = lowest
             outcomes.append(DONE)
-        return frequencies, outcomes
+            told = dict.fromkeys((*rest.notes, *modes.notes))
+            notes[row] = [*unlike_oscillations(modes.eigenvalues[:count]), *told]
+        return frequencies, outcomes, notes
 
-    def _motions(self, par: Array, u: Array) -> tuple[Array, list[str]]:
-        """Final q and v of the motions (points, nq + nv), NaN for those that end early, and outcomes."""
+    def _motions(self, par: Array, u: Array) -> tuple[Array, list[str], list[list[str]]]:
+        """Final q and v of the motions (points, nq + nv), NaN for those that end early; outcomes, notes."""
         motion = self.plan.motion
         assert motion is not None  # A plan of end states has one.
         shape = (len(par), 1)
@@ -107,8 +130,17 @@ class Sweeper:
             par=par,
         )
         ends = np.concatenate([runs.q[:, -1], runs.v[:, -1]], axis=1)
-        outcomes = [DONE if ok else str(runs.outcome(k)) for k, ok in enumerate(runs.ok)]
-        return np.where(runs.ok[:, None], ends, np.nan), outcomes
+        each = [runs.outcome(k) for k in range(len(par))]
+        outcomes = [DONE if outcome.ok else str(outcome) for outcome in each]
+        return np.where(runs.ok[:, None], ends, np.nan), outcomes, [list(outcome.notes) for outcome in each]
+
+
+def unlike_oscillations(eigenvalues: npt.NDArray[np.complex128]) -> Iterator[str]:
+    """Which of the frequencies |s| are none of a lasting or decaying oscillation, by eigenvalues s [1/s]."""
+    for k, s in enumerate(eigenvalues.tolist()):
+        if s != 0.0 and (s.imag == 0.0 or s.real > GROWTH * abs(s)):
+            how = "without oscillation" if s.imag == 0.0 else "as it oscillates"
+            yield f"frequency_{k + 1}: {'grows' if s.real > 0.0 else 'decays'} at {abs(s.real):.6g} 1/s {how}"
 
 
 def placed(where: str, values: Array, names: Sequence[str], given: Mapping[str, float]) -> Array:

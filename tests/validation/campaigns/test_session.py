@@ -121,11 +121,11 @@ def test_a_campaign_without_engines_does_not_agree() -> None:
 
 
 def test_a_sweep_counts_its_failures() -> None:
-    rows = pa.table(
-        {"batch": [0, 0], "point": [0, 1], "over:L": [1.0, 2.0], "f": [3.0, None], "outcome": [DONE, "lost"]}
-    )
+    points = {"batch": [0, 0], "point": [0, 1], "over:L": [1.0, 2.0]}
+    rows = pa.table(points | {"f": [3.0, None], "outcome": [DONE, "lost"], "notes": ["coarse\nsteps", ""]})
     data = swept(rows)
     assert not data["ok"] and data["done"] == 1 and data["failed"] == {"lost": 1}
+    assert data["noted"] == 1 and data["first_note"] == "coarse"
     assert data["ranges"] == {"f": {"min": 3.0, "max": 3.0}}
 
 

@@ -71,9 +71,44 @@ def test_frequencies_match_the_steady_motion() -> None:
         ),
         ({"start": {"q": {"q9": 1.0}}}, "start.q: no 'q9'; there are q1, q2"),
         ({"inputs": {"motor": 1.0}}, "inputs: no 'motor'"),
+        ({"held": ["q9"], "quantity": "frequencies", "motion": None}, "held: no 'q9'; there are q1, q2"),
     ],
 )
 def test_names_that_the_model_lacks_are_refused(change: dict[str, Any], says: str) -> None:
     with pytest.raises(sf.UnknownNameError) as caught:
         sweeper(END_STATE | change)
     assert says in str(caught.value)
+
+
+UPRIGHT: dict[str, Any] = {
+    "kind": "sweep",
+    "model": "cart_pole",
+    "quantity": "frequencies",
+    "over": {"m_pole": {"low": -0.1, "high": 0.1, "count": 2}},
+}
+
+
+@pytest.mark.parametrize("quantity", ["frequencies", "end_state"])
+def test_parameters_that_are_refused_cost_their_own_point(quantity: str) -> None:
+    motion = None if quantity == "frequencies" else {"t_end": 0.1, "dt": 0.002}
+    refused, row = sweeper(UPRIGHT | {"quantity": quantity, "motion": motion}).table(0, 0, 2).to_pylist()
+    assert "m_pole = -0.1" in refused["outcome"] and "mass -0.1" in refused["outcome"]
+    assert row["outcome"] == DONE
+    result = "frequency_2" if quantity == "frequencies" else "q:q"
+    assert refused[result] is None and row[result] is not None
+
+
+def test_rates_of_an_unstable_equilibrium_are_no_frequencies_in_silence() -> None:
+    _, upright = sweeper(UPRIGHT).table(0, 0, 2).to_pylist()
+    grows, decays, rest = upright["notes"].splitlines()
+    assert "grows at" in grows and "decays at" in decays and "without oscillation" in grows
+    assert "this rest is unstable" in rest
+    hanging = sweeper(UPRIGHT | {"start": {"q": {"q": 3.0}}}).table(0, 1, 1).to_pylist()[0]
+    assert hanging["outcome"] == DONE and hanging["notes"] == ""
+
+
+def test_notes_of_a_motion_are_kept() -> None:
+    motion = {"t_end": 2.0, "dt": 0.2}
+    data = END_STATE | {"points": 2, "motion": motion, "over": {"m1": {"low": 0.5, "high": 2.0}}}
+    rows = sweeper(data).table(0, 0, 2).to_pylist()
+    assert all("steps of 0.2 s" in row["notes"] for row in rows)
