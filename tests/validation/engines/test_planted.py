@@ -105,6 +105,10 @@ FAULTS = [
     ("drake", "sensors on hinges", "gyroscopes", "(c, v)", "(c, 2 * v)"),
     ("mujoco", "sensors on hinges", "frame_velocities_seen:camera", "frameangvel", "framelinvel"),
     ("mujoco", "sensors beyond a ball", "frame_accelerations:geom", " + np.r_[m.opt.gravity, 0, 0, 0]", ""),
+    ("dart", "universal", "acceleration_local:joints", " + rate @ v", ""),
+    ("dart", "free", "coordinates_of_links", "q[own]", "q[own[::-1]]"),
+    ("dart", "ball", "link_jacobian_rates:linear and angular", "AngularJacobianDeriv", "AngularJacobian"),
+    ("mujoco", "hinge below its limit", "limited_acceleration:attach", "q, v, tau", "q, 2 * v, tau"),
     ("mujoco", "hinge below its limit", "limited_acceleration", "q, v, tau", "q, 2 * v, tau"),
     ("mujoco", "limits beside friction", "limiting_forces", "= q, v, tau", "= q, 2 * v, tau"),
     (

@@ -11,6 +11,7 @@ import numpy as np
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from ..truth.points import POINT
 from . import turns
+from .loops import dart_joints
 from .turns import dart as turning
 from .writing import copies
 from .writing.numbering import numbered
@@ -358,7 +359,7 @@ PLUGIN = SourcePlugin(
         "free": "FreeJoint",
         "free between links": "FreeJoint",
     },
-    ways=WAYS | copies.of_model(WAYS, _COPIED) | turning.WAYS,
+    ways=WAYS | copies.of_model(WAYS, _COPIED) | dart_joints.WAYS | turning.WAYS,
     write=write,
     formats=tuple(_READERS),
     write_reading=write_reading,

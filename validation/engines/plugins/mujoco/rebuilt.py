@@ -44,6 +44,7 @@ _ASKED = (
     *("mass_matrix", "link_poses", "passive_forces", "tendon_lengths", "tendon_arms", "actuator_lengths"),
     *("actuator_arms", "actuator_forces", "activation_rates", "actuated_forces", "accelerometers", "wrench_sensors"),
     *("constraint_jacobian", "constraint_residuals", "constrained_acceleration", "step_forces_implicit"),
+    *("limited_acceleration", "limiting_forces", "gyroscopes", "magnetic_fields"),
 )
 
 
