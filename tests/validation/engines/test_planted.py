@@ -10,13 +10,15 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Tree
 from validation.engines.matrix import cells
-from validation.engines.models import acting, hostile, sensed, single, soft, transformed
+from validation.engines.models import acting, hostile, loops, sensed, single, soft, transformed
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.plugins.writing.source import Source, SourcePlugin
 from validation.engines.workers import registry
 
-_FAMILIES: Mapping[str, Tree] = acting.trees() | hostile.trees() | sensed.trees() | single.trees() | soft.trees()
+_FAMILIES: Mapping[str, Tree] = (
+    acting.trees() | hostile.trees() | loops.trees() | sensed.trees() | single.trees() | soft.trees()
+)
 # Engine, tree, function, text of the call -> what it is in a call that has the fault.
 FAULTS = [
     ("mujoco", "revolute x", "joint_wrenches_driven", "= q, v, tau", "= q, v, 2 * tau"),
@@ -105,6 +107,9 @@ FAULTS = [
     ("drake", "sensors on hinges", "gyroscopes", "(c, v)", "(c, 2 * v)"),
     ("mujoco", "sensors on hinges", "frame_velocities_seen:camera", "frameangvel", "framelinvel"),
     ("mujoco", "sensors beyond a ball", "frame_accelerations:geom", " + np.r_[m.opt.gravity, 0, 0, 0]", ""),
+    ("pinocchio", "point between branches", "constraint_jacobian:jacobianTransposeMatrixProduct", "-np", "np"),
+    ("pinocchio", "weld between branches", "delassus_inverse:operator", ".solve(", ".matrix() @ ("),
+    ("pinocchio", "point between branches", "constraint_forces:forwardDynamics", "-J @ bound", "J @ bound"),
     ("dart", "universal", "acceleration_local:joints", " + rate @ v", ""),
     ("dart", "free", "coordinates_of_links", "q[own]", "q[own[::-1]]"),
     ("dart", "ball", "link_jacobian_rates:linear and angular", "AngularJacobianDeriv", "AngularJacobian"),

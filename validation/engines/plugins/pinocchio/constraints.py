@@ -125,3 +125,62 @@ for _number, _name in enumerate(("dq", "dv", "dtau")):
     _native = "computeConstraintDynamicsDerivatives"
     WAYS[f"constrained_acceleration_{_name}"] = Way(_native, f"{_DERIVATIVES}[{_number}]")
     WAYS[f"constraint_forces_{_name}"] = Way(_native, f"{_DERIVATIVES}[{_number + 3}]")
+
+# Anchors have the other sign; their decomposition and its operators say the same of both.
+_ANCHORED = (
+    "ad = pin.StdVec_ConstraintData([one.createData() for one in am])\n"
+    "pin.crba(m, d, q, pin.Convention.WORLD)\nfor one, data in zip(am, ad): one.calc(m, d, data)\n"
+)
+_DECOMPOSED = (
+    f"{_ANCHORED}C = pin.ConstraintCholeskyDecomposition(m, d, am, ad)\nC.compute(m, d, am, ad, 1e-12)\n"
+    "G = C.getDelassusOperatorCholeskyExpression()\n"
+)
+# Accelerations without the constraints, and what these make of them: J a + J' v.
+_APART = (
+    f"{_DYNAMICS}bound = value.copy()\nfree = pin.aba(m, d, q, v, tau).copy()\n{_PLACED}"
+    "J = pin.getConstraintsJacobian(m, d, cm, cd)\ng = J @ (free - bound)\n"
+)
+WAYS |= {
+    "constraint_jacobian:jacobianMatrixProduct": Way(
+        "jacobianMatrixProduct",
+        f"{_ANCHORED}value = -np.vstack([one.jacobianMatrixProduct(m, d, data, np.eye(m.nv))"
+        " for one, data in zip(am, ad)])",
+    ),
+    "constraint_jacobian:jacobianTransposeMatrixProduct": Way(
+        "jacobianTransposeMatrixProduct",
+        f"{_ANCHORED}value = -np.hstack([one.jacobianTransposeMatrixProduct(m, d, data, np.eye(one.residualSize()))"
+        " for one, data in zip(am, ad)]).T",
+    ),
+    "constraint_jacobian:jacobian": Way(
+        "jacobian", f"{_ANCHORED}value = -np.vstack([one.jacobian(m, d, data) for one, data in zip(am, ad)])"
+    ),
+    "constraint_jacobian:getConstraintJacobian": Way(
+        "getConstraintJacobian",
+        f"{_PLACED}value = np.vstack([pin.getConstraintJacobian(m, d, one, data) for one, data in zip(cm, cd)])",
+    ),
+    "delassus:anchors": Way(
+        "ConstraintCholeskyDecomposition",
+        f"{_DECOMPOSED}value = C.getInverseOperationalSpaceInertiaMatrix()",
+        _REGULAR,
+    ),
+    "delassus:operator": Way("DelassusOperatorCholeskyExpression.matrix", f"{_DECOMPOSED}value = G.matrix()", _REGULAR),
+    "delassus_inverse:anchors": Way(
+        "ConstraintCholeskyDecomposition", f"{_DECOMPOSED}value = C.getOperationalSpaceInertiaMatrix()", _REGULAR
+    ),
+    "delassus_inverse:operator": Way(
+        "DelassusOperatorCholeskyExpression.solve", f"{_DECOMPOSED}value = G.solve(np.eye(G.size()))", _REGULAR
+    ),
+    "constrained_acceleration:forwardDynamics": Way(
+        "forwardDynamics",
+        f"{_APART}value = pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)",
+    ),
+    "constraint_forces:forwardDynamics": Way(
+        "forwardDynamics: lambda_c",
+        f"{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)\nvalue = d.lambda_c",
+    ),
+    "kkt_inverse:getKKTContactDynamicMatrixInverse": Way(
+        "forwardDynamics, getKKTContactDynamicMatrixInverse",
+        f"{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)\n"
+        "value = pin.getKKTContactDynamicMatrixInverse(m, d, J)",
+    ),
+}
