@@ -11,9 +11,10 @@ from typing import Annotated, Any
 
 import typer
 
-from ..engines.asking import SMOKE, about, in_turn, questions
+from ..engines.asking import SMOKE, Questions, about, in_turn, questions
 from ..engines.causes.cause import stated as causes
 from ..engines.causes.grouping import Group
+from ..engines.interface import EnginePlugin, Tree
 from ..engines.releases import Release, opened, plugins_of
 from ..engines.verdicts import Cell
 from ..faults.entry import Fault, faults, frozen
@@ -21,7 +22,7 @@ from ..faults.environment import NotAskedError, default_folder, kept, size_of
 from ..reporting.command import Run, known
 from ..reporting.record import Data
 from . import suites
-from .scoring import Scored, grouped, has, scored, shows
+from .scoring import Scored, Stated, grouped, has, scored, shows
 
 NO_PLUGIN = "the harness has no plug-in for it"
 
@@ -33,6 +34,7 @@ class Asked:
     Attributes:
         cells: Cells, under the names of plug-ins.
         natives: Name of a function -> what the engine calls it.
+        trees: Name of a tree -> what the engine calls what it states.
         seconds: Time of a processor that it took, with the truths that it was held to.
         memory: The most that its process held [MB].
         disk: Size of its environment [MB].
@@ -41,6 +43,7 @@ class Asked:
 
     cells: list[Cell] = field(default_factory=list)
     natives: dict[str, str] = field(default_factory=dict)
+    trees: dict[str, Stated] = field(default_factory=dict)
     seconds: float = 0.0
     memory: float = 0.0
     disk: float = 0.0
@@ -157,10 +160,24 @@ def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Re
             one, (name, process) = said[release], reach.processes[label]
             one.cells += [replace(cell.cell, engine=name) for cell in cells if cell.cell.engine == label]
             one.natives |= reach.plugins[label].functions
+            one.trees |= stated_by(reach.plugins[label], every)
             one.seconds += seconds[label]
             one.memory = max(one.memory, process.memory())
             one.disk = size_of(Path(process.python(label)))
     return said
+
+
+def stated_by(plugin: EnginePlugin, asked: Questions) -> dict[str, Stated]:
+    """Names of trees -> what an engine calls what they state."""
+    known: Mapping[str, str] = getattr(plugin, "demands", {})
+    constraints: Mapping[str, str] = getattr(plugin, "constraints", {})
+    stated = {}
+    for name, tree in ((name, one) for name, one in asked.items() if isinstance(one, Tree)):
+        done = [known.get(one, "") for one in sorted(tree.transformations)]
+        called = [known.get(one, "") for one in sorted(tree.demands)]
+        called += [constraints.get(one.kind, "") for one in tree.constraints]
+        stated[name] = Stated(", ".join(filter(None, done)), ", ".join(filter(None, dict.fromkeys(called))))
+    return stated
 
 
 def _row(fault: Fault, said: Mapping[Release, Asked], by_suite: bool) -> dict[str, Any]:
@@ -194,8 +211,9 @@ def _score(fault: Fault, wrong: Asked, right: Asked | None, by_suite: bool) -> S
         others = (one for one in faults().values() if one.engine == fault.engine and one is not fault)
         called = [natives.get(name, name) for name in group.functions]
         left = (one for one in others if has(one, version))
-        other = next((one for one in left if shows(one, group.functions, called, group.models)), None)
+        other = next((one for one in left if shows(one, group, called, wrong.trees)), None)
         return cause.what if cause else other.name if other else ""
 
     cells = None if right is None else right.cells
-    return scored(fault, wrong.cells, cells, natives, explained, suites.apart if by_suite else grouped)
+    together = suites.apart if by_suite else grouped
+    return scored(fault, wrong.cells, cells, natives, explained, together, wrong.trees)

@@ -2,9 +2,11 @@
 
 A red cell is *new* where it is red at the wrong release and at the right one is not asked, or less red; where there is
 no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *shows* the
-fault if one of its functions is one that the fault's file states as its subject, and if most of its trees are of those
-that the subject is shown in (`validation.faults.entry.Subject`); what a reader makes of a file shows in files of that
-format alone. What else a script calls, and what else the same release mended, is no part of it.
+fault if one of its functions, or what the engine does to all of its trees once they are built, is one that the fault's
+file states as its subject, and if most of its trees are of those that the subject is shown in
+(`validation.faults.entry.Subject`), by their names or by what the engine calls their constraints and demands; what a
+reader makes of a file shows in files of that format alone. What else a script calls, and what else the same release
+mended, is no part of it.
 
 hit: some new group shows the fault. half a hit: all such groups are imprecise only, or they are lost among `LOST` new
 groups or more. miss: neither. A false alarm is a group of cells
@@ -17,8 +19,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from itertools import takewhile
-from typing import Literal
+from types import MappingProxyType
+from typing import Literal, NamedTuple
 
 from ..engines.causes.grouping import Group, causes_of
 from ..engines.verdicts import RED, Cell
@@ -39,6 +43,18 @@ Score = Literal["hit", "half a hit", "miss", "not asked"]
 def grouped(cells: Sequence[Cell]) -> list[Group]:
     """Red cells put together by what they have in common; no stated cause, which people found, has a part in it."""
     return causes_of(cells, known=())
+
+
+class Stated(NamedTuple):
+    """What an engine calls what a tree states.
+
+    Attributes:
+        done: What it does to the tree once it is built; "" for nothing.
+        called: Its constraints, and what else it demands.
+    """
+
+    done: str = ""
+    called: str = ""
 
 
 @dataclass(frozen=True)
@@ -95,6 +111,7 @@ def scored(
     natives: Mapping[str, str],
     explained: Callable[[Group], str],
     together: Callable[[Sequence[Cell]], list[Group]] = grouped,
+    trees: Mapping[str, Stated] = MappingProxyType({}),
 ) -> Scored:
     """The score of one fault.
 
@@ -105,12 +122,14 @@ def scored(
         natives: Name of a function -> what the engine calls it.
         explained: Why a group that is new at the right release is no false alarm; "" for no reason.
         together: Puts red cells together.
+        trees: Name of a tree -> what the engine calls what it states.
     """
-    groups = [_shown(fault, group, natives) for group in together(new(wrong, right or ()))]
+    shown = partial(_shown, fault, natives=natives, trees=trees)
+    groups = [shown(group) for group in together(new(wrong, right or ()))]
     answered = {(cell.model, cell.function) for cell in wrong if cell.verdict in _ANSWERED}
     alarming = [cell for cell in new(right or (), wrong) if (cell.model, cell.function) in answered]
     at_right = together(alarming)
-    return judged(groups, [_shown(fault, group, natives, explained(group)) for group in at_right])
+    return judged(groups, [shown(group, explained=explained(group)) for group in at_right])
 
 
 def judged(groups: Sequence[Shown], others: Sequence[Shown]) -> Scored:
@@ -139,38 +158,42 @@ def _badness(cell: Cell) -> int:
     return _BADNESS.get(cell.verdict, _WORST) if cell.verdict in RED else 0
 
 
-def _shown(fault: Fault, group: Group, natives: Mapping[str, str], explained: str = "") -> Shown:
+def _shown(
+    fault: Fault, group: Group, natives: Mapping[str, str], trees: Mapping[str, Stated], explained: str = ""
+) -> Shown:
     worst = max(group.cells, key=_badness).verdict
-    functions, models = list(group.functions), list(group.models)
-    own = list(dict.fromkeys(natives.get(name, name) for name in functions))
-    return Shown(functions, own, models, worst, shows(fault, functions, own, models), explained)
+    own = list(dict.fromkeys(natives.get(name, name) for name in group.functions))
+    return Shown(list(group.functions), own, list(group.models), worst, shows(fault, group, own, trees), explained)
 
 
-def shows(fault: Fault, functions: Sequence[str], natives: Sequence[str], models: Sequence[str]) -> bool:
+def shows(fault: Fault, group: Group, natives: Sequence[str], trees: Mapping[str, Stated]) -> bool:
     """Whether a group shows a fault.
 
     Args:
         fault: The fault.
-        functions: Names of the group's functions.
-        natives: What the engine calls them.
-        models: Names of its trees and files.
+        group: The group.
+        natives: What the engine calls its functions.
+        trees: Name of a tree -> what the engine calls what it states.
     """
-    wanted, asked = set(fault.subject.functions), " ".join((*functions, *natives))
+    stated = [trees.get(model, Stated()) for model in group.models]
+    done = [one.done for one in stated] if all(one.done for one in stated) else []
+    wanted, asked = set(fault.subject.functions), " ".join((*group.functions, *natives, *done))
     if wanted and not wanted & set(re.findall(r"[A-Za-z_]\w*", asked)):
         return False
-    if not any(models):  # The checks of another suite have names alone, and no trees.
+    if not any(group.models):  # The checks of another suite have names alone, and no trees.
         return _has_words(fault, asked)
-    return 2 * sum(_is_shown_in(fault, model) for model in models) >= len(models)
+    shown = [_is_shown_in(fault, model, one.called) for model, one in zip(group.models, stated, strict=True)]
+    return 2 * sum(shown) >= len(shown)
 
 
-def _is_shown_in(fault: Fault, name: str) -> bool:
-    """Whether a tree or file is one that a fault shows in."""
+def _is_shown_in(fault: Fault, name: str, called: str) -> bool:
+    """Whether a tree or file is one that a fault shows in, by its name or by what the engine calls what it states."""
     form = next((form for form in _FORMATS if re.match(rf"{form}\b", name)), "")
     if fault.kind in _READ:
         stated = {form for form, mark in _FORMATS.items() if mark in fault.script}
         if stated and form not in stated and (form or not fault.subject.shown_in):
             return False
-    return (fault.kind != "writer" or "written" in name) and _has_words(fault, name)
+    return (fault.kind != "writer" or "written" in name) and _has_words(fault, f"{name}; {called}")
 
 
 def _has_words(fault: Fault, text: str) -> bool:

@@ -13,6 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 from validation.__main__ import app
+from validation.engines.asking import questions
+from validation.engines.plugins import OWN
 from validation.engines.releases import Opened, Release
 from validation.faults.entry import faults
 from validation.recall import measure
@@ -44,6 +46,12 @@ def test_releases_that_can_not_be_asked_are_no_misses(monkeypatch: pytest.Monkey
     monkeypatch.setattr(measure, "opened", none)
     row = asked()
     assert (row["score"], row["why"]) == ("not asked", "no wheels")
+
+
+def test_trees_are_called_as_the_engine_calls_what_they_state() -> None:
+    called = measure.stated_by(OWN["mujoco"], questions())
+    assert called["attached chain"].done == "MjSpec, attach_body" and not called["revolute x"].done
+    assert "equality/connect" in called["point between branches"].called
 
 
 def test_a_half_has_its_own_faults_alone() -> None:

@@ -13,7 +13,7 @@ from validation.faults.entry import Fault, Subject, faults
 from validation.faults.environment import NotAskedError
 from validation.recall import suites
 from validation.recall.report import TOPIC
-from validation.recall.scoring import LOST, Scored, has, scored
+from validation.recall.scoring import LOST, Scored, Stated, has, scored
 
 FAULT = replace(
     faults()["dart_inverse_mass_of_weld"],
@@ -68,6 +68,29 @@ def test_a_hit_among_twenty_groups_is_half_a_hit() -> None:
     many = [Cell("toy", f"tree {k}", f"link_poses:{k}", "wrong") for k in range(LOST)]
     found = score([*many, *cells(mass_matrix_inverse="wrong")], [])
     assert found.score == "half a hit" and "lost among" in found.why and found.groups[0].shows
+
+
+def test_what_an_engine_does_to_all_trees_of_a_group_is_called_too() -> None:
+    fault = replace(FAULT, subject=Subject(["appendModel"], []))
+    trees = {"attached chain": Stated("appendModel"), "chain": Stated()}
+
+    def of(*models: str) -> str:
+        wrong = [Cell("toy", model, "bias", "wrong") for model in models]
+        return scored(fault, wrong, [], NATIVES, lambda group: "", trees=trees).score
+
+    assert of("attached chain") == "hit"
+    assert of("chain") == of("attached chain", "chain") == of("another") == "miss"
+
+
+def test_a_tree_is_known_by_what_the_engine_calls_its_constraints() -> None:
+    fault = replace(FAULT, subject=Subject(["getInvMassMatrix"], ["connect"]))
+    trees = {"point": Stated(called="equality/connect"), "weld": Stated(called="equality/weld")}
+
+    def of(model: str) -> str:
+        wrong = [Cell("toy", model, "mass_matrix_inverse", "wrong")]
+        return scored(fault, wrong, [], NATIVES, lambda group: "", trees=trees).score
+
+    assert of("point") == "hit" and of("weld") == of("chain") == "miss"
 
 
 def test_a_name_is_whole() -> None:

@@ -78,4 +78,11 @@ def _of_lines() -> dict[str, Function]:
     return functions_of(rows, "files")
 
 
-STATED = _of_joints() | _of_lines()
+def _coupled(t: Truth, s: Point) -> Exact:
+    return exact(np.array([one.coefficients for one in t.tree.constraints]))
+
+
+_COUPLED = functions_of(
+    {"coupled_coefficients": ("constant and slope by which joints follow others (n, 2)", _coupled)}, "files"
+)
+STATED = _of_joints() | _of_lines() | _COUPLED

@@ -10,7 +10,18 @@ import numpy as np
 from ..interface import Joint, Tree, Unsupported
 from ..plugins import mujoco
 from ..plugins.writing import sdf, urdf
-from . import mjcf_files, mjcf_geoms, mjcf_joints, mjcf_lines, sdf_files, urdf_files, usd_files
+from . import (
+    coupled_files,
+    mjcf_files,
+    mjcf_geoms,
+    mjcf_joints,
+    mjcf_lines,
+    mjcf_scopes,
+    sdf_files,
+    urdf_files,
+    usd_files,
+    usd_masses,
+)
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed
 from .readers import Reading
@@ -60,7 +71,8 @@ def formats() -> dict[str, Reading]:
     urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files() | mjcf_geoms.files() | mjcf_joints.files()
     mjcf_stated |= mjcf_lines.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
-    return urdf_stated | mjcf_stated | sdf_files.files() | usd_files.files() | made | dict(map(_written, written))
+    read = mjcf_scopes.files() | sdf_files.files() | usd_files.files() | usd_masses.files() | coupled_files.files()
+    return urdf_stated | mjcf_stated | read | made | dict(map(_written, written))
 
 
 def _written(one: Reading) -> tuple[str, Reading]:

@@ -32,7 +32,7 @@ def _inertial(com: str = _COM, moments: str = _MOMENTS, axes: str = _UNTURNED, m
         quatf physics:principalAxes = {axes}"""
 
 
-def _file(
+def file(
     axis: str = _TURNS_ABOUT_Y,
     inertial: str = _inertial(),
     at: str = "(0, 0, 0.5)",
@@ -64,7 +64,7 @@ def Xform "m" (prepend apiSchemas = ["PhysicsArticulationRootAPI"]) {{
 """
 
 
-def _shape(kind: str, sizes: str, more: str = "", api: str = "") -> str:
+def shape(kind: str, sizes: str, more: str = "", api: str = "") -> str:
     """A collider at (0, 0.125, 0.25) of the body."""
     return f"""def {kind} "s" (prepend apiSchemas = ["PhysicsCollisionAPI"{api}]) {{
             {sizes}
@@ -80,16 +80,16 @@ def _stage() -> Iterator[tuple[str, Reading]]:
     body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
     in_centimetres = _inertial("(0, 12.5, 25)", "(2500, 3750, 5000)")
     scene = "vector3f physics:gravityDirection = (0, 0, -1)\n    float physics:gravityMagnitude = 981"
-    centimetres = _file(inertial=in_centimetres, at="(0, 0, 50)", head=_HEAD.replace("= 1", "= 0.01", 1), scene=scene)
+    centimetres = file(inertial=in_centimetres, at="(0, 0, 50)", head=_HEAD.replace("= 1", "= 0.01", 1), scene=scene)
     yield _of("centimetres", centimetres, body)
     by_default = 'kilogramsPerUnit = 1\n    upAxis = "Z"'
-    yield _of("metres left out", _file(inertial=in_centimetres, at="(0, 0, 50)", head=by_default, scene=scene), body)
-    yield _of("kilograms left out", _file(head='metersPerUnit = 1\n    upAxis = "Z"'), body)
+    yield _of("metres left out", file(inertial=in_centimetres, at="(0, 0, 50)", head=by_default, scene=scene), body)
+    yield _of("kilograms left out", file(head='metersPerUnit = 1\n    upAxis = "Z"'), body)
     in_grams = _inertial(moments="(250, 375, 500)", mass="float physics:mass = 1000")
     yield _of(
-        "grams", _file(inertial=in_grams, head=_HEAD.replace("PerUnit = 1\n    up", "PerUnit = 0.001\n    up")), body
+        "grams", file(inertial=in_grams, head=_HEAD.replace("PerUnit = 1\n    up", "PerUnit = 0.001\n    up")), body
     )
-    yield _of("gravity left out", _file(scene=""), body)
+    yield _of("gravity left out", file(scene=""), body)
     aside = "vector3f physics:gravityDirection = (0.6, 0, -0.8)\n    float physics:gravityMagnitude = 2.5"
     for name, scene, head, gravity in (
         ("gravity aside", aside, _HEAD, (1.5, 0.0, -2.0)),
@@ -98,28 +98,28 @@ def _stage() -> Iterator[tuple[str, Reading]]:
         ("up along Y, gravity along Z", _DOWN, _HEAD.replace('"Z"', '"Y"'), (0.0, 0.0, -9.81)),
     ):
         title = f"usd: {name}"
-        yield title, Reading("usd", _file(scene=scene, head=head), Tree(title, (body,), gravity=gravity))
+        yield title, Reading("usd", file(scene=scene, head=head), Tree(title, (body,), gravity=gravity))
 
 
 def _masses() -> Iterator[tuple[str, Reading]]:
     """Mass and moments that follow from colliders, their densities and sizes."""
     body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25))
-    cube, ball = _shape("Cube", "double size = 0.5"), _shape("Sphere", "double radius = 0.25")
+    cube, ball = shape("Cube", "double size = 0.5"), shape("Sphere", "double radius = 0.25")
     side, sphere = 0.5**3, 4.0 / 3.0 * math.pi * 0.25**3
 
     def of(name: str, inertial: str, mass: float, moment: float) -> tuple[str, Reading]:
         solid = replace(body, mass=mass, inertia=readers.diagonal(*[moment] * 3))
-        return _of(name, _file(inertial=inertial), solid)
+        return _of(name, file(inertial=inertial), solid)
 
     yield of("cube by default", cube, _WATER * side, _WATER * side * 0.5**2 / 6.0)
     yield of("ball by default", ball, _WATER * sphere, _WATER * sphere * 0.4 * 0.25**2)
     dense = "float physics:density = 500\n        "
     yield of("cube of the body's density", dense + cube, 500.0 * side, 500.0 * side * 0.5**2 / 6.0)
-    own = _shape("Cube", "double size = 0.5", "float physics:density = 250", ', "PhysicsMassAPI"')
+    own = shape("Cube", "double size = 0.5", "float physics:density = 250", ', "PhysicsMassAPI"')
     yield of("cube of its own density", own, 250.0 * side, 250.0 * side * 0.5**2 / 6.0)
     yield of("cube's density before the body's", dense + own, 250.0 * side, 250.0 * side * 0.5**2 / 6.0)
     yield of("cube of the body's mass", f"float physics:mass = 3\n        {cube}", 3.0, 3.0 * 0.5**2 / 6.0)
-    heavy = _shape("Cube", "double size = 0.5", "float physics:mass = 3", ', "PhysicsMassAPI"')
+    heavy = shape("Cube", "double size = 0.5", "float physics:mass = 3", ', "PhysicsMassAPI"')
     yield of("cube of its own mass", heavy, 3.0, 3.0 * 0.5**2 / 6.0)
 
 
@@ -129,11 +129,11 @@ def _joints() -> Iterator[tuple[str, Reading]]:
     body = replace(hung(NEXT), parent=-1, com=(0.0, 0.125, 0.25), inertia=inertia)
     bounds = f"{_TURNS_ABOUT_Y}\n        float physics:lowerLimit = -30\n        float physics:upperLimit = 75"
     turned = hung(body, limits=tuple(map(math.radians, (-30.0, 75.0))))
-    yield _of("limits of a hinge", _file(axis=bounds), turned, asked=LIMITED)
+    yield _of("limits of a hinge", file(axis=bounds), turned, asked=LIMITED)
     sliding = bounds.replace("-30", "-0.25").replace("75", "2")
     slid = hung(body, kind="prismatic", limits=(-0.25, 2.0))
-    yield _of("limits of a slide", _file(axis=sliding, joint="Prismatic"), slid, asked=LIMITED)
-    yield _of("slide", _file(joint="Prismatic"), hung(body, kind="prismatic"))
+    yield _of("limits of a slide", file(axis=sliding, joint="Prismatic"), slid, asked=LIMITED)
+    yield _of("slide", file(joint="Prismatic"), hung(body, kind="prismatic"))
 
 
 def _drives() -> Iterator[tuple[str, Reading]]:
@@ -144,7 +144,7 @@ def _drives() -> Iterator[tuple[str, Reading]]:
     for kind, joint, unit in (("angular", "Revolute", degree), ("linear", "Prismatic", 1.0)):
         numbers = {"stiffness": 2.0, "damping": 0.25, "targetPosition": 0.5, "maxForce": 8.0}
         drive = "".join(f"\n        float drive:{kind}:physics:{name} = {one}" for name, one in numbers.items())
-        text = _file(axis=_TURNS_ABOUT_Y + drive, joint=joint).replace(
+        text = file(axis=_TURNS_ABOUT_Y + drive, joint=joint).replace(
             f'Physics{joint}Joint "joint"',
             f'Physics{joint}Joint "joint" (prepend apiSchemas = ["PhysicsDriveAPI:{kind}"])',
         )
@@ -162,10 +162,10 @@ def _frames() -> Iterator[tuple[str, Reading]]:
     turn, quarter = about((1.0, 0.0, 0.0), math.acos(0.28) * 2.0), "(0.28, 0.96, 0, 0)"
     both = f"quatf physics:localRot0 = {quarter}\n        quatf physics:localRot1 = {quarter}"
     along_it = vector(np.array(turn)[:, 1])
-    yield _of("joint turned on both bodies", _file(axis=f"{_TURNS_ABOUT_Y}\n        {both}"), hung(body, axis=along_it))
+    yield _of("joint turned on both bodies", file(axis=f"{_TURNS_ABOUT_Y}\n        {both}"), hung(body, axis=along_it))
     first = f"{_TURNS_ABOUT_Y}\n        quatf physics:localRot0 = {quarter}"
     turned = replace(body, joints=(replace(hinge, R=turn),))
-    placed = _file(axis=first).replace(
+    placed = file(axis=first).replace(
         'uniform token[] xformOpOrder = ["xformOp:translate"]',
         f"quatd xformOp:orient = {quarter}\n        "
         'uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',
@@ -175,7 +175,7 @@ def _frames() -> Iterator[tuple[str, Reading]]:
     apart = f"{_TURNS_ABOUT_Y}\n        point3f physics:localPos1 = (0.25, -0.5, 0.125)"
     back = Joint("fixed", p=(-0.25, 0.5, -0.125))
     aside = replace(body, joints=(replace(hinge, p=(0.25, -0.5, 0.625)), back))
-    moved = _file(axis=apart).replace(
+    moved = file(axis=apart).replace(
         "point3f physics:localPos0 = (0, 0, 0.5)", "point3f physics:localPos0 = (0.25, -0.5, 0.625)"
     )
     yield _of("joint beside its body's origin", moved, aside)
@@ -187,22 +187,22 @@ def _collisions() -> Iterator[tuple[str, Reading]]:
     moment = 3.0 * 0.5**2 / 6.0
     solid = replace(body, mass=3.0, inertia=readers.diagonal(*[moment] * 3))
     api = ', "PhysicsMassAPI"'
-    on = _shape("Cube", "double size = 0.5", "float physics:mass = 3", api)
-    off = _shape(
+    on = shape("Cube", "double size = 0.5", "float physics:mass = 3", api)
+    off = shape(
         "Cube", "double size = 0.25", "bool physics:collisionEnabled = 0\n            float physics:mass = 4", api
     )
-    yield _of("collider disabled beside another", _file(inertial=on + "\n        " + off.replace('"s"', '"t"')), solid)
+    yield _of("collider disabled beside another", file(inertial=on + "\n        " + off.replace('"s"', '"t"')), solid)
     side = 0.5**3
     cube = replace(body, mass=_WATER * side, inertia=readers.diagonal(*[_WATER * side * 0.5**2 / 6.0] * 3))
-    plain = _shape("Cube", "double size = 0.5")
+    plain = shape("Cube", "double size = 0.5")
     # Without MassAPI of the body's own, its mass is the sum of its colliders'.
-    bare = _file(inertial=off.replace('"s"', '"t"') + "\n        " + on).replace(', "PhysicsMassAPI"]) {', "]) {", 1)
+    bare = file(inertial=off.replace('"s"', '"t"') + "\n        " + on).replace(', "PhysicsMassAPI"]) {', "]) {", 1)
     yield _of("collider disabled on a body without MassAPI", bare, solid)
-    yield _of("mass of zero", _file(inertial=f"float physics:mass = 0\n        {plain}"), cube)
+    yield _of("mass of zero", file(inertial=f"float physics:mass = 0\n        {plain}"), cube)
     none = "float physics:mass = 0\n        float3 physics:diagonalInertia = (0, 0, 0)\n        "
-    yield _of("mass and moments of zero", _file(inertial=none + plain), cube)
-    zero = _shape("Cube", "double size = 0.5", "float physics:mass = 0", api)
-    yield _of("collider of mass zero", _file(inertial=zero), cube)
+    yield _of("mass and moments of zero", file(inertial=none + plain), cube)
+    zero = shape("Cube", "double size = 0.5", "float physics:mass = 0", api)
+    yield _of("collider of mass zero", file(inertial=zero), cube)
     scaled = plain.replace(
         'uniform token[] xformOpOrder = ["xformOp:translate"]',
         "double3 xformOp:scale = (2, 0.5, 1)\n            "
@@ -211,7 +211,7 @@ def _collisions() -> Iterator[tuple[str, Reading]]:
     mass, x, y, z = _WATER * 1.0 * 0.25 * 0.5, 1.0, 0.25, 0.5
     moments = (mass * (y * y + z * z) / 12.0, mass * (x * x + z * z) / 12.0, mass * (x * x + y * y) / 12.0)
     box = replace(body, mass=mass, inertia=readers.diagonal(*moments))
-    yield _of("collider scaled", _file(inertial=scaled), box)
+    yield _of("collider scaled", file(inertial=scaled), box)
     radius, height = 0.25, 0.5
     volume = math.pi * radius**2 * height
     across, along_it = radius**2 / 4.0 + height**2 / 12.0, radius**2 / 2.0
@@ -219,7 +219,7 @@ def _collisions() -> Iterator[tuple[str, Reading]]:
         sizes = f'double radius = 0.25\n            double height = 0.5\n            uniform token axis = "{letter}"'
         mass = _WATER * volume
         link = replace(body, mass=mass, inertia=readers.diagonal(*(mass * one for one in own)))
-        yield _of(f"cylinder along {letter}", _file(inertial=_shape("Cylinder", sizes)), link)
+        yield _of(f"cylinder along {letter}", file(inertial=shape("Cylinder", sizes)), link)
 
 
 def files() -> dict[str, Reading]:
@@ -229,8 +229,8 @@ def files() -> dict[str, Reading]:
     half = about((1.0, 0.0, 0.0), 1.5707963267948966)
     turned = replace(body, inertia=along(half, inertia))
     stated = (
-        _of("plain", _file(), body),
-        _of("axis left out", _file(axis=""), hung(body, axis=(1.0, 0.0, 0.0))),
-        _of("principal axes turned", _file(inertial=_inertial(axes="(0.70710678, 0.70710678, 0, 0)")), turned),
+        _of("plain", file(), body),
+        _of("axis left out", file(axis=""), hung(body, axis=(1.0, 0.0, 0.0))),
+        _of("principal axes turned", file(inertial=_inertial(axes="(0.70710678, 0.70710678, 0, 0)")), turned),
     )
     return dict([*stated, *_stage(), *_masses(), *_joints(), *_drives(), *_frames(), *_collisions()])

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from ..interface import STEP, Convention, Tree, Unsupported
 from . import mujoco
+from .mujoco.elements import BOUND, KINDS, SOFT_FORCES
 from .writing import copies
 from .writing.source import Source, SourcePlugin, Way
 
@@ -36,6 +37,16 @@ def stepped(q, v, tau, **options):
     for name, value in options.items(): setattr(n.opt, name, value)
     if (name := str(options)) not in steps: steps[name] = mjx.put_model(n)
     return jax.jit(mjx.step)(steps[name], empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
+def bound(q, v, tau):
+    m.eq_solref[:] = 0.0
+    m.opt.jacobian, m.opt.tolerance = mj.mjtJacobian.mjJAC_DENSE, 0.0
+    d.qpos[:] = q
+    mj.mj_kinematics(m, d)
+    if 'equal' not in steps: steps['equal'] = mjx.put_model(m)
+    return jax.jit(mjx.forward)(steps['equal'], mjx.make_data(m).replace(qpos=q, qvel=v, qfrc_applied=tau))
+def of_links(call, e):
+    point = jax.jit(lambda mx, e, b: call(mx, e, e.xpos[b], b))
+    return [np.vstack([np.array(J).T for J in point(mx, e, b)]) for b in links]
 steps = {}
 links = [m.body(name).id for name in LINKS]"""
 _SENSED = (
@@ -59,6 +70,26 @@ def _step(integrator: str) -> Way:
     return Way(f"step, {integrator}", f"{code}\nvalue = np.r_[np.array(e.qpos), np.array(e.qvel)]")
 
 
+# Rows of constraints as MuJoCo's own data turn them (`axes`).
+_BOUND = {
+    "constraint_jacobian": Way("efc_J", "e = bound(q, v, tau)\nvalue = axes() @ got(e, 'efc_J')"),
+    "constraint_residuals": Way("efc_pos", "e = bound(q2, v, tau)\nvalue = got(e, 'efc_pos') * ways_round()"),
+    # Its iterations leave more than MuJoCo's of where rows are weakest.
+    "constrained_acceleration": Way("forward: qacc", "value = got(bound(q, v, tau), 'qacc')", SOFT_FORCES),
+    "constraint_forces": Way(
+        "forward: efc_force",
+        "e = bound(q, v, tau)\nvalue = np.linalg.solve(axes().T, got(e, 'efc_force'))",
+        SOFT_FORCES,
+    ),
+    "wrench_sensors:bound": Way(
+        "inverse with constraints, rne_postconstraint: force, torque",
+        BOUND.replace(
+            "mj.mj_inverse(n, d)\nforces = d.efc_force\n",
+            "e = jax.jit(mjx.inverse)(mjx.put_model(n), mjx.make_data(n).replace(qpos=q, qvel=v, qacc=a))\n"
+            "forces = got(e, 'efc_force')\n",
+        ).replace("data('", "data(e, '"),
+    ),
+}
 _STEPS = {
     "step_dampers_implicit": _step("mjINT_EULER"),
     "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
@@ -108,7 +139,13 @@ WAYS = {
         "e, own = forward(q, v, tau)[0], [m.site(f'o{k}').id for k in sensed]\n"
         "value = np.hstack([got(e, 'site_xpos')[own], got(e, 'site_xmat')[own].reshape(-1, 9)])",
     ),
+    "link_jacobians": Way("jac", "value = of_links(mjx.jac, forward(q, v, tau)[0])"),
+    "link_jacobian_rates": Way(
+        "jac_dot",
+        "from mujoco.mjx._src.support import jac_dot\nvalue = of_links(jac_dot, forward(q, v, tau)[0])",
+    ),
     **_STEPS,
+    **_BOUND,
 }
 
 # What goes to JAX from MuJoCo's data, and comes from there.
@@ -131,13 +168,16 @@ def write(tree: Tree) -> Source | Unsupported:
     if isinstance(source, Unsupported):
         return source
     setup = _SETUP.replace("STEP", repr(STEP)).replace("LINKS", repr([link.name for link in tree.links]))
-    optional = {"sensed": tuple(line.format(count=len(tree.sensors)) for line in _SENSED)} if tree.sensors else {}
+    optional = dict(source.optional)
+    if tree.sensors:
+        optional["sensed"] = tuple(line.format(count=len(tree.sensors)) for line in _SENSED)
     # What is compiled by itself takes seconds: it is asked of trees that forces act on, or that have sensors.
     lacks = () if tree.forces else tuple(_STEPS) if tree.sensors else (*_STEPS, "inverse_dynamics_acted")
     return replace(source, lines=(*source.lines, *setup.split("\n")), optional=optional, lacks=lacks)
 
 
 _OFFERED = ("dampers", "springs", "compensation", "sensors", "tendons", "wrapped tendons", "heavy tendons")
+_HELD = ("scaled welds", "points by bodies", "sensors of bound links")
 _DRIVEN = ("actuators", "activations", "affine gains")
 PLUGIN = SourcePlugin(
     name="mjx",
@@ -150,6 +190,8 @@ PLUGIN = SourcePlugin(
     kinds=mujoco.PLUGIN.kinds,
     ways=WAYS,
     write=write,
-    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, "a medium")},
+    constraints=KINDS,
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, *_HELD, "a medium")},
+    statements=tuple(one for one in mujoco.PLUGIN.statements if "constraint" in one.functions),
     calls=4,
 )

@@ -25,6 +25,10 @@ WAYS = {
         "limit.lower, upper",
         "def bound(x): return 0.0 if x is None else x\n" + _OF.format("[bound(j.limit.lower), bound(j.limit.upper)]"),
     ),
+    "coupled_coefficients": Way(
+        "mimic.multiplier, offset",
+        "value = [[one.offset, one.multiplier] for one in (j.mimic for j in robot.joint_map.values()) if one]",
+    ),
     "joint_speed_limits": Way("limit.velocity", _OF.format("j.limit.velocity")),
     "joint_force_limits": Way("limit.effort", _OF.format("j.limit.effort")),
     "joint_dampings": Way("dynamics.damping", _OF.format("(j.dynamics and j.dynamics.damping) or 0.0")),

@@ -103,6 +103,7 @@ WAYS = {
     "actuator_sites": Way(
         "actuator_trnid", "value = [np.ravel([m.site_pos[k] for k in pair if k >= 0]) for pair in m.actuator_trnid]"
     ),
+    "coupled_coefficients": Way("eq_data", "value = m.eq_data[:, :2]"),
     "weight_shares": Way("body_gravcomp", "value = m.body_gravcomp[bs]"),
     "tendon_speeds": Way("ten_velocity", f"{QV}value = d.ten_velocity"),
     "actuator_speeds": Way("actuator_velocity", f"{QV}value = d.actuator_velocity"),

@@ -309,14 +309,15 @@ _J = "J = d.efc_J.reshape(-1, m.nv)\n"
 
 # At given accelerations the forces of soft constraints are far from those that keep them, and known: what holds a link
 # does all but what they do there. w: force, and moment if any, at the first frame and along its axes.
-_BOUND = """from copy import copy
+BOUND = """from copy import copy
 n = copy(m)
 n.eq_solimp[:, :2] = 0.5
 d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, 0.0
 mj.mj_forward(n, d)
 d.qacc[:] = a
 mj.mj_inverse(n, d)
-given, value = np.linalg.solve(axes().T, d.efc_force), []
+forces = d.efc_force
+given, value = np.linalg.solve(axes().T, forces), []
 def carries(top, body): return body == top or (body > 0 and carries(top, m.body_parentid[body]))
 for k in sensed:
     own, total = m.site(f'o{k}').id, np.zeros(6)
@@ -348,7 +349,7 @@ WAYS = {
         "-efc_aref", f"{_AT.replace('= q, v', '= q2, v')}value = -d.efc_aref * ways_round()"
     ),
     "constraint_points": Way("eq_data", "value = m.eq_data[:, :6]"),
-    "wrench_sensors:bound": Way("mj_inverse with constraints, force, torque", _BOUND),
+    "wrench_sensors:bound": Way("mj_inverse with constraints, force, torque", BOUND),
     "step_at_rest": Way(
         "mj_step",
         "from copy import copy\nn = copy(m)\n"

@@ -91,6 +91,17 @@ WAYS = {
     "actuator_force_limits": _field("actuator_forcerange"),
     "actuator_sites": Way("mujoco.actuator_trnid", _SITES),
     "weight_shares": _field("gravcomp", "[bodies]"),
+    "link_bodies": Way(
+        "body_mass, body_com, body_inertia",
+        "value = [[mass, *(mass * com), *I[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]] for mass, com, I in zip(\n"
+        "    m.body_mass.numpy()[bodies], m.body_com.numpy()[bodies], m.body_inertia.numpy()[bodies])]",
+    ),
+    "coupled_coefficients": Way(
+        "constraint_mimic_coef0, constraint_mimic_coef1, joint_mimic_coeffs",
+        "value = np.c_[m.constraint_mimic_coef0.numpy(), m.constraint_mimic_coef1.numpy()]\n"
+        "if hasattr(m, 'joint_mimic_joint'):\n"
+        "    value = np.r_[value, m.joint_mimic_coeffs.numpy()[m.joint_mimic_joint.numpy() >= 0]]",
+    ),
     "joint_drives": Way(
         "joint_target_ke, joint_target_kd",
         "targets = m.joint_target_q if hasattr(m, 'joint_target_q') else m.joint_target_pos\n"
