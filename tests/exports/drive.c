@@ -1,5 +1,5 @@
 /* The program of a diagram, driven line by line: time and inputs in, outputs out. Words of the command line are names of
- * parameters, each followed by its value. */
+ * parameters, each followed by its value; a time before the last one begins anew. */
 #include <stdio.h>
 #include <stdlib.h>
 #include "symofros_program.h"
@@ -11,7 +11,7 @@ int main(int argc, char **argv) {
     const size_t size = sym_program_size(p);
     void *memory = malloc(size);
     sym_program_instance *it = sym_program_init(memory, size, p);
-    double t;
+    double t, last = 0.0;
     int32_t i, word;
     if (it == NULL) return 2;
     for (word = 1; word + 1 < argc; word += 2) {
@@ -23,6 +23,8 @@ int main(int argc, char **argv) {
     while (scanf("%lf", &t) == 1) {
         for (i = 0; i < p->n_inputs; ++i)
             if (scanf("%lf", &it->inputs[i]) != 1) return 5;
+        if (t < last && sym_program_start(it) < 0) return 4;
+        last = t;
         if (sym_program_advance(it, t) < 0) return 6;
         for (i = 0; i < p->n_outputs; ++i) printf("%a ", it->signals[i]);
         printf("\n");

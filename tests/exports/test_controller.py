@@ -122,11 +122,16 @@ def closed(diagram: sf.Diagram, values: Mapping[str, np.ndarray]) -> sf.Diagram:
 
 
 def driven(
-    diagram: sf.Diagram, folder: Path, values: Mapping[str, np.ndarray], *words: str, outputs: Any = None
+    diagram: sf.Diagram,
+    folder: Path,
+    values: Mapping[str, np.ndarray],
+    *words: str,
+    outputs: Any = None,
+    times: int = 1,
 ) -> np.ndarray:
-    """What the program of a diagram gives, line by line."""
+    """What the program of a diagram gives, line by line, begun so many times."""
     name = sf.export(diagram, "c", folder, outputs=outputs).name
-    rows = np.column_stack([RUN, *values.values()])
+    rows = np.tile(np.column_stack([RUN, *values.values()]), (times, 1))
     shutil.copy(Path(__file__).with_name("drive.c"), folder / "main.c")
     text = (folder / "main.c").read_text().replace("PROGRAM(", f"{name}_program(")
     (folder / "main.c").write_text(text)
@@ -142,7 +147,10 @@ def test_a_program_driven_by_steps_has_the_bits_of_one_diagram(case: str, tmp_pa
     values = given(diagram)
     # What a mechanism feels over a step is set before it: the first row is set twice.
     late = {name: rows[np.maximum(np.arange(STEPS) - 1, 0)] for name, rows in values.items()}
-    found = driven(diagram, tmp_path / "driven", late if case == "plant" else values)
+    found, again = driven(diagram, tmp_path / "driven", late if case == "plant" else values, times=2).reshape(
+        2, STEPS, -1
+    )
+    assert (again == found).all()
     whole = closed(diagram, values)
     outputs = [f"part.{name}" for name in outlets_of(diagram)]
     assert (found == driven(whole, tmp_path / "whole", {}, outputs=outputs)).all()

@@ -130,9 +130,24 @@ SYM_EXPORT int32_t sym_program_evaluate(sym_program_instance *instance) {
     return 0;
 }
 
+/* States, memory and what is held as at the first start; parameters and inputs stay. */
+static void sym_program_restore(sym_program_instance *instance) {
+    const sym_program *p = instance->program;
+    sym_diagram *d = &instance->diagram;
+    int32_t i;
+    memcpy(d->u + p->n_inputs, p->u_start + p->n_inputs, (size_t)(d->nu - p->n_inputs) * sizeof *d->u);
+    for (i = 0; i < p->n_locks; ++i) d->lock_values[i] = d->u[p->lock_inputs[i]];
+    for (i = 0; i < p->n_parts; ++i) {
+        const int32_t checked = instance->parts[i]->check_parameters, project = instance->parts[i]->project;
+        sym_instance_reset(instance->parts[i]);
+        instance->parts[i]->check_parameters = checked, instance->parts[i]->project = project;
+    }
+}
+
 SYM_EXPORT int32_t sym_program_start(sym_program_instance *instance) {
     const sym_program *p = instance->program;
     int32_t i, status;
+    if (instance->diagram.begun) sym_program_restore(instance);
     for (i = 0; i < p->n_kept; ++i) instance->diagram.u[p->kept[i].input] = instance->par[p->kept[i].from];
     status = sym_program_prepare(instance);
     for (i = 0; i < instance->program->n_parts && status == 0; ++i) {

@@ -73,8 +73,8 @@ int32_t sym_program_advance(sym_program_instance *instance, double t);
 /* signals <- outputs at the present time, of the inputs as they are now, while what is sampled holds. Returns 0 or a status
  * below zero. */
 int32_t sym_program_evaluate(sym_program_instance *instance);
-/* Begin at t = 0 with the present parameters and inputs; sym_program_init did so with the first ones, and an instance begins
- * once more before it has moved. Returns 0 or a status below zero. */
+/* Begin at t = 0 with the present parameters and inputs, as sym_program_init did with the first ones; once it has moved,
+ * states and memory are those of the first start again. Returns 0 or a status below zero. */
 int32_t sym_program_start(sym_program_instance *instance);
 /* Index of a run-time parameter in `par` by its name in the diagram, such as "pd.kp[0]"; -1 where there is none. */
 int32_t sym_program_parameter(const sym_program *program, const char *name);
