@@ -110,6 +110,8 @@ FAULTS = [
     ("pinocchio", "point between branches", "constraint_jacobian:jacobianTransposeMatrixProduct", "-np", "np"),
     ("pinocchio", "weld between branches", "delassus_inverse:operator", ".solve(", ".matrix() @ ("),
     ("pinocchio", "point between branches", "constraint_forces:forwardDynamics", "-J @ bound", "J @ bound"),
+    ("idyntree", "revolute oblique", "torque_regressor", "5, 7, 6, 8", "5, 6, 7, 8"),
+    ("idyntree", "free", "centroidal_matrix:average velocity", "value = I", "value = 2 * I"),
     ("dart", "universal", "acceleration_local:joints", " + rate @ v", ""),
     ("dart", "free", "coordinates_of_links", "q[own]", "q[own[::-1]]"),
     ("dart", "ball", "link_jacobian_rates:linear and angular", "AngularJacobianDeriv", "AngularJacobian"),

@@ -181,6 +181,39 @@ value[:6] = (value[:6].reshape(2, 3) @ R.T).ravel()
 value = value[cut:]
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)""",
 )
+_STATE = "state(q, v)\n"
+_MATRIX = "J = iDynTree.MatrixDynSize(6, n)\nassert robot.{}(J)\n"
+# Momentum about the mass centre by the inertia of all links as one body there, and by what velocity that has.
+_LOCKED = "I = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()\n"
+# Its parameters: m, m c, Ixx, Ixy, Ixz, Iyy, Iyz, Izz.
+_PARAMETERS = (0, 1, 2, 3, 4, 5, 7, 6, 8, 9)
+WAYS |= {
+    "mass_centre_velocity": Way(
+        "getCenterOfMassVelocity", f"{_STATE}value = robot.getCenterOfMassVelocity().toNumPy()"
+    ),
+    "centroidal_momentum:average velocity": Way(
+        "getCentroidalRobotLockedInertia, getCentroidalAverageVelocity",
+        f"{_STATE}{_LOCKED}value = I @ robot.getCentroidalAverageVelocity().asVector().toNumPy()",
+    ),
+    "centroidal_matrix:average velocity": Way(
+        "getCentroidalRobotLockedInertia, getCentroidalAverageVelocityJacobian",
+        f"{_STATE}{_LOCKED}{_MATRIX.format('getCentroidalAverageVelocityJacobian')}value = I @ J.toNumPy()[:, cut:]",
+    ),
+    "relative_poses": Way(
+        "getRelativeTransform",
+        f"""{_STATE}value = []
+for name in links:
+    H = robot.getRelativeTransform(links[0], name).asHomogeneousTransform().toNumPy()
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))""",
+    ),
+    "torque_regressor": Way(
+        "inverseDynamicsInertialParametersRegressor",
+        f"""{_STATE}Y = iDynTree.MatrixDynSize(n, 10 * robot.getNrOfLinks())
+assert robot.inverseDynamicsInertialParametersRegressor(*rates(a), Y)
+own = [10 * j + k for j in js for k in {_PARAMETERS}]
+value = Y.toNumPy()[:, own][cut:]""",
+    ),
+}
 _BASE = "free xyzw, linear and angular before"
 
 
