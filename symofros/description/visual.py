@@ -25,6 +25,8 @@ class Visual:
         rotation: R_BS.
         color: Red, green, blue, 0 to 255; None where it is not stated.
         file: Path of a mesh.
+        picture: Path of a picture, the colors of which, times `color`, it has; "" where none is stated.
+        is_mapped: Whether the mesh's file says which place of the picture each corner has; else it has its mean color.
     """
 
     kind: VisualKind
@@ -33,6 +35,8 @@ class Visual:
     rotation: Rotation = IDENTITY
     color: tuple[int, int, int] | None = None
     file: str = ""
+    picture: str = ""
+    is_mapped: bool = False
 
 
 def color_of(shares: Sequence[float]) -> tuple[int, int, int]:

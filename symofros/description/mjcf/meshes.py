@@ -70,18 +70,15 @@ class Meshes:
         self.drawn: list[DrawnMesh] = []
         self.by_name: dict[str, DrawnMesh] = {}
         self._needed: dict[str, str] = {}
-        self._classes = _defaults(document, "geom")
-        self._mesh_classes = _defaults(document, "mesh")
-        self._stated = {_mesh_name(mesh): mesh for asset in document.all("asset") for mesh in asset.all("mesh")}
-        settings: dict[str, str] = {}
-        for compiler in stated.all("compiler"):
-            settings |= compiler.attributes
+        self._classes = defaults(document, "geom")
+        self._mesh_classes = defaults(document, "mesh")
+        self._stated = {asset_name(mesh): mesh for asset in document.all("asset") for mesh in asset.all("mesh")}
+        self._settings = settings = compiler_settings(stated)
         self._from_shapes = settings.get("inertiafromgeom") == "true"
         # Scaling to a total mass counts bodies that never move.
         self._total = "settotalmass" in settings
         self._base = settings.get("meshdir", settings.get("assetdir", ""))
         self._groups = settings.get("inertiagrouprange", "")
-        self._bare_names = settings.get("strippath") == "true"
 
     def cut(self) -> None:
         """Remove assets, and shapes from files, that give no body its inertia; load the meshes that stay."""
@@ -89,12 +86,12 @@ class Meshes:
             self._visit(world, "main", self._total, False)
         for asset in self.document.all("asset"):
             asset.children = [
-                child for child in asset.children if child.tag != "mesh" or _mesh_name(child) in self._needed
+                child for child in asset.children if child.tag != "mesh" or asset_name(child) in self._needed
             ]
             for mesh in asset.all("mesh"):
-                drawn = self._drawn(_mesh_name(mesh))
+                drawn = self._drawn(asset_name(mesh))
                 if drawn is not None:
-                    self.by_name[_mesh_name(mesh)] = drawn
+                    self.by_name[asset_name(mesh)] = drawn
                 self._load(mesh)
 
     def _visit(self, place: Element, inherited: str, moves: bool, has_inertia: bool) -> None:
@@ -159,10 +156,7 @@ class Meshes:
 
     def _path(self, file: str) -> str:
         """The name of a mesh's file from the model's folder on."""
-        stated = file.replace("\\", "/")
-        if self._bare_names:
-            stated = PurePosixPath(stated).name
-        return f"{self._base}/{stated}" if self._base else stated
+        return asset_path(file, self._base, self._settings)
 
     def _counts(self, group: str) -> bool:
         """Whether shapes of a group give inertia; they do where the text is not clear."""
@@ -174,7 +168,7 @@ class Meshes:
 
     def _load(self, mesh: Element) -> None:
         """Read a mesh's file, and let the document call it by a name without a path."""
-        name = _mesh_name(mesh)
+        name = asset_name(mesh)
         if "builtin" in mesh.attributes:
             self.folder.fault(
                 mesh,
@@ -194,9 +188,31 @@ class Meshes:
             mesh.attributes |= {"name": name, "file": asset}
 
 
-def _mesh_name(mesh: Element) -> str:
-    """Name of a mesh; the stem of its file's name if it has none."""
-    return mesh.attributes.get("name") or PurePosixPath(mesh.attributes.get("file", "").replace("\\", "/")).stem
+def asset_name(asset: Element) -> str:
+    """Name of a mesh or another asset; the stem of its file's name if it has none."""
+    return asset.attributes.get("name") or PurePosixPath(asset.attributes.get("file", "").replace("\\", "/")).stem
+
+
+def asset_path(file: str, base: str, settings: dict[str, str]) -> str:
+    """The name of an asset's file from the model's folder on.
+
+    Args:
+        file: As the asset states it.
+        base: Folder of files of its kind; "" for the model's own.
+        settings: Attributes of <compiler>.
+    """
+    stated = file.replace("\\", "/")
+    if settings.get("strippath") == "true":
+        stated = PurePosixPath(stated).name
+    return f"{base}/{stated}" if base else stated
+
+
+def compiler_settings(stated: Element) -> dict[str, str]:
+    """Attributes of <compiler>, of several the last."""
+    settings: dict[str, str] = {}
+    for compiler in stated.all("compiler"):
+        settings |= compiler.attributes
+    return settings
 
 
 def _joints(place: Element) -> Iterator[Element]:
@@ -208,7 +224,7 @@ def _joints(place: Element) -> Iterator[Element]:
             yield from _joints(child)
 
 
-def _defaults(document: Element, tag: str) -> dict[str, dict[str, str]]:
+def defaults(document: Element, tag: str) -> dict[str, dict[str, str]]:
     """Class of defaults -> attributes of its elements of a tag, inherited ones included."""
     classes: dict[str, dict[str, str]] = {"main": {}}
 

@@ -20,6 +20,7 @@ from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.meshes import DrawnMesh
 from symofros.description.mjcf.names import Names
 from symofros.description.mjcf.numbers import infinite_numbers
+from symofros.description.mjcf.textures import Texture
 from symofros.description.mjcf.visuals import visuals_of
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
@@ -38,6 +39,7 @@ class Stated:
         places: Lines of bodies, joints and constraints, as in System.origin.
         drawn: Meshes that shapes without mass stand for.
         by_name: Meshes that MuJoCo reads, by their names.
+        textures: Textures of materials, by the materials' names.
     """
 
     name: str
@@ -45,6 +47,7 @@ class Stated:
     places: Mapping[tuple[str, ...], str]
     drawn: Sequence[DrawnMesh]
     by_name: Mapping[str, DrawnMesh]
+    textures: Mapping[str, Texture]
 
 
 class Importer:
@@ -100,7 +103,13 @@ class Importer:
             inputs=tuple(self.actuators.inputs),
             constraints=equalities.constraints,
             origin={("system",): file, **places},
-            visuals=visuals_of(self.model, self.bodies.__getitem__, self.stated.drawn, self.stated.by_name),
+            visuals=visuals_of(
+                self.model,
+                self.bodies.__getitem__,
+                self.stated.drawn,
+                self.stated.by_name,
+                self.stated.textures,
+            ),
         )
 
     def _body(self, i: int) -> ImportedBody:

@@ -21,6 +21,7 @@ from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
+from symofros.description.mjcf.textures import textures_of
 from symofros.description.packages import Packages
 from symofros.description.reading import Reading
 from symofros.description.remarks import Remarks
@@ -96,7 +97,7 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     meshes.cut()
     pairs = list(_written(kept))
     name = root.attributes.get("model") or folder.main.stem
-    stated = Stated(name, str(folder.main), _places(kept), meshes.drawn, meshes.by_name)
+    stated = Stated(name, str(folder.main), _places(kept), meshes.drawn, meshes.by_name, textures_of(folder, root))
     return Document("\n".join(line for line, _ in pairs), tuple(e for _, e in pairs), meshes.assets, stated)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.description.imported.geometry import rotation_of
 from symofros.description.mjcf.meshes import SEEN_GROUPS, DrawnMesh, drawn_index
+from symofros.description.mjcf.textures import Texture
 from symofros.description.values import Rotation
 from symofros.description.visual import MAX_VISUALS, Visual, VisualKind, color_of
 
@@ -28,7 +29,11 @@ _KINDS: dict[int, tuple[VisualKind, tuple[tuple[int, float], ...]]] = {
 
 
 def visuals_of(
-    model: Any, name: Callable[[int], str], drawn: Sequence[DrawnMesh], by_name: Mapping[str, DrawnMesh]
+    model: Any,
+    name: Callable[[int], str],
+    drawn: Sequence[DrawnMesh],
+    by_name: Mapping[str, DrawnMesh],
+    textures: Mapping[str, Texture],
 ) -> dict[str, tuple[Visual, ...]]:
     """Body -> how it looks.
 
@@ -37,11 +42,13 @@ def visuals_of(
         name: Name of a body by its index.
         drawn: Meshes that shapes stand for whose names say so (`drawn_index`).
         by_name: Meshes that MuJoCo has read.
+        textures: Textures of materials, by the materials' names.
     """
     visuals: dict[str, tuple[Visual, ...]] = {}
     for i in range(min(model.ngeom, MAX_VISUALS)):
         rgba = np.array(model.geom_rgba[i], dtype=float)
         material = int(model.geom_matid[i])
+        texture = textures.get(model.mat(material).name) if material >= 0 else None
         if material >= 0 and np.array_equal(rgba, _UNSTATED):
             rgba = np.array(model.mat_rgba[material], dtype=float)
         pose = np.concatenate([model.geom_pos[i], model.geom_quat[i], rgba])
@@ -56,8 +63,12 @@ def visuals_of(
             visual = _primitive(model, i)
         if visual is not None:
             body = name(int(model.geom_bodyid[i]))
-            color = None if visual.kind == "mesh" and np.array_equal(rgba, _UNSTATED) else color_of(rgba.tolist())
-            visuals[body] = (*visuals.get(body, ()), replace(visual, color=color))
+            is_unstated = visual.kind == "mesh" and texture is None and np.array_equal(rgba, _UNSTATED)
+            color = None if is_unstated else color_of((rgba[:3] * (1.0 if texture is None else texture.color)).tolist())
+            picture = "" if texture is None else texture.file
+            is_mapped = texture is not None and texture.is_flat
+            visual = replace(visual, color=color, picture=picture, is_mapped=is_mapped)
+            visuals[body] = (*visuals.get(body, ()), visual)
     return visuals
 
 

@@ -96,6 +96,40 @@ def test_colours_are_those_of_shapes_or_materials(
 
 
 @pytest.mark.parametrize(
+    ("texture", "color", "picture", "is_mapped"),
+    [
+        ('name="skin" builtin="flat" rgb1="0 1 0"', (0, 128, 0), "", False),
+        ('name="skin" builtin="checker" rgb1="1 1 1" rgb2="0 0 1"', (0, 64, 255), "", False),
+        ('name="skin" builtin="gradient" rgb1="0 0 0" rgb2="0 1 1"', (0, 64, 128), "", False),
+        ('file="skin.png" type="2d"', (0, 128, 255), "skin.png", True),
+        ('name="skin" file="skin.png"', (0, 128, 255), "skin.png", False),  # A cube's.
+        ('name="skin" file="../../skin.png" type="2d"', (0, 128, 255), "", False),
+        ('name="skin" file="gone.png" type="2d"', (0, 128, 255), "", False),
+        ('name="skin" builtin="flat" rgb1="0 1 nan"', (0, 128, 255), "", False),
+    ],
+)
+@pytest.mark.parametrize("form", ['<material name="sky" rgba="0 0.5 1 1" texture="skin"/>', "layer", "class"])
+def test_textures_are_those_of_materials(
+    form: str, texture: str, color: tuple[int, ...], picture: str, is_mapped: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "inside" / "textures").mkdir(parents=True)
+    file = written(tmp_path / "inside", geom='material="sky"')
+    for folder in (tmp_path, file.parent / "textures"):
+        (folder / "skin.png").write_bytes(b"")
+    plain, defaults = '<material name="sky" rgba="0 0.5 1 1"/>', ""
+    if form == "layer":
+        form = plain.replace("/>", '><layer role="rgb" texture="skin"/></material>')
+    elif form == "class":
+        form, defaults = plain, '<default><material texture="skin"/></default>'
+    text = file.read_text().replace(plain, f"<texture {texture}/>{form}").replace("<asset>", f"{defaults}<asset>")
+    file.write_text(text.replace("<compiler ", '<compiler texturedir="textures" '))
+    (shape,) = sf.load(file).visuals["a"]
+    assert shape.color == color
+    assert shape.picture == (str((file.parent / "textures" / picture).resolve()) if picture else "")
+    assert not picture or shape.is_mapped is is_mapped
+
+
+@pytest.mark.parametrize(
     "change",
     [
         ('mesh="part" ', 'mesh="part" group="3" '),

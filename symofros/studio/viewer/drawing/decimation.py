@@ -110,7 +110,9 @@ def clustered(mesh: Mesh, most: int) -> tuple[Mesh, float]:
     index = np.flatnonzero(is_kept)[first]
     middle = np.stack([np.bincount(of, weights=x) for x in mesh.vertices.T], axis=1) / np.bincount(of)[:, None]
     moved = float(np.linalg.norm(middle[of] - mesh.vertices, axis=1).max())
-    return Mesh(middle, faces[index], None if mesh.colors is None else mesh.colors[index]), moved
+    colors = None if mesh.colors is None else mesh.colors[index]
+    places = None if mesh.places is None else mesh.places[index]
+    return Mesh(middle, faces[index], colors, places), moved
 
 
 def _collapses(

@@ -49,6 +49,21 @@ class FilesBeside:
     __getitem__ = get
 
 
+def picture_at(file: Path) -> Any:
+    """A picture (PNG, JPEG), unpacked.
+
+    Raises:
+        OSError: It can't be read, or it is too large.
+    """
+    data = FilesBeside(file.parent).get(file.name)
+    if not data.startswith(_PICTURES):
+        raise OSError(f"{file.name:.80} is neither PNG nor JPEG")
+    try:
+        return _image_module().open(io.BytesIO(data), formats=("PNG", "JPEG")).convert("RGB")
+    except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
+        raise OSError(f"{file.name:.80} is no picture: {error}") from None
+
+
 def _is_harmless(data: bytes) -> bool:
     """Whether it is text, or a picture that is not too large when it is unpacked."""
     if not data.startswith(_PICTURES):

@@ -26,11 +26,14 @@ class Mesh(NamedTuple):
         vertices: (V, 3) [m].
         faces: Indices of corners (F, 3).
         colors: Red, green, blue of each face, 0 to 255, -1 where its file states none (F, 3); None without such.
+        places: Middle of each face in a picture, as its file states it: to the right and up, 0 to 1, repeated beyond
+            (F, 2); None without such.
     """
 
     vertices: Array
     faces: Faces
     colors: Colors | None = None
+    places: Array | None = None
 
     def transformed(self, position: Array, rotation: Array) -> Mesh:
         """The mesh as seen from the frame in which its own stands at a position (3) and rotation (3, 3)."""
@@ -63,10 +66,12 @@ def merged(meshes: list[Mesh]) -> Mesh:
     """Several meshes as one; at least one."""
     first = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes[:-1])])
     unstated = [np.full((len(mesh.faces), 3), -1, np.int16) if mesh.colors is None else mesh.colors for mesh in meshes]
+    places = [mesh.places for mesh in meshes if mesh.places is not None]
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
         np.concatenate([mesh.faces + start for mesh, start in zip(meshes, first, strict=True)]),
         None if all(mesh.colors is None for mesh in meshes) else np.concatenate(unstated),
+        np.concatenate(places) if len(places) == len(meshes) else None,
     )
 
 

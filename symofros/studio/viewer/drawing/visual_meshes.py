@@ -16,7 +16,7 @@ from symofros.base.arrays import Array
 from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
 from symofros.studio.viewer.drawing.decimation import clustered
-from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors
+from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors, picture_at
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
 MAX_BYTES = 64 << 20
@@ -26,6 +26,30 @@ SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off")
 
 def visual_mesh(visual: Visual) -> Mesh | None:
     """A shape in its own frame; None, with a warning, for a mesh that can't be read."""
+    mesh = _shape(visual)
+    return mesh if mesh is None or not visual.picture else _painted(mesh, visual)
+
+
+def _painted(mesh: Mesh, visual: Visual) -> Mesh:
+    """A shape in the colors of its picture; in its color, with a warning, where that can't be read."""
+    color = np.array(visual.color or (255, 255, 255))
+    try:
+        pixels = np.asarray(picture_at(Path(visual.picture)))
+        if visual.is_mapped and mesh.places is not None:
+            height, width = pixels.shape[:2]
+            across, up = (np.nan_to_num(mesh.places) % 1.0).T
+            seen = pixels[((1.0 - up) * (height - 1)).astype(np.int64), (across * (width - 1)).astype(np.int64)]
+        else:
+            seen = pixels.reshape(-1, 3).mean(axis=0, keepdims=True)
+        colors = few_colors(np.round(seen * color / 255.0))
+    except (OSError, ImportError) as error:
+        warnings.warn(f"view: picture '{Path(visual.picture).name}' is not drawn: {str(error)[:200]}", stacklevel=3)
+        colors = color[None].astype(np.int16)
+    return mesh._replace(colors=np.broadcast_to(colors, (len(mesh.faces), 3)))
+
+
+def _shape(visual: Visual) -> Mesh | None:
+    """A shape in its own frame, in the colors of its file."""
     size = np.array(visual.size)
     if visual.kind == "box":
         return box(size)
@@ -42,10 +66,10 @@ def visual_mesh(visual: Visual) -> Mesh | None:
             if not np.all(np.isfinite(mesh.vertices)):
                 raise ValueError(f"corners beyond all numbers at a scale of {size}")
             if note:
-                warnings.warn(f"view: mesh '{file.name}' is drawn coarser: {note}", stacklevel=2)
+                warnings.warn(f"view: mesh '{file.name}' is drawn coarser: {note}", stacklevel=3)
             return mesh
         except (OSError, ValueError) as error:
-            warnings.warn(f"view: mesh '{Path(visual.file).name}' is not drawn: {str(error)[:200]}", stacklevel=2)
+            warnings.warn(f"view: mesh '{Path(visual.file).name}' is not drawn: {str(error)[:200]}", stacklevel=3)
             return None
     radius, half = float(size[0]), np.array([0.0, 0.0, size[1] / 2])
     tube = cylinder(-half, half, radius)
@@ -123,11 +147,12 @@ def _with_colors(surface: Any) -> Mesh:
     if look.kind is None or not len(faces):
         return Mesh(vertices, faces)
     if look.kind != "texture":
-        colors = look.face_colors
-    elif hash(look.material) == hash(import_module("trimesh.visual.material").empty_material()):
-        return Mesh(vertices, faces)  # It has places in a picture, which is not there.
-    elif look.uv is None or getattr(look.material, "image", None) is None:
+        return Mesh(vertices, faces, few_colors(np.asarray(look.face_colors)[:, :3]))
+    places = None if look.uv is None else np.asarray(look.uv, dtype=np.float64)[faces].mean(axis=1)
+    if hash(look.material) == hash(import_module("trimesh.visual.material").empty_material()):
+        return Mesh(vertices, faces, places=places)  # It has places in a picture, which is not there.
+    if places is None or getattr(look.material, "image", None) is None:
         colors = np.tile(look.material.main_color, (len(faces), 1))
     else:
-        colors = look.material.to_color(np.asarray(look.uv)[faces].mean(axis=1))
-    return Mesh(vertices, faces, few_colors(np.asarray(colors)[:, :3]))
+        colors = look.material.to_color(places)
+    return Mesh(vertices, faces, few_colors(np.asarray(colors)[:, :3]), places)

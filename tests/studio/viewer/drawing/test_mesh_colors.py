@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,10 @@ RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 OBJ = """mtllib look.mtl
 v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.1 0.5\nvt 0.9 0.5
 usemtl plain\nf 1 3 2\nf 2 3 4\nusemtl pictured\nf 1/1 2/1 4/1\nf 1/2 4/2 3/2
+"""
+# The same with places for all of them, and no picture of its own; one lies beyond, where the picture is repeated.
+PLACED = """v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0.1 0.5\nvt 0.8 0.5\nvt -0.2 7.5
+f 1/1 3/1 2/1\nf 2/2 3/2 4/2\nf 1/1 2/1 4/1\nf 1/3 4/3 3/3
 """
 PLY = """ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z
 property uchar red\nproperty uchar green\nproperty uchar blue
@@ -90,3 +95,32 @@ def test_of_many_colors_few_are_left() -> None:
     few = few_colors(many)
     assert len(np.unique(few, axis=0)) == MOST_COLORS and np.abs(few - many).mean() < 40
     assert few_colors(many[:5]).tolist() == many[:5].tolist()
+
+
+def painted(visual: Visual) -> list[tuple[int, ...]]:
+    mesh = visual_mesh(visual)
+    assert mesh is not None and mesh.colors is not None and len(mesh.colors) == len(mesh.faces)
+    return sorted(set(map(tuple, mesh.colors.tolist())))
+
+
+def test_the_picture_of_a_description_goes_before_those_of_the_file(tmp_path: Path) -> None:
+    part = written(tmp_path)
+    part.write_text(PLACED)
+    shape = Visual(
+        "mesh", (1.0, 1.0, 1.0), color=(255, 255, 128), file=str(part), picture=str(tmp_path / "picture.png")
+    )
+    mean = (128, 0, 64)
+    assert painted(shape) == [mean]
+    assert painted(replace(shape, is_mapped=True)) == [(0, 0, 128), RED]
+    assert painted(Visual("box", (1.0, 1.0, 1.0), picture=shape.picture, is_mapped=True)) == [(128, 0, 128)]
+
+
+@pytest.mark.parametrize("content", [b"", b"\x89PNG\r\n\x1a\n" + bytes(40), b"text", None])
+def test_what_is_no_picture_leaves_the_color(content: bytes | None, tmp_path: Path) -> None:
+    file = tmp_path / "picture.png"
+    if content is None:  # Too many pixels.
+        Image.new("1", (mesh_colors.MAX_PIXELS // 1000, 1001)).save(file)
+    else:
+        file.write_bytes(content)
+    with pytest.warns(UserWarning, match=r"picture 'picture\.png' is not drawn"):
+        assert painted(Visual("box", (1.0, 1.0, 1.0), color=GREEN, picture=str(file))) == [GREEN]
