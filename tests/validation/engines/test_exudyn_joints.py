@@ -10,6 +10,7 @@ import pytest
 from tests.late import require
 from validation.engines.interface import Unsupported
 from validation.engines.matrix import SEED, Truths, asked, cells, judged
+from validation.engines.models.acting import passive
 from validation.engines.models.hostile import trees
 from validation.engines.models.kinds import tree_of
 from validation.engines.models.loops import trees as loops
@@ -24,8 +25,7 @@ require("exudyn", "validation")
 @pytest.mark.parametrize("kind", ["revolute oblique", "prismatic oblique", "ball", "universal", "free between links"])
 def test_joints_between_oblique_links_are_right_with_all_nodes(kind: str) -> None:
     verdicts = {cell.function: cell.verdict for cell in cells(PLUGIN, tree_of(kind))}
-    offered = {name for name in PLUGIN.functions if not name.startswith(("constrain", "rotation"))}
-    assert verdicts == dict.fromkeys(offered, "right")
+    assert verdicts == dict.fromkeys(asked(PLUGIN, tree_of(kind)), "right") and "forward_dynamics" in verdicts
 
 
 @pytest.mark.parametrize("name", ["huge before tiny masses", "kilometres"])
@@ -69,3 +69,12 @@ def test_states_of_loops_are_closed_before_they_are_asked() -> None:
     job = Job(PLUGIN.name, replace(tree), ("constrained_acceleration",), SEED)
     (one,) = judged(PLUGIN, job, Truths())
     assert one.cell.verdict == "right", one.cell
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["springs on hinges", "springs and dampers on branches", "dampers on a slide and a ball", "a damped free body"],
+)
+def test_springs_and_dampers_are_right(name: str) -> None:
+    found = {cell.function: cell.verdict for cell in cells(PLUGIN, passive()[name])}
+    assert set(found.values()) == {"right"} and {"passive_forces", "forward_dynamics:generic"} <= set(found)

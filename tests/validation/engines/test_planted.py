@@ -112,6 +112,8 @@ FAULTS = [
     ("pinocchio", "point between branches", "constraint_forces:forwardDynamics", "-J @ bound", "J @ bound"),
     ("idyntree", "revolute oblique", "torque_regressor", "5, 7, 6, 8", "5, 6, 7, 8"),
     ("idyntree", "free", "centroidal_matrix:average velocity", "value = I", "value = 2 * I"),
+    ("exudyn-joints", "springs and dampers on hinges and a slide", "passive_forces", "(q, v)[-1]", "(q, 2 * v)[-1]"),
+    ("exudyn-joints", "tendon over points of one branch", "passive_forces:Rxyz", "value = D.T", "value = 2 * D.T"),
     ("dart", "universal", "acceleration_local:joints", " + rate @ v", ""),
     ("dart", "free", "coordinates_of_links", "q[own]", "q[own[::-1]]"),
     ("dart", "ball", "link_jacobian_rates:linear and angular", "AngularJacobianDeriv", "AngularJacobian"),

@@ -20,11 +20,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...interface import Array, Constraint, Convention, Joint, Slot, Tree, Unsupported
+from ...interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .. import turns
 from ..turns import exudyn as turning
 from ..writing.source import Source, SourcePlugin, Way, series
+from . import exudyn_connectors as connectors
 from . import exudyn_systems
+from .exudyn_connectors import connector, end_of, plain
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 # Of conditions that are no polynomials, with steps of 4e-3: rounding over the step, and its sixth power.
@@ -158,6 +160,11 @@ for _way, _node in _NODES.items():
         f"kinetic_energy{_way}": Way(
             f"{_name}: KineticEnergy", f"{_made}value = np.sum(s.outputs(q, v, 0 * v, 'KineticEnergy'))"
         ),
+        f"passive_forces{_way}": Way(
+            f"{_name}: spring-dampers, ComputeODE2RHS",
+            f"springs\n{_made}_, D, _, _, alone = s.at(q, v)\n"
+            f"value = D.T @ (System('{_node}', springs).at(q, v)[-1] - alone)",
+        ),
     }
 WAYS |= {
     "forward_dynamics": Way(
@@ -199,18 +206,6 @@ _NEEDED = {
 }
 
 
-def _plain(values: object) -> str:
-    return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
-
-
-def _end(link: int, R: Array, p: Array) -> str:
-    return f"({link}, {_plain(R)}, {_plain(p)})"
-
-
-def _connector(name: str, ends: tuple[str, str], arguments: str = "{}") -> str:
-    return f"({name!r}, [{', '.join(ends)}], {arguments})"
-
-
 _INITIAL = """container = exu.SystemContainer()
 mbs, matrix = container.AddSystem(), ut.EulerParameters2RotationMatrix
 body = mbs.CreateRigidBody(
@@ -237,6 +232,7 @@ def write(tree: Tree) -> Source | Unsupported:
     links: list[str] = []
     special: list[str] = []
     generic: list[str] = []
+    springs: list[str] = []
     slots: list[tuple[Slot, ...]] = []
     nq = nv = 0
     for k, link in enumerate(tree.links):
@@ -251,32 +247,39 @@ def write(tree: Tree) -> Source | Unsupported:
                 return Unsupported("a body between two joints in series has no mass", offered=False)
             parts = _steps(joint, nq, nv)
             for place, step in enumerate(parts):
-                before = (_plain(R), _plain(p)) if not place else (_plain(np.eye(3)), _plain(np.zeros(3)))
-                stated.append(f"({', '.join(before)}, {step.kind!r}, {_plain(step.axis)}, {step.q}, {step.v})")
+                before = (plain(R), plain(p)) if not place else (plain(np.eye(3)), plain(np.zeros(3)))
+                stated.append(f"({', '.join(before)}, {step.kind!r}, {plain(step.axis)}, {step.q}, {step.v})")
             size = {"ball": (4, 3), "free": (7, 6)}.get(joint.kind, (len(parts), len(parts)))
             own.append(Slot(_CHARTS[joint.kind], tuple(range(nq, nq + size[0])), tuple(range(nv, nv + size[1]))))
             nq, nv = nq + size[0], nv + size[1]
             motions += parts
+        lossy = [joint for _, _, joint in folded if joint.stiffness or joint.damping]
+        if lossy and (len(folded) > 1 or lossy[0].kind not in connectors.DAMPED):
+            return Unsupported("no connector damps these motions", offered=False)
         native = _native(motions)
         if native is None:
             return Unsupported("no connector leaves these motions free", offered=False)
-        stated.append(f"({_plain(R_end)}, {_plain(p_end)}, '', {_plain(_Z)}, 0, 0)")
+        stated.append(f"({plain(R_end)}, {plain(p_end)}, '', {plain(_Z)}, 0, 0)")
         c, mass = np.array(link.com), link.mass
         J = np.array(link.inertia) + mass * (c @ c * np.eye(3) - np.outer(c, c))
         moments = [J[0, 0], J[1, 1], J[2, 2], J[1, 2], J[0, 2], J[0, 1]]
         body = f"{mass!r}, {np.asarray(c).tolist()!r}, {[float(x) for x in moments]!r}"
         links.append(f"({link.parent}, [{', '.join(stated)}], {body})")
         slots.append(tuple(own))
-        if native.blocked == _FREE:
-            continue
         R, p = (folded[0][0], folded[0][1]) if folded else (np.eye(3), np.zeros(3))
         ends = (
-            _end(link.parent, R @ native.turned, p),
-            _end(k, R_end.T @ native.turned, -R_end.T @ p_end) if folded else _end(k, R_end.T, -R_end.T @ p_end),
+            end_of(link.parent, R @ native.turned, p),
+            end_of(k, R_end.T @ native.turned, -R_end.T @ p_end) if folded else end_of(k, R_end.T, -R_end.T @ p_end),
         )
+        springs += [connectors.spring(joint, ends) for joint in lossy]
+        if native.blocked == _FREE:
+            continue
         blocked = f"{{'constrainedAxes': {native.blocked}}}"
-        generic.append(_connector("ObjectJointGeneric", ends, blocked))
-        special.append(_connector(native.special, ends) if native.special else generic[-1])
+        generic.append(connector("ObjectJointGeneric", ends, blocked))
+        special.append(connector(native.special, ends) if native.special else generic[-1])
+    if any(one.kind != "path" or len(one.ends) != 2 for one in tree.tendons):
+        return Unsupported("springs run straight from point to point", offered=False)
+    springs += [connectors.line(tree, one) for one in tree.tendons]
     lines = (
         "import numpy as np",
         "import exudyn as exu",
@@ -285,50 +288,12 @@ def write(tree: Tree) -> Source | Unsupported:
         f"links = [{', '.join(links)}]",
     )
     optional: dict[str, tuple[str, ...]] = {
-        "special": (f"special = [{', '.join(special)}]",),
-        "generic": (f"generic = [{', '.join(generic)}]",),
+        "springs": (f"springs = [{', '.join(springs)}]",),
+        "special": (f"special = [{', '.join([*special, *springs])}]",),
+        "generic": (f"generic = [{', '.join([*generic, *springs])}]",),
     }
-    optional |= _loops(tree)
+    optional |= connectors.loops(tree)
     return Source((*lines, *(line for part in _NEEDED.values() for line in part)), tuple(slots), nq, nv, optional)
-
-
-def _loops(tree: Tree) -> dict[str, tuple[str, ...]]:
-    """Connectors of a tree's constraints; those that Exudyn has no other connector for are of the generic kind."""
-    ids = {"": -1} | {link.name: k for k, link in enumerate(tree.links)}
-    made: list[str] = []
-    generic: list[str] = []
-    for one in tree.constraints:
-        if one.kind == "path" and len(one.ends) != 2:
-            return {}
-        ends = tuple(_end(ids[end.link], np.array(end.R), np.array(end.p)) for end in one.ends)
-        assert len(ends) == 2
-        blocked = f"{{'constrainedAxes': {[1, 1, 1, *[int(one.kind == 'weld')] * 3]}}}"
-        joint = _connector("ObjectJointGeneric", ends, blocked)
-        if one.kind == "path":
-            made.append(_connector("ObjectConnectorDistance", ends, f"{{'distance': {_distance(tree, one)!r}}}"))
-            continue
-        made.append(_connector("ObjectJointSpherical", ends) if one.kind == "point" else joint)
-        generic.append(joint)
-    stated: dict[str, tuple[str, ...]] = {"loops": (f"loops = [{', '.join(made)}]",)}
-    if len(generic) == len(made):
-        stated["loops_generic"] = (f"loops_generic = [{', '.join(generic)}]",)
-    # The torque of a joint that blocks all rotations need not be one, as its documentation says.
-    if all(one.kind == "point" for one in tree.constraints):
-        firsts = ", ".join(f"({ids[one.ends[0].link]}, {_plain(one.ends[0].R)})" for one in tree.constraints)
-        stated["points"] = (f"points = [{firsts}]",)
-    return stated
-
-
-def _distance(tree: Tree, one: Constraint) -> float:
-    """Distance of a path's two points with all coordinates zero."""
-    poses: dict[str, tuple[Array, Array]] = {"": (np.eye(3), np.zeros(3))}
-    for link in tree.links:
-        R, p = poses[tree.links[link.parent].name if link.parent >= 0 else ""]
-        for joint in link.joints:
-            R, p = R @ np.array(joint.R), p + R @ np.array(joint.p)
-        poses[link.name] = (R, p)
-    first, second = (poses[end.link][1] + poses[end.link][0] @ np.array(end.p) for end in one.ends)
-    return float(np.linalg.norm(first - second))
 
 
 PLUGIN = SourcePlugin(
@@ -368,7 +333,12 @@ PLUGIN = SourcePlugin(
     },
     ways=WAYS,
     write=write,
-    demands={"turns": "CreateRigidBody, rigidBodyUtilities, lieGroupBasics"},
+    demands={
+        "turns": "CreateRigidBody, rigidBodyUtilities, lieGroupBasics",
+        "dampers": "TorsionalSpringDamper, LinearSpringDamper, RigidBodySpringDamper",
+        "springs": "TorsionalSpringDamper, LinearSpringDamper",
+        "tendons": "SpringDamper",
+    },
     constraints={
         "point": "ObjectJointSpherical",
         "weld": "ObjectJointGeneric",
