@@ -32,7 +32,7 @@ def reading_of(*, prefix: str = "--", **stated: Any) -> ReadingOptions:
         stated: Fields of `ReadingOptions`; lists of texts where these are tuples.
 
     Raises:
-        SymofrosError: A text is no pair.
+        SymofrosError: A text is no pair, or two have one name.
     """
     named = _named(pairs(stated.get("packages", ()), f"{prefix}package", "hand_description=../hand_description"))
     given = _named(pairs(stated.get("arguments", ()), f"{prefix}argument", "gripper=true", empty=True))
@@ -55,9 +55,9 @@ def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False)
         empty: Whether a text may be empty, as that of an argument of xacro.
 
     Raises:
-        SymofrosError: A text is no pair.
+        SymofrosError: A text is no pair, or two have one name.
     """
-    stated = {}
+    stated: dict[str, str] = {}
     for item in given:
         begin = _QUOTED.match(item)
         head = begin.group() if begin else ""
@@ -66,7 +66,12 @@ def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False)
         if not sign or not name or not (text or empty):
             fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
             raise SymofrosError(fault)
-        stated[name.strip()] = text.strip()
+        if (name := name.strip()) in stated:
+            found = f"'{stated[name]}', '{text.strip()}'"
+            raise SymofrosError(
+                Problem(f"{what} {name} is stated twice", found, "a name has one value", "leave one out")
+            )
+        stated[name] = text.strip()
     return stated
 
 

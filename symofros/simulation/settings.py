@@ -136,6 +136,11 @@ class Settings:
         # Where all motion is given there is no error to adapt to.
         adapts = model.nv > 0 and (method.adaptive if options.adaptive is None else options.adaptive)
         step = options.dt if options.dt is not None else 0.0 if adapts else 1e-3
+        if not adapts and model.nv > 0 and options.max_step < step:
+            found, rule = f"dt = {step:g}, max_step = {options.max_step:g}", "steps of fixed length are dt long"
+            raise _wrong(
+                "steps are longer than max_step", found, rule, f"dt={options.max_step:g}, or an adaptive method"
+            )
         return cls(
             method=method,
             adaptive=adapts,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -55,3 +57,12 @@ def test_output_times_are_within_the_run_and_increase(top: sf.Model, output: lis
     with pytest.raises(sf.ShapeError, match="output times do not fit"):
         sf.simulate(top, t_end=1.0, dt=0.1, output=output)
     assert sf.simulate(top, t_end=1.0, dt=0.1, output=[0.0, 0.3, 1.0]).t.tolist() == [0.0, 0.3, 1.0]
+
+
+def test_fixed_steps_are_no_longer_than_stated(top: sf.Model) -> None:
+    """They were dt long whatever `max_step` said."""
+    options: list[dict[str, Any]] = [{}, {"method": "dopri5", "adaptive": False}]
+    for given in options:
+        with pytest.raises(sf.SymofrosError, match="longer than max_step\n  found:  dt = 0.001, max_step = 0.0001"):
+            sf.simulate(top, t_end=0.01, max_step=1e-4, **given)
+    assert sf.simulate(top, t_end=0.01, max_step=1e-3).outcome.ok
