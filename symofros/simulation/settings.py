@@ -28,8 +28,8 @@ LOSS_LIMIT = 0.01
 LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
 # Share of a step within which the end of one is another's.
 _AT_MARK = native_number("stepping/actions.c", "SYM_AT_MARK")
-# Steps of a motion without an end that count as its span.
-_MANY = 1000
+# Share of a step within which an event that acts twice acts without end.
+_AT_ONCE = native_number("stepping/instance.c", "SYM_AT_ONCE")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 
@@ -114,9 +114,9 @@ class Settings:
     realtime: float
 
     @property
-    def span(self) -> float:
-        """Time of the motion [s]; without an end that of many steps."""
-        return self.t_end - self.t0 if math.isfinite(self.t_end) else _MANY * self.dt
+    def instant(self) -> float:
+        """Time that counts as one instant to actions of events [s]; 0: a share of the time so far, as steps adapt."""
+        return 0.0 if self.adaptive and math.isfinite(self.t_end) else _AT_ONCE * self.dt
 
     @property
     def judged(self) -> bool:

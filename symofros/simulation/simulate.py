@@ -94,7 +94,7 @@ def simulate(
         model.record.refuse_sticking(f"simulation by '{settings.method.name}'")
     prepare_run(model, settings)
     stepper = Stepper(model, settings.method, inputs, looked_for, values)
-    stepper.set_span(settings.span)
+    stepper.set_instant(settings.instant)
     settings.apply(stepper)
     span = settings.t0, settings.t_end
     refuse_contradiction(contradiction(model, inputs, lambda at: stepper.inputs_at(at, q, v), span))

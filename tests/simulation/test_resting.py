@@ -49,11 +49,12 @@ def test_a_bouncing_ball_comes_to_rest_and_is_lifted(method: str) -> None:
     # Up to the first strike the pull is felt, too: without it the closed form holds.
     free = sf.simulate(ball(), [0.7], t_end=2.0, events=floor(), **options)
     met, (known, end) = np.array([found.t for found in free.events]), instants(0.7, len(free.events))
-    assert len(met) > 15 and met == pytest.approx(known, abs=1e-12) and abs(met[-1] - end) < 2e-6
+    assert len(met) > 15 and met == pytest.approx(known, abs=1e-12) and abs(met[-1] - end) < 1e-5
     assert free.outcome.kind == "finished" and all(found.energy_lost >= 0.0 for found in free.events)
     (note,) = free.outcome.notes
-    within = "where strikes would follow within 2e-06 s"
-    assert note == f"event 'strike': the contact persists from t = {met[-1]:.12g} s on, {within}"
+    within = 1e-5 if method == "rk4" else 1e-6 * met[-1]
+    said = f"event 'strike': the contact persists from t = {met[-1]:.12g} s on, where strikes would follow within"
+    assert note == f"{said} {within:.3g} s"
     still = free.t > met[-1]
     assert np.abs(free.q[still]).max() < 1e-15 and not free.v[still].any()
     assert free.lam[still][1:, 0] == pytest.approx(G, abs=1e-12) and free.par_over_time[-1, 0] == 1
@@ -133,7 +134,7 @@ def test_a_ball_that_slides_down_a_hill_does_not_strike_it() -> None:
 
 @pytest.mark.parametrize(
     ("method", "pull", "met"),
-    [("rk4", "9.81*sin(1.2*t)*1.00001", 14), ("dopri5", "9.81 + 0.01*(t - 1.2) - 1e3*max(t - 1.2, 0)^2", 4)],
+    [("rk4", "9.81*sin(1.2*t)*1.00001", 12), ("dopri5", "9.81 + 0.01*(t - 1.2) - 1e3*max(t - 1.2, 0)^2", 5)],
 )
 def test_a_contact_that_barely_opens_and_shuts_again_is_followed(method: str, pull: str, met: int) -> None:
     """It turns near to the floor behind the opening and each strike, where the run has just left it: no doubt."""
@@ -198,7 +199,7 @@ def test_steppers_and_batches_rest_as_a_run_does() -> None:
     assert [found.t for found in many.events(0)] == [found.t for found in run.events]
     assert many[0].par_over_time[-1] == pytest.approx([1, 0]) and many[0].outcome.kind == "finished"
     (note,) = (note for note in run.outcome.notes if "persists" in note)
-    assert note in many[0].outcome.notes and "within 1.2e-06 s" in note
+    assert note in many[0].outcome.notes and "within 1e-05 s" in note
     while stepper.t < 1.4 - 1e-9 and stepper.step([20.0]):
         pass
     assert stepper.par[0] == 0 and stepper.q[0] == pytest.approx(0.5 * (20 - G) * 0.2**2, abs=1e-9)

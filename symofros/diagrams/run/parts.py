@@ -74,8 +74,8 @@ def place_parts(
         events: Sequence[Event] = resolved.crossings if switching is None else switching.events
         stepper = Stepper(model, settings.method, inputs, events, par, lambda *_, acting=acting: acting)
         stepper.moving = layout.moving[part.v]
-        stepper.set_span(settings.span)
-        stepper.recall(begin.met)
+        stepper.set_instant(settings.instant)
+        stepper.recall(begin.met, settings.t0)
         replace(settings, t0=begin.t).apply(stepper)
         stepper.set_stops(begin.t, settings.t_end)  # Of fixed steps, too: the diagram's own loop ends them there.
         if layout.driven:

@@ -136,7 +136,7 @@ static void sym_batch_place(const sym_batch *b, sym_run *r, int64_t trajectory) 
     r->beam_q = b->beam_q + trajectory * coordinates, r->beam_reference = b->beam_reference + 2 * trajectory * coordinates;
     r->beam_guard = b->beam_guard + trajectory * n, r->beam_weight = b->beam_weight + trajectory * s->nv;
     if (r->actions == NULL) return;
-    r->par = b->par + trajectory * r->actions->npar, r->acted_at = b->acted_at + trajectory * s->n_events;
+    r->par = b->par + trajectory * r->actions->npar, r->acted_at = b->acted_at + trajectory * (s->n_events + 1);
     r->system->contact_memory = b->contact_memory + trajectory * (int64_t)sym_contact_memory_size(s);
 }
 

@@ -100,6 +100,7 @@ SYM_EXPORT int32_t sym_run_start(sym_run *r) {
     r->terminal_event = r->touched_event = r->unresolved_event = -1;
     r->clock_start = r->realtime_scale > 0.0 ? sym_clock_seconds() : 0.0;
     r->t_from = r->t0, r->n_from = 0;
+    if (r->actions != NULL) sym_note_begin(r);
     if (s->n_sticking > 0 && r->actions != NULL) {
         const int32_t status = sym_choose_modes(r);
         if (status != 0) return status;

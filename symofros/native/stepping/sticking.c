@@ -45,10 +45,27 @@ static void sym_open_contacts(const sym_system *s, double *par) {
 enum { SYM_ALL_AT_ONCE = 3, SYM_MOST_ROUNDS = 1000 };
 #define SYM_MOST_REPEATS 20.0 /* how often a mode may end at one instant */
 
+/* Share of the time since the begin of a motion that counts as an instant to actions, and of time itself, which is its rounding. */
+#define SYM_SHARE_OF_MOTION 1e-9
+#define SYM_TIME_ROUNDING 1e-13
+#define SYM_NO_TIME 1e-200 /* so that it is above zero at t = 0 */
+
+SYM_EXPORT double sym_run_one_instant(const sym_run *r) {
+    const double rounding = SYM_TIME_ROUNDING * fmax(fabs(r->t), SYM_NO_TIME);
+    if (r->actions->at_once > 0.0) return r->actions->at_once;
+    return fmax(SYM_SHARE_OF_MOTION * (r->t - r->acted_at[r->system->n_events]), rounding);
+}
+
+/* Note when a motion begins, parts of which may be runs of their own. */
+static void sym_note_begin(const sym_run *r) {
+    double *begun = r->acted_at + r->system->n_events;
+    if (!(r->actions->at_once > 0.0) && *begun == -HUGE_VAL) *begun = r->t;
+}
+
 /* Count that a mode ends once more: acted_at runs ahead of time by a share of what counts as an instant each time. Returns 0
  * or a status. */
 static int32_t sym_count_repeats(sym_run *r, int32_t event) {
-    const double instant = r->actions->at_once;
+    const double instant = sym_run_one_instant(r);
     double *at = r->acted_at + event;
     *at = (*at > r->t ? *at : r->t) + instant / SYM_MOST_REPEATS;
     return *at > r->t + instant ? SYM_ACTS_WITHOUT_END : 0;

@@ -37,7 +37,7 @@ typedef struct sym_batch {
     sym_run *prototype;
     sym_batch_function forward_dynamics, law, project, events, contact_state;
     int64_t *event_trajectory; /* (event_capacity of the prototype) whose event each row is */
-    double *par, *acted_at;    /* (n, npar), (n, n_events) of trajectories whose events have actions */
+    double *par, *acted_at;    /* (n, npar), (n, n_events + 1) of trajectories whose events have actions */
     int32_t *event_terminal;   /* (n, n_events) */
     double *contact_memory;    /* (n, sym_contact_memory_size) */
     int32_t slots;            /* most trajectories active at once; 2 at least */

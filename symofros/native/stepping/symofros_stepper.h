@@ -139,7 +139,7 @@ typedef struct sym_actions {
     const int32_t *opens;            /* (n_events) the event at which a contact that came to rest by this one opens; below 0: none */
     int32_t (*refuses)(void *data, const double *par); /* whether parameters are not allowed */
     void *data;
-    double at_once;                  /* an event that acts twice within this time acts without end [s] */
+    double at_once;                  /* an event that acts twice within this time acts without end [s]; 0: a share of the time so far */
     sym_call values, constraint;     /* formulas: of switches, assignments, the most that friction takes at rest; phi */
     sym_call *poses;                 /* p, R of frames */
     double *engaged;                 /* (n_switches) scratch */
@@ -333,7 +333,7 @@ typedef struct sym_run {
     /* Actions of events; NULL: none. Where `acts` they are done on the way, else the run ends before them: sym_run_act. */
     const sym_actions *actions;
     int32_t acts;
-    double *par, *acted_at;        /* (npar) present parameters; (n_events) when each event has acted last */
+    double *par, *acted_at;        /* (npar) present parameters; (n_events + 1) when each event has acted last, and the begin */
     double *event_done;            /* (event_capacity, sym_done_size) */
     int64_t first_met, met_end;    /* rows of the events at which the run has been cut last: first, behind the last */
     double t_from;                 /* fixed steps end at multiples of h from there on, */
@@ -359,6 +359,8 @@ int32_t sym_run_engage(sym_run *run, double *gap);
 /* At the events at which the run has been cut: do their actions, one after the other. Returns 0, SYM_TERMINAL_EVENT where one
  * of them ends the run, or a status below 0, the state then being that before the action that failed. */
 int32_t sym_run_act(sym_run *run);
+/* Time that counts as one instant where actions bring about each other [s]. */
+double sym_run_one_instant(const sym_run *run);
 /* Parameters (npar) from now on, of a run with actions. */
 void sym_run_set_parameters(sym_run *run, const double *par);
 /* Doubles of a row of run->event_done, and where one's numbers are. */

@@ -148,7 +148,7 @@ NOTES: Mapping[str, NoteKind] = {
     "contact rests": NoteKind(
         "event '…': the contact persists from t = … s on…",
         "a contact that rests has come to rest, after strikes that accumulate or one without rebound",
-        "nothing, or `restitution` and the length of the run, of which the threshold is a share",
+        "nothing, or `restitution`, and `dt`, of which the threshold is a share",
     ),
     "strikes in sequence": NoteKind(
         "several balls struck one after the other at t = … s, as no motion was found in which they do at once",

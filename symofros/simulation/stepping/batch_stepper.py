@@ -131,7 +131,7 @@ class BatchStepper:
     ) -> None:
         self.single = Stepper(model, settings.method, initial.inputs.plan, initial.events, initial.par[0])
         settings.apply(self.single)
-        self.single.set_span(settings.span)
+        self.single.set_instant(settings.instant)
         self.met: list[tuple[int, Met]] = []
         self._native, self._memory = self.single.native, self.single.memory
         self._batch = batch = self.single.ffi.new("sym_batch *")
@@ -179,7 +179,7 @@ class BatchStepper:
         single.reserve_events(batch.slots * 8 * count + _EVENT_ROWS)
         self._event_trajectory = np.zeros(single.run.event_capacity, dtype=np.int64)
         batch.event_trajectory = memory.shared(self._event_trajectory)
-        self._par, self._acted_at = par, np.full((n, count), -np.inf)
+        self._par, self._acted_at = par, np.full((n, count + 1), -np.inf)
         self._event_terminal = np.zeros((n, count), dtype=np.int32)
         self._contact_memory = np.zeros((n, len(single.contact_memory)))
         batch.contact_memory = memory.shared(self._contact_memory)

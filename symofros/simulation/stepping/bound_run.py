@@ -230,7 +230,8 @@ class BoundRun:
         if model.nc:
             self._bind_call(plan, "constraint", model.kernel("constraint"))
         self._fill_switches(plan)
-        run.actions, run.par, run.acted_at = plan, memory.doubles(self.par), memory.doubles([-math.inf] * len(events))
+        run.actions, run.par = plan, memory.doubles(self.par)
+        run.acted_at = memory.doubles([-math.inf] * (len(events) + 1))
 
     def _fill_switches(self, plan: Any) -> None:
         """The constraints that engage and release, and the poses of the frames that hold their relative rotation."""

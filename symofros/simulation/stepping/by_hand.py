@@ -130,7 +130,7 @@ class HandRun:
         self.settings = settings
         self.run = run = Stepper(model, settings.method, inputs, events, par)
         settings.apply(run)
-        run.set_span(settings.span)
+        run.set_instant(settings.instant)
         run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
         self._given = par
@@ -166,7 +166,7 @@ class HandRun:
         yield memory.raw(run.beam_guard, "sym_beam_guard", len(beams))
         yield self._looked_for
         if self.run.actions is not None:
-            yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events))
+            yield from (memory.view(run.par, model.npar), memory.view(run.acted_at, n_events + 1))
             sticking = len(model.record.sticking)
             yield memory.raw(system.held, "int32_t", sticking)
             yield self.run.contact_memory
@@ -202,7 +202,7 @@ class HandRun:
             self.run.set_parameters(self._given)
         self._looked_for[:] = [event.cut for event in self.run.events]
         if self.run.actions is not None:
-            self.run.memory.view(self.run.run.acted_at, len(self.run.events))[:] = -np.inf
+            self.run.memory.view(self.run.run.acted_at, len(self.run.events) + 1)[:] = -np.inf
             self.run.native.sym_run_forget_contacts(self.run.run)
         run, hand, memory = self.run, self.hand, self.run.memory
         run.set_state(q, v)
@@ -329,7 +329,7 @@ class HandRun:
         plan = replace(plan, signals=[*plan.signals, *signals])
         again = Stepper(run.model, run.method, plan, run.events, self.start.par)
         settings.apply(again)
-        again.set_span(self.settings.span)
+        again.set_instant(self.settings.instant)
         for which in self.start.spent:
             again.ignore_event(which)
         return again, settings

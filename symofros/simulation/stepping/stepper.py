@@ -22,9 +22,7 @@ from symofros.simulation.stepping.status import Status
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
-# An event that acts twice within this share of a run acts without end: smaller spans are not resolved within steps.
-_AT_ONCE = 1e-9
-# Times that, strikes follow each other where they accumulate.
+# Times what counts as an instant, strikes follow each other where they accumulate.
 _ACCUMULATION = native_number("stepping/sticking.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
@@ -92,27 +90,29 @@ class Stepper(BoundRun):
             view(run.beam_reach + of.first, beam.size)[:] = beam.reach
         run.slope_valid = run.jacobian_valid = 0
 
-    def set_span(self, span: float) -> None:
-        """Time of the motion [s], of which a small share is an instant to actions that bring about each other."""
+    def set_instant(self, instant: float) -> None:
+        """Time that counts as one instant to actions that bring about each other [s]; 0: a share of the time so far."""
         if self.actions is not None:
-            self.run.actions.at_once = _AT_ONCE * span
+            self.run.actions.at_once = instant
 
     @property
     def accumulation(self) -> float:
-        """Time within which strikes of a contact that rests are its last ones [s]."""
-        return _ACCUMULATION * float(self.run.actions.at_once) if self.actions is not None else 0.0
+        """Time within which strikes of a contact that rests are its last ones [s], by the time so far."""
+        return _ACCUMULATION * float(self.native.sym_run_one_instant(self.run))
 
     def ignore_event(self, which: int) -> None:
         """An event is not looked for any more."""
         self.system.event_terminal[which] = -1
 
-    def recall(self, met: Sequence[Met]) -> None:
-        """Events that were met before the present state: those that count once are over, and when others acted."""
+    def recall(self, met: Sequence[Met], t0: float) -> None:
+        """Events that were met from t0 on: those that count once are over, when others acted, and the begin."""
         for one in met:
             if self.events[one.which].once:
                 self.ignore_event(one.which)
             if one.acted:
                 self.run.acted_at[one.which] = one.t
+        if self.actions is not None:
+            self.run.acted_at[len(self.events)] = t0
 
     def act(self) -> tuple[int, list[Met]]:
         """Do the actions of the events at which the run has been cut: a Status, 0 where it goes on, and the events."""

@@ -178,7 +178,7 @@ class BatchExamination:
         plan = replace(inputs.plan, constant=_row(inputs.constant, i), signals=signals)
         model, par = self.model.with_precision("double"), _row(self.initial.par, i)
         stepper = Stepper(model, self.settings.method, plan, self.initial.events, par)
-        stepper.set_span(self.settings.span)
+        stepper.set_instant(self.settings.instant)
         return stepper
 
     def __getstate__(self) -> dict[str, Any]:

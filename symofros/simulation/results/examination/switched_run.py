@@ -98,7 +98,7 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     def _another(self, method: Method) -> Stepper:
         """Another stepper for the run, with all events but one that has ended it."""
         again = Stepper(self.model, method, self.stepper.inputs, self.stepper.events, self.par)
-        again.set_span(self.settings.span)
+        again.set_instant(self.settings.instant)
         for i, event in enumerate(again.events):
             if event.terminal and self.stopped:
                 again.ignore_event(i)
