@@ -67,10 +67,8 @@ def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False)
             fault = Problem(f"{what} '{item}'", "no name and value", f"{what} NAME=VALUE", f"for example {example}")
             raise SymofrosError(fault)
         if (name := name.strip()) in stated:
-            found = f"'{stated[name]}', '{text.strip()}'"
-            raise SymofrosError(
-                Problem(f"{what} {name} is stated twice", found, "a name has one value", "leave one out")
-            )
+            what, found = f"{what} {name} is stated twice", f"'{stated[name]}', '{text.strip()}'"
+            raise SymofrosError(Problem(what, found, "a name has one value", "leave one out"))
         stated[name] = text.strip()
     return stated
 
