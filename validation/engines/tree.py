@@ -17,6 +17,8 @@ from .lines import Actuator, Medium, Tendon
 BASE, DENAVIT, MODIFIED = "a base", "Denavit-Hartenberg parameters", "modified Denavit-Hartenberg parameters"
 # The first link that is fixed to another begins a gripper.
 GRIPPER = "a gripper"
+# What a tree is asked about whose limits and dry friction act as MuJoCo's documentation has them (`Tree.asked`).
+SOFT_LIMITS = "soft limits and friction"
 
 
 @dataclass(frozen=True)

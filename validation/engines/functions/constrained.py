@@ -7,7 +7,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..models.soft import ASKED
+from ..tree import SOFT_LIMITS
 from ..truth import constraints, soft
 from ..truth.arithmetic import Exact, exact
 from ..truth.dynamics import Point, Truth
@@ -102,7 +102,7 @@ def _limited() -> dict[str, Function]:
         "limiting_forces": ("what limits and friction do along the speeds (nv)", soft.forces),
         "limited_inverse": ("forces (nv) that inverse dynamics find at these accelerations: tau", lambda t, s: s.tau),
     }
-    return functions_of(rows, ASKED)
+    return functions_of(rows, SOFT_LIMITS)
 
 
 CONSTRAINED = _constrained() | _limited()

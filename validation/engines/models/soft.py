@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..interface import End, Joint, Tendon, Tree
+from ..tree import SOFT_LIMITS
 from .kinds import OBLIQUE, link, placed, shifted
 
-ASKED = "soft limits and friction"
 _HINGE, _SLIDE = Joint("revolute", axis=OBLIQUE), Joint("prismatic", axis=OBLIQUE)
 # Coordinates of random states are within half a turn: the first is always passed, the second mostly, the third never.
 _ABOVE, _WITHIN, _WIDE = (4.0, 8.0), (-0.25, 0.125), (-8.0, 8.0)
@@ -18,7 +18,7 @@ _ABOVE, _WITHIN, _WIDE = (4.0, 8.0), (-0.25, 0.125), (-8.0, 8.0)
 def _chain(name: str, *joints: Joint, tendons: tuple[Tendon, ...] = ()) -> Tree:
     draw = np.random.default_rng([ord(letter) for letter in name])
     links = tuple(link(draw, "abc"[k], k - 1, placed(draw, joint)) for k, joint in enumerate(joints))
-    return Tree(name, links, tendons=tendons, asked=ASKED)
+    return Tree(name, links, tendons=tendons, asked=SOFT_LIMITS)
 
 
 def trees() -> dict[str, Tree]:

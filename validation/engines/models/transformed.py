@@ -47,6 +47,17 @@ def _fixed_parts() -> tuple[Link, ...]:
     return tuple(link(draw, "abcde"[k], k - 1, joint) for k, joint in enumerate(held))
 
 
+def _parallel_parts() -> tuple[Link, ...]:
+    """Links of which an attached model's base carries joints in parallel, and what does not move on it."""
+    draw = np.random.default_rng(15)
+    slide = Joint("prismatic", axis=OBLIQUE)
+    stated = (
+        *((-1, _hinge(draw)), (0, _hinge(draw)), (1, placed(draw, Joint("fixed")))),
+        *((2, _hinge(draw)), (3, _hinge(draw)), (2, placed(draw, Joint("fixed"))), (2, placed(draw, slide))),
+    )
+    return tuple(link(draw, "abcdefg"[k], parent, joint) for k, (parent, joint) in enumerate(stated))
+
+
 def _acting(links: tuple[Link, ...]) -> list[Tree]:
     """Attached chains that forces of their own act on: what hangs on parts must follow them, those of the other first.
 
@@ -94,6 +105,7 @@ def trees() -> dict[str, Tree]:
         Tree("attached chain", parts[:4], attached="c"),
         Tree("attached branches", parts, attached="c"),
         Tree("attached fixed links", _fixed_parts(), attached="c"),
+        Tree("attached base of parallel joints", _parallel_parts(), attached="c"),
         *_acting(parts[:4]),
         replace(hostile_trees()["fixed links amid"], name="fixed links fused", fused=True),
         _fused_at_one_point("fixed links fused at one point"),

@@ -179,7 +179,20 @@ WAYS |= {
     ),
 }
 
-_COPIED = {"clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n"}
+_COPIED = {
+    "clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n",
+    # Joints of a copy, along axes and at places of their own, are made as those that they copy.
+    "Joint.copy": """first, s = s, s.clone()
+links = [s.getBodyNode(b.getName()) for b in links]
+for k in range(s.getNumJoints()):
+    j = s.getJoint(k)
+    if hasattr(j, 'copy'):
+        j.setTransformFromParentBodyNode(dart.math.Isometry3(np.eye(3), np.array([1.0, -2.0, 0.5])))
+        for name, axis in (('setAxis', (0.0, 0.6, 0.8)), ('setAxis1', (0.0, 0.6, 0.8)), ('setAxis2', (0.8, 0.0, 0.6))):
+            if hasattr(j, name): getattr(j, name)(np.array(axis))
+        j.copy(first.getJoint(k))
+""",
+}
 
 
 def _array(values: object) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
-from ..models.soft import ASKED
+from ..tree import SOFT_LIMITS
 from . import mujoco
 from .mujoco import rebuilt
 from .mujoco.elements import KINDS, SOFT, SOFT_FORCES
@@ -280,7 +280,7 @@ def made(model, **sizes):
     mjw.set_const(model, data)
     return model, data
 mw, dw = made(m, njmax=64, nconmax=0)"""
-_UNOFFERED = ("flexible bodies", "a lone body", "turns", "sensors of bound links", ASKED)
+_UNOFFERED = ("flexible bodies", "a lone body", "turns", "sensors of bound links", SOFT_LIMITS)
 PLUGIN = SourcePlugin(
     name="mujoco-warp",
     package="mujoco-warp",

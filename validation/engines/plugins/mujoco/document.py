@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from ...interface import Array, Joint, Slot, Tree, Unsupported
-from ...models import soft
+from ...tree import SOFT_LIMITS
 from ..writing.source import series
 from . import elements as beside
 
@@ -120,7 +120,7 @@ class _Bodies:
             q, v = range(self.nq, self.nq + nq), range(self.nv, self.nv + nv)
             own.append(Slot(chart, tuple(q), tuple(v)))
             self.nq, self.nv = q.stop, v.stop
-            rows = beside.limits(joint) if self.tree.asked == soft.ASKED else ""
+            rows = beside.limits(joint) if self.tree.asked == SOFT_LIMITS else ""
             armature = f' armature="{joint.armature[0]!r}"' if joint.armature else ""
             # A joint alone has its link's name, by which lines and sensors find it.
             named = f' name="{_name(link.name)}"' if len(steps) == len(_elements(joint)) == 1 else ""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
-from ...models.soft import ASKED
+from ...tree import SOFT_LIMITS
 from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
@@ -197,7 +197,7 @@ PLUGIN = SourcePlugin(
         "scaled welds": "equality/weld torquescale",
         "points by bodies": "equality/connect anchor",
         "a lone body": "efc_diagApprox",
-        ASKED: "limited, range, frictionloss",
+        SOFT_LIMITS: "limited, range, frictionloss",
         "a medium": "density, viscosity, wind",
         "actuators": "general, motor, position, velocity",
         "activations": "dyntype, dynprm, actearly, actrange",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ...interface import STEP
+from ..writing import copies
 from ..writing.source import Way
 
 # Warp prints what it compiles unless this is set before it starts: `quiet` of older releases, the level of newer ones.
@@ -53,6 +54,29 @@ WAYS = {
         f"""rotation
 {_Q}J = newton.eval_jacobian(m, s).numpy()[0].reshape(-1, 6, len(v))
 value = [np.concatenate([j[:3] - np.cross(j[3:].T, r).T, j[3:]]) for j, r in zip(J, centres(s))]""",
+    ),
+}
+# A builder's bodies, as they stand and move, are added turned and shifted to another: seen from there nothing changes.
+_ADDED = f"""{QV}rotation
+b.body_q[:] = [wp.transform(wp.vec3(*x[:3]), wp.quat(*x[3:])) for x in s.body_q.numpy().tolist()]
+b.body_qd[:] = [wp.spatial_vector(*x) for x in s.body_qd.numpy().tolist()]
+to = newton.ModelBuilder()
+to.add_builder(b, wp.transform(wp.vec3(1.0, -2.0, 0.5), wp.quat(0.0, 0.6, 0.0, 0.8)))
+R, p = rotation(0.0, 0.6, 0.0, 0.8), np.array([1.0, -2.0, 0.5])
+"""
+_JOINED = """to = newton.ModelBuilder()
+to.add_builder(b)
+m = to.finalize(device="cpu")"""
+WAYS |= copies.of_model(WAYS, {"add_builder": _JOINED}, ("mass_matrix", "link_poses")) | {
+    "link_poses:add_builder, turned": Way(
+        "add_builder, body_q",
+        f"{_ADDED}value = []\nfor x in np.array(to.body_q):\n"
+        "    value.append([*(R.T @ (x[:3] - p)), *(R.T @ rotation(*x[3:])).flat])",
+    ),
+    "link_velocities:add_builder, turned": Way(
+        "add_builder, body_qd",
+        f"{_ADDED}value = []\nfor x, r in zip(np.array(to.body_qd), centres(s)):\n"
+        "    u, w = R.T @ x[:3], R.T @ x[3:]\n    value.append([*(u - np.cross(w, r)), *w])",
     ),
 }
 _FORCES = "control.joint_f.assign(tau.astype(np.float32))\n"
