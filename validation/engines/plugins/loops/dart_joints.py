@@ -49,7 +49,10 @@ WAYS = (
             f"{_DEGREES}X = [b.getTransform() for b in links]\n"
             "value = [[*x.translation(), *x.rotation().flat] for x in X]",
         ),
-        "mass_matrix:getAugMassMatrix": Way("getAugMassMatrix", f"{_SET}value = s.getAugMassMatrix()"),
+        # Beside M, what a step makes of dampers and springs.
+        "mass_matrix:getAugMassMatrix": Way(
+            "getAugMassMatrix", f"{_SET}s.setTimeStep(0.0)\nvalue = s.getAugMassMatrix()"
+        ),
         "link_jacobians:getWorldJacobian": Way(
             "getWorldJacobian", f"{_SET}value = [np.roll(s.getWorldJacobian(b), 3, axis=0) for b in links]"
         ),

@@ -11,7 +11,7 @@ from ...interface import Array, End, Joint, Rows, Slot, Tree, Unsupported
 from ..writing import copies
 from ..writing.numbering import attached
 from ..writing.source import Source, series
-from . import constraints
+from . import constraints, objects
 
 # Kind and form of a joint -> joint model, chart, coordinates, speeds. {axis} is X, Y or Z where the axis is one of
 # them.
@@ -192,7 +192,7 @@ class _ModelText:
             optional["sensed"] = (f"sensed = [{', '.join(f'm.addFrame({one})' for one in stated)}]", *CLOSING)
         optional |= constraints.optional(tree.constraints, self.place)
         # Mimicking joints that are read again hold what is not set: they crash, or answer by chance.
-        lacks = READ_AGAIN if any(joint.mimics for link in tree.links for joint in link.joints) else ()
+        lacks = _MIMICS_LACK if any(joint.mimics for link in tree.links for joint in link.joints) else ()
         return Source(tuple(lines), slots, self.nq, self.nv, optional, lacks, CLOSING, of_links="fs")
 
 
@@ -228,6 +228,8 @@ def write(tree: Tree) -> Source | Unsupported:
 
 # Ways of a model that was written and read again.
 READ_AGAIN = tuple(f"{name}:saveToString" for name in copies.OF_MODELS)
+# Of these no joint moves by itself, as their data have it.
+_MIMICS_LACK = (*READ_AGAIN, *(f"{name}:JointData" for name in objects.FROM_DATA))
 _NAMED_FRAMES = "fs = [m.getFrameId(f'f{{k}}') for k in range({})]"
 
 

@@ -26,7 +26,7 @@ for j in range(1, m.njoints):
     J.append(at.inverse().action @ J[parent])
     J[j][:, rows] += S
 """
-_FROM_DATA = {
+FROM_DATA = {
     "link_poses": "[*X[j].translation, *X[j].rotation.flat]",
     "velocity_local": "V[j].vector",
     "acceleration_local": "A[j].vector",
@@ -65,7 +65,7 @@ _OF_FRAMES = {
 WAYS = (
     {
         f"{name}:JointData": Way("JointData: M, v, c, S", f"{_BY_DATA}value = [{of} for j in js]")
-        for name, of in _FROM_DATA.items()
+        for name, of in FROM_DATA.items()
     }
     | {f"{name}:lieGroup": Way(f"lieGroup.{native}", code) for name, (native, code) in _GROUP.items()}
     | {f"{name}:RobotWrapper": Way("RobotWrapper", f"{_ROBOT}value = {of}") for name, of in _WRAPPED.items()}
