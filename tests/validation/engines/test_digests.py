@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.engines import digests
+from validation.engines import digests, verdicts
 from validation.engines.functions import FUNCTIONS
+from validation.engines.interface import Steps, Unsupported
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
-from validation.engines.plugins.writing.source import SourcePlugin
-from validation.engines.truth import derived, dynamics
+from validation.engines.plugins.writing.source import SourcePlugin, Way
+from validation.engines.truth import charts, derived, dynamics, kinematics
 from validation.engines.workers import Job
 
 TREE = tree_of("ball")
@@ -71,21 +72,53 @@ def test_code_that_has_a_part_in_the_answer_changes_it_and_other_code_does_not(m
         changed.setitem(FUNCTIONS, "mass_matrix", replace(FUNCTIONS["mass_matrix"], truth=lambda t, s: -t.M(s.q)))
         forget()
         assert asked() != before and asked(replace(JOB, functions=("gravity",))) == gravity
-    with monkeypatch.context() as changed:  # What all truths have a part of.
-        changed.setattr(dynamics.Truth, "M", lambda self, q: None)
+    for helper in ((dynamics.Truth, "_mass_matrix"), (kinematics.Kinematics, "_walk"), (charts, "rotation")):
+        with monkeypatch.context() as changed:  # What truths have a part of, a step and more away.
+            changed.setattr(*helper, lambda *_: None)
+            forget()
+            assert asked() != before, helper
+    with monkeypatch.context() as changed:  # What judges.
+        changed.setattr(verdicts, "GROSS", 1e-5)
         forget()
         assert asked() != before
-    with monkeypatch.context() as changed:  # The plug-in's texts.
-        plugin = OWN["mujoco"]
-        assert isinstance(plugin, SourcePlugin)
-        ways = {**plugin.ways, "bias": plugin.ways["bias"]._replace(code="value = 0")}
-        assert digests.asked(replace(plugin, ways=ways), JOB, "1") != before
     with monkeypatch.context() as changed:  # What these cells have nothing of.
         changed.setattr(derived, "subtree_momenta", None)
+        changed.setattr(dynamics.Truth, "subtree_momenta", lambda self: None, raising=False)
         changed.setitem(FUNCTIONS, "new", FUNCTIONS["gravity"])
         changed.setitem(OWN, "new", OWN["mjx"])
         forget()
         assert asked() == before
+
+
+def test_the_text_that_an_engine_runs_counts_and_how_it_comes_about_does_not() -> None:
+    plugin, before = OWN["mujoco"], asked()
+    assert isinstance(plugin, SourcePlugin)
+
+    def way(name: str, code: str) -> str:
+        return digests.asked(replace(plugin, ways={**plugin.ways, name: Way("native", code)}), JOB, "1")
+
+    def written(change: Any) -> str:
+        return digests.asked(replace(plugin, write=lambda tree: change(plugin.write(tree))), JOB, "1")
+
+    assert way("mass_matrix", "value = 0") != before == way("bias", "value = 0")
+    assert written(lambda source: source) == before
+    assert written(lambda source: replace(source, lines=("", *source.lines))) != before
+    assert written(lambda source: replace(source, lacks=("mass_matrix",))) != before
+    assert written(lambda source: Unsupported("no")) != written(lambda source: Unsupported("never")) != before
+    for changed in ({"refusals": ("x",)}, {"calls": 3}, {"roundoff": 1.0}, {"gravity": (0.0, 0.0, 1.0)}):
+        assert digests.asked(replace(plugin, **changed), JOB, "1") != before, changed
+    assert digests.asked(replace(plugin, conventions=(), find=lambda: "2"), JOB, "1") == before
+
+
+def test_of_steps_the_truth_of_what_differences_are_taken_of_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    plugin = OWN["mujoco"]
+    assert isinstance(plugin, SourcePlugin)
+    steps = plugin.ways["mass_matrix"]._replace(slack=Steps("potential_energy", 1e-6, 1e-6))
+    other = replace(plugin, ways={**plugin.ways, "mass_matrix": steps})
+    before = asked(), digests.asked(other, JOB, "1")
+    monkeypatch.setitem(FUNCTIONS, "potential_energy", replace(FUNCTIONS["potential_energy"], truth=lambda t, s: None))
+    forget()
+    assert asked() == before[0] and digests.asked(other, JOB, "1") != before[1]
 
 
 def every() -> str:
@@ -136,6 +169,38 @@ def test_what_objects_hold_is_followed_and_what_documents_them_is_not() -> None:
     for one, other in pairs:
         assert reached(one) == reached(one) != reached(other), one
     assert reached(SimpleNamespace(a=1)) == reached(SimpleNamespace(a=2))  # Of another package.
+
+
+class _Both:
+    def first(self) -> int:
+        return self.second()
+
+    def second(self) -> int:
+        return 2
+
+    def third(self) -> int:
+        return 3
+
+
+def _by_name() -> Any:
+    return _Both().first()
+
+
+def _by_text() -> Any:
+    return [getattr(_Both(), name)() for name in ("third", "none")]
+
+
+def test_of_a_class_the_methods_that_are_named_count(monkeypatch: pytest.MonkeyPatch) -> None:
+    def reached(root: Any, **options: Any) -> str:
+        return digests.reached(root, packages=["tests"], **options)
+
+    roots = (_by_name, _by_text)
+    before, whole = [reached(root) for root in roots], reached(_Both(), whole=True)
+    for name, same in (("first", (False, True)), ("second", (False, True)), ("third", (True, False))):
+        with monkeypatch.context() as changed:
+            changed.setattr(_Both, name, lambda self: 0)
+            assert tuple(reached(root) == was for root, was in zip(roots, before, strict=True)) == same, name
+            assert reached(_Both(), whole=True) != whole
 
 
 class Holder:
