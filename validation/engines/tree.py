@@ -120,12 +120,13 @@ class Constraint:
     "point": the origins of two frames coincide. "weld": two frames coincide. "coupling": a sum of coordinates, each
     times its coefficient, is constant; each is that of the only joint of a link. "polynomial": the first coordinate is
     the polynomial of the second, whose coefficients begin with the constant. "path": the sum of the distances from
-    point to point is what it is with all coordinates zero.
+    point to point is what it is with all coordinates zero. "floor": a ball about a frame's origin stays above a height.
 
     Attributes:
         kind: One of these.
         ends: Frames that it holds; of a "coupling", their links; of a "path", its points in order.
-        coefficients: Of a "coupling", for each end; of a "polynomial", for each power.
+        coefficients: Of a "coupling", for each end; of a "polynomial", for each power; of a "floor", the ball's radius
+            and the height.
         torque_scale: Of a "weld", factor of its rows of rotation.
         by_bodies: Whether only the first frame of a "point" is stated: the second is where that is with all
             coordinates zero.

@@ -127,6 +127,8 @@ FAULTS = [
         "d.efc_force)",
         "d.efc_force[::-1].copy())",
     ),
+    ("mujoco", "balls below floors and above one", "floor_forces", "wrench[0]", "wrench[1]"),
+    ("mujoco", "balls below floors and above one", "limiting_forces", "q, v, tau", "q, 2 * v, tau"),
     ("mujoco", "hinges beyond limits", "limited_inverse", "value = d.qfrc_inverse", "value = d.qfrc_inverse + d.qacc"),
     ("mujoco", "sensors on hinges", "magnetic_fields", "[0.25, -0.5, 1.0]", "[0.25, 1.0, -0.5]"),
 ]

@@ -53,3 +53,12 @@ def test_dry_friction_stays_within_its_bound() -> None:
     assert abs(f) == pytest.approx(0.25)
     _, _, ((a,), (f,)) = _truth("slide with much dry friction")
     assert abs(f) <= 64.0 and abs(a) < 1e3
+
+
+def test_floors_lift_balls_that_are_below_them() -> None:
+    """The forces along the speeds are those of the balls' heights; what is above its floor feels none."""
+    truth, s, (_, f) = _truth("balls below floors and above one")
+    forces = truth.value(soft.floor_forces, s)
+    assert [force > 0 for force in forces] == [True, False, True] and forces[1] == 0
+    heights = [truth.kinematics.held(s.q, one.ends[0]).J[2] for one in truth.tree.constraints]
+    np.testing.assert_allclose(f, digits(sum(J * force for J, force in zip(heights, forces, strict=True))), rtol=1e-12)

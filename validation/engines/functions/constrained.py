@@ -100,6 +100,7 @@ def _limited() -> dict[str, Function]:
     rows = {
         "limited_acceleration": ("accelerations (nv)", soft.acceleration),
         "limiting_forces": ("what limits and friction do along the speeds (nv)", soft.forces),
+        "floor_forces": ("what each floor does to its ball (n)", soft.floor_forces),
         "limited_inverse": ("forces (nv) that inverse dynamics find at these accelerations: tau", lambda t, s: s.tau),
     }
     return functions_of(rows, SOFT_LIMITS)

@@ -1,4 +1,4 @@
-"""Trees whose joints and tendons have limits and dry friction that act: alone, at rest within, several at once."""
+"""Trees with limits, dry friction and floors that act: alone, at rest within, several at once."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import End, Joint, Tendon, Tree
+from ..interface import Constraint, End, Joint, Tendon, Tree
 from ..tree import SOFT_LIMITS
 from .kinds import OBLIQUE, link, placed, shifted
 
@@ -15,10 +15,10 @@ _HINGE, _SLIDE = Joint("revolute", axis=OBLIQUE), Joint("prismatic", axis=OBLIQU
 _ABOVE, _WITHIN, _WIDE = (4.0, 8.0), (-0.25, 0.125), (-8.0, 8.0)
 
 
-def _chain(name: str, *joints: Joint, tendons: tuple[Tendon, ...] = ()) -> Tree:
+def _chain(name: str, *joints: Joint, tendons: tuple[Tendon, ...] = (), floors: tuple[Constraint, ...] = ()) -> Tree:
     draw = np.random.default_rng([ord(letter) for letter in name])
     links = tuple(link(draw, "abc"[k], k - 1, placed(draw, joint)) for k, joint in enumerate(joints))
-    return Tree(name, links, tendons=tendons, asked=SOFT_LIMITS)
+    return Tree(name, links, constraints=floors, tendons=tendons, asked=SOFT_LIMITS)
 
 
 def trees() -> dict[str, Tree]:
@@ -27,6 +27,10 @@ def trees() -> dict[str, Tree]:
     rubbed = replace(_HINGE, friction=0.25)
     along = Tendon("coupling", (End("a"), End("b"), End("c")), (1.0, -0.5, 2.0))
     over = Tendon("path", tuple(End(name, p=shifted(draw, 0.3)) for name in ("", "a", "c")))
+    high, low, aside = (
+        Constraint("floor", (End(name, p=shifted(draw, 0.3)),), (0.25, height))
+        for name, height in (("a", 8.0), ("c", 8.0), ("b", -8.0))
+    )
     three = (_HINGE, _SLIDE, _HINGE)
     made = (
         _chain("hinge below its limit", replace(_HINGE, limits=_ABOVE)),
@@ -46,6 +50,9 @@ def trees() -> dict[str, Tree]:
         _chain(
             "tendons with dry friction", *three, tendons=(replace(along, friction=0.5), replace(over, friction=8.0))
         ),
+        _chain("hinge with a ball below a floor", _HINGE, floors=(high,)),
+        _chain("balls below floors and above one", *three, floors=(high, aside, low)),
+        _chain("ball below a floor beside limits", replace(_HINGE, limits=_ABOVE), rubbed, floors=(high,)),
         _chain(
             "tendon beside a joint, both beyond limits",
             replace(_HINGE, limits=_ABOVE),

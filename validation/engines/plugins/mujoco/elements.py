@@ -16,6 +16,7 @@ KINDS = {
     "coupling": "equality/joint; equality/tendon of a fixed tendon",
     "polynomial": "equality/joint, polycoef",
     "path": "equality/tendon of a spatial tendon",
+    "floor": "geom, condim 1",
 }
 # As hard as MuJoCo lets a constraint be: it bounds impedances by mjMAXIMP, 0.9999.
 _HARD = 'solimp="0.9999 0.9999 0.001"'
@@ -43,6 +44,16 @@ def _wrapped(name: str, wrap: Wrap) -> str:
     return f'<geom geom="{name}"' + (f' sidesite="{name}_side"' if wrap.side else "") + "/>"
 
 
+def _met(number: int, one: Constraint, link: str) -> str:
+    """A ball of a link that meets a floor alone, and in the world "" the floor, which meets balls of its own number."""
+    (end,), (radius, height) = one.ends, one.coefficients
+    if not link:
+        plane = f'type="plane" size="0 0 1" pos="0 0 {height!r}" contype="{2**number}" conaffinity="0"'
+        return f'<geom name="f{number}" {plane} condim="1"/>'
+    ball = f'type="sphere" size="{radius!r}" pos="{_text(end.p)}" mass="0" contype="0" conaffinity="{2**number}"'
+    return f'<geom name="g{number}" {ball} condim="1"/>' if end.link == link else ""
+
+
 def sites(tree: Tree, link: str) -> str:
     """The sites of a link, "" for the world, for constraints, tendons, sensors; and what tendons wrap around."""
     lines: list[tuple[str, Constraint | Tendon]] = [(f"s{number}", one) for number, one in enumerate(tree.constraints)]
@@ -53,10 +64,11 @@ def sites(tree: Tree, link: str) -> str:
     for number, tendon in enumerate(tree.tendons):
         wraps = ((k, wrap) for k, wrap in enumerate(tendon.wraps) if wrap.end.link == link)
         sensors += "".join(_surface(f"w{number}_{k}", wrap) for k, wrap in wraps)
+    sensors += "".join(_met(number, one, link) for number, one in enumerate(tree.constraints) if one.kind == "floor")
     return sensors + "".join(
         _site(f"{name}_{place}", end)
         for name, one in lines
-        if one.kind not in ("coupling", "polynomial")
+        if one.kind not in ("coupling", "polynomial", "floor")
         for place, end in enumerate(one.ends)
         if end.link == link
     )
@@ -64,8 +76,9 @@ def sites(tree: Tree, link: str) -> str:
 
 def elements(tree: Tree) -> str:
     """The elements of MJCF beyond bodies, with links' joints named as the links."""
-    equalities = [_equality(number, one) for number, one in enumerate(tree.constraints)]
-    tendons = [_tendon(number, one) for number, one in enumerate(tree.constraints)]
+    held = [(number, one) for number, one in enumerate(tree.constraints) if one.kind != "floor"]
+    equalities = [_equality(number, one) for number, one in held]
+    tendons = [_tendon(number, one) for number, one in held]
     tendons += [_line(f"n{number}", f"n{number}", one, _spring(one)) for number, one in enumerate(tree.tendons)]
     parts = {
         "tendon": tendons,

@@ -66,7 +66,7 @@ def write(tree: Tree) -> Source | Unsupported:
             f"sensed = range({len(tree.sensors)})",
             "def data(kind, k): return d.sensor(f'{kind}{k}').data",
         )
-    spelling = beside.spelling(tree) if tree.constraints else {}
+    spelling = beside.spelling(tree) if tree.constraints and not tree.asked else {}
     # What is attached already is not made in other ways.
     lacks = (*rebuilt.SENSED, *rebuilt.ways(_WAYS)) if own else ()
     return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling, of_links="bs")

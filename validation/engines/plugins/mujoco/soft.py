@@ -43,5 +43,11 @@ WAYS = {
     "limiting_forces:mj_inverse": Way(
         "mj_inverse: qfrc_constraint", f"{_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_constraint"
     ),
+    "floor_forces": Way(
+        "mj_contactForce",
+        f"{_NEWTON}value, wrench = np.zeros(sum(m.geom(k).name.startswith('g') for k in range(m.ngeom))), np.zeros(6)\n"
+        "for k, one in enumerate(d.contact):\n    mj.mj_contactForce(n, d, k, wrench)\n"
+        "    value[int(m.geom(int(one.geom[1])).name[1:])] = wrench[0]",
+    ),
     "limited_inverse": Way("mj_inverse", f"{_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_inverse", _ITERATED),
 }
