@@ -15,10 +15,11 @@ from .integrators import STEPS
 from .poses import POSES
 from .shapes import SHAPES
 from .stated import STATED
+from .tanks import TANKS
 from .trees import TREES
 
 FUNCTIONS: dict[str, Function] = (
-    TREES | CARRIED | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | SHAPES | ARMS
+    TREES | CARRIED | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | SHAPES | ARMS | TANKS
 )
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")

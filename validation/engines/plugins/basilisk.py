@@ -1,8 +1,9 @@
-"""Basilisk: rotations by its RigidBodyKinematics; its spacecraft are not asked."""
+"""Basilisk: rotations by its RigidBodyKinematics, tanks that drain; its spacecraft are not asked."""
 
 from __future__ import annotations
 
 from ..interface import Convention, Slot, Tree, Unsupported
+from ..truth.tanks import LENGTH, MASS, RADIUS
 from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
 
 _SEQUENCES = "121 123 131 132 212 213 231 232 312 313 321 323".split()
@@ -67,6 +68,46 @@ def _unset() -> dict[str, Way]:
 
 
 WAYS |= _unset()
+
+# Models of tanks -> names of their functions.
+_TANKS = {
+    "Emptying": "emptying",
+    "ConstantVolume": "of_constant_volume",
+    "ConstantDensity": "of_constant_density",
+    "UniformBurn": "burning_evenly",
+    "CentrifugalBurn": "burning_outwards",
+}
+_OF_TANKS = (
+    ("centre", "computeTankProps", "r_TcT_T"),
+    ("centre_rate", "computeTankPropDerivs", "rPrime_TcT_T"),
+    ("moments", "computeTankProps", "ITankPntT_T"),
+    ("moment_rates", "computeTankPropDerivs", "IPrimeTankPntT_T"),
+)
+_DRAINED = f"""from Basilisk.simulation import fuelTank
+t = fuelTank.FuelTankModel{{model}}()
+t.propMassInit, t.radiusTankInit, t.r_TcT_TInit = {MASS}, {RADIUS}, [[0.0], [0.0], [0.0]]
+if hasattr(t, 'lengthTank'): t.lengthTank = {LENGTH}
+f = (1 + v[0] / (1 + abs(v[0]))) / 2
+m, m1 = {{left}}
+t.computeTankProps(m)
+t.computeTankPropDerivs(m, m1)
+value = {{value}}"""
+
+
+def _tanks() -> dict[str, Way]:
+    """Mass centres and moments of tanks by what is left, and their rates."""
+    ways = {}
+    for model, kind in _TANKS.items():
+        by_height = f"{MASS} * f**2 * (3 - 2 * f), {MASS} * 6 * f * (1 - f) * v[1]"
+        left = by_height if kind == "emptying" else f"{MASS} * f, {MASS} * v[1]"
+        for name, call, field in _OF_TANKS:
+            value = f"np.array(t.{field})[2]" if field.startswith("r") else f"np.diag(np.array(t.{field}))"
+            code = _DRAINED.format(model=model, left=left, value=value)
+            ways[f"tank_{name}_{kind}"] = Way(f"FuelTankModel{model}, {call}: {field}", code)
+    return ways
+
+
+WAYS |= _tanks()
 
 
 def write(tree: Tree) -> Source | Unsupported:
