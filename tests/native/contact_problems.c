@@ -18,7 +18,7 @@ static double normal(void) { return sqrt(-2.0 * log(1.0 - uniform())) * cos(6.28
 static void draw(sym_contact_problem *p, int32_t n) {
     const int32_t body = uniform() < 0.5, masses = !body && uniform() < 0.5;
     const int32_t nv = body ? 6 : masses ? 3 * n : 3 + (int32_t)(uniform() * 3.0 * n);
-    double J[SYM_MOST_FORCES][32], a[32], inverse[32];
+    double J[SYM_MOST_FORCES][SYM_MOST_FORCES + 3], a[SYM_MOST_FORCES + 3], inverse[SYM_MOST_FORCES + 3];
     int32_t i, j, k;
     memset(p, 0, sizeof *p);
     p->n = n;
@@ -156,7 +156,7 @@ int main(int n, char **word) {
         }
         if (status != 0) {
             if (known) ++none;
-            else if (sought(&p, times)) ++missed;
+            else if (times > 0 && sought(&p, times)) ++missed;
             else ++nowhere;
             continue;
         }

@@ -349,7 +349,7 @@ def test_what_is_refused(tmp_path: Path) -> None:
     for numbers in ({"restitution": 1.1}, {"restitution": -0.1}, {"restitution": 0.5, "friction": -0.1}):
         with pytest.raises(sf.DescriptionError, match="restitution|friction"):
             sf.compile(sf.System("s", (body,), connections=(sf.Contact("c", ("ball", None), GROUND, **numbers),)))
-    many = sf.Contact("c", ("ball", None), GROUND, restitution=0.0, points=[(0.1 * k, 0, 0) for k in range(9)])
+    many = sf.Contact("c", ("ball", None), GROUND, restitution=0.0, points=[(0.1 * k, 0, 0) for k in range(17)])
     model = sf.compile(sf.System("s", (body,), connections=(many,)))
     assert sf.simulate(model, t_end=0.1).outcome.kind == "input failed"
 

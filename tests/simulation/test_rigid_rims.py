@@ -146,7 +146,7 @@ def test_a_disc_without_friction_keeps_its_spin() -> None:
     w = np.array([model.frame_velocity("disc", *x)[3:] for x in zip(run.q, run.v, strict=True)])
     spin = np.einsum("ni,ni->n", a, w)
     vertical = w[:, 2] / 4 + spin * a[:, 2] / 4  # Over m R^2.
-    assert {one.name for one in run.events} == {"rim turns"} and np.ptp(a[:, 2]) > 0.1
+    assert run.events == () and np.ptp(a[:, 2]) > 0.1
     for kept in (spin, vertical, run.kinetic_energy + run.potential_energy, run.q[:, 0], run.q[:, 1]):
         assert np.ptp(kept) < 1e-9
 

@@ -19,7 +19,7 @@ static const char *fmu_reason(int32_t status) {
     case SYM_MODES_UNDECIDED: return "no modes of friction that sticks agree with the motion that they bring about";
     case SYM_HELD_TWICE: return "friction holds joints that others or constraints hold already";
     case SYM_WRONG_CONTACT:
-        return "a contact that rests is penetrated, holds by a force that draws, or is one of nine rigid ones that touch at once";
+        return "a contact that rests is penetrated, holds by a force that draws, or is one of seventeen rigid ones that touch at once";
     case SYM_NO_CONTACT_FORCE:
         return "no forces of rigid contacts were found that agree with Coulomb's law (Painleve's paradox)";
     case SYM_CONTACTS_AMBIGUOUS:

@@ -1,7 +1,7 @@
 /* Which modes the balls of a contact problem take: by parts that do not act on each other, from guesses on
  * (docs/theory/constraints.md, section 15, (46), (47b)). */
 
-enum { SYM_UNIQUE_UP_TO = 4, SYM_GUESS_SWEEPS = 1000 };
+enum { SYM_UNIQUE_UP_TO = 4, SYM_ALL_UP_TO = 8, SYM_MOST_SETS = 6561, SYM_GUESS_SWEEPS = 1000 };
 /* Share by which two motions differ; shares down to which a guess tells forces and motions from none. */
 #define SYM_DIFFERENT 1e-6
 #define SYM_GUESSED 1e-6
@@ -68,72 +68,90 @@ static void sym_guess_modes(const sym_contact_problem *p, double *mode, double *
     }
 }
 
-/* Number of a set of modes, and its modes: those with more contact have lower numbers. */
-static int32_t sym_number_of_modes(const sym_contact_problem *p, const double *mode) {
-    int32_t number = 0, i;
-    for (i = 0; i < p->n; ++i) {
-        const int32_t most = sym_most_contact(p, i), of = mode[i] < (double)most ? (int32_t)mode[i] : most;
-        number = number * (most + 1) + most - of;
-    }
-    return number;
-}
-static void sym_modes_of_number(const sym_contact_problem *p, int32_t number, double *mode) {
-    int32_t i;
-    for (i = p->n - 1; i >= 0; --i) {
-        const int32_t most = sym_most_contact(p, i);
-        mode[i] = (double)(most - number % (most + 1)), number /= most + 1;
-    }
-}
-
-/* Numbers of sets of modes in the order in which they are tried: most contact, the last modes, the guess, then by how many balls
- * differ from the guess. next: how many have been given; at: a state of the order. Returns -1 at the end. */
+/* Sets of modes in the order in which they are tried: most contact, the last modes, the guess, then by how many balls differ from the
+ * guess, of those that differ by as many the ones with more contact of the first balls before. less: by how much each ball has less
+ * contact than it may have. */
 typedef struct sym_order_of_modes {
-    int32_t sets, first[3], given, differing, number;
-    double guess[SYM_MOST_CONTACTS];
+    double first[3][SYM_MOST_CONTACTS]; /* modes */
+    int32_t given, differing;
+    int32_t less[SYM_MOST_CONTACTS];
 } sym_order_of_modes;
 
-static int32_t sym_next_modes(const sym_contact_problem *p, sym_order_of_modes *at) {
-    double mode[SYM_MOST_CONTACTS];
-    int32_t i;
-    while (at->given < 3) {
-        const int32_t number = at->first[at->given++];
-        for (i = 0; i < at->given - 1 && at->first[i] != number; ++i) {}
-        if (i == at->given - 1) return number;
+/* The first of the sets in which the balls from one on differ from the guess, so many of them. Returns 0 where there is none. */
+static int32_t sym_first_differing(const sym_contact_problem *p, sym_order_of_modes *at, int32_t ball, int32_t differing) {
+    int32_t i, can = 0;
+    for (i = ball; i < p->n; ++i) can += sym_most_contact(p, i) > 0;
+    if (differing < 0 || differing > can) return 0;
+    for (i = ball; i < p->n; ++i) {
+        const int32_t most = sym_most_contact(p, i), guess = most - (int32_t)at->first[2][i];
+        can -= most > 0;
+        at->less[i] = 0; /* unless that differs and none may, or all others have to and one more */
+        if (guess != 0 && differing == 0) at->less[i] = guess;
+        if (guess == 0 && differing > can) at->less[i] = 1;
+        differing -= at->less[i] != guess;
     }
-    for (; at->differing <= p->n; ++at->differing, at->number = 0)
-        while (at->number < at->sets) {
-            const int32_t number = at->number++;
-            int32_t differing = 0;
-            if (number == at->first[0] || number == at->first[1] || number == at->first[2]) continue;
-            sym_modes_of_number(p, number, mode);
-            for (i = 0; i < p->n; ++i) differing += mode[i] != at->guess[i];
-            if (differing == at->differing) return number;
-        }
-    return -1;
+    return 1;
+}
+
+/* The set after that of the order, which has as many that differ. Returns 0 where there is none. */
+static int32_t sym_next_differing(const sym_contact_problem *p, sym_order_of_modes *at) {
+    int32_t i, within = 0; /* how many of the balls from i on differ */
+    for (i = p->n - 1; i >= 0; --i) {
+        const int32_t most = sym_most_contact(p, i), guess = most - (int32_t)at->first[2][i];
+        within += at->less[i] != guess;
+        while (++at->less[i] <= most)
+            if (sym_first_differing(p, at, i + 1, within - (at->less[i] != guess))) return 1;
+    }
+    return 0;
+}
+
+/* The next set, in mode. Returns 0 at the end. */
+static int32_t sym_next_modes(const sym_contact_problem *p, sym_order_of_modes *at, double *mode) {
+    const size_t size = (size_t)p->n * sizeof *mode;
+    int32_t i, known = 1, found;
+    while (at->given < 3) {
+        const int32_t k = at->given++;
+        memcpy(mode, at->first[k], size);
+        for (i = 0; i < k && memcmp(mode, at->first[i], size) != 0; ++i) {}
+        if (i == k) return 1;
+    }
+    while (known) {
+        found = at->differing > 0 && sym_next_differing(p, at);
+        while (!found && at->differing < p->n) found = sym_first_differing(p, at, 0, ++at->differing);
+        if (!found) return 0;
+        for (i = 0; i < p->n; ++i) mode[i] = (double)(sym_most_contact(p, i) - at->less[i]);
+        for (i = 0, known = 0; i < 3; ++i) known |= memcmp(mode, at->first[i], size) == 0;
+    }
+    return 1;
 }
 
 /* Forces and modes of balls of which each acts on another, with the size of the whole problem. Where only one motion may agree all
- * sets are tried: of up to SYM_UNIQUE_UP_TO balls whose normal forces are determined. Returns 0 or a status. */
+ * sets are tried: of up to SYM_UNIQUE_UP_TO balls whose normal forces are determined. Of more than SYM_ALL_UP_TO balls as many sets
+ * are tried as cost what all of so many do. Returns 0 or a status. */
 static int32_t sym_solve_coupled(sym_contact_problem *p, int32_t unique) {
     const int32_t n = 3 * p->n;
     double d[2][2 * SYM_MOST_CONTACTS]; /* from which directions are sought: by friction where all stick, and the guess's */
-    int32_t i, number, from, found = 0;
-    sym_order_of_modes order = {1, {0, 0, 0}, 0, 1, 0, {0.0}};
+    double mode[SYM_MOST_CONTACTS] = {0.0};
+    const double more = fmax(1.0, (double)p->n / SYM_ALL_UP_TO), most = SYM_MOST_SETS / (more * more * more);
+    double tried = 0.0;
+    int32_t i, from, found = 0;
+    sym_order_of_modes order = {{{0.0}}, 0, 0, {0}};
     sym_contact_problem first;
-    for (i = 0; i < p->n; ++i) p->mode[i] = sym_most_contact(p, i), order.sets *= sym_most_contact(p, i) + 1;
+    for (i = 0; i < p->n; ++i) p->mode[i] = sym_most_contact(p, i);
+    memcpy(order.first[0], p->mode, sizeof p->mode);
     sym_forces_of_modes(p); /* friction that keeps a ball from sliding shows where it begins to */
     for (i = 0; i < p->n; ++i) {
         const double x = p->f[3 * i], y = p->f[3 * i + 1], drag = hypot(x, y);
         if (!p->slides[i]) p->d[2 * i] = drag > 0.0 ? -x / drag : 1.0, p->d[2 * i + 1] = drag > 0.0 ? -y / drag : 0.0;
     }
     memcpy(d[0], p->d, sizeof d[0]), memcpy(d[1], p->d, sizeof d[1]);
-    if (order.sets > 1) sym_guess_modes(p, order.guess, d[1]);
-    order.first[1] = sym_number_of_modes(p, p->last), order.first[2] = sym_number_of_modes(p, order.guess);
+    sym_guess_modes(p, order.first[2], d[1]);
+    for (i = 0; i < p->n; ++i) order.first[1][i] = fmin(p->last[i], order.first[0][i]);
     unique = unique && p->n <= SYM_UNIQUE_UP_TO && sym_normals_are_determined(p);
-    while ((number = sym_next_modes(p, &order)) >= 0)
+    while (tried++ < most && sym_next_modes(p, &order, mode))
         for (from = 0; from < 2; ++from) {
             int32_t different = 0;
-            sym_modes_of_number(p, number, p->mode);
+            memcpy(p->mode, mode, sizeof mode);
             for (i = 0; i < p->n; ++i) different |= p->mode[i] == SYM_SLIDES && memcmp(d[0] + 2 * i, d[1] + 2 * i, 2 * sizeof **d) != 0;
             if (from > 0 && !different) continue;
             memcpy(p->d, d[from], sizeof d[from]);

@@ -290,7 +290,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
         if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_IDLES, at.apart[i]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
         if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(at.struck[i] ? 0.0 : SYM_GRAZES, at.apart[i]) - at.gap[i];
-        par[of->way[0]] = at.problem.d[2 * i], par[of->way[1]] = at.problem.d[2 * i + 1];
+        for (k = 0; k < 2; ++k) par[of->way[k]] = at.problem.mu[i] > 0.0 ? at.problem.d[2 * i + k] : 0.0; /* (40) */
         par[of->way[2]] = at.problem.slides[i] ? hypot(at.u[3 * i], at.u[3 * i + 1]) : 0.0;
     }
     *sym_load_shared(s) = at.problem.shared, *again = at.returns;

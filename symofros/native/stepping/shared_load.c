@@ -1,6 +1,6 @@
 /* How loads are shared by balls that stick, and systems of any rank (docs/theory/constraints.md, section 15, (48)). */
 
-enum { SYM_MOST_CONTACTS = 8, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS };
+enum { SYM_MOST_CONTACTS = 16, SYM_MOST_FORCES = 3 * SYM_MOST_CONTACTS };
 /* Share of the largest column that is rounding, where what others reach is taken off. */
 #define SYM_LOST_COLUMN 1e-11
 /* Share of the largest pivot down to which a system is solved as it is, with no thought of its rank. */

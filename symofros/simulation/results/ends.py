@@ -96,10 +96,10 @@ ENDS: dict[int, End] = {
     ),
     Status.WRONG_CONTACT: End(
         "input failed",
-        "a contact that can come to rest is penetrated here, is held though its force draws, or is one of nine rigid"
-        " ones",
+        "a contact that can come to rest is penetrated here, is held though its force draws, or is one of"
+        " seventeen rigid ones",
         "a start on the free side of the gap; engaged only where it presses; `rests` above zero where bodies press; at"
-        " most eight rigid contacts at once",
+        " most sixteen rigid contacts at once",
     ),
     Status.NO_CONTACT_FORCE: End(
         "not converged",
