@@ -20,6 +20,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from symofros.base.arguments import check_argument
 from symofros.base.atomic import write_atomically
 from symofros.base.functions import FUNCTIONS
@@ -31,7 +33,7 @@ from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mea
 from symofros.interop.casadi_externals import External, Input, Output, gathered, slopes_of
 from symofros.interop.casadi_sources import Sources
 from symofros.interop.coordinates import Coordinates, Operations
-from symofros.interop.rules import RULES, check_record, framework
+from symofros.interop.rules import RULES, InteropError, check_functions, framework
 from symofros.native import native_text
 from symofros.runtime.build import NO_COMPILER, build_library, find_toolchain
 
@@ -96,7 +98,7 @@ class Dynamics:
         functions: Functions of CasADi, by ours; parameters are their last input.
 
     Raises:
-        InteropError: The model has prescribed motions or forces that depend on time.
+        InteropError: The model has prescribed motions, forces that depend on time or rigid contacts.
         UnknownNameError: There is no such frame.
         CompileError: There is no C compiler, or it refused.
     """
@@ -106,7 +108,7 @@ class Dynamics:
             check_argument("frames", frames, tuple[str, ...])
         self._given = system, tuple(frames), second_order
         known = Compilation(system)
-        check_record(known.record)
+        check_functions(known.record)
         wanted = _differentiable(len(known.record.v_names))
         needed = {name for each in wanted.values() for name in each.functions(second_order)}
         placed = _position("")
@@ -119,7 +121,10 @@ class Dynamics:
             raise CompileError(NO_COMPILER)
         c_name = identifier(system.name)
         self.names = {name: f"{c_name}_{identifier(name.replace(' ', '_'))}" for name in wanted}
-        self._par, self._sizes = known.record.par_default, (len(known.record.q_names), len(known.record.v_names))
+        record = known.record
+        self._par, self._sizes = record.par_default, (len(record.q_names), len(record.v_names))
+        self._entries = {"q": record.q_names, "v": record.v_names, "a": record.v_names}
+        self._entries |= {"u": record.u_names, "par": record.par_names}
         self._coordinates = Coordinates(known.record.segments, _OPERATIONS)
         source = _source(compilation, c_name, {self.names[name]: each for name, each in wanted.items()}, second_order)
         self._build = partial(build_library, header=native_text("model/symofros_model.h"), toolchain=toolchain)
@@ -150,11 +155,11 @@ class Dynamics:
 
     def forward_dynamics(self, q: Any, v: Any, u: Any, par: Any = None) -> Any:
         """Accelerations (nv) of q (nq), v (nv), u (nu), par (npar)."""
-        return self.functions["forward_dynamics"](q, v, u, self._parameters(par))
+        return self._called("forward_dynamics", q=q, v=v, u=u, par=par)
 
     def inverse_dynamics(self, q: Any, v: Any, a: Any, par: Any = None) -> Any:
         """Efforts M a + h - Q(q, v, 0) (nv) of q, v, a (nv) and par (npar)."""
-        return self.functions["inverse_dynamics"](q, v, a, self._parameters(par))
+        return self._called("inverse_dynamics", q=q, v=v, a=a, par=par)
 
     def state_derivative(self, x: Any, u: Any, par: Any = None) -> Any:
         """Rates (N(q) v; v') (nq + nv) of states x = (q; v), of inputs u (nu) and par (npar).
@@ -183,8 +188,7 @@ class Dynamics:
         Raises:
             UnknownNameError: The frame was not asked for.
         """
-        function = self.functions.get(f"frame_position {frame}")
-        if function is None:
+        if f"frame_position {frame}" not in self.functions:
             asked = [name.removeprefix("frame_position ") for name in self.functions if name not in RULES]
             raise UnknownNameError(
                 Problem(
@@ -194,10 +198,22 @@ class Dynamics:
                     did_you_mean(frame, asked),
                 )
             )
-        return function(q, self._parameters(par))
+        return self._called(f"frame_position {frame}", q=q, par=par)
 
-    def _parameters(self, par: Any) -> Any:
-        return casadi.DM(self._par) if par is None else par
+    def _called(self, function: str, *, par: Any, **given: Any) -> Any:
+        """A function of arrays by name.
+
+        Raises:
+            InteropError: One has another number of entries: CasADi would repeat a single one, or take zeros for none.
+        """
+        given["par"] = casadi.DM(self._par) if par is None else par
+        for name, value in given.items():
+            shape, names = np.shape(value) if not hasattr(value, "shape") else value.shape, self._entries[name]
+            if (tuple(shape) or (1,)).count(len(names)) == 0:
+                listed = ", ".join(names[:12]) or "it is empty"
+                found, rule = f"shape {tuple(shape)}", f"an entry for each of {len(names)}: {listed}"
+                raise InteropError(Problem(f"{function}: {name} does not fit", found, rule, "give each its entry"))
+        return self.functions[function](*given.values())
 
 
 def _expression(x: Any) -> Any:

@@ -114,6 +114,25 @@ def check_record(record: ModelRecord) -> None:
         )
 
 
+def check_functions(record: ModelRecord) -> None:
+    """Refuse models whose accelerations are no function of q, v and u, which steps of C make of them nevertheless.
+
+    Raises:
+        InteropError: As of `check_record`; or contacts are rigid.
+    """
+    check_record(record)
+    if record.rigid_contacts:
+        names = ", ".join(contact.name for contact in record.rigid_contacts)
+        raise InteropError(
+            Problem(
+                f"functions of model '{record.name}' are not offered to other frameworks",
+                f"rigid contacts: {names}",
+                "rigid contacts push in runs alone, which choose their modes",
+                "state their stiffness, or step by sf.Steppers, sf.interop.gymnasium",
+            )
+        )
+
+
 def outputs(model: Model, function: str, given: Mapping[str, Any]) -> dict[str, np.ndarray[Any, Any]]:
     """Outputs of a function by name, from arrays (..., size) by name; of derivatives the rows of the speeds."""
     kernel = model.kernel(function)

@@ -7,7 +7,7 @@ from typing import Any
 
 from symofros.errors import Problem
 from symofros.interop.coordinates import Coordinates, Operations
-from symofros.interop.rules import InteropError, check_model
+from symofros.interop.rules import InteropError, check_functions
 from symofros.runtime.model import Model
 
 
@@ -19,11 +19,11 @@ class WrappedDynamics(ABC):
         operations: Operations of the framework that formulas of the manifold take.
 
     Raises:
-        InteropError: The model has prescribed motions or forces that depend on time.
+        InteropError: The model has prescribed motions, forces that depend on time or rigid contacts.
     """
 
     def __init__(self, model: Model, operations: Operations) -> None:
-        check_model(model)
+        check_functions(model.record)
         self.model = model.with_precision("double")
         self.coordinates = Coordinates(model.record.segments, operations)
         self._sizes = {"q": model.nq, "q0": model.nq, "q1": model.nq, "u": model.nu, "par": model.npar}

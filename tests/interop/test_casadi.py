@@ -217,3 +217,19 @@ def test_methods_are_the_functions_by_name(dynamics: Any, model: sf.Model) -> No
             given = state(model, model.nu if name == "forward_dynamics" else model.nv)[:3]
             found = getattr(dynamics, name)(*given, par)
             np.testing.assert_allclose(np.array(found).ravel(), getattr(model, name)(*given, par=par), rtol=1e-12)
+
+
+@pytest.mark.parametrize("given", [(0.1, [0, 0], [0]), ([0, 0], [0, 0], []), ([0, 0, 0], [0, 0], 0), ([0], [0, 0], 0)])
+def test_arrays_that_casadi_would_fill_up_are_refused(dynamics: Any, given: Any) -> None:
+    """A single entry is repeated, an empty array is zeros to it."""
+    with pytest.raises(sf.SymofrosError, match="does not fit"):
+        dynamics.forward_dynamics(*given)
+
+
+def test_states_of_forces_have_their_entries() -> None:
+    """An accelerated mass: 2000 N came of a speed that CasADi repeated for the bristle."""
+    bristle = sf.LuGre(1.0, stiffness=1e4, damping=10.0)
+    cart = sf.RigidBody("cart", sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=[bristle]), sf.Inertia(1.0))
+    dynamics = sf.interop.casadi.Dynamics(sf.System("sliding", [cart]), second_order=False)
+    with pytest.raises(sf.SymofrosError, match="q does not fit(.|\n)*bristle"):
+        dynamics.forward_dynamics([0.0], [0.2], [])

@@ -46,6 +46,16 @@ def test_prescribed_motions_are_refused() -> None:
         rules.check_model(sf.compile(system))
 
 
+def test_functions_of_rigid_contacts_are_refused() -> None:
+    """They have no contact forces: a ball falls through its floor."""
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0))
+    floor = sf.Contact("floor", ("ball", None), ("world", None), radius=0.1, restitution=0.5)
+    record = sf.compile(sf.System("bouncing", [ball], connections=[floor])).record
+    rules.check_record(record)
+    with pytest.raises(sf.SymofrosError, match="rigid contacts: floor"):
+        rules.check_functions(record)
+
+
 @pytest.mark.parametrize("function", rules.RULES)
 def test_suggested_second_derivatives_exist_for_the_same_function(function: str) -> None:
     """The methods and functions that the remedy names are the model's."""
