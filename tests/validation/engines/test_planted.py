@@ -129,6 +129,8 @@ FAULTS = [
     ),
     ("mujoco", "balls below floors and above one", "floor_forces", "wrench[0]", "wrench[1]"),
     ("mujoco", "balls below floors and above one", "limiting_forces", "q, v, tau", "q, 2 * v, tau"),
+    ("mujoco", "rotations", "solution:band and dense rows", "L, 3, 2, 1, 0.0", "L, 3, 2, 1, 0.125"),
+    ("mujoco", "rotations", "solution_in_a_box", "A, -tau", "A, tau"),
     ("mujoco", "hinges beyond limits", "limited_inverse", "value = d.qfrc_inverse", "value = d.qfrc_inverse + d.qacc"),
     ("mujoco", "sensors on hinges", "magnetic_fields", "[0.25, -0.5, 1.0]", "[0.25, 1.0, -0.5]"),
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import lines, poses
+from ..truth import lines, poses, solutions
 from .function import Function, functions_of
 
 
@@ -129,4 +129,16 @@ def _inertias() -> dict[str, Function]:
     return functions_of(rows, "turns")
 
 
-POSES = _placements() | _parameters() | _lines() | _inertias()
+def _solutions() -> dict[str, Function]:
+    """Of A = B B^T + 1, B of the rows v, a, v2, and tau."""
+    rows = {
+        "solution": ("x of A x = tau (3)", solutions.unbounded),
+        "solution_in_a_box": (
+            f"the same where x^T A x / 2 - tau^T x is least, |x| <= {solutions.BOX} (3)",
+            solutions.bounded,
+        ),
+    }
+    return functions_of(rows, "turns")
+
+
+POSES = _placements() | _parameters() | _lines() | _inertias() | _solutions()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ...interface import Slot
 from ...truth.poses import BACK, SEQUENCES
+from ...truth.solutions import BOX
 from ..turns import solids
 from ..writing.source import HALF_TURNS, Source, Way
 
@@ -96,9 +97,33 @@ _WAYS = {
         "    column[:] = np.roll(x, 3)\nvalue = value.T",
     ),
 }
+# Its iterations end by thresholds that know nothing of the problem's size, which goes down to 2^-27.
+_STOPPED = 1e-4
 # mju_mat2Rot stops where a step would turn by less than 1e-9.
 _STOPS = {"rotation_matrix:mju_mat2Rot": 2e-9}
 WAYS = {name: Way(native, code, _STOPS.get(name, 0.0)) for name, (native, code) in _WAYS.items()} | solids.MUJOCO
+
+_A = "B = np.array([v, a, v2])\nA, value = B @ B.T + np.eye(3), np.zeros(3)\n"
+_BAND = (
+    f"{_A}L = np.zeros({{size}})\nmj.mju_dense2Band(L, A, 3, {{shape}})\n"
+    "mj.mju_cholFactorBand(L, 3, {shape}, 0.0, 0.0)\nmj.mju_cholSolveBand(value, L, tau, 3, {shape})"
+)
+_BOX = (
+    f"{_A}side, R, index = np.full(3, {{side}}), np.zeros((3, 10)), np.zeros(3, np.int32)\n"
+    "mj.mju_boxQP(value, R, index, A, -tau, -side, side)"
+)
+WAYS |= {
+    "solution": Way("mju_cholFactor, mju_cholSolve", f"{_A}mj.mju_cholFactor(A, 0.0)\nmj.mju_cholSolve(value, A, tau)"),
+    "solution:mju_cholUpdate": Way(
+        "mju_cholUpdate",
+        f"{_A}L = np.eye(3)\nfor column in B.T: mj.mju_cholUpdate(L, column.copy(), 1)\n"
+        "mj.mju_cholSolve(value, L, tau)",
+    ),
+    "solution:band": Way("mju_dense2Band, mju_cholFactorBand", _BAND.format(size=9, shape="3, 0")),
+    "solution:band and dense rows": Way("mju_dense2Band, mju_cholFactorBand", _BAND.format(size=7, shape="2, 1")),
+    "solution:mju_boxQP": Way("mju_boxQP", _BOX.format(side=64.0), _STOPPED),
+    "solution_in_a_box": Way("mju_boxQP", _BOX.format(side=BOX), _STOPPED),
+}
 
 
 def write() -> Source:
