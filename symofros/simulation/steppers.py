@@ -34,8 +34,8 @@ from symofros.simulation.stepped import (
     owner_of,
     refusal,
 )
-from symofros.simulation.stepper import checked_inputs, fixed_inputs, read_only, settings_by_hand
-from symofros.simulation.stepping.batch_by_hand import BatchState, HandBatch
+from symofros.simulation.stepper import Stepper, checked_inputs, fixed_inputs, read_only, settings_by_hand
+from symofros.simulation.stepping.batch_by_hand import BatchState, Followed, HandBatch, Held
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.status import Status
 
@@ -129,6 +129,9 @@ class Steppers(SteppedModel):
         self.t, self.q, self.v, self.z, self._status = (
             read_only(array) for array in (results.t_last, q, v, model.states_of(results.v_last), results.status)
         )
+        self._kept = np.linspace(0, n - 1, min(n, _KEPT)).astype(int)
+        self._followed: dict[int, Followed] = {}
+        self._held: Held | None = None
         self.reset()
 
     @checked
@@ -175,6 +178,11 @@ class Steppers(SteppedModel):
             self._par[chosen] = values
         time = np.full(len(chosen), self._settings.t0 if t is None else float(t))
         self._hand.reset(chosen, time, first, speeds, values)
+        self._held = None if len(chosen) == self.n else self._held
+        for i in np.intersect1d(self._kept, chosen).tolist():
+            par = self._begun_with[i] if self.par.ndim > 1 else self._begun_with
+            state = self.q[i].copy(), self.v[i].copy(), self.z[i].copy()
+            self._followed[i] = Followed(float(self.t[i]), *state, par.copy(), self._held)
 
     @checked
     def step(self, u: ArrayLike | None = None, steps: int = 1) -> npt.NDArray[np.bool_]:
@@ -202,6 +210,11 @@ class Steppers(SteppedModel):
         try:
             if self.model.nc and hand.begins.any():
                 self._check_starts(values)
+            before = self._held
+            rows = None if values is None else values[self._kept]
+            self._held = Held(before, rows, steps, 1 if before is None else before.total + 1)
+            if self._held.total > _MOST_CALLS:
+                self._followed, self._held = {}, None
             hand.step(values, steps)
             if hand.single.actions is not None:
                 self._par[...] = hand.present_parameters()
@@ -246,7 +259,11 @@ class Steppers(SteppedModel):
 
     @checked
     def outcome(self, i: int) -> Outcome:
-        """Why motion i ended, or what is worth knowing of its present state; its steps are not examined."""
+        """Why motion i ended, or what is worth knowing of it.
+
+        Of a few motions, the first and the last among them, inputs are kept: each is made once more by a `Stepper`,
+        which examines it, at each call. The outcome of another one says what was found of these.
+        """
         if not 0 <= i < self.n:
             raise refusal(
                 "outcome: no such motion", str(i), f"0 <= i < {self.n}", "steppers.running tells which can go on"
@@ -267,8 +284,33 @@ class Steppers(SteppedModel):
         met, ended = self._hand.met.get(i, ()), ends.outcome(i)
         if met and results.status[i] < 0:
             ended = failure_of(self._hand.single, met[-1]) or ended
-        note = "the steps of motions that are stepped together are not examined: an sf.Stepper says more of one"
-        return replace(ended, notes=(*ended.notes, note))
+        examined = self._examined(i)
+        return replace(ended, notes=(*ended.notes, self._unseen_note()) if examined is None else examined)
+
+    def _examined(self, i: int) -> tuple[str, ...] | None:
+        """Notes of a Stepper that makes motion i once more; None where its inputs are not kept, or it has no steps."""
+        one, held = self._followed.get(i), self._held
+        if one is None or held is one.before or self._status[i] == Status.PROJECTION_FAILED:
+            return None
+        given = {name: value for name, value in self._given.items() if name != "threads"}
+        stepper = Stepper(self.model, par=one.par, **given)
+        stepper.reset(one.q, one.v, one.t, z=one.z if self.model.nz else None)
+        links, row = list[Held](), int(np.searchsorted(self._kept, i))
+        while held is not None and held is not one.before:
+            links.append(held)
+            held = held.before
+        for link in reversed(links):
+            if not stepper.step(None if link.u is None else link.u[row], link.steps):
+                break
+        return stepper.outcome.notes
+
+    def _unseen_note(self) -> str:
+        """What is known of the steps of a motion whose inputs are not kept."""
+        found = {i: notes for i in self._followed if (notes := self._examined(i)) is not None}
+        says = [f"{note} (motion {i})" for i, notes in found.items() for note in notes]
+        others = ", ".join(map(str, found))
+        known = f"; of motions {others}, which are, {' and '.join(says) or 'none bears a note'}" if found else ""
+        return f"the steps of motions that are stepped together are not examined{known}: an sf.Stepper says more of one"
 
     @checked
     def events(self, i: int) -> tuple[Found, ...]:
@@ -277,7 +319,9 @@ class Steppers(SteppedModel):
 
     def save(self) -> BatchState:
         """The present states, with all that later steps depend on."""
-        return self._hand.save(self._kind, self._par, self._begun_with)
+        return replace(
+            self._hand.save(self._kind, self._par, self._begun_with), followed=dict(self._followed), held=self._held
+        )
 
     def copy(self) -> Steppers:
         """Others in the same states, which share nothing that steps change."""
@@ -301,6 +345,7 @@ class Steppers(SteppedModel):
         check_owner(state, BatchState, self._kind, refused)
         self._hand.restore(state, None if np.array_equal(state.par, self._par) else state.par)
         self._par[...], self._begun_with[...] = state.par, state.given
+        self._followed, self._held = dict(state.followed), state.held
 
     def _rows(self, name: str, values: ArrayLike, size: int) -> Array:
         array = real_array(self.model.by_name(name, values))
@@ -329,5 +374,7 @@ class Steppers(SteppedModel):
 
 # How a mask is made.
 _MASK = "leave it out for all; np.isin(np.arange(n), numbers) is a mask of numbers"
+# Motions of which the inputs are kept, at most; of so many calls, after which they are forgotten until the next reset.
+_KEPT, _MOST_CALLS = 4, 1 << 16
 # More than any memory holds.
 _MOST = 1 << 31

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from tests.models import compiled
+from tests.simulation.oscillator import oscillator_system
 from tests.simulation.test_stepper import DT, start
 
 N = 70  # More than the slots of one group.
@@ -143,7 +144,7 @@ def test_a_finished_member_stays_until_it_is_reset() -> None:
     u[[2, 66]] = 1e120
     on = steppers.step(u, 3)
     assert np.flatnonzero(~on).tolist() == [2, 66] and steppers.outcome(2).kind == "diverged"
-    assert any("not examined" in note for note in steppers.outcome(0).notes) and steppers.outcome(0).ok
+    assert not steppers.outcome(0).notes and steppers.outcome(0).ok
     np.testing.assert_array_equal(steppers.q[2], q[2])
     before = steppers.q[3].copy()
     assert not steppers.step(0.0 * u)[2] and not np.array_equal(steppers.q[3], before)
@@ -211,3 +212,38 @@ def test_wrong_inputs_of_steppers_are_refused_without_a_step() -> None:
     with pytest.raises(sf.SymofrosError, match="one set for all"):
         steppers.reset(par=steppers.par)
     assert not steppers.t.any()
+
+
+def test_outcomes_tell_what_the_motions_with_kept_inputs_bear() -> None:
+    """Of seven a Stepper makes four once more, through saves, copies and changes of inputs; the others tell of them."""
+    model = sf.compile(oscillator_system(k=1e7))
+    steppers = sf.Steppers(model, 7, dt=1e-3, method="rk4")
+    steppers.reset([0.0], [1.0])
+    assert "not examined:" in steppers.outcome(0).notes[0]
+    steppers.step(np.zeros((7, model.nu)), 10)
+    steppers.step(None, 10)
+    kept = steppers.save()
+    one = sf.Stepper(model, dt=1e-3, method="rk4")
+    one.reset([0.0], [1.0])
+    one.step(np.zeros(model.nu), 20)
+    wanted = one.outcome.notes
+    assert any("past the limit of stability" in note for note in wanted)
+    assert all(steppers.outcome(i).notes == wanted for i in (0, 2, 4, 6))
+    (said,) = (note for note in steppers.outcome(1).notes if "not examined" in note)
+    assert "of motions 0, 2, 4, 6, which are" in said and "past the limit" in said
+    steppers.step(None, 5)
+    steppers.restore(kept)
+    assert steppers.outcome(6).notes == steppers.copy().outcome(6).notes == wanted
+
+
+def test_inputs_that_are_kept_are_forgotten_after_many_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until the next reset, which may be of that motion alone."""
+    monkeypatch.setattr("symofros.simulation.steppers._MOST_CALLS", 3)
+    steppers = sf.Steppers(sf.compile(oscillator_system()), 2, dt=1e-3, method="rk4")
+    said = []
+    for calls in range(5):
+        if calls == 4:
+            steppers.reset(which=np.array([False, True]))
+        steppers.step()
+        said.append([any("not examined" in note for note in steppers.outcome(i).notes) for i in range(2)])
+    assert said == [[False, False]] * 3 + [[True, True], [True, False]]

@@ -257,7 +257,7 @@ NOTES: Mapping[str, NoteKind] = {
     ),
     "steps together": NoteKind(
         "the steps of motions that are stepped together are not examined",
-        "an outcome of sf.Steppers is asked for",
+        "an outcome of sf.Steppers is asked for, of a motion whose inputs are not kept; it says what others bear",
         "an sf.Stepper with the same inputs",
     ),
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,33 @@ from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
 
+class Held(NamedTuple):
+    """Inputs of the motions that are followed, by the calls that made steps: a chain that later ones never alter.
+
+    Attributes:
+        before: Earlier ones.
+        u: Those that are given by hand (m, number of `inputs`); None: those held before.
+        steps: Number of steps that they were held for.
+        total: Number of all, the earlier ones included.
+    """
+
+    before: Held | None
+    u: Array | None
+    steps: int
+    total: int
+
+
+class Followed(NamedTuple):
+    """Where a motion begins that can be made once more: t, q, v, z, run-time parameters, and inputs held before."""
+
+    t: float
+    q: Array
+    v: Array
+    z: Array
+    par: Array
+    before: Held | None
+
+
 @dataclass(frozen=True)
 class BatchState:
     """All that the following steps of many motions depend on.
@@ -35,6 +62,8 @@ class BatchState:
         groups: What C keeps of each group of slots: numbers of it and of its runs, and its memory.
         given: Parameters that motions begin with, as par.
         met: Events that each motion has met.
+        followed: Motions that can be made once more, by number.
+        held: Their inputs.
     """
 
     owner: object
@@ -43,6 +72,8 @@ class BatchState:
     groups: tuple[tuple[npt.NDArray[Any], ...], ...] = field(repr=False)
     given: Array = field(repr=False)
     met: Mapping[int, tuple[Met, ...]] = field(repr=False)
+    followed: Mapping[int, Followed] = field(repr=False, default_factory=dict)
+    held: Held | None = field(repr=False, default=None)
 
     @property
     def t(self) -> Array:
