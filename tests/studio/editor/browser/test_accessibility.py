@@ -123,6 +123,17 @@ def test_small_windows_cut_nothing_off(
     look()
 
 
+def test_what_a_job_does_fits_a_phone(arm: Server, page: Page) -> None:
+    page.set_viewport_size({"width": 375, "height": 667})
+    page.route("**/api/jobs/*", lambda route: None)  # Its end is not answered.
+    steps.run(page, "Compile")
+    expect(page.get_by_role("contentinfo").get_by_role("button", name="Cancel")).to_be_visible()
+    for part in page.get_by_role("contentinfo").locator(":scope > *, :scope button").all():
+        assert (box := part.bounding_box()) is None or box["x"] + box["width"] <= 375
+    assert page.evaluate("document.documentElement.scrollWidth") <= 375
+    page.unroute_all(behavior="ignoreErrors")
+
+
 def test_a_window_holds_the_focus_and_gives_it_back(arm: Server, page: Page) -> None:
     steps.open_window(page, "bodies/upper")
     for _ in range(40):

@@ -24,7 +24,7 @@ export function Status() {
             value={running.progress.total > 0 ? running.progress.done : undefined}
             aria-label={`${running.kind}: progress`}
           />
-          {running.progress.text || running.kind}
+          <span className="doing">{running.progress.text || running.kind}</span>
           <button type="button" className="small" onClick={() => void cancel(running.kind)}>
             Cancel
           </button>
