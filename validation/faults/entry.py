@@ -42,7 +42,7 @@ PACKAGES = {
     "mujoco-warp": {"mujoco", "mujoco_warp"},
     "newton": {"newton", "pxr", "warp"},
     "pin": {"pinocchio"},
-    "pybullet": {"pybullet"},
+    "pybullet": {"pybullet", "pybullet_utils"},
     "roboticstoolbox-python": {"roboticstoolbox", "spatialmath"},
     "spatialmath-python": {"spatialmath"},
     "sympy": {"sympy"},
