@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -118,3 +120,9 @@ def test_basilisk_turns_right_by_every_set_of_parameters() -> None:
     found = list(cells(OWN["basilisk"], single.trees()["rotations"], tuple(OWN["basilisk"].functions)))
     assert {cell.verdict for cell in found} == {"right"}
     assert len(found) == len(OWN["basilisk"].functions)
+
+
+def test_plugins_load_in_an_environment_of_an_engine_and_numpy() -> None:
+    absent = "mpmath", "pydantic", "ruamel", "scipy", "sympy"
+    load = f"import sys; sys.modules.update(dict.fromkeys({absent})); import validation.engines.plugins"
+    subprocess.run([sys.executable, "-c", load], check=True, timeout=120)
