@@ -245,21 +245,35 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     return sym_solve_returning(r, at, par);
 }
 
-/* Whether an open ball stays on its surface without a force: neither its speed nor its acceleration takes it away or presses it. */
-static int32_t sym_is_idle(const sym_contact_problem *p, int32_t ball) {
+/* The largest multiplier of constraints that are no contacts. */
+static double sym_load_of_others(const sym_system *s) {
+    double load = 0.0;
+    int32_t i, j, k, is_contact;
+    for (i = 0; i < s->nc; ++i) {
+        for (j = 0, is_contact = 0; j < s->n_contacts; ++j)
+            for (k = 0; k < 3; ++k) is_contact |= s->contacts[j].row[k] == i;
+        if (!is_contact) load = fmax(load, fabs(s->lam[i]));
+    }
+    return load;
+}
+
+/* Whether an open ball stays on its surface without a force, (46b): neither its speed nor its acceleration takes it away or presses
+ * it, or other constraints, by forces of up to `load`, hold it. */
+static int32_t sym_is_idle(const sym_contact_problem *p, int32_t ball, double load) {
     const int32_t n = 3 * p->n, row = 3 * ball + 2;
     double c = p->b[row], size = fmax(fabs(c), p->size);
     int32_t j;
     if (p->mode[ball] != SYM_OPEN || p->parts[ball]) return 0;
     for (j = 0; j < n; ++j) c += p->W[n * row + j] * p->f[j], size += fabs(p->W[n * row + j] * p->f[j]);
-    return fabs(c) <= fmax(SYM_HELD_POINTS, SYM_FORCE_ROUNDING * size);
+    if (load > 0.0 && fmax(fabs(c), load * fabs(p->W[n * row + row])) <= SYM_HELD_POINTS) return 1;
+    return fabs(c) <= SYM_FORCE_ROUNDING * size;
 }
 
 /* Impacts and modes of rigid contacts at the present state, as of sym_settle_contacts. *again: whether speeds of balls have been
  * taken, after which slips are others. */
 static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, int32_t *again) {
     sym_system *s = r->system;
-    double *par = r->actions->modes, gap;
+    double *par = r->actions->modes, gap, load;
     sym_touching at;
     int32_t i, k, status;
     *again = 0;
@@ -280,6 +294,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
         sym_prepare_call(&s->forward_dynamics, r->par), sym_prepare_call(&s->contact_state, r->par);
         return status;
     }
+    load = sym_load_of_others(s);
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
         const double *W = at.problem.W + 9 * i * at.problem.n + 3 * i;
@@ -287,7 +302,7 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
         acted_at[0] = fmax(acted_at[0], r->t), acted_at[1] = fmax(acted_at[1], r->t);
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
-        if (sym_is_idle(&at.problem, i)) at.apart[i] = fmax(SYM_IDLES, at.apart[i]);
+        if (sym_is_idle(&at.problem, i, load)) at.apart[i] = fmax(SYM_IDLES, at.apart[i]);
         par[of->mode] = at.problem.mode[i], par[of->apart] = at.apart[i];
         if (at.u[3 * i + 2] * at.u[3 * i + 2] < -SYM_STEEP * at.gap[i]) par[of->apart] = fmax(at.struck[i] ? 0.0 : SYM_GRAZES, at.apart[i]) - at.gap[i];
         for (k = 0; k < 2; ++k) par[of->way[k]] = at.problem.mu[i] > 0.0 ? at.problem.d[2 * i + k] : 0.0; /* (40) */
