@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -90,7 +90,7 @@ class Masses:
         if mass is not None and moments is not None and (_stated(body["centerOfMass"]) or not shapes):
             center = self._center(body) if _stated(body["centerOfMass"]) else np.zeros(3)
             return _inertia(mass * self.units.kilograms, center, axes @ moments @ axes.T)
-        parts = [(shape, extent) for shape in shapes if (extent := self._extent(body["path"], shape)) is not None]
+        parts = [part for shape in shapes if (part := self._part(body, shape)) is not None]
         if len(parts) < len(shapes) or not parts:
             if mass is None and not shapes:
                 self.remarks.add("bodies without mass and without collision shapes are massless", "body", name)
@@ -109,13 +109,34 @@ class Masses:
         self.remarks.add(
             "masses, centres or moments of inertia taken from collision shapes, as UsdPhysics has it", "body", name
         )
-        whole = _together([extent.times(self._density(body, shape, extent)) for shape, extent in parts])
+        whole = _together(parts)
         if mass is not None:
             whole = whole.times(mass * self.units.kilograms / whole.size)
         center = self._center(body) if _stated(body["centerOfMass"]) else whole.center
         if moments is not None:
             return _inertia(whole.size, center, axes @ moments @ axes.T)
         return _inertia(whole.size, center, np.trace(whole.E) * np.eye(3) - whole.E)
+
+    def _part(self, body: Mapping[str, Any], shape: Mapping[str, Any]) -> Extent | None:
+        """Integrals over a shape's mass, in the body's frame; None where they are not known."""
+        mass, (moments, axes) = _positive(shape["mass"]), self._moments(shape)
+        has_center = _stated(shape["centerOfMass"])
+        volume = self._extent(body["path"], shape)
+        if volume is not None:
+            extent = volume.times(self._density(body, shape, volume))
+        elif mass is not None and moments is not None and has_center:
+            extent = Extent(mass * self.units.kilograms, np.zeros(3), np.zeros((3, 3)))
+        else:
+            return None
+        pose, placed = self.placements[body["path"]].pose, self.placements[shape["path"]]
+        if has_center:
+            center = pose.R.T @ (placed.point(np.array(shape["centerOfMass"], dtype=float)) - pose.p)
+            extent = replace(extent, center=center)
+        if moments is not None:
+            R = pose.R.T @ placed.pose.R @ axes
+            turned = R @ moments @ R.T
+            extent = replace(extent, E=0.5 * np.trace(turned) * np.eye(3) - turned)
+        return extent
 
     def _center(self, body: Mapping[str, Any]) -> Array:
         """Centre of mass, which scales with the body."""

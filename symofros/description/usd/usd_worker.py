@@ -239,13 +239,12 @@ def _body(prim: Any) -> dict[str, Any]:
         "kinematic": authored(prim, "physics:kinematicEnabled"),
         "moving": [authored(prim, f"physics:{name}") for name in ("velocity", "angularVelocity")],
         "schemas": _schemas(prim),
-        "inertia": authored(prim, "newton:inertia"),
         **_mass(prim),
     }
 
 
 def _mass(prim: Any) -> dict[str, Any]:
-    return {name: authored(prim, f"physics:{name}") for name in _MASS}
+    return {"inertia": authored(prim, "newton:inertia"), **{name: authored(prim, f"physics:{name}") for name in _MASS}}
 
 
 def _scene(prim: Any) -> dict[str, Any]:
@@ -309,7 +308,7 @@ def _shape(prim: Any, kind: str, body: str) -> dict[str, Any]:
         "seen": str(UsdGeom.Imageable(prim).ComputePurpose()) in ("default", "render"),
         "color": number(colors[0]) if colors else None,
         "material density": density,
-        **{name: value for name, value in _mass(prim).items() if name in ("mass", "density")},
+        **_mass(prim),
     }
 
 

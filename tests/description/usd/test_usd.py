@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from symofros.base.arrays import Array
 from symofros.description.usd import stage as usd_stage
 from symofros.description.usd.masses import _unit_shape
 from symofros.description.usd.reader import names_of
@@ -178,6 +179,48 @@ def test_mass_takes_precedence_over_density_of_shape_and_body(load: Load) -> Non
         made.inertia.mass for made in load(stage(*bodies)).bodies if isinstance(made, sf.RigidBody) and made.inertia
     ]
     assert masses == [mass for mass, *_ in stated]
+
+
+def test_mass_properties_of_shapes_are_those_that_usd_computes(load: Load, tmp_path: Path) -> None:
+    """Mass, centre and moments that a shape states of itself, beside one that states none; a mesh states all it has."""
+    own = ("float physics:mass = 3", "point3f physics:centerOfMass = (0.1, 0.2, -0.3)")
+    own += ("float3 physics:diagonalInertia = (0.3, 0.4, 0.5)", "quatf physics:principalAxes = (0.8, 0.6, 0, 0)")
+    turned = ("double3 xformOp:translate = (1, 2, 3)", "quatf xformOp:orient = (0.6, 0, 0.8, 0)")
+    turned += ('uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]',)
+    schemas = ("PhysicsCollisionAPI", "PhysicsMassAPI")
+    for kind in ("Cube", "Mesh"):
+        first = prim(kind, "first", *own, *turned, schemas=schemas)
+        text = stage(body("b", first, shape("Cube", "second", size=0.5)))
+        (made,) = load(text).bodies
+        assert isinstance(made, sf.RigidBody) and made.inertia is not None
+        mass, moments, center, axes = _computed(text, tmp_path)
+        assert made.inertia.mass == pytest.approx(mass, rel=1e-6)
+        assert made.inertia.center_of_mass == pytest.approx(center, rel=1e-6)
+        xx, yy, zz, xy, xz, yz = made.inertia.moments
+        stated = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+        np.testing.assert_allclose(stated, axes @ np.diag(moments) @ axes.T, rtol=1e-5)
+
+
+def _computed(text: str, folder: Path) -> tuple[float, Array, Array, Array]:
+    """Mass, principal moments, centre and axes of body b by OpenUSD itself, in single precision."""
+    from pxr import Gf, Usd, UsdGeom, UsdPhysics
+
+    (folder / "computed.usda").write_text(text)
+    opened = Usd.Stage.Open(str(folder / "computed.usda"))
+    robot, places = opened.GetPrimAtPath("/robot/b"), UsdGeom.XformCache()
+
+    def of_shape(shape: Any) -> Any:
+        """Of a cube of unit density: the first one states its own mass properties."""
+        size, known = (0.5 if shape.GetName() == "second" else 1.0), UsdPhysics.RigidBodyAPI.MassInformation()
+        moment = size**5 / 6.0
+        place = places.ComputeRelativeTransform(shape, robot)[0]
+        known.volume, known.inertia = size**3, Gf.Matrix3f(moment, 0, 0, 0, moment, 0, 0, 0, moment)
+        known.centerOfMass, known.localPos = Gf.Vec3f(0.0), Gf.Vec3f(place.ExtractTranslation())
+        known.localRot = Gf.Quatf(place.ExtractRotationQuat())
+        return known
+
+    mass, moments, center, turn = UsdPhysics.RigidBodyAPI(robot).ComputeMassProperties(of_shape)
+    return mass, np.array(moments), np.array(center), np.array(Gf.Matrix3d(Gf.Quatd(turn))).T
 
 
 @pytest.mark.parametrize("axis", "XYZ")

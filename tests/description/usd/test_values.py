@@ -58,9 +58,9 @@ def test_gravity_is_that_of_the_scene_in_units_of_the_stage_or_the_earths(
 def test_a_body_without_inertia_is_massless_only_without_mass_and_shapes(mass: float | None, shaped: bool) -> None:
     """A shape of an unknown kind tells nothing, but that there is matter: what is not known is a problem."""
     remarks, problems = Remarks(), list[Problem]()
-    own = {"path": "/b", "mass": mass, "density": None}
-    own |= dict.fromkeys(("centerOfMass", "diagonalInertia", "principalAxes", "inertia"))
-    shapes = [{"path": "/b/s", "kind": "Mesh", "sizes": {}, "density": None}] if shaped else []
+    unstated = dict.fromkeys(("mass", "density", "centerOfMass", "diagonalInertia", "principalAxes", "inertia"))
+    own = {"path": "/b", **unstated, "mass": mass}
+    shapes = [{"path": "/b/s", "kind": "Mesh", "sizes": {}, **unstated}] if shaped else []
     made = Masses(Units(1.0, 1.0), {}, remarks, problems).of(own, "b", shapes, "")
     assert made is None and len(problems) == int(shaped or mass is not None)
 

@@ -61,9 +61,10 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
 
 @pytest.mark.parametrize(("method", "span"), [("rk4", 1e-3), ("rk4", 0.05), ("dopri5", 0.05)])
 def test_a_contact_rests_and_opens_in_packages(tmp_path: Path, method: str, span: float) -> None:
-    """At the instants of the run, the last strike among them, where both thresholds are 1e-6 s."""
+    """At the instants of the run, the last strike among them, where both thresholds, (32c), are alike: strikes accumulate at 0.2 s."""
     stated = CASES["rest"]
-    options: dict[str, Any] = {"events": stated.events, "dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
+    dt = 2e-4 if method == "dopri5" else 1e-3
+    options: dict[str, Any] = {"events": stated.events, "dt": dt, "method": method, "rtol": 1e-10, "atol": 1e-12}
     sf.export(stated.system, "c", tmp_path / "c", name="plan", start=stated.start, **options)
     (tmp_path / "c" / "main.c").write_text(MAIN)
     program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))

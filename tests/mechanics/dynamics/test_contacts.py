@@ -250,7 +250,7 @@ def test_a_cantilever_rests_with_its_tip_on_a_floor() -> None:
         ({"surface_radius": 1.0}, "a plane has no measures"),
         ({"inside": True}, "inside a plane"),
         ({"surface": "sphere", "surface_radius": 0.1, "inside": True, "radius": 0.1}, "room around the ball"),
-        ({"second": ("one", "skew")}, "on one body"),
+        ({"second": ("one", "skew")}, "on body 'one'"),
         ({"second": ("three", None)}, "no body 'three'"),
     ],
 )
