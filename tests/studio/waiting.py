@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:  # Others' tests wait as well, where there is no browser to be had.
     from playwright.sync_api import FloatRect, Locator, Page
 
-PATIENCE = 60.0  # Software rendering on a busy machine [s].
+PATIENCE = 120.0  # Software rendering on a busy machine [s].
 _PAUSE_MS, _REST_MS = 100, 250
 
 

@@ -16,7 +16,7 @@ from tests.studio.waiting import PATIENCE, until
 MODELS = Path(__file__).parents[4] / "reference_models"
 PENDULUM = MODELS / "rigid" / "double_pendulum.yaml"
 ROBOT = MODELS / "flexible" / "planar_robot.yaml"
-JOB = 60_000  # A job may take on a busy machine [ms].
+JOB = 120_000  # A job may take on a busy machine [ms].
 
 
 def block(page: Page, node: str) -> Locator:
