@@ -109,7 +109,7 @@ def test_modes_of_mechanisms_are_chosen_each_by_its_own_rule(order: tuple[str, .
         alone, here = simulated(cases[name], **FINE), run.events[name]
         # Of feet that stick at one instant rounding says which of them an event names.
         instants, wanted = (sorted({round(one.t, 7) for one in met}) for met in (here, alone.events))
-        # Turns in the last microseconds of a slip's spiral, (46a), are as uncertain as what is left of it: 9e-7 s measured.
+        # Turns in the last microseconds of a slip's spiral, (46a), are as uncertain as what is left of it: 9e-7 s.
         np.testing.assert_allclose(instants, wanted, atol=2e-6 if name == "shell" else 2e-7)
         last = int(np.flatnonzero(np.isclose(run.t, alone.t[-1]))[-1])
         np.testing.assert_allclose(run[f"{name}.q"][last], alone.q[-1], atol=1e-7)
