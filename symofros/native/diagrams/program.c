@@ -48,7 +48,7 @@ static void sym_program_allocate_part(sym_program_instance *instance, sym_arena 
     part->system.u_constant = instance->diagram.u;
     part->system.n_signals = p->n_signals, part->system.signals = p->signals;
     part->run.project = part->project, part->run.h = plant->h, part->run.acts = 0;
-    part->actions.at_once = SYM_AT_ONCE * plant->h;
+    part->actions.at_once = part->run.adaptive ? 0.0 : SYM_AT_ONCE * plant->h;
 }
 
 /* Lay out every array and struct. */

@@ -403,7 +403,7 @@ static void fmu_parts(const fmu *f, fmu_part *parts) {
     parts[1].at = instance->v, parts[1].size = (size_t)m->nv;
     parts[2].at = instance->u, parts[2].size = (size_t)m->nu;
     parts[3].at = instance->par, parts[3].size = (size_t)m->npar;
-    parts[4].at = instance->run.acted_at, parts[4].size = (size_t)fmu_acting(f);
+    parts[4].at = instance->run.acted_at, parts[4].size = (size_t)fmu_acting(f) + (instance->run.actions != NULL);
     parts[5].at = instance->system.contact_memory, parts[5].size = sym_instance_contact_size(instance);
 }
 

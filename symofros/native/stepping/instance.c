@@ -319,7 +319,7 @@ SYM_EXPORT int32_t sym_instance_advance(sym_instance *instance, double t_end, do
     if (sym_instance_normalize(instance) != 0) return SYM_NO_ROTATION;
     sym_run_end_step(&instance->run);
     instance->run.n_event_records = 0;
-    instance->actions.at_once = SYM_AT_ONCE * (h > 0.0 ? h : instance->plant->h);
+    instance->actions.at_once = instance->run.adaptive ? 0.0 : SYM_AT_ONCE * (h > 0.0 ? h : instance->plant->h);
     instance->system.longest_step = instance->run.adaptive ? 0.0 : h > 0.0 ? h : instance->plant->h;
     sym_instance_look(instance, sym_instance_span(instance, instance->t, t_end));
     while (status == SYM_FINISHED && instance->t < t_end) {

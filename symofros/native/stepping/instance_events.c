@@ -57,7 +57,7 @@ static int32_t sym_instance_allocate_actions(sym_instance *instance, sym_arena *
         found &= sym_bind_function(arena, call, pose, instance->pre, instance->work, &point);
         call->init = instance->model->init;
     }
-    r->actions = a, r->acts = 1, r->par = instance->par, r->acted_at = sym_allocate(arena, (size_t)plan->n);
+    r->actions = a, r->acts = 1, r->par = instance->par, r->acted_at = sym_allocate(arena, (size_t)plan->n + 1);
     r->event_done = sym_allocate(arena, (size_t)r->event_capacity * sym_done_size(r));
     return sym_instance_bind_formulas(instance, arena, &a->values, plan->actions) && found;
 }
@@ -111,7 +111,7 @@ static void sym_instance_forget_events(sym_instance *instance) {
     int32_t i;
     if (plan == NULL) return;
     memcpy(instance->event_terminal, plan->cut, (size_t)plan->n * sizeof *plan->cut);
-    for (i = 0; i < plan->n && instance->run.actions != NULL; ++i) instance->run.acted_at[i] = -HUGE_VAL;
+    for (i = 0; i <= plan->n && instance->run.actions != NULL; ++i) instance->run.acted_at[i] = -HUGE_VAL;
     instance->run.n_event_records = 0;
     sym_run_forget_contacts(&instance->run);
 }

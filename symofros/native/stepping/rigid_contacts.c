@@ -164,7 +164,7 @@ static void sym_sort_touching(const sym_run *r, sym_touching *at, double still, 
         const double x = at->u[3 * i], y = at->u[3 * i + 1], slip = hypot(x, y);
         const int32_t turned = met != NULL && met[at->of[i]] < 0.0 && par[of->mode] == SYM_SLIDES;
         double *last = sym_ball_memory(r->system, at->of[i]) + 4;
-        const int32_t again = r->t - *last <= SYM_ACCUMULATION * sym_run_one_instant(r);
+        const int32_t again = r->t - *last <= SYM_ACCUMULATION * sym_run_one_instant(r, r->t);
         if (turned) *last = r->t;
         p->parts[i] = at->u[3 * i + 2] > still;
         p->slides[i] = slip > still && !(turned && (again || slip <= SYM_SLIP_LEFT * par[of->way[2]]));
@@ -196,7 +196,7 @@ static int32_t sym_accelerations_of_balls(sym_run *r, sym_touching *at, double *
  * several balls accumulate, as of a box that rocks, (46a). Returns 0 or a status. */
 static int32_t sym_solve_returning(sym_run *r, sym_touching *at, double *par) {
     sym_contact_problem *p = &at->problem;
-    const double instant = SYM_ACCUMULATION * sym_run_one_instant(r);
+    const double instant = SYM_ACCUMULATION * sym_run_one_instant(r, r->t);
     int32_t slow[SYM_MOST_CONTACTS], i, again = 1, status = 0;
     at->returns = 0;
     for (i = 0; i < p->n; ++i) {
@@ -228,7 +228,7 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     for (i = 0; i < p->n && status == 0; ++i) {
         const double since = r->t - sym_ball_memory(s, at->of[i])[3];
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
-        e[i] = opened && since > SYM_ACCUMULATION * sym_run_one_instant(r) ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
+        e[i] = opened && since > SYM_ACCUMULATION * sym_run_one_instant(r, r->t) ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
         p->last[i] = was[s->contacts[at->of[i]].mode];
         if (!opened || approaches) at->apart[i] = 0.0;
         at->struck[i] = opened && approaches;

@@ -50,10 +50,10 @@ enum { SYM_ALL_AT_ONCE = 3, SYM_MOST_ROUNDS = 1000 };
 #define SYM_TIME_ROUNDING 1e-13
 #define SYM_NO_TIME 1e-200 /* so that it is above zero at t = 0 */
 
-SYM_EXPORT double sym_run_one_instant(const sym_run *r) {
-    const double rounding = SYM_TIME_ROUNDING * fmax(fabs(r->t), SYM_NO_TIME);
+SYM_EXPORT double sym_run_one_instant(const sym_run *r, double t) {
+    const double rounding = SYM_TIME_ROUNDING * fmax(fabs(t), SYM_NO_TIME);
     if (r->actions->at_once > 0.0) return r->actions->at_once;
-    return fmax(SYM_SHARE_OF_MOTION * (r->t - r->acted_at[r->system->n_events]), rounding);
+    return fmax(SYM_SHARE_OF_MOTION * (t - r->acted_at[r->system->n_events]), rounding);
 }
 
 /* Note when a motion begins, parts of which may be runs of their own. */
@@ -65,7 +65,7 @@ static void sym_note_begin(const sym_run *r) {
 /* Count that a mode ends once more: acted_at runs ahead of time by a share of what counts as an instant each time. Returns 0
  * or a status. */
 static int32_t sym_count_repeats(sym_run *r, int32_t event) {
-    const double instant = sym_run_one_instant(r);
+    const double instant = sym_run_one_instant(r, r->t);
     double *at = r->acted_at + event;
     *at = (*at > r->t ? *at : r->t) + instant / SYM_MOST_REPEATS;
     return *at > r->t + instant ? SYM_ACTS_WITHOUT_END : 0;

@@ -95,10 +95,9 @@ class Stepper(BoundRun):
         if self.actions is not None:
             self.run.actions.at_once = instant
 
-    @property
-    def accumulation(self) -> float:
-        """Time within which strikes of a contact that rests are its last ones [s], by the time so far."""
-        return _ACCUMULATION * float(self.native.sym_run_one_instant(self.run))
+    def accumulation(self, t: float) -> float:
+        """Time within which strikes of a contact that comes to rest at t are its last ones [s]."""
+        return _ACCUMULATION * float(self.native.sym_run_one_instant(self.run, t))
 
     def ignore_event(self, which: int) -> None:
         """An event is not looked for any more."""

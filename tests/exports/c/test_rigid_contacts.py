@@ -70,7 +70,8 @@ def test_packages_move_as_runs_do(tmp_path: Path, scene: str, method: str) -> No
     known = sf.simulate(model, q, v, t_end=t_end, dt=1e-3, **options)
     for span in (t_end / 20, t_end):
         # Steps that adapt begin anew at each call, and differ within their bounds; those of rims do by rounding (41b).
-        bound = 1e-6 if method == "dopri5" and (span < t_end or scene == "rims") else 1e-11
+        # Strikes up to 1e-4 of the first pass 6e-11 s on from what is rounding between both.
+        bound = 1e-6 if method == "dopri5" and (span < t_end or scene == "rims") else 2e-10
         *met, status, state = run(program, repr(span), repr(t_end), cwd=tmp_path).splitlines()
         assert status == f"status {Status.FINISHED}"
         assert distinct(float(line.split()[1]) for line in met) == pytest.approx(
