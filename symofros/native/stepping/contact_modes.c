@@ -132,7 +132,7 @@ static int32_t sym_solve_coupled(sym_contact_problem *p, int32_t unique) {
     const int32_t n = 3 * p->n;
     double d[2][2 * SYM_MOST_CONTACTS]; /* from which directions are sought: by friction where all stick, and the guess's */
     double mode[SYM_MOST_CONTACTS] = {0.0};
-    const double more = fmax(1.0, (double)p->n / SYM_ALL_UP_TO), most = SYM_MOST_SETS / (more * more * more);
+    const double more = fmax(1.0, (double)p->n / (double)SYM_ALL_UP_TO), most = (double)SYM_MOST_SETS / (more * more * more);
     double tried = 0.0;
     int32_t i, from, found = 0;
     sym_order_of_modes order = {{{0.0}}, 0, 0, {0}};
