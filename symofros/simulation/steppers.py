@@ -132,6 +132,8 @@ class Steppers(SteppedModel):
         self._kept = np.linspace(0, n - 1, min(n, _KEPT)).astype(int)
         self._followed: dict[int, Followed] = {}
         self._held: Held | None = None
+        # Notes on motions that were made once more, with where these began and what they were given.
+        self._seen: dict[int, tuple[Followed, Held | None, tuple[str, ...]]] = {}
         self.reset()
 
     @checked
@@ -262,7 +264,7 @@ class Steppers(SteppedModel):
         """Why motion i ended, or what is worth knowing of it.
 
         Of a few motions, the first and the last among them, inputs are kept: each is made once more by a `Stepper`,
-        which examines it, at each call. The outcome of another one says what was found of these.
+        which examines it, once for each state. The outcome of another one says what was found of these.
         """
         if not 0 <= i < self.n:
             raise refusal(
@@ -292,6 +294,8 @@ class Steppers(SteppedModel):
         one, held = self._followed.get(i), self._held
         if one is None or held is one.before or self._status[i] == Status.PROJECTION_FAILED:
             return None
+        if (seen := self._seen.get(i)) is not None and seen[0] is one and seen[1] is held:
+            return seen[2]
         given = {name: value for name, value in self._given.items() if name != "threads"}
         stepper = Stepper(self.model, par=one.par, **given)
         stepper.reset(one.q, one.v, one.t, z=one.z if self.model.nz else None)
@@ -302,7 +306,8 @@ class Steppers(SteppedModel):
         for link in reversed(links):
             if not stepper.step(None if link.u is None else link.u[row], link.steps):
                 break
-        return stepper.outcome.notes
+        self._seen[i] = one, self._held, stepper.outcome.notes
+        return self._seen[i][2]
 
     def _unseen_note(self) -> str:
         """What is known of the steps of a motion whose inputs are not kept."""

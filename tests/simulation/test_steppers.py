@@ -247,3 +247,22 @@ def test_inputs_that_are_kept_are_forgotten_after_many_calls(monkeypatch: pytest
         steppers.step()
         said.append([any("not examined" in note for note in steppers.outcome(i).notes) for i in range(2)])
     assert said == [[False, False]] * 3 + [[True, True], [True, False]]
+
+
+def test_a_motion_with_kept_inputs_is_made_once_more_for_each_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever asks for the outcomes of all motions waits for those few, once."""
+    made: list[sf.Model] = []
+
+    def counted(model: sf.Model, **options: Any) -> sf.Stepper:
+        made.append(model)
+        return sf.Stepper(model, **options)
+
+    monkeypatch.setattr("symofros.simulation.steppers.Stepper", counted)
+    steppers = sf.Steppers(sf.compile(oscillator_system()), 7, dt=1e-3, method="rk4")
+    for times in range(1, 4):
+        steppers.step(None, 2)
+        before = [steppers.outcome(i).notes for i in range(7)]
+        assert [steppers.outcome(i).notes for i in range(7)] == before and len(made) == 4 * times
+    steppers.reset()
+    steppers.step(None, 2)
+    assert steppers.outcome(0).ok and len(made) == 13
