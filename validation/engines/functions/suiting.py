@@ -17,9 +17,23 @@ from .shapes import SHAPES
 from .stated import STATED
 from .tanks import TANKS
 from .trees import TREES
+from .vectors import VECTORS
 
 FUNCTIONS: dict[str, Function] = (
-    TREES | CARRIED | CONSTRAINED | LONE | STEPS | ACTING | MEASURED | STATED | TURNS | POSES | SHAPES | ARMS | TANKS
+    TREES
+    | CARRIED
+    | CONSTRAINED
+    | LONE
+    | STEPS
+    | ACTING
+    | MEASURED
+    | STATED
+    | TURNS
+    | POSES
+    | SHAPES
+    | ARMS
+    | TANKS
+    | VECTORS
 )
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")

@@ -79,6 +79,7 @@ def trees() -> dict[str, Tree]:
         _held("distance beyond its bounds", 0.125, 0.25),
         _held("distance within its bounds", 0.0625, 8.0),
         turns,
+        replace(turns, name="vectors", asked="vectors"),
         *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),
         _box("box by its corners", low, high, 0.5),

@@ -11,7 +11,7 @@ from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, flex, forces, framed, functions, rebuilt, soft, turns
+from . import besides, flex, forces, framed, functions, rebuilt, soft, turns, vectors
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -39,7 +39,7 @@ def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
     if tree.asked == "flexible bodies":
         return flex.write(tree)
-    if tree.asked == "turns":
+    if tree.asked in ("turns", "vectors"):
         return turns.write()
     if tree.changed:
         first, last = write(tree.before), document(replace(tree, changed=""), principal=True)
@@ -162,7 +162,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     return Source(lines, slots, nq, nv, optional)
 
 
-_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | soft.WAYS | turns.WAYS
+_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | soft.WAYS | turns.WAYS | vectors.WAYS
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",
@@ -183,6 +183,7 @@ PLUGIN = SourcePlugin(
     demands={
         "attached": "MjSpec, attach_body",
         "turns": "rotations as quaternions and matrices",
+        "vectors": "functions of vectors and matrices",
         "fused": "fusestatic",
         **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in CHANGED.items()},
         "dampers": "damping",
