@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from tests.studio.editor.browser import steps
 from tests.studio.waiting import at_rest
 
 if TYPE_CHECKING:
@@ -47,11 +48,7 @@ class Hand:
 
     def draw(self, start: Locator, end: Locator) -> None:
         """Drag from the middle of one thing to that of another: one press."""
-        a, b = at_rest(start), at_rest(end)
-        self.page.mouse.move(a["x"] + a["width"] / 2, a["y"] + a["height"] / 2)
-        self.page.mouse.down()
-        self.page.mouse.move(b["x"] + b["width"] / 2, b["y"] + b["height"] / 2, steps=8)
-        self.page.mouse.up()
+        steps.draw(self.page, start, end)
 
     def put(self, field: Locator, text: str) -> None:
         """Type a name or a number over what a field says, which a double click chooses."""

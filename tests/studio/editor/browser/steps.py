@@ -11,7 +11,7 @@ import numpy as np
 from playwright.sync_api import Locator, Page, Response, expect
 
 from tests.studio.pictures import MANY, settled, shot
-from tests.studio.waiting import PATIENCE, until
+from tests.studio.waiting import PATIENCE, at_rest, until
 
 MODELS = Path(__file__).parents[4] / "reference_models"
 PENDULUM = MODELS / "rigid" / "double_pendulum.yaml"
@@ -27,6 +27,20 @@ def block(page: Page, node: str) -> Locator:
 def wire(page: Page, edge: str) -> Locator:
     """A link of the diagram by its id, such as `bodies/upper/joint`."""
     return page.locator(f'.react-flow__edge[data-id="{edge}"]')
+
+
+def anchor(page: Page, node: str, name: str) -> Locator:
+    """A port of a block of a mechanism, such as `frame tip of crank`."""
+    return block(page, node).get_by_label(name, exact=True)
+
+
+def draw(page: Page, start: Locator, end: Locator) -> None:
+    """Draw a link from the middle of one port to that of another."""
+    a, b = at_rest(start), at_rest(end)
+    page.mouse.move(a["x"] + a["width"] / 2, a["y"] + a["height"] / 2)
+    page.mouse.down()
+    page.mouse.move(b["x"] + b["width"] / 2, b["y"] + b["height"] / 2, steps=8)
+    page.mouse.up()
 
 
 def open_editor(page: Page, url: str) -> None:

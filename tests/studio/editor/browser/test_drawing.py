@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
 import symofros as sf
 from tests.studio.editor.browser import steps
@@ -16,20 +16,6 @@ from tests.studio.waiting import at_rest
 pytestmark = pytest.mark.browser
 
 FOUR_BAR = Path(__file__).parents[4] / "reference_models" / "closed" / "four_bar.yaml"
-
-
-def port(page: Page, node: str, name: str) -> Locator:
-    """A port of a block, such as `frame tip of crank`."""
-    return steps.block(page, node).get_by_label(name, exact=True)
-
-
-def draw(page: Page, start: Locator, end: Locator) -> None:
-    """Draw a link from one port to another."""
-    a, b = at_rest(start), at_rest(end)
-    page.mouse.move(a["x"] + a["width"] / 2, a["y"] + a["height"] / 2)
-    page.mouse.down()
-    page.mouse.move(b["x"] + b["width"] / 2, b["y"] + b["height"] / 2, steps=8)
-    page.mouse.up()
 
 
 def add(page: Page, name: str, on: str) -> None:
@@ -58,7 +44,11 @@ def test_a_loop_is_closed_by_a_link(opened: Serve, page: Page, picture: Picture)
     steps.wire(page, "bodies/coupler/joint").click(force=True)
     page.keyboard.press("Delete")
     expect(page.get_by_role("button", name="Undo: remove coupler")).to_be_enabled()
-    draw(page, port(page, "bodies/crank", "frame tip of crank"), port(page, "bodies/coupler", "joint of coupler"))
+    steps.draw(
+        page,
+        steps.anchor(page, "bodies/crank", "frame tip of crank"),
+        steps.anchor(page, "bodies/coupler", "joint of coupler"),
+    )
     expect(page.get_by_role("button", name="Undo: mount coupler")).to_be_enabled()
     steps.open_window(page, "bodies/coupler")
     expect(steps.window(page).get_by_label("Parent", exact=True)).to_have_value("crank")
@@ -67,7 +57,11 @@ def test_a_loop_is_closed_by_a_link(opened: Serve, page: Page, picture: Picture)
     steps.open_window(page, "bodies/rocker")
     steps.fill(page, "Position x", "1")
     steps.accept(page)
-    draw(page, port(page, "bodies/coupler", "frame tip of coupler"), port(page, "bodies/rocker", "frame tip of rocker"))
+    steps.draw(
+        page,
+        steps.anchor(page, "bodies/coupler", "frame tip of coupler"),
+        steps.anchor(page, "bodies/rocker", "frame tip of rocker"),
+    )
     expect(steps.window(page)).to_contain_text("Join coupler.tip and rocker.tip")
     picture("join")
     steps.window(page).get_by_role("button", name="Closure").click()

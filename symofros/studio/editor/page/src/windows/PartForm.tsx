@@ -22,8 +22,10 @@ export function PartForm({ bodies }: { bodies: string[] }) {
       onSubmit={accept}
       foot={<Foot word={exists ? "Replace" : "Save"} disabled={name.trim() === ""} />}
     >
-      <p className="quiet">{bodies.join(", ")}, with the parameters and inputs that they use</p>
-      <TextRow title="Name" text={name} onChange={setName} />
+      <div className="rows">
+        <span className="quiet">Keeps {bodies.join(", ")}, with the parameters and inputs that its formulas name.</span>
+        <TextRow title="Name" text={name} onChange={setName} />
+      </div>
     </Window>
   );
 }
