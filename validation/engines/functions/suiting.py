@@ -10,6 +10,7 @@ from .arms import ARMS
 from .beside import LONE, TURNS
 from .carried import CARRIED
 from .constrained import CONSTRAINED
+from .devices import DEVICES
 from .function import Function
 from .integrators import STEPS
 from .poses import POSES
@@ -34,6 +35,7 @@ FUNCTIONS: dict[str, Function] = (
     | ARMS
     | TANKS
     | VECTORS
+    | DEVICES
 )
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")

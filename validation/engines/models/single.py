@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
+from ..truth.devices import DEVICES
 from .readers import IDENTITY, TURNED
 
 
@@ -80,6 +81,7 @@ def trees() -> dict[str, Tree]:
         _held("distance within its bounds", 0.0625, 8.0),
         turns,
         replace(turns, name="vectors", asked="vectors"),
+        *(replace(turns, name=group, asked=group) for group in DEVICES),
         *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),
         _box("box by its corners", low, high, 0.5),

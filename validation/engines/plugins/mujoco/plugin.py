@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
 from ...tree import SOFT_LIMITS
+from ...truth.devices import DEVICES
 from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, flex, forces, framed, functions, rebuilt, soft, turns, vectors
+from . import besides, devices, flex, forces, framed, functions, rebuilt, soft, turns, vectors
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -39,6 +40,8 @@ def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
     if tree.asked == "flexible bodies":
         return flex.write(tree)
+    if tree.asked in DEVICES:
+        return devices.write()
     if tree.asked in ("turns", "vectors"):
         return turns.write()
     if tree.changed:
@@ -162,7 +165,17 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     return Source(lines, slots, nq, nv, optional)
 
 
-_WAYS = functions.WAYS | beside.WAYS | forces.WAYS | besides.WAYS | framed.WAYS | soft.WAYS | turns.WAYS | vectors.WAYS
+_WAYS = (
+    functions.WAYS
+    | beside.WAYS
+    | forces.WAYS
+    | besides.WAYS
+    | framed.WAYS
+    | soft.WAYS
+    | turns.WAYS
+    | vectors.WAYS
+    | devices.WAYS
+)
 PLUGIN = SourcePlugin(
     name="mujoco",
     package="mujoco",
@@ -184,6 +197,7 @@ PLUGIN = SourcePlugin(
         "attached": "MjSpec, attach_body",
         "turns": "rotations as quaternions and matrices",
         "vectors": "functions of vectors and matrices",
+        **dict.fromkeys(DEVICES, "small models of MJCF"),
         "fused": "fusestatic",
         **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in CHANGED.items()},
         "dampers": "damping",
