@@ -134,6 +134,7 @@ class MechanismEnv(_Env):  # type: ignore[misc]
         self.action_space, self.observation_space = task.action_space, task.observation_space
         self._least, self._largest = _bounds(task)
         self.stepper = Stepper(task.model, **task._steps)
+        self._ready = False
 
     @property
     def par(self) -> Array:
@@ -154,10 +155,17 @@ class MechanismEnv(_Env):  # type: ignore[misc]
         given = _checked_options(options, ("par",))
         q, v, par = self.task.begin(self.np_random)
         self.stepper.reset(q, v, par=par if given is None else given)
+        self._ready = True
         return self._observation(), {}
 
     def step(self, action: Any) -> tuple[Array, float, bool, bool, dict[str, Any]]:
-        """The state (nq + nv) after an action, its reward, whether the episode has failed."""
+        """The state (nq + nv) after an action, its reward, whether the episode has failed.
+
+        Raises:
+            gymnasium.error.ResetNeeded: No episode has begun.
+        """
+        if not self._ready:
+            raise _reset_needed("no episode has begun")
         u = _bounded(np.asarray(action, dtype=np.float64).reshape(-1), self._least, self._largest)
         stepper = self.stepper
         if not stepper.running:
@@ -197,6 +205,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         self._state = np.dtype([("q", f"V{8 * task.model.nq}"), ("v", f"V{8 * task.model.nv}")])
         self._steps, self._ended = np.zeros(num_envs, dtype=np.int64), np.zeros(num_envs, dtype=bool)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
+        self._ready = False
 
     def reset(
         self, *, seed: int | Sequence[int | None] | None = None, options: dict[str, Any] | None = None
@@ -222,6 +231,7 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         if given is not None:
             shape = (self.num_envs, self.task.model.npar)
             self._change(chosen, np.broadcast_to(self.task.model.checked_parameters(given), shape))
+        self._ready = None not in self._generators
         return self._observations(), {}
 
     def _made(self) -> Steppers:
@@ -239,7 +249,13 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
             before.reset(before.q, before.v, par=self.par, which=_mask(chosen, self.num_envs))
 
     def step(self, actions: Any) -> tuple[Array, Array, Any, Any, dict[str, Any]]:
-        """States (num_envs, nq + nv), rewards, failures and cut-offs (num_envs)."""
+        """States (num_envs, nq + nv), rewards, failures and cut-offs (num_envs).
+
+        Raises:
+            gymnasium.error.ResetNeeded: An environment has had no reset.
+        """
+        if not self._ready:
+            raise _reset_needed(f"{self._generators.count(None)} of {self.num_envs} environments have had none")
         u = _bounded(np.asarray(actions, dtype=np.float64), self._least, self._largest)
         again, steppers = self._ended, self._steppers
         going = steppers.step(u, self.task.substeps)
@@ -327,6 +343,12 @@ def _checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> Seque
 
 def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError:
     return rules.InteropError(Problem(what, found, rule, remedy))
+
+
+def _reset_needed(found: str) -> Any:
+    """The refusal of a step without a first state, of Gymnasium's class."""
+    rule = "steps go on from the first state that reset() draws"
+    return gymnasium.error.ResetNeeded(str(Problem("step before reset", found, rule, "reset() before the first step")))
 
 
 def _check_count(what: str, count: object, remedy: str) -> None:

@@ -31,6 +31,25 @@ def test_gymnasium_checker_reports_nothing(task: Any) -> None:
         check_env(sf.interop.gymnasium.MechanismEnv(task), skip_render_check=True)
 
 
+def test_steps_before_a_reset_are_refused_as_gymnasium_does(task: Any) -> None:
+    """An environment without a first state does not start at the neutral one; one of many that had no reset neither."""
+    from gymnasium.error import ResetNeeded
+
+    env = sf.interop.gymnasium.MechanismEnv(task)
+    with pytest.raises(ResetNeeded, match="no episode has begun"):
+        env.step([0.0])
+    env.reset(seed=0)
+    env.step([0.0])
+    many = sf.interop.gymnasium.MechanismVectorEnv(task, 3)
+    with pytest.raises(ResetNeeded, match="3 of 3 environments have had none"):
+        many.step(np.zeros((3, 1)))
+    many.reset(seed=0, options={"reset_mask": np.array([True, False, True])})
+    with pytest.raises(ResetNeeded, match="1 of 3 environments have had none"):
+        many.step(np.zeros((3, 1)))
+    many.reset(options={"reset_mask": np.array([False, True, False])})
+    many.step(np.zeros((3, 1)))
+
+
 def test_a_cart_pole_fails_on_either_side(task: Any) -> None:
     """Beyond 2.4 m, or 12 degrees."""
     q = np.array([[0.0, 0.0], [2.39, 0.2], [-2.39, -0.2], [2.41, 0.0], [-2.41, 0.0], [0.0, 0.22], [0.0, -0.22]])
@@ -184,7 +203,9 @@ def test_tasks_that_mean_nothing_are_refused(task: Any, changed: dict[str, Any],
         with pytest.raises(sf.SymofrosError, match=says):
             odd = replace(task, **changed)
             envs, shape = sf.interop.gymnasium, (3, 1) if many else (1,)
-            (envs.MechanismVectorEnv(odd, 3) if many else envs.MechanismEnv(odd)).step(np.zeros(shape))
+            env = envs.MechanismVectorEnv(odd, 3) if many else envs.MechanismEnv(odd)
+            env.reset()
+            env.step(np.zeros(shape))
 
 
 @pytest.mark.parametrize("sizes", [{"num_envs": 0}, {"num_envs": 2, "max_steps": 0}, {"num_envs": 1.5}])

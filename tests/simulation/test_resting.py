@@ -63,6 +63,19 @@ def test_a_bouncing_ball_comes_to_rest_and_is_lifted(method: str) -> None:
     assert run.q[-1, 0] == pytest.approx(20 / 6 * (2.6 - opened) ** 3, abs=1e-12)
 
 
+@pytest.mark.parametrize("e", [0.5, 0.9])
+@pytest.mark.parametrize("method", ["semi_implicit_euler", "implicit_euler"])
+def test_methods_of_order_one_come_to_rest_on_the_floor(method: str, e: float) -> None:
+    """They fell through it where a flight was shorter than a step; strikes approach, and rests follow (4d)."""
+    run = sf.simulate(ball(), [1.0], t_end=12.0, events=floor(e), method=method, dt=1e-2)
+    assert run.outcome.kind == "finished" and any("the contact persists" in note for note in run.outcome.notes)
+    assert all(found.v[0] < 0.0 < found.v_after[0] for found in run.events[:-1])
+    assert run.q.min() > -1e-12 and abs(run.q[-1, 0]) < 1e-12 and run.lam[-1] == pytest.approx([G, 0.0], abs=1e-9)
+    without = sf.simulate(ball(), [1.0], t_end=12.0, events=floor(e, rests=None), method=method, dt=1e-2)
+    assert without.outcome.kind == "interrupted" and "without end" in without.outcome.reason
+    assert without.q.min() > -1e-12
+
+
 def test_a_plastic_strike_rests_at_once_and_residuals_of_complementarity_are_rounding() -> None:
     """Gap and force are never below zero, and one of them is zero, over openings and strikes."""
     pull = {"z": "12*sin(2*t)"}

@@ -82,15 +82,6 @@ static int32_t sym_record(sym_run *r) {
 /* A time of the grid this near before actions, as a share of itself, is their instant: trajectories.py, _SAME_INSTANT. */
 #define SYM_GRID_ACTED 1e-14
 
-/* Whether actions are done at the events at which the step has been cut. */
-static int32_t sym_acts_at_cut(const sym_run *r) {
-    int64_t row;
-    if (r->actions == NULL) return 0;
-    for (row = r->n_event_records - 1; row >= r->first_met && r->event_t[row] >= r->event_t[r->n_event_records - 1]; --row)
-        if (r->actions->acts[r->event_index[row]]) return 1;
-    return 0;
-}
-
 /* Record the times of the grid within the step just made, up to x_max and before its end. Returns 0 or a status. */
 static int32_t sym_record_grid_within_step(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x_max) {
     while (r->next_grid < r->n_grid) {

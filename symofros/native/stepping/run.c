@@ -150,13 +150,52 @@ static void sym_set_end_state(sym_run *r, const sym_workspace *w, double t1) {
     r->system->in_step = r->system->held_anew = 0;
 }
 
+/* Whether event i is of a ball of a rigid contact that has been open, and meets its surface. */
+static int32_t sym_ball_meets(const sym_run *r, int32_t i) {
+    const int32_t first = r->system->n_contacts > 0 ? sym_first_contact_event(r) : i + 1;
+    return i >= first && (i - first) % 2 == 0 && r->par[r->system->contacts[(i - first) / 2].mode] == SYM_OPEN;
+}
+
+/* Whether actions are done at the events at which the step has been cut, and whether bodies strike there. */
+static int32_t sym_acts_at_cut(const sym_run *r, int32_t *strikes) {
+    int32_t acts = 0;
+    int64_t row;
+    *strikes = 0;
+    if (r->actions == NULL) return 0;
+    for (row = r->n_event_records - 1; row >= r->first_met && r->event_t[row] >= r->event_t[r->n_event_records - 1]; --row) {
+        const int32_t which = r->event_index[row];
+        acts |= r->actions->acts[which] != 0;
+        *strikes |= r->actions->restitution[which] >= 0.0 || sym_ball_meets(r, which);
+    }
+    return acts;
+}
+
+/* Evaluation point <- the state at x, where the step just made has been cut. Bodies strike with the rate of the path along which
+ * they have met; a method of order 1 has speeds that differ from it by a share of h v' (docs/theory/simulation.md, (4d)). Returns 0
+ * or a status. */
+static int32_t sym_load_state_at_cut(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x, int32_t strikes) {
+    const int32_t nv = r->system->nv;
+    const int32_t first_order = r->method <= SYM_METHOD_ROSENBROCK && r->tableau.stages == 1;
+    double *rate = w->magnitude;
+    int32_t l, status;
+    if (!strikes || !first_order || x == 0.0 || x == 1.0) return sym_load_state_within_step(r, w, h, dense_ready, x);
+    status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
+    if (status != 0) return status;
+    sym_chart_rate(r->system, w->stage, w->stage + nv, rate);
+    for (l = 0; l < nv; ++l) {
+        const double f0 = w->k[l], f1 = w->end_slope[l], d = w->y1[l] / h;
+        w->stage[nv + l] += f0 + x * (2.0 * (3.0 * d - 2.0 * f0 - f1) + x * 3.0 * (f0 + f1 - 2.0 * d)) - rate[l];
+    }
+    return sym_load_projected_state(r, r->t + x * h, w->stage);
+}
+
 /* An accepted step from r->t to t1: its end, projected; events and records on the way to it; the new state. Records and
  * events are states of the path that is integrated: what lies between two ends of steps is projected as these are.
  * Returns 0 or a status. */
 static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1) {
     sym_system *s = r->system;
     const int32_t nv = s->nv, fsal = r->method == SYM_METHOD_EXPLICIT && r->tableau.fsal_stage > 0;
-    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0, acts = 0;
+    int32_t dense_ready = 0, status, beyond, cut = 0, ended = 0, acts = 0, strikes = 0;
     double stop_x = 2.0, energies[2] = {0.0, 0.0};
     status = sym_load_projected_state(r, t1, w->y1);
     if (status != 0) return status;
@@ -165,7 +204,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
     if (s->n_events > 0) {
         status = sym_find_events(r, w, h, &dense_ready, &stop_x);
         if (status != 0) return status;
-        cut = stop_x <= 1.0, ended = r->terminal_event >= 0, acts = ended && sym_acts_at_cut(r);
+        cut = stop_x <= 1.0, ended = r->terminal_event >= 0, acts = ended && sym_acts_at_cut(r, &strikes);
         if (cut && r->project) memcpy(energies, s->project.out[4], sizeof energies); /* what lies behind is not gone through */
     }
     if (r->project) status = sym_judge_projection(r, energies);
@@ -176,7 +215,7 @@ static int32_t sym_accept_step(sym_run *r, sym_workspace *w, double h, double t1
         if (status != 0) return status;
     }
     if (cut) {
-        status = sym_load_state_within_step(r, w, h, &dense_ready, stop_x);
+        status = sym_load_state_at_cut(r, w, h, &dense_ready, stop_x, strikes);
         if (status != 0) return status;
         sym_store_end_state(s, w);
         t1 = *s->t, r->beam_step_way = HUGE_VAL;
