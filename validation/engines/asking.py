@@ -10,7 +10,7 @@ from itertools import zip_longest
 from . import releases
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, suited
-from .models import acting, flexible, hostile, kinds, loops, sensed, single, soft, stated, transformed
+from .models import acting, flexible, hostile, kinds, loops, sensed, single, soft, spacecraft, stated, transformed
 from .models.formats import formats
 from .models.readers import Reading
 from .workers import Job, Worker, registry
@@ -25,7 +25,9 @@ Asked = Mapping[str, Collection[str]]
 def lots() -> list[Questions]:
     """All questions by name: trees of each kind of joint, hostile, with loops, forces, sensors, transformed; files."""
     own: list[Questions] = [{name: kinds.tree_of(name) for name in kinds.KINDS}]
-    trees = (family.trees() for family in (hostile, loops, transformed, stated, sensed, flexible, single, soft))
+    trees = (
+        family.trees() for family in (hostile, loops, transformed, stated, sensed, flexible, single, soft, spacecraft)
+    )
     forms: dict[str, dict[str, Reading]] = {}
     for name, one in formats().items():
         forms.setdefault(one.form, {})[name] = one

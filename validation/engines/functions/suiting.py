@@ -5,13 +5,17 @@ from __future__ import annotations
 import re
 
 from ..tree import Tree
+from ..truth.attitudes import ATTITUDES
+from ..truth.guidance import GUIDANCE
+from ..truth.orbits import ORBITS
+from ..truth.spacecraft import SPACECRAFT
 from .acting import ACTING, MEASURED
 from .arms import ARMS
 from .beside import LONE, TURNS
 from .carried import CARRIED
 from .constrained import CONSTRAINED
 from .devices import DEVICES
-from .function import Function
+from .function import Function, functions_of
 from .integrators import STEPS
 from .poses import POSES
 from .shapes import SHAPES
@@ -37,6 +41,7 @@ FUNCTIONS: dict[str, Function] = (
     | VECTORS
     | DEVICES
 )
+FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE, "turns") | functions_of(SPACECRAFT, "spacecraft")
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.

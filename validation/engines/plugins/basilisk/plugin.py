@@ -1,47 +1,12 @@
-"""Basilisk: rotations by its RigidBodyKinematics, tanks that drain; its spacecraft are not asked."""
+"""Basilisk: rotations, orbits, guidance, tanks that drain, spacecraft with effectors."""
 
 from __future__ import annotations
 
-from ..interface import Convention, Slot, Tree, Unsupported
-from ..truth.tanks import LENGTH, MASS, RADIUS
-from .writing.source import HALF_TURNS, Source, SourcePlugin, Way
+from ...interface import Convention, Slot, Tree, Unsupported
+from ...truth.tanks import LENGTH, MASS, RADIUS
+from ..writing.source import Source, SourcePlugin, Way
+from . import craft, kinematics, modules, orbits
 
-_SEQUENCES = "121 123 131 132 212 213 231 232 312 313 321 323".split()
-# Sets of attitude parameters -> how their functions are called: to and from quaternions, to matrices.
-_SETS = {"MRP": "MRP", "gibbs": "Gibbs", "PRV": "PRV"} | {f"euler{one}": f"Euler{one}" for one in _SEQUENCES}
-
-
-def _ways_of(own: str, of: str) -> dict[str, Way]:
-    """Through a set of parameters: R from its own matrix, from a matrix, from a quaternion and back, R Q."""
-    there, back = f"rbk.EP2{of}", f"rbk.{own}2C"
-    again = f"rbk.EP2C(rbk.{own}2EP({there}(q)))"
-    return {
-        f"rotation_matrix:{own}2C": Way(f"EP2{of}, {own}2C", f"value = {back}({there}(q)).T.ravel()"),
-        f"rotation_matrix:C2{of}": Way(f"C2{of}, {own}2C", f"value = {back}(rbk.C2{of}(rbk.EP2C(q))).T.ravel()"),
-        f"rotation_matrix:{own}2EP": Way(f"EP2{of}, {own}2EP", f"value = {again}.T.ravel()"),
-        f"rotation_composed:add{of}": Way(
-            f"add{of}", f"value = {back}(rbk.add{of}({there}(q), {there}(q2))).T.ravel()"
-        ),
-        f"rotation_angle:sub{of}": Way(
-            f"sub{of}", f"C = {back}(rbk.sub{of}({there}(q2), {there}(q)))\nvalue = [np.linalg.norm(rbk.C2PRV(C))]"
-        ),
-    }
-
-
-WAYS = {
-    "rotation_matrix": Way("EP2C", "value = rbk.EP2C(q).T.ravel()"),
-    "rotation_matrix:C2EP": Way("C2EP", "value = rbk.EP2C(rbk.C2EP(rbk.EP2C(q))).T.ravel()"),
-    "rotation_half_turns": Way("C2EP", f"{HALF_TURNS}value = [rbk.EP2C(rbk.C2EP(H)).T.ravel() for H in half_turns]"),
-    "rotation_composed": Way("addEP", "value = rbk.EP2C(rbk.addEP(q, q2)).T.ravel()"),
-    "rotation_angle": Way("subEP", "value = [np.linalg.norm(rbk.C2PRV(rbk.EP2C(rbk.subEP(q2, q))))]"),
-    "rotation_logarithm": Way("C2PRV", "value = rbk.C2PRV(rbk.EP2C(q))"),
-    "rotation_exponential": Way("PRV2C", "value = rbk.PRV2C(v).T.ravel()"),
-    "rotation_vector_rates": Way("BmatPRV", "value = rbk.BmatPRV(tau)"),
-    "rotation_vector_rates:dPRV": Way("dPRV", "value = np.transpose([rbk.dPRV(tau, w) for w in np.eye(3)])"),
-    "rotation_vector_speeds": Way("BinvPRV", "value = rbk.BinvPRV(tau)"),
-}
-for _own, _of in _SETS.items():
-    WAYS |= _ways_of(_own, _of)
 # Modules of effectors, and the placements that they begin with.
 _EFFECTORS = {
     "hingedRigidBody": ("r_HB_B, dcm_HB",),
@@ -67,7 +32,7 @@ def _unset() -> dict[str, Way]:
     return ways
 
 
-WAYS |= _unset()
+WAYS = kinematics.WAYS | orbits.WAYS | craft.WAYS | modules.WAYS | _unset()
 
 # Models of tanks -> names of their functions.
 _TANKS = {
@@ -112,6 +77,8 @@ WAYS |= _tanks()
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that imports it: a turn is a quaternion."""
+    if tree.asked == "spacecraft":
+        return craft.write(tree)
     if tree.asked != "turns":
         return Unsupported("rotations only", offered=False)
     slots = ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),)
@@ -128,10 +95,16 @@ PLUGIN = SourcePlugin(
         Convention("quaternion", "Euler parameters, w, x, y, z"),
         Convention("angular velocity", "along the axes of the body"),
         Convention("successive rotations", "addEP(a, b): first a, then b, about the axes that a has turned"),
-        Convention("spacecraft", "hubs with effectors, about the mass centre of all; not asked here"),
+        Convention("spacecraft", "a free hub with effectors: linear velocity before, angular after"),
     ),
     kinds={},
     ways=WAYS,
     write=write,
-    demands={"turns": "RigidBodyKinematics"},
+    demands={
+        "turns": "RigidBodyKinematics",
+        "spacecraft": "Spacecraft",
+        "dampers": "c of effectors",
+        "springs": "k of effectors",
+    },
+    calls=4,
 )

@@ -1,0 +1,5 @@
+"""Basilisk, as its plug-in."""
+
+from __future__ import annotations
+
+from .plugin import PLUGIN as PLUGIN
