@@ -14,6 +14,7 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.closed.spatial import delta_guess, stewart_guess
 from reference_models.rigid.random_tree import KINDS, MORE_KINDS, random_tree
+from symofros.simulation.stepping.methods import METHODS
 
 TREES = {f"tree{seed}": seed for seed in range(8)}
 TREES |= {f"parametrised{seed}": seed for seed in range(3)}
@@ -139,6 +140,11 @@ def model(case: str, backend: str = "interpreter") -> sf.Model:
 def compiled(name: str) -> sf.Model:
     """A reference model as C, once in a process: it does not change."""
     return sf.compile(MODELS[name])
+
+
+def bounds(method: str, rtol: float, atol: float) -> dict[str, Any]:
+    """Bounds of errors as options of an adaptive method; none of one of fixed steps, which refuses them."""
+    return {"rtol": rtol, "atol": atol} if METHODS[method].adaptive else {}
 
 
 def interpreted(system: sf.System) -> sf.Model:

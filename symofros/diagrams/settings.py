@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
 from symofros.base.arguments import check_fields
+from symofros.simulation.stepping.methods import METHODS
 
 
 @dataclass(frozen=True)
@@ -61,3 +63,9 @@ class RunSettings:
         """The stated settings as keywords of a run, without `t_end` and `plots`."""
         names = [item.name for item in fields(self) if item.name not in ("t_end", "plots")]
         return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+
+    def keywords_with(self, changes: Mapping[str, Any]) -> dict[str, Any]:
+        """The keywords with some replaced; bounds of errors stay behind where a method of fixed steps is chosen."""
+        chosen = METHODS.get(str(changes.get("method")))
+        left = () if chosen is None or chosen.adaptive else ("rtol", "atol")
+        return {name: value for name, value in self.keywords().items() if name not in left} | dict(changes)

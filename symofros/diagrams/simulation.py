@@ -83,8 +83,8 @@ class Simulation:
         Raises:
             SymofrosError: As `run_compiled`; or nobody says where to end.
         """
-        stated = self.diagram.simulation
-        return run_compiled(self.compiled_with(inputs), _end(self.diagram, t_end), **{**stated.keywords(), **settings})
+        chosen = self.diagram.simulation.keywords_with(settings)
+        return run_compiled(self.compiled_with(inputs), _end(self.diagram, t_end), **chosen)
 
     def compiled_with(self, inputs: Mapping[str, Any] | None) -> CompiledDiagram:
         """The diagram as C functions, with what is given for its inlets, as of `run`."""
@@ -110,9 +110,10 @@ class Simulation:
             SymofrosError: The options contradict each other or have no meaning here, or the method is implicit.
             AssemblyError: The first state does not meet the constraints.
         """
-        stated = self.diagram.simulation.keywords()
-        of_steps = {name: value for name, value in stated.items() if name not in ("record", "realtime", "threads")}
-        return DiagramStepper(self.compiled_with(inputs), **{**of_steps, **settings})
+        chosen = self.diagram.simulation.keywords_with(settings)
+        left = {"record", "realtime", "threads"} - settings.keys()
+        of_steps = {name: value for name, value in chosen.items() if name not in left}
+        return DiagramStepper(self.compiled_with(inputs), **of_steps)
 
     @checked
     def interpret(

@@ -140,10 +140,11 @@ def export(
         AssemblyError: No state near the start meets the constraints.
         CompileError: An FMU's binary or a WebAssembly module does not compile.
     """
-    given = {"method": method, "dt": dt, "rtol": rtol, "atol": atol, "beam_limit": beam_limit}
+    stated = {"method": method, "dt": dt, "rtol": rtol, "atol": atol, "beam_limit": beam_limit}
+    given = {name: value for name, value in stated.items() if value is not None}
     if isinstance(model, Diagram):
         _refuse_of_models(model, frames=frames, functions=functions, start=start, events=events)
-        stepping = _stepping(given, model.simulation.keywords())
+        stepping = _stepping(model.simulation.keywords_with(given))
         named = model if name is None else replace(model, name=name)
         return _export_diagram(named, target, Path(folder), outputs, stepping)
     system = model if isinstance(model, System) else load(model)
@@ -209,9 +210,9 @@ def _export_diagram(
     return _DIAGRAMS[target](diagram, folder, outputs, stepping, GENERATOR)
 
 
-def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None) -> Stepping:
-    """Stepping settings of an export: given ones, otherwise those of the model, otherwise defaults."""
-    chosen = {**_STEPPING, **(stated or {}), **{name: item for name, item in given.items() if item is not None}}
+def _stepping(given: Mapping[str, Any]) -> Stepping:
+    """Stepping settings of an export: given ones, otherwise defaults."""
+    chosen = {**_STEPPING, **given}
     method = chosen["method"]
     known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
@@ -222,6 +223,9 @@ def _stepping(given: Mapping[str, Any], stated: Mapping[str, Any] | None = None)
         value = chosen[label]
         if not (np.isfinite(value) and value > 0):
             raise ExportError(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
+        if label != "dt" and label in given and not METHODS[method].adaptive:
+            what, rule = f"export: {label} has no effect", "it bounds errors of adaptive methods; others step by dt"
+            raise ExportError(Problem(what, f"method '{method}'", rule, f"leave {label} out, or method='dopri5'"))
     return Stepping(METHODS[method], **{name: float(chosen[name]) for name in ("dt", "rtol", "atol", "beam_limit")})
 
 

@@ -118,19 +118,24 @@ def check_functions(record: ModelRecord) -> None:
     """Refuse models whose accelerations are no function of q, v and u, which steps of C make of them nevertheless.
 
     Raises:
-        InteropError: As of `check_record`; or contacts are rigid.
+        InteropError: As of `check_record`; or contacts are rigid, or friction sticks.
     """
     check_record(record)
-    if record.rigid_contacts:
-        names = ", ".join(contact.name for contact in record.rigid_contacts)
-        raise InteropError(
-            Problem(
-                f"functions of model '{record.name}' are not offered to other frameworks",
-                f"rigid contacts: {names}",
-                "rigid contacts push in runs alone, which choose their modes",
-                "state their stiffness, or step by sf.Steppers, sf.interop.gymnasium",
-            )
-        )
+    kinds = (
+        (
+            "rigid contacts",
+            record.rigid_contacts,
+            "push in runs alone, which choose their modes",
+            "state their stiffness",
+        ),
+        ("friction that sticks", record.sticking, "holds in runs alone, which choose its modes", "sticks=False"),
+    )
+    for kind, found, rule, remedy in kinds:
+        if found:
+            what = f"functions of model '{record.name}' are not offered to other frameworks"
+            names = ", ".join(one.name for one in found)
+            remedy = f"{remedy}, or step by sf.Steppers, sf.interop.gymnasium"
+            raise InteropError(Problem(what, f"{kind}: {names}", f"{kind} {rule}", remedy))
 
 
 def outputs(model: Model, function: str, given: Mapping[str, Any]) -> dict[str, np.ndarray[Any, Any]]:

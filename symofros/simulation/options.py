@@ -50,8 +50,8 @@ class SimulationOptions(metaclass=CheckedCalls):
             constrained models with their multipliers (DAE).
         dt: Step [s], 1e-3 where a fixed step needs one; first step of adaptive methods.
         t0: Start time [s].
-        rtol: Bound of the local error of adaptive methods, relative to each coordinate and speed.
-        atol: Bound of the local error of adaptive methods, absolute.
+        rtol: Bound of the local error of adaptive methods, relative to each coordinate and speed; refused with others.
+        atol: Bound of the local error of adaptive methods, absolute; refused with others.
         adaptive: False makes an adaptive method step by `dt`; None leaves each method as it is.
         max_step: Longest step of adaptive methods [s].
         max_steps: Number of steps after which the run ends; None for no bound.
@@ -106,13 +106,14 @@ class SimulationOptions(metaclass=CheckedCalls):
                 raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
         return replace(self, **chosen)
 
-    def refuse(self, names: Sequence[str], what: str, rule: str) -> None:
+    def refuse(self, names: Sequence[str], what: str, rule: str, remedy: str = "leave it out") -> None:
         """Refuse options that are stated and have no effect on this kind of run.
 
         Args:
             names: Names of fields.
             what: What kind of options they are, for the message.
             rule: Why they mean nothing.
+            remedy: The change to make.
 
         Raises:
             SymofrosError: One of them is not as by default.
@@ -121,7 +122,7 @@ class SimulationOptions(metaclass=CheckedCalls):
         for name in names:
             value = getattr(self, name)
             if value is not None and (np.ndim(value) or value != getattr(usual, name)):
-                raise SymofrosError(Problem(f"{what}, '{name}'", repr(value)[:60], rule, "leave it out"))
+                raise SymofrosError(Problem(f"{what}, '{name}'", repr(value)[:60], rule, remedy))
 
 
 def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:

@@ -215,6 +215,13 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     if o.gains is not None and o.stabilisation != "baumgarte":
         rule = "gains act in Baumgarte's stabilisation only"
         raise _wrong("gains without Baumgarte", f"stabilisation '{o.stabilisation}'", rule, "stabilisation='baumgarte'")
+    if not (METHODS[o.method].adaptive if o.adaptive is None else o.adaptive):
+        rule = f"steps of fixed length estimate no error, which it would bound: by '{o.method}' they are dt long"
+        remedy = "method='dopri5' or another adaptive one, or dt in its place"
+        o.refuse(("rtol", "atol"), "simulation: an option of adaptive steps", rule, remedy)
+    if o.output is not None:
+        rule = "states are recorded at the times of `output`, or after each so many steps"
+        o.refuse(("every",), "simulation: an option of runs without `output`", rule)
     if o.adaptive and not METHODS[o.method].adaptive:
         what, remedy = f"'{o.method}' does not adapt its steps", "use dopri5, dop853 or rodas4"
         raise _wrong(what, "adaptive=True", "it estimates no error", remedy)
@@ -259,6 +266,9 @@ def check_fit(model: Model, settings: Settings, inputs: InputPlan) -> None:
             "SUNDIALS chooses its steps; CVODE keeps constraints by Baumgarte's gains, IDA by its equations",
             "method='ida', stabilisation='baumgarte', or rodas4 with projection",
         )
+    if family.multistep and settings.realtime:
+        what, rule = f"'{name}' keeps no pace against the clock", "SUNDIALS makes its steps as fast as it can"
+        raise _wrong(what, f"realtime = {settings.realtime:g}", rule, "method='rk4', or realtime=False")
     if family.trees_only and (model.nc or model.record.driven):
         raise _wrong(
             f"'{name}' steps trees of free motion only",

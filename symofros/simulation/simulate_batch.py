@@ -87,10 +87,12 @@ def simulate_batch(
         SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
     chosen = (options or SimulationOptions()).changed(changes)
+    rule = "a batch records at `output`, and is not paced"
+    chosen.refuse(("realtime", "every"), "simulate_batch: an option of single runs", rule)
     if chosen.output is None:
         chosen = replace(chosen, output=[t_end])
     settings = Settings.of(model, chosen, t_end)
-    _check_batch(settings, chosen)
+    _check_batch(settings)
     count = model.threads if threads is None else threads
     if count < 1:
         raise SymofrosError(
@@ -140,15 +142,13 @@ def simulate_batch(
     return of_stated(stated, runs)
 
 
-def _check_batch(settings: Settings, options: SimulationOptions) -> None:
-    """Refuse what only single runs can do."""
+def _check_batch(settings: Settings) -> None:
+    """Refuse methods that only single runs can have."""
     name = settings.method.name
     if not settings.method.family.batched:
         explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
         what, rule = f"simulate_batch: '{name}' is no explicit method", f"batches take {explicit}"
         raise SymofrosError(Problem(what, name, rule, "run sf.simulate for each state"))
-    rule = "a batch records at `output`, and is not paced"
-    options.refuse(("realtime", "every"), "simulate_batch: an option of single runs", rule)
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:

@@ -16,6 +16,7 @@ from symofros import blocks
 from symofros.diagrams.block import Block, Port, Ports
 from symofros.diagrams.files.command import as_data
 from tests.diagrams.parts import Counter, Lag
+from tests.models import bounds
 from validation.references import MODELS
 
 FIRST, BEFORE, TAU = 0.25, -3.0, 0.4
@@ -202,7 +203,7 @@ def test_a_relay_switches_while_it_is_enabled(fast: float, states: Any, starts_o
     diagram.include("part", part, None, sf.Condition(enabled="signal.y", states=states), u="fast")
     diagram.add(blocks.Integrator(name="sum"), u="part.y")
     simulation = sf.Simulation(diagram)
-    run = simulation.run(5.0, dt=5e-3, method=method, rtol=1e-9, atol=1e-11, record=0.0125)
+    run = simulation.run(5.0, dt=5e-3, method=method, record=0.0125, **bounds(method, 1e-9, 1e-11))
     y, total = relay_by_hand(states, starts_on, fast, run.t, 5.0)
     assert run.outcome.ok and run["sum.y"] == pytest.approx(total, abs=2e-9)
     if method == "rk4" and starts_on:

@@ -56,6 +56,15 @@ def test_functions_of_rigid_contacts_are_refused() -> None:
         rules.check_functions(record)
 
 
+def test_functions_of_friction_that_sticks_are_refused() -> None:
+    """They take it as smooth: a joint that runs hold creeps."""
+    joint = sf.Joint("s", "prismatic", axis=(1, 0, 0), elements=(sf.Friction(6.0, sticks=True),))
+    record = sf.compile(sf.System("block", [sf.RigidBody("block", joint, sf.Inertia(2.0))])).record
+    rules.check_record(record)
+    with pytest.raises(sf.SymofrosError, match="friction that sticks: s(.|\n)*sticks=False"):
+        rules.check_functions(record)
+
+
 @pytest.mark.parametrize("function", rules.RULES)
 def test_suggested_second_derivatives_exist_for_the_same_function(function: str) -> None:
     """The methods and functions that the remedy names are the model's."""

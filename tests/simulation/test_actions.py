@@ -12,6 +12,7 @@ from symofros.base.functions import FUNCTIONS
 from symofros.description.yaml.yaml_writer import write_yaml
 from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.stepping.bound_run import BoundRun
+from tests.models import bounds
 from tests.simulation.grasping import SIDE, docking, grabbing, model_of, tumbling
 from tests.simulation.mechanisms import slide
 
@@ -46,7 +47,7 @@ def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, f
         q, v = model.integrate(model.neutral(), 0.02 * model.difference(model.neutral(), q)), 0.3 * v
     grab, drop = sf.Event("t - 0.1", action={"grip": 1}), sf.Event("t - 0.2", action={"grip": "1 - grip"})
     events = {"grab": grab, "drop": drop}
-    run = sf.simulate(model, q, v, 0.3, events=events, method=method, dt=1e-3, rtol=1e-9, atol=1e-11)
+    run = sf.simulate(model, q, v, 0.3, events=events, method=method, dt=1e-3, **bounds(method, 1e-9, 1e-11))
     assert run.outcome.ok and [found.name for found in run.events] == ["grab", "drop"], run.outcome
     check_impact(run)
     (held, _), (free, _) = run.changes
@@ -64,7 +65,7 @@ def test_a_grasp_at_the_pose_of_the_moment_keeps_it(method: str, noise: float, f
 def test_a_switched_motion_is_that_of_two_models(method: str) -> None:
     """The tree without the closure, then the loop: to rounding, and bit by bit as begun anew with other parameters."""
     model, q, v = docking()
-    options: dict[str, Any] = {"dt": 1e-4, "method": method, "rtol": 1e-11, "atol": 1e-13}
+    options: dict[str, Any] = {"dt": 1e-4, "method": method} | bounds(method, 1e-11, 1e-13)
     run = sf.simulate(model, q, v, 0.05, events={"dock": sf.Event("t - 5e-3", action={"grip": 1})}, **options)
     assert run.outcome.ok and not run.outcome.notes, run.outcome
     check_impact(run)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.models import bounds
 from tests.simulation.grasping import PLAN, docking, model_of, tumbling
 from tests.simulation.mechanisms import slide
 from tests.simulation.rigid_scenes import G, box, rested
@@ -18,7 +19,7 @@ def test_a_stepper_acts_as_a_run_does(method: str) -> None:
     """To the last bit by fixed steps, with the same events; states are kept and put back with the modes in them."""
     model = model_of(pose="moment")
     q, v = tumbling(model)
-    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": PLAN, "rtol": 1e-10, "atol": 1e-12}
+    options: dict[str, Any] = {"dt": 1e-3, "method": method, "events": PLAN} | bounds(method, 1e-10, 1e-12)
     run = sf.simulate(model, q, v, 0.06, **options)
     stepper = sf.Stepper(model, **options)
     stepper.reset(q, v)
@@ -51,7 +52,7 @@ def test_each_of_many_acts_as_one_alone(method: str, threads: int) -> None:
     """Modes, parameters and events are its own, whoever shares its thread; kept states have them."""
     model, rng, n = model_of(pose="moment"), np.random.default_rng(5), 5
     q, v = (np.array(rows) for rows in zip(*(model.random_state(rng) for _ in range(n)), strict=True))
-    options: dict[str, Any] = {"dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
+    options: dict[str, Any] = {"dt": 1e-3, "method": method} | bounds(method, 1e-10, 1e-12)
     mixed = PLAN | {"late": sf.Event("q1 - 0.3", action={"m": "2*m"}, once=True)}
     many = sf.simulate_batch(model, q, v, 0.06, events=mixed, threads=threads, output=0.01, **options)
     for i in range(n):

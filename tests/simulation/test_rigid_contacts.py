@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.models import bounds
 from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, ball_system, box, guided, point, rested, rod
 
 
@@ -58,7 +59,7 @@ def test_a_bouncing_ball_comes_to_rest(method: str) -> None:
     """By the closed form to 1e-12 until the strikes accumulate, which is noted; then at rest."""
     model, e, h = ball(), 0.5, 0.2
     q = rested(model, 0.1 + h)
-    run = sf.simulate(model, q, t_end=2.0, method=method, dt=1e-2, rtol=1e-10, atol=1e-13)
+    run = sf.simulate(model, q, t_end=2.0, method=method, dt=1e-2, **bounds(method, 1e-10, 1e-13))
     strikes = np.array([found.t for found in run.events])
     first, n = sqrt(2 * h / G), np.arange(len(strikes))
     known = first * (1 + 2 * e * (1 - e**n) / (1 - e))

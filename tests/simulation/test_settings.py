@@ -66,3 +66,28 @@ def test_fixed_steps_are_no_longer_than_stated(top: sf.Model) -> None:
         with pytest.raises(sf.SymofrosError, match="longer than max_step\n  found:  dt = 0.001, max_step = 0.0001"):
             sf.simulate(top, t_end=0.01, max_step=1e-4, **given)
     assert sf.simulate(top, t_end=0.01, max_step=1e-3).outcome.ok
+
+
+@pytest.mark.parametrize("given", [{"rtol": 1e-9}, {"atol": 1e-12}, {"rtol": 1e-8, "atol": 1e-11}])
+@pytest.mark.parametrize("method", [{}, {"method": "generalized_alpha"}, {"method": "dopri5", "adaptive": False}])
+def test_bounds_of_errors_are_refused_where_steps_are_fixed(
+    top: sf.Model, method: dict[str, Any], given: dict[str, Any]
+) -> None:
+    """They did nothing, in silence."""
+    ways = (sf.simulate, sf.Stepper, lambda model, **options: sf.Steppers(model, 2, **options), sf.simulate_batch)
+    for way in ways[: 2 if method.get("method") == "generalized_alpha" else 4]:
+        with pytest.raises(sf.SymofrosError, match="an option of adaptive steps, '[ra]tol'(.|\n)*estimate no error"):
+            way(top, **method, **given)
+    assert sf.simulate(top, t_end=0.01, method="dopri5", **given).outcome.ok
+
+
+def test_records_after_so_many_steps_are_refused_beside_times(top: sf.Model) -> None:
+    with pytest.raises(sf.SymofrosError, match="an option of runs without `output`, 'every'"):
+        sf.simulate(top, t_end=0.1, every=10, output=0.05)
+
+
+@pytest.mark.parametrize("method", ["cvode", "ida"])
+def test_sundials_keeps_no_pace(top: sf.Model, method: str) -> None:
+    """It ran as fast as it could, whatever pace was asked for."""
+    with pytest.raises(sf.SymofrosError, match=f"'{method}' keeps no pace against the clock"):
+        sf.simulate(top, t_end=0.01, method=method, realtime=True)

@@ -423,3 +423,15 @@ def test_a_driven_arm_keeps_the_law_of_friction_at_every_record(seed: int) -> No
         and (np.abs(run.lam)[held] <= np.broadcast_to(levels, held.shape)[held] * (1 + 1e-9)).all()
     )
     assert (run.v * modes)[~held].min() > -1e-12 and set(np.unique(modes)) == {-1.0, 1.0, 2.0}
+
+
+def test_functions_say_what_they_take_for_friction_that_sticks() -> None:
+    """Modes of a joint at rest are those of the smooth law: noted, with the way to those of a joint that is held."""
+    model = on_slide(sf.Friction(6.0, sticks=True), sf.Spring(100.0), slope=0.1)
+    (note,) = sf.modes(model, [-0.02 * _G * math.sin(0.1) * -1.0]).notes
+    assert note.startswith("friction of 's' sticks in runs and is smooth here") and "par={'s.mode': 2}" in note
+    assert not sf.modes(model, [0.0], par={"s.mode": 2}).notes
+    with pytest.raises(sf.SymofrosError, match="friction of 's' carries 1.96 in motion only, up to 6(.|\n)*held="):
+        sf.equilibrium(on_slide(sf.Friction(6.0, sticks=True), slope=0.1))
+    with pytest.raises(sf.SymofrosError, match="rollout: friction that sticks"):
+        sf.rollout(model, [0.0], [0.0], np.zeros((10, 0)), dt=1e-3)

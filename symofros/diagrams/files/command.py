@@ -59,7 +59,7 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
     """
     simulation = Simulation(diagram)
     t_end = request.t_end if request.t_end is not None else diagram.simulation.t_end
-    stated = {**diagram.simulation.keywords(), **request.settings}
+    stated = diagram.simulation.keywords_with(request.settings)
     if request.speed:
         stated["realtime"] = request.speed
     if request.jitter and not stated.get("realtime"):

@@ -167,7 +167,9 @@ def _no_balance(balance: Balance, end: Search, tolerance: float, remarks: tuple[
             f"friction of '{name}' carries {load:.3g} in motion only, up to {most:.3g}" for name, load, most in creeping
         )
         found = f"{found}; {loads}"
-        rule = f"{rule}; friction is smooth through zero speed and holds nothing at rest: under a load, joints creep"
+        rule = (
+            f"{rule}; friction is smooth here through zero speed and holds nothing at rest: under a load, joints creep"
+        )
         remedy = f"hold what friction is to hold, held={[name for name, _, _ in creeping]}; or {remedy}"
     return Problem(f"model '{model.record.name}': no equilibrium was found from this guess", found, rule, remedy)
 
@@ -175,7 +177,8 @@ def _no_balance(balance: Balance, end: Search, tolerance: float, remarks: tuple[
 def _creeping(balance: Balance, end: Search, tolerance: float) -> list[tuple[str, float, float]]:
     """Joints out of balance by less than their friction reaches: name of the speed, imbalance, what is reached."""
     model, creeping = balance.model, list[tuple[str, float, float]]()
-    for i in np.intersect1d(balance.free, model.record.friction_speeds).tolist():
+    rubbing = [*model.record.friction_speeds, *(one.v for one in model.record.sticking)]
+    for i in np.intersect1d(balance.free, rubbing).tolist():
         load = abs(float(end.R[i]))
         if not np.isfinite(load) or load <= tolerance * end.sizes[i] or len(creeping) == _SHOWN:
             continue

@@ -258,6 +258,7 @@ def rollout(
         ShapeError: An array does not fit.
     """
     model.record.refuse_rigid_contacts("rollout")
+    model.record.refuse_sticking("rollout")
     if model.carried is not model:
         model.record.refuse_states("rollout, which is of `model.carried`")
     model = model.with_precision("double")

@@ -115,6 +115,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a joint with friction moves on slowly under its load at the end",
         "a smaller minimum_velocity",
     ),
+    "smooth friction": NoteKind(
+        "friction of '…' sticks in runs and is smooth here, by which the joint creeps from rest",
+        "modes are asked for at a state at rest of a joint whose friction sticks, with no mode of friction chosen",
+        "the mode as a parameter, 2: held, 1 and -1: sliding; or sticks=False",
+    ),
     "singular posture passed": NoteKind(
         "a singular posture was passed at t = … s",
         "the constraints lose rank on the way: which branch follows is left to rounding",

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import symofros as sf
 from symofros.blocks import ForwardDynamics
+from symofros.diagrams.settings import RunSettings
 from tests.diagrams.parts import Ball
 from tests.simulation.oscillator import oscillator_system
 
@@ -58,3 +61,19 @@ def test_max_step_bounds_adaptive_steps_and_adaptive_can_be_turned_off() -> None
         for bounds in ({}, {"max_step": 1e-3}, {"adaptive": False, "dt": 1e-3})
     )
     assert free.steps < 50 and 200 <= bounded.steps < 210 and fixed.steps == 200 and fixed.method == "dopri5"
+
+
+def test_bounds_of_errors_are_refused_where_steps_are_fixed(tmp_path: Path) -> None:
+    """Those that a diagram states beside a method of its own stay behind where one of fixed steps is chosen."""
+    for method in ({}, {"method": "euler"}):
+        for way in (bouncing().run, lambda _, **options: bouncing().stepper(**options)):
+            with pytest.raises(sf.SymofrosError, match="an option of adaptive steps, 'rtol'"):
+                way(0.1, rtol=1e-9, **method)
+    diagram = sf.Diagram("oscillator", simulation=RunSettings(method="dopri5", rtol=1e-9, atol=1e-12, record=0.1))
+    diagram.add_model("plant", oscillator_system(k=100.0), start={"x": 1.0})
+    diagram.add(ForwardDynamics(name="plant", model="plant"))
+    assert sf.Simulation(diagram).run(0.2, method="rk4").cost.steps == 200
+    assert sf.Simulation(diagram).stepper(method="rk4").step()
+    for given in ({"method": "rk4", "rtol": 1e-9}, {"method": "euler", "atol": 1e-9}):
+        with pytest.raises(sf.ExportError, match="has no effect"):
+            sf.export(diagram, "c", tmp_path, **given)

@@ -15,6 +15,7 @@ from reference_models import MODELS
 from symofros import blocks
 from symofros.diagrams.program.compiled import resolve
 from symofros.diagrams.run.examination import interpreted as interpreted_runs
+from tests.models import bounds
 
 _LUGRE = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05, viscous=0.3)
 _FLOOR = sf.Contact("floor", ("ball", None), ("world", None), 1e4, exponent=1.0, dissipation=2.0, friction=0.5,
@@ -81,14 +82,8 @@ def same(found: np.ndarray, expected: np.ndarray) -> None:
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
 @pytest.mark.parametrize("kind", STARTS)
 def test_a_diagram_moves_as_simulate_does(kind: str, method: str) -> None:
-    settings: dict[str, Any] = {
-        "dt": 5e-4,
-        "method": method,
-        "rtol": 1e-9,
-        "atol": 1e-11,
-        "t_end": 0.25,
-        "record": 0.25,
-    }
+    settings: dict[str, Any] = {"dt": 5e-4, "method": method, "t_end": 0.25, "record": 0.25}
+    settings |= bounds(method, 1e-9, 1e-11)
     run, plain = sf.Simulation(driven(kind)).run(realtime=False, **settings), simulated(kind, **settings)
     assert run.outcome.kind == "finished"
     for port, expected in (("q", plain.q), ("v", plain.v), ("z", plain.z)):

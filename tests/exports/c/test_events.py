@@ -12,6 +12,7 @@ import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.diagrams.run.test_switching import CASES
 from tests.exports.cases import build, run, sources
+from tests.models import bounds
 from tests.simulation.grasping import grabbing
 from tests.simulation.mechanisms import slide
 
@@ -42,7 +43,7 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
         "light": sf.Event("t - 0.05", action={"m": "m/2"}),
     }
     start = {"q1": 0.3, "q2": -0.4, "dq1": 0.5, "f.px": 1.2, "f.py": 0.2, "f.wz": 1.0}
-    options: dict[str, Any] = {"method": method, "rtol": 1e-9, "atol": 1e-11}
+    options: dict[str, Any] = {"method": method} | bounds(method, 1e-9, 1e-11)
     sf.export(grabbing("moment"), "c", tmp_path / "c", name="plan", events=plan, start=start, dt=1e-3, **options)
     (tmp_path / "c" / "main.c").write_text(MAIN)
     program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
@@ -63,7 +64,8 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
 def test_a_contact_rests_and_opens_in_packages(tmp_path: Path, method: str, span: float) -> None:
     """At the instants of the run, the last strike among them, where both have the thresholds (32c)."""
     stated = CASES["rest"]
-    options: dict[str, Any] = {"events": stated.events, "dt": 1e-3, "method": method, "rtol": 1e-10, "atol": 1e-12}
+    options: dict[str, Any] = {"events": stated.events, "dt": 1e-3, "method": method}
+    options |= bounds(method, 1e-10, 1e-12)
     sf.export(stated.system, "c", tmp_path / "c", name="plan", start=stated.start, **options)
     (tmp_path / "c" / "main.c").write_text(MAIN)
     program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))

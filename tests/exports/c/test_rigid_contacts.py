@@ -13,6 +13,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.exports.cases import build, run, sources
+from tests.models import bounds
 from tests.simulation.rigid_scenes import (
     WITHOUT_ANSWER,
     G,
@@ -63,7 +64,7 @@ def distinct(instants: Iterable[float]) -> list[float]:
 def test_packages_move_as_runs_do(tmp_path: Path, scene: str, method: str) -> None:
     """Each event at its instant, and the state at the end; again after a reset."""
     system, start = SCENES[scene]
-    options: dict[str, Any] = {"method": method, "rtol": 1e-9, "atol": 1e-12}
+    options: dict[str, Any] = {"method": method} | bounds(method, 1e-9, 1e-12)
     program = packaged(tmp_path, MAIN, system, start, **options)
     model, t_end = sf.compile(system), 1.0 if "box" not in scene else 0.2
     q, v = first(model, start)

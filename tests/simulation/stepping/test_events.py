@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.models import bounds
 
 G = 9.81
 FIXED = ["euler", "semi_implicit_euler", "rk4", "implicit_euler", "generalized_alpha", "variational"]
@@ -76,7 +77,8 @@ def test_a_thrown_body_passes_any_level_on_its_way_up_and_down(thrown: sf.Model,
         root = np.sqrt(v**2 - 2 * G * level)
         up, down = (v - root) / G, (v + root) / G
         events = {"any": "z - level", "up": sf.Event("z - level", "rising"), "down": sf.Event("level - z", "rising")}
-        options: dict[str, Any] = {"method": method, "dt": 2e-2, "rtol": 1e-9, "atol": 1e-12, "par": {"level": level}}
+        options: dict[str, Any] = {"method": method, "dt": 2e-2, "par": {"level": level}}
+        options |= bounds(method, 1e-9, 1e-12)
         run = sf.simulate(thrown, [0.0], [v], 2 * v / G, events=events, **options)
         # An error of the state moves the zero by as much over the speed there.
         assert_met(run, [up, up, down, down], 1e-7 / root + 1e-9)
@@ -215,7 +217,7 @@ def test_events_that_steps_cannot_resolve_are_noted_and_no_others(thrown: sf.Mod
 @pytest.mark.parametrize("method", METHODS)
 def test_looking_for_events_changes_no_step(pendulum: sf.Model, method: str) -> None:
     """Nor does it cost many evaluations: three on twelve for the dense output of dop853, one a step elsewhere."""
-    options: dict[str, Any] = {"method": method, "dt": 1e-2, "rtol": 1e-6, "output": [2.0]}
+    options: dict[str, Any] = {"method": method, "dt": 1e-2, "output": [2.0]}
     plain = sf.simulate(pendulum, [1.0], [0.0], 2.0, **options)
     run = sf.simulate(pendulum, [1.0], [0.0], 2.0, events={"low": "q", "far": "q - 9"}, **options)
     assert run.statistics.steps == plain.statistics.steps and len(run.events) == 2

@@ -34,10 +34,11 @@ def run_diagram(request: Json, tell: Tell) -> Json:
     simulation = Simulation(diagram)
     wired = simulation.resolved.wired
     plots = (plots_of(wired) or [Plot(name, (name,)) for name in _outputs(wired)])[:MAX_PLOTS]
-    settings = diagram.simulation.keywords()
-    settings |= {key: number_of(options[key], key, from_zero=True) for key in SETTINGS if options.get(key) is not None}
+    given = [key for key in SETTINGS if options.get(key) is not None]
+    asked: Json = {key: number_of(options[key], key, from_zero=True) for key in given}
     if options.get("method"):
-        settings["method"] = str(options["method"])
+        asked["method"] = str(options["method"])
+    settings = diagram.simulation.keywords_with(asked)
     t_end = number_of(options.get("t_end") or diagram.simulation.t_end or 1.0, "t_end", from_zero=True)
     stops = [number_of(stop, "a breakpoint", from_zero=True) for stop in (options.get("breakpoints") or [])[:MAX_STOPS]]
     observer = LiveObserver(tell, wired, plots, t_end, stops)
