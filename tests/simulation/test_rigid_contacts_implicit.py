@@ -8,9 +8,10 @@ from typing import Any, Literal
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import symofros as sf
-from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, disc_system, in_shell, rested, rod
+from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, disc_system, in_shell, point, rested, rod
 from tests.simulation.test_rigid_rims import in_body, tilted
 
 Fixed = Literal["rodas4", "implicit_euler"]
@@ -44,6 +45,26 @@ def test_steps_converge_at_their_order_while_balls_slide(name: str, method: Fixe
     ends = [sf.simulate(model, q, v, t_end=0.024, method=method, adaptive=False, dt=dt).v[-1] for dt in (4e-3, 2e-3)]
     coarse, fine = (np.abs(end - known).max() for end in ends)
     assert log2(coarse / fine) == pytest.approx(order, abs=0.35) and fine < (1e-7 if order == 4 else 0.1)
+
+
+@pytest.mark.parametrize("method", ["rk4", "rodas4"])
+def test_a_slip_that_turns_past_a_right_angle_does_not_disturb_steps(method: Literal["rk4", "rodas4"]) -> None:
+    """A mass thrown up and across an incline: its event is at the right angle, and steps keep their order across it."""
+    friction, gx, start = 0.3, 4.0, np.array([-1.0, 0.6])
+
+    def rates(_: float, v: Any) -> Any:
+        return np.array([gx, 0.0]) - friction * G * v / np.linalg.norm(v)
+
+    def across(_: float, v: Any) -> Any:
+        return v @ start
+
+    known = solve_ivp(rates, (0, 0.5), start, "DOP853", rtol=1e-12, atol=1e-13, events=across)
+    run = sf.simulate(
+        point(friction, (gx, 0, -G)), None, [*start, 0.0], t_end=0.5, method=method, adaptive=False, dt=5e-3
+    )
+    assert [found.name for found in run.events] == ["foot turns"]
+    assert run.events[0].t == pytest.approx(known.t_events[0][0], abs=1e-7)
+    assert run.v[-1, :2] == pytest.approx(known.y[:, -1], abs=1e-7) and np.linalg.norm(known.y[:, -1]) > 0.4
 
 
 @pytest.mark.parametrize("scene", ["ball", "rod"])

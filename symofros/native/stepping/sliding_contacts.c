@@ -10,6 +10,10 @@ static double sym_along_way(const double *par, const sym_rigid_contact *of, cons
     return par[of->way[0]] * slip[0] + par[of->way[1]] * slip[1];
 }
 
+/* Cosine of the angle from the direction in which sliding began beyond which a slip has passed rest: one that turns past the
+ * right angle at which a mode ends has not. */
+#define SYM_PASSED_REST -0.7
+
 /* Direction (2) in which a ball slides by its slip u: the last known one where the slip is so small that a step of this length
  * can't follow how it turns, and opposite to the slip where this has passed rest since it began, so that a step beyond the end
  * of a mode is as smooth as the one before, (41b). */
@@ -18,7 +22,7 @@ static void sym_slip_direction(const double *par, const sym_rigid_contact *of, c
     memcpy(d, known, 2 * sizeof *d);
     if (slip <= SYM_RESTS_AT || slip <= known[2]) return;
     d[0] = u[0] / slip, d[1] = u[1] / slip;
-    if (sym_along_way(par, of, d) < 0.0) d[0] = -d[0], d[1] = -d[1];
+    if (sym_along_way(par, of, d) < SYM_PASSED_REST) d[0] = -d[0], d[1] = -d[1];
 }
 
 /* At the end of a step: the directions of balls that slide. */

@@ -12,6 +12,7 @@ from symofros.runtime.model import Model
 from symofros.runtime.record import SLIDES, RigidContactRecord
 
 _STILL = native_number("stepping/sticking.c", "SYM_RESTS_AT")
+_PASSED_REST = native_number("stepping/sliding_contacts.c", "SYM_PASSED_REST")
 
 
 def contact_dynamics(
@@ -63,6 +64,6 @@ def _direction(ball: RigidContactRecord, slip: Array, rows: Array) -> Array:
     """Direction in which a ball slides (n, 2): that of its slip or, without one, that in which it began."""
     way = rows[:, list(ball.way[:2])]
     size = np.linalg.norm(slip, axis=1, keepdims=True)
-    along = np.where((slip * way).sum(axis=1, keepdims=True) < 0.0, -1.0, 1.0)
+    along = np.where((slip * way).sum(axis=1, keepdims=True) < _PASSED_REST * size, -1.0, 1.0)
     direction: Array = np.where(size > _STILL, along * slip / np.maximum(size, _STILL), way)
     return direction

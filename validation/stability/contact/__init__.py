@@ -1,1 +1,1 @@
-"""Contact: steps in a stiff impact, friction that holds, bounces that accumulate."""
+"""Contact: steps in a stiff impact, friction that holds, bounces that accumulate, motions beside those of engines."""

@@ -15,7 +15,7 @@ from ...adapters.exudyn import contact as exudyn_contact
 from ...adapters.mujoco import motion as mujoco_motion
 from ...reporting.findings import Finding
 from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, longest, simulate
-from . import drake_block
+from . import drake_contact
 
 FRICTION, GRAVITY, STIFFNESS, RADIUS = 0.5, 9.81, 1e5, 0.1
 SLOW = 1e-3
@@ -128,10 +128,10 @@ def by_mujoco(name: str, share: float, h: float) -> Cell:
 
 def by_drake(name: str, share: float, h: float) -> Cell:
     """The same block as Drake holds it, by the properties that it has by default."""
-    if not drake_block.INSTALLED:
-        return Cell(math.nan, "refused", drake_block.MISSING)
+    if not drake_contact.INSTALLED:
+        return Cell(math.nan, "refused", drake_contact.MISSING)
     gravities = gravity(share)
-    middle, last = drake_block.slid(DRAKE[name], FRICTION, RADIUS, gravities, h, (SETTLED, END))
+    middle, last = drake_contact.slid(DRAKE[name], FRICTION, RADIUS, gravities, h, (SETTLED, END))
     return Cell(beyond(share, middle, last[0]))
 
 
@@ -181,7 +181,7 @@ def judge(maps: Maps) -> Verdict:
             reason="friction lags while bristles bend, by micrometres of speed times 10 s",
         ),
     )
-    asked = (name for name in rows if name in (*ENGINES, EXUDYN) or (name in DRAKE and drake_block.INSTALLED))
+    asked = (name for name in rows if name in (*ENGINES, EXUDYN) or (name in DRAKE and drake_contact.INSTALLED))
     others = ", ".join(f"{name} {held[name]:.1g} m" for name in asked)
     statement = (
         f"Below the limit of friction Coulomb's block stays. In 10 s a rigid contact creeps by {held[RIGID]:.1g} m, "
