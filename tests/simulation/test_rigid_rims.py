@@ -202,6 +202,66 @@ def test_a_rim_that_lies_on_its_plane_is_said() -> None:
     for run in (begins, falls):
         assert run.outcome.kind == "beyond theory" and "lies on its plane" in str(run.outcome)
     assert falls.t[-1] < 0.12 and axis(falls.q[-1])[1] == pytest.approx(-0.009, abs=1e-5)
-    for stated in ({"stiffness": 1e5}, {"restitution": 0.0, "surface": "sphere", "surface_radius": 1.0}):
+    for stated in ({"stiffness": 1e5}, {"restitution": 0.0, "surface": "cylinder", "surface_radius": 1.0}):
         with pytest.raises(sf.DescriptionError, match="a rim meets a plane"):
             sf.Contact("c", ("disc", None), GROUND, rim=0.1, **stated)  # type: ignore[arg-type]
+
+
+BIG = 0.3
+
+
+def on_a_sphere(friction: float) -> sf.Model:
+    """A thin drum with a rim at either end, above a sphere that rests."""
+    across = MASS * (RADIUS**2 / 4 + 0.01**2 / 12)
+    drum = sf.RigidBody(
+        "drum", sf.Joint("free", "free"), sf.Inertia(MASS, moments=(across, across, MASS * RADIUS**2 / 2))
+    )
+    sizes: dict[str, Any] = {"rim": RADIUS, "points": ((0, 0, -0.005), (0, 0, 0.005)), "surface_radius": BIG}
+    laws: dict[str, Any] = {"restitution": 0.0, "friction": friction, "surface": "sphere"}
+    return sf.compile(
+        sf.System("drum", [drum], connections=[sf.Contact("rim", ("drum", None), GROUND, **sizes, **laws)])
+    )
+
+
+def test_rims_are_as_far_from_a_sphere_as_mujocos_cylinder() -> None:
+    """Where the centre of the sphere is beside and beyond the cylinder: else its face is nearer. And rows are rates."""
+    mujoco = pytest.importorskip("mujoco")
+    engine = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><worldbody><geom type="sphere" size="{BIG}"/><body><freejoint/>
+        <geom type="cylinder" size="{RADIUS} 0.005"/></body></worldbody></mujoco>"""
+    )
+    data, model, rng, compared, h = mujoco.MjData(engine), on_a_sphere(0.1), np.random.default_rng(2), 0, 1e-5
+    touching = model.with_parameters(**{"rim.0.mode": 2})
+    for _ in range(40):
+        q, v = model.random_state(rng)
+        p, R = model.frame_pose("drum", q)
+        along, beside = abs(R[:, 2] @ p), np.linalg.norm(p - (R[:, 2] @ p) * R[:, 2])
+        if along < 0.005 or beside < RADIUS or np.linalg.norm(p) < BIG + RADIUS:
+            continue
+        data.qpos[:] = q[[0, 1, 2, 6, 3, 4, 5]]
+        mujoco.mj_kinematics(engine, data)
+        known = mujoco.mj_geomDistance(engine, data, 0, 1, 10.0, np.zeros(6))
+        assert min(model.contact_forces(q, v).gap) == pytest.approx(known, abs=1e-5)
+        ahead, behind = (touching.integrate(q, k * h * v) for k in (1.0, -1.0))
+        rate = (touching.constraint(ahead) - touching.constraint(behind))[0] / (2 * h)
+        bend = (touching.constraint_jacobian(ahead) - touching.constraint_jacobian(behind)) @ v / (2 * h)
+        assert (touching.constraint_jacobian(q) @ v)[0] == pytest.approx(rate, abs=1e-7)
+        assert -touching.constraint_bias(q, v) == pytest.approx(bend, abs=1e-5)
+        compared += 1
+    assert compared >= 10
+
+
+def test_a_drum_rolls_off_a_sphere() -> None:
+    """Upright, on both rims: 3/4 of the square of its speed is g times its fall."""
+    model, lean = on_a_sphere(5.0), 0.2
+    high = sqrt((BIG) ** 2 - 0.005**2) + RADIUS  # Rims are beside the middle of the sphere.
+    q = model.neutral()
+    q[[0, 2]], q[3], q[6] = high * np.array([sin(lean), cos(lean)]), sqrt(0.5), sqrt(0.5)
+    for given in (FINE, {"method": "rodas4", "rtol": 1e-10, "atol": 1e-12}):
+        run = sf.simulate(model, q, t_end=0.4, **given)
+        assert run.events == () and run.outcome.ok
+        places = run.q[:, [0, 2]]
+        np.testing.assert_allclose(np.linalg.norm(places, axis=1), high, atol=1e-9)
+        speeds = np.array([model.frame_velocity("drum", *x)[:3] for x in zip(run.q, run.v, strict=True)])
+        np.testing.assert_allclose(0.75 * (speeds**2).sum(axis=1), G * (q[2] - run.q[:, 2]), atol=1e-8)
+        assert np.arctan2(*places[-1]) > 0.4

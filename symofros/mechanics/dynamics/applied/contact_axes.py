@@ -76,20 +76,52 @@ class Line(NamedTuple):
     a: Vec3
     a_rate: Vec3
 
+    def seen_from(self, S: Triad) -> Line:
+        """The line in the axes and from the origin of a frame S."""
+        d, inverse = self.p - S.p, S.R.T
+        v, turned = self.v - S.v - S.w.cross(d), self.a_rate - S.w.cross(self.a)
+        return Line(inverse.times(d), inverse.times(v), inverse.times(self.a), inverse.times(turned))
 
-def reach_of(lowering: Lowering, contact: Contact, on_ball: Line, on_surface: Line) -> Reach | None:
+
+class Triad(NamedTuple):
+    """A frame S of a body, in world axes.
+
+    Attributes:
+        p: Its origin [m].
+        R: Its axes.
+        v: The velocity of the origin [m/s].
+        w: Its angular velocity [rad/s].
+    """
+
+    p: Vec3
+    R: Mat3
+    v: Vec3
+    w: Vec3
+
+    @property
+    def axis(self) -> Line:
+        """Its z axis."""
+        b = self.R.column(2)
+        return Line(self.p, self.v, b, self.w.cross(b))
+
+
+def reach_of(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> Reach | None:
     """What leads from a point of a contact to that of its rim or segment next to the surface; None of a ball.
 
     Args:
         lowering: Edges of the contact's numbers.
         contact: The contact.
         on_ball: The line through the point along the z axis of its frame.
-        on_surface: The z axis of the surface's frame.
+        S: The surface's frame.
     """
     if contact.rim is not None:
-        of = on_ball.a, on_ball.a_rate, on_surface.a, on_surface.a_rate
-        return rim_reach(lowering.g, lowering.value(contact.rim), *of)
-    return None if contact.segment is None else segment_reach(lowering, contact, on_ball, on_surface)
+        n, n_rate = (S.axis.a, S.axis.a_rate) if contact.surface == "plane" else _from_centre(on_ball, S)
+        return rim_reach(lowering.g, lowering.value(contact.rim), on_ball.a, on_ball.a_rate, n, n_rate)
+    if contact.segment is None:
+        return None
+    if contact.surface == "box":
+        return box_reach(lowering, contact, on_ball, S)
+    return segment_reach(lowering, contact, on_ball, S.axis)
 
 
 class Reach(NamedTuple):
@@ -107,8 +139,16 @@ class Reach(NamedTuple):
     sine: Edge
 
 
+def _from_centre(on_ball: Line, S: Triad) -> tuple[Vec3, Vec3]:
+    """Unit vector from the centre of a sphere to that of a rim, in place of the normal of a plane, and its rate."""
+    g, c, c_rate = on_ball.p.g, on_ball.p - S.p, on_ball.v - S.v
+    away = g.div(ONE, norm(g, c))
+    n = c.scaled(away)
+    return n, (c_rate - n.scaled(n.dot(c_rate))).scaled(away)
+
+
 def rim_reach(g: Graph, radius: Edge, a: Vec3, a_rate: Vec3, n: Vec3, n_rate: Vec3) -> Reach:
-    """Where a rim with the axis a is next to a plane with the normal n: (38g).
+    """Where a rim with the axis a is next to a plane with the normal n, or to a sphere in the direction -n: (38g).
 
     Args:
         g: Graph of the result.
@@ -152,10 +192,52 @@ def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Rea
     return Reach(A.a.scaled(s), A.a.scaled(s_rate) + A.a_rate.scaled(s), sine)
 
 
+def box_reach(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> Reach:
+    """Where a segment is next to a box, and how that point moves: (38i), in the axes of the box."""
+    g, line = lowering.g, on_ball.seen_from(S)
+    half = g.mul(g.constant(0.5), lowering.value(contact.segment or 0.0))
+    halves = [g.mul(g.constant(0.5), lowering.value(size)) for size in contact.size or ()]
+    edges = list(zip(line.p, line.a, halves, strict=True))
+
+    def beyond(s: Edge) -> list[Edge]:
+        """What the point s is beyond the faces of the box along each axis; zero between them."""
+        x = [g.add(c, g.mul(s, a)) for c, a, _ in edges]
+        return [g.sub(one, _within(g, one, h)) for one, h in zip(x, halves, strict=True)]
+
+    def slope(s: Edge) -> Edge:
+        """Half the rate, along the segment, of the square of the distance from the box: it does not fall."""
+        return g.sum(g.mul(a, y) for a, y in zip(line.a, beyond(s), strict=True))
+
+    knots = [-half, half]
+    for c, a, h in edges:
+        slant = g.div(a, g.call("max", g.mul(a, a), g.constant(TINY)))
+        knots += [_within(g, g.mul(g.sub(face, c), slant), half) for face in (h, -h)]
+    low, high = -half, half
+    for knot in knots:
+        falls, rises = g.call("step", -slope(knot)), g.call("step", slope(knot))
+        low = g.call("max", low, g.sub(g.mul(falls, g.add(knot, half)), half))
+        high = g.call("min", high, g.add(g.mul(rises, g.sub(knot, half)), half))
+    middle = g.mul(g.constant(0.5), g.add(low, high))
+    outside = [g.sub(ONE, g.call("step", -g.call("abs", y))) for y in beyond(middle)]
+    steep = g.sum(g.mul(w, g.mul(a, a)) for w, a in zip(outside, line.a, strict=True))
+    steep = g.call("max", steep, g.constant(TINY))
+    s = g.sub(middle, g.div(slope(middle), steep))
+    moved = line.v + line.a_rate.scaled(s)
+    parts = zip(outside, line.a, line.a_rate, moved, beyond(s), strict=True)
+    change = g.sum(g.mul(w, g.add(g.mul(a_rate, y), g.mul(a, x_rate))) for w, a, a_rate, x_rate, y in parts)
+    s, s_rate = _clamped(g, s, -g.div(change, steep), half)
+    return Reach(on_ball.a.scaled(s), on_ball.a.scaled(s_rate) + on_ball.a_rate.scaled(s), g.sqrt(steep))
+
+
+def _within(g: Graph, x: Edge, half: Edge) -> Edge:
+    """The number between -half and half that is next to x."""
+    return g.call("min", g.call("max", x, -half), half)
+
+
 def _clamped(g: Graph, x: Edge, x_rate: Edge, half: Edge) -> tuple[Edge, Edge]:
     """A number between -half and half, and its rate."""
     within = g.call("step", g.sub(half, g.call("abs", x)))
-    return g.call("min", g.call("max", x, -half), half), g.mul(within, x_rate)
+    return _within(g, x, half), g.mul(within, x_rate)
 
 
 def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3]:
@@ -174,7 +256,7 @@ def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3
     for k, (coordinate, length) in enumerate(zip(x, lengths, strict=True)):
         half = g.mul(g.constant(0.5), lowering.value(length))
         if half != ZERO:
-            away[k] = g.sub(coordinate, g.call("min", g.call("max", coordinate, -half), half))
+            away[k] = g.sub(coordinate, _within(g, coordinate, half))
             free[k] = g.call("step", g.sub(g.call("abs", coordinate), half))
     return Vec3(g, *away), Vec3(g, *free)
 

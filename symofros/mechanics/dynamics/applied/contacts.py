@@ -14,6 +14,7 @@ from symofros.expr.vector import Vec3
 from symofros.mechanics.dynamics.applied.contact_axes import (
     TINY,
     Line,
+    Triad,
     core_normal,
     from_core,
     norm,
@@ -88,8 +89,8 @@ def _touching(
     first, second = (frames.pose(end) for end in ends)
     radius = lowering.value(contact.radius)
     p_WC, still = first.p_WF + first.R_WF.times(point), Vec3(g)
-    lines = (Line(p, still, R.column(2), still) for p, R in ((p_WC, first.R_WF), (second.p_WF, second.R_WF)))
-    reach = reach_of(lowering, contact, *lines)
+    line = Line(p_WC, still, first.R_WF.column(2), still)
+    reach = reach_of(lowering, contact, line, Triad(second.p_WF, second.R_WF, still, still))
     if reach is not None:
         p_WC = p_WC + reach.reach
     distance, gradient = _surface(lowering, contact, second.R_WF.T.times(p_WC - second.p_WF))

@@ -29,7 +29,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.expr.quaternion import Quaternion
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.dynamics.applied.contact_axes import Line, reach_of, surface_axes
+from symofros.mechanics.dynamics.applied.contact_axes import Line, Triad, reach_of, surface_axes
 from symofros.mechanics.dynamics.applied.forces import coordinate_rates, rates_per_speed
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics
@@ -255,13 +255,13 @@ class Constraints:
             yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
 
     def _touching(self, touching: Touching) -> Iterator[Row]:
-        """A ball or rim on a surface: its distance and the speed of its point of contact vanish (eqs. 38a to 38h)."""
+        """A ball or rim on a surface: its distance and the speed of its point of contact vanish (eqs. 38a to 38i)."""
         g, contact, lowering = self.g, touching.contact, self.kinematics.lowering
         S, B = self._state(touching.first), self._state(touching.second)
         radius, arm = lowering.value(contact.radius), B.R.times(lowering.vector(contact.points[touching.ball]))
-        arm_rate, a, b = B.w.cross(arm), B.R.column(2), S.R.column(2)
-        lines = Line(B.p + arm, B.v + arm_rate, a, B.w.cross(a)), Line(S.p, S.v, b, S.w.cross(b))
-        reach = reach_of(lowering, contact, *lines)
+        arm_rate, a = B.w.cross(arm), B.R.column(2)
+        line = Line(B.p + arm, B.v + arm_rate, a, B.w.cross(a))
+        reach = reach_of(lowering, contact, line, Triad(S.p, S.R, S.v, S.w))
         if reach is not None:
             arm, arm_rate = arm + reach.reach, arm_rate + reach.rate
         ball = RigidBall(contact, touching.ball, contact.ball_names[touching.ball])
