@@ -19,6 +19,16 @@ BASE, DENAVIT, MODIFIED = "a base", "Denavit-Hartenberg parameters", "modified D
 GRIPPER = "a gripper"
 # What a tree is asked about whose limits and dry friction act as MuJoCo's documentation has them (`Tree.asked`).
 SOFT_LIMITS = "soft limits and friction"
+# What engines are asked about whose text makes its own model: names of a tree that is there for its state alone.
+FEATURES = (
+    "force elements",
+    "inertias of solids, meshes and convex hulls",
+    "defaults and parameters: gears, rotors, dampers, model instances",
+    "joints that are locked, held and coupled in a step",
+    "trajectories",
+    "linear systems and controllers",
+    "servos, motors, dry friction and joints at limits",
+)
 
 
 @dataclass(frozen=True)

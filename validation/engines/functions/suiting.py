@@ -15,12 +15,12 @@ from .beside import LONE, TURNS
 from .carried import CARRIED
 from .constrained import CONSTRAINED
 from .devices import DEVICES
+from .features import FEATURES
 from .function import Function, functions_of
 from .integrators import STEPS
 from .poses import POSES
 from .shapes import SHAPES
 from .stated import STATED
-from .tanks import TANKS
 from .trees import TREES
 from .vectors import VECTORS
 
@@ -37,7 +37,7 @@ FUNCTIONS: dict[str, Function] = (
     | POSES
     | SHAPES
     | ARMS
-    | TANKS
+    | FEATURES
     | VECTORS
     | DEVICES
 )

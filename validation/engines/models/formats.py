@@ -12,6 +12,7 @@ from ..plugins import mujoco
 from ..plugins.writing import sdf, urdf
 from . import (
     coupled_files,
+    drake_files,
     mjcf_files,
     mjcf_geoms,
     mjcf_joints,
@@ -72,6 +73,7 @@ def formats() -> dict[str, Reading]:
     mjcf_stated |= mjcf_lines.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
     read = mjcf_scopes.files() | sdf_files.files() | usd_files.files() | usd_masses.files() | coupled_files.files()
+    read |= drake_files.files()
     return urdf_stated | mjcf_stated | read | made | dict(map(_written, written))
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
+from ..tree import FEATURES
 from ..truth.devices import DEVICES
 from .readers import IDENTITY, TURNED
 
@@ -82,6 +83,7 @@ def trees() -> dict[str, Tree]:
         turns,
         replace(turns, name="vectors", asked="vectors"),
         *(replace(turns, name=group, asked=group) for group in DEVICES),
+        *(replace(turns, name=name, asked=name) for name in FEATURES),
         *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),
         _box("box by its corners", low, high, 0.5),

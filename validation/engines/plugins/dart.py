@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
-from ..truth.points import POINT
-from . import turns
-from .loops import dart_joints
+from . import features, turns
+from .features import dart_features
+from .loops import dart_bound, dart_frames, dart_joints
 from .turns import dart as turning
 from .writing import copies
 from .writing.numbering import numbered
@@ -138,47 +138,6 @@ for b in links:
     "integrate": Way("integratePositions", f"{_INTEGRATED}value = s.getPositions()"),
     "difference": Way("getPositionDifferences", f"{_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)"),
 }
-# As the first link sees them, along its axes.
-_SEEN = "A = links[0]\n"
-WAYS |= {
-    "relative_poses": Way(
-        "getTransform, withRespectTo",
-        f"{_Q}{_SEEN}X = [b.getTransform(A) for b in links]\n"
-        "value = [[*x.translation(), *x.rotation().flat] for x in X]",
-    ),
-    "relative_velocities": Way(
-        "getLinearVelocity, getAngularVelocity relative to",
-        f"{_QV}{_SEEN}value = [[*b.getLinearVelocity(A, A), *b.getAngularVelocity(A, A)] for b in links]",
-    ),
-    "relative_accelerations": Way(
-        "getLinearAcceleration, getAngularAcceleration relative to",
-        f"{_QVA}{_SEEN}value = [[*b.getLinearAcceleration(A, A), *b.getAngularAcceleration(A, A)] for b in links]",
-    ),
-    "mass_centre_velocity": Way("getCOMLinearVelocity", f"{_QV}value = s.getCOMLinearVelocity()"),
-    "mass_centre_acceleration": Way("getCOMLinearAcceleration", f"{_QVA}value = s.getCOMLinearAcceleration()"),
-    "mechanical_energy": Way(
-        "computeKineticEnergy, computeLagrangian", f"{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()"
-    ),
-}
-
-# Of a point of each link.
-_POINT = f"x, W = np.array({list(POINT)}), dart.dynamics.Frame.World()\n"
-WAYS |= {
-    "point_jacobians": Way(
-        "getLinearJacobian, of a point", f"{_Q}{_POINT}value = [s.getLinearJacobian(b, x, W) for b in links]"
-    ),
-    "point_velocities": Way(
-        "getLinearVelocity, of a point", f"{_QV}{_POINT}value = [b.getLinearVelocity(x, W, W) for b in links]"
-    ),
-    "point_accelerations": Way(
-        "getLinearAcceleration, of a point", f"{_QVA}{_POINT}value = [b.getLinearAcceleration(x, W, W) for b in links]"
-    ),
-    "point_velocity_products": Way(
-        "getLinearJacobianDeriv, of a point",
-        f"{_QV}{_POINT}value = [s.getLinearJacobianDeriv(b, x, W) @ v for b in links]",
-    ),
-}
-
 _COPIED = {
     "clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n",
     # Joints of a copy, along axes and at places of their own, are made as those that they copy.
@@ -231,7 +190,7 @@ def _inertia(link: Link) -> str:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a skeleton; links without a joint hang on weld joints."""
-    if tree.asked == "turns":
+    if tree.asked == "turns" or tree.asked in features.DART:
         return turns.source(*turning.IMPORTS)
     if tree.changed:
         first = write(tree.before)
@@ -275,7 +234,8 @@ def write(tree: Tree) -> Source | Unsupported:
         slots.append((Slot(native.chart, places, places),) if steps else ())
         count += native.size
     links = f"links = [{', '.join(f'b{k}' for k in range(len(tree.links)))}]"
-    return Source(tuple(lines), tuple(slots), count, count, {"links": (links,)})
+    optional = {"links": (links,)} | dart_frames.sensed(tree) | dart_bound.bound(tree)
+    return Source(tuple(lines), tuple(slots), count, count, optional)
 
 
 def _forces(joint: Joint, size: int) -> list[str]:
@@ -372,12 +332,22 @@ PLUGIN = SourcePlugin(
         "free": "FreeJoint",
         "free between links": "FreeJoint",
     },
-    ways=WAYS | copies.of_model(WAYS, _COPIED) | dart_joints.WAYS | turning.WAYS,
+    ways=WAYS
+    | dart_frames.WAYS
+    | dart_bound.WAYS
+    | copies.of_model(WAYS, _COPIED)
+    | dart_joints.WAYS
+    | turning.WAYS
+    | dart_features.WAYS,
     write=write,
+    constraints=dart_bound.KINDS,
     formats=tuple(_READERS),
     write_reading=write_reading,
     demands={
+        **features.DART,
         "turns": "rotations and placements",
+        "sensors": "SimpleFrame",
+        "a bound pair": "WeldJointConstraint, BallJointConstraint",
         "dampers": "setDampingCoefficient",
         "springs": "setSpringStiffness",
         "changed mass": "setMass",

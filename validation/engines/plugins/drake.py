@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import STEP, Array, Convention, End, Joint, Slot, Tendon, Tree, Unsupported
-from . import turns
+from . import features, turns
+from .features import drake_bodies, drake_curves, drake_elements, drake_parameters, drake_systems
 from .loops import drake_forces as forces
 from .loops import drake_gradients as gradients
 from .loops import drake_objects as objects
@@ -195,7 +196,7 @@ def _changing(tree: Tree) -> list[str]:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a plant; links without a joint are welded."""
-    if tree.asked == "turns":
+    if tree.asked == "turns" or tree.asked in features.DRAKE:
         return turns.source(*turning.IMPORTS)
     if tree.changed:
         first = write(tree.before)
@@ -265,7 +266,7 @@ def write(tree: Tree) -> Source | Unsupported:
     return Source(tuple(lines), slots, nq, nv, optional, forces.lacks(tree), closing=_CLOSING, spelling=spelling)
 
 
-_PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml"}
+_PARSERS = {"urdf": "urdf", "sdf": "sdf", "mjcf": "xml", "urdf of drake": "urdf", "sdf of drake": "sdf"}
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
@@ -283,7 +284,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
                 natives.append(native)
         chosen.append(natives)
     names = [link.name for link in tree.links]
-    base = urdf.base(text) if form == "urdf" else ""
+    base = urdf.base(text) if _PARSERS[form] == "urdf" else ""
     lines = [
         *_IMPORTS,
         *([] if form == "mjcf" else _gravity(tree)),
@@ -370,12 +371,18 @@ PLUGIN = SourcePlugin(
         | objects.WAYS
         | forces.WAYS
         | turning.WAYS
+        | drake_elements.WAYS
+        | drake_bodies.WAYS
+        | drake_parameters.WAYS
+        | drake_systems.WAYS
+        | drake_curves.WAYS
     ),
     write=write,
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={
+        **features.DRAKE,
         "turns": "rotations and placements",
         "sensors": "Accelerometer, Gyroscope",
         "a bound pair": "AddWeldConstraint, AddBallConstraint",

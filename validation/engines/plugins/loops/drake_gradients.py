@@ -48,3 +48,25 @@ WAYS = {
         gradient("out = -ad.CalcGravityGeneralizedForces(d)", BY_Q),
     ),
 }
+# Other scalars that carry the same numbers.
+_SCALARS = {"ToAutoDiffXd": "x.value()", "ToSymbolic": "x.Evaluate()"}
+_OF_SCALARS = {
+    "mass_matrix": "[*map(list, ad.CalcMassMatrix(d))]",
+    "coriolis_forces": "[ad.CalcBiasTerm(d)]",
+    "gravity": "[-ad.CalcGravityGeneralizedForces(d)]",
+    "link_poses": "[[*x.translation(), *x.rotation().matrix().flat] for x in"
+    " (ad.EvalBodyPoseInWorld(d, ad.get_body(b.index())) for b in links)]",
+}
+
+
+def _by_scalar(name: str, of: str) -> Way:
+    kind = "AutoDiffXd" if name == "ToAutoDiffXd" else "Expression"
+    read = f"value = [[{_SCALARS[name]} if hasattr(x, '{_SCALARS[name][2:-2]}') else x for x in row] for row in {of}]"
+    flat = "" if of.startswith("[[*x") or of.startswith("[*map") else "\nvalue = value[0]"
+    return Way(
+        f"{name}, {of.partition('ad.')[2].partition('(')[0]} of {kind}",
+        f"{QV}ad = p.{name}()\nd = ad.CreateDefaultContext()\nd.SetTimeStateAndParametersFrom(c)\n{read}{flat}",
+    )
+
+
+WAYS |= {f"{one}:{name}": _by_scalar(name, of) for name in _SCALARS for one, of in _OF_SCALARS.items()}

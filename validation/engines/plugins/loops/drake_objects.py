@@ -88,6 +88,37 @@ _FRAMES = {
         Q,
         "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, W), 3, axis=0) for f in own]",
     ),
+    "frame_poses:CalcRotationMatrixInWorld": (
+        "Frame.CalcRotationMatrixInWorld, CalcPointsPositions",
+        Q,
+        "value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], W).ravel(),"
+        " *f.CalcRotationMatrixInWorld(c).matrix().flat] for f in own]",
+    ),
+    "frame_poses:CalcPoseInBodyFrame": (
+        "Frame.CalcPoseInBodyFrame",
+        Q,
+        _poses("f.body().EvalPoseInWorld(c) @ f.CalcPoseInBodyFrame(c)", "f in own"),
+    ),
+    "frame_poses:GetFixedPoseInBodyFrame": (
+        "Frame.GetFixedPoseInBodyFrame, GetFixedRotationMatrixInBodyFrame",
+        Q,
+        _poses(
+            "drake.RigidTransform(f.body().EvalPoseInWorld(c).rotation() @ f.GetFixedRotationMatrixInBodyFrame(),"
+            " f.body().EvalPoseInWorld(c) @ f.GetFixedPoseInBodyFrame().translation())",
+            "f in own",
+        ),
+    ),
+    "frame_poses_seen:CalcRotationMatrix": (
+        "Frame.CalcRotationMatrix, CalcPointsPositions in a frame",
+        Q,
+        "value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], own[0]).ravel(),"
+        " *f.CalcRotationMatrix(c, own[0]).matrix().flat] for f in own]",
+    ),
+    "frame_velocities:CalcRelativeSpatialVelocity": (
+        "Frame.CalcRelativeSpatialVelocity",
+        QV,
+        _each("f.CalcRelativeSpatialVelocity(c, W, W)", "f in own"),
+    ),
     "gyroscopes:CalcAngularVelocity": (
         "Frame.CalcAngularVelocity",
         QV,
@@ -134,6 +165,18 @@ WAYS |= {
     "link_velocities:body_spatial_velocities": Way(
         "body_spatial_velocities output port",
         f"{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)\n" + _each("every[b.index()]"),
+    ),
+    "link_turning": Way(
+        "RigidBody.EvalSpatialVelocityInWorld",
+        f"{QV}value = [b.EvalSpatialVelocityInWorld(c).rotational() for b in links]",
+    ),
+    "link_turning:port": Way(
+        "body_spatial_velocities output port",
+        f"{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)\n"
+        "value = [every[b.index()].rotational() for b in links]",
+    ),
+    "link_turning:EvalAngularVelocityInWorld": Way(
+        "Frame.EvalAngularVelocityInWorld", f"{QV}value = [b.body_frame().EvalAngularVelocityInWorld(c) for b in links]"
     ),
     "link_accelerations:RigidBody": Way(
         "RigidBody.EvalSpatialAccelerationInWorld", DRIVEN + _each("b.EvalSpatialAccelerationInWorld(c)")

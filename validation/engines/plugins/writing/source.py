@@ -24,6 +24,7 @@ OPTIONAL = {
     "cm": "not for constraints of this kind",
     "axes": "not for trees without constraints",
     "sensed": "not for trees without sensors",
+    "held_by": "not for trees without constraints",
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")

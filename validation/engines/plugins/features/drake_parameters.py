@@ -1,0 +1,341 @@
+"""Drake's numbers that are set late or in a context, models of several instances, joints that are held in steps."""
+
+from __future__ import annotations
+
+from ...interface import STEP
+from ...truth.parameters import COUPLED, DAMPING, GRAVITY, MASSES, REST, STIFFNESS
+from ..loops.drake_forces import SAP
+from ..writing.source import Way
+
+_X = "x = np.abs(v) + 0.5\n"
+_UNIT = "drake.SpatialInertia(1.0, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
+_GEARED = f"""{_X}p = drake.MultibodyPlant(0.0)
+b = p.AddRigidBody('b', {_UNIT})
+j = p.AddJoint(drake.RevoluteJoint('j', p.world_frame(), b.body_frame(), [0, 0, 1]))
+motor = p.AddJointActuator('motor', j)
+"""
+_DEFAULTS = "motor.set_default_rotor_inertia(x[0])\nmotor.set_default_gear_ratio(x[1])\n"
+_OTHERS = "motor.set_default_rotor_inertia(0.25)\nmotor.set_default_gear_ratio(3.0)\n"
+_DONE, _CONTEXT = "p.Finalize()\n", "c = p.CreateDefaultContext()\n"
+_SET = "motor.SetRotorInertia(c, x[0])\nmotor.SetGearRatio(c, x[1])\n"
+_M = "value = p.CalcMassMatrix(c)[0]"
+_BY_GEAR = {
+    "": ("set_default_gear_ratio", f"{_GEARED}{_DEFAULTS}{_DONE}{_CONTEXT}"),
+    ":after Finalize": ("set_default_gear_ratio after Finalize", f"{_GEARED}{_DONE}{_DEFAULTS}{_CONTEXT}"),
+    ":again after Finalize": (
+        "set_default_rotor_inertia after Finalize",
+        f"{_GEARED}{_OTHERS}{_DONE}c = p.CreateDefaultContext()\n{_DEFAULTS}{_CONTEXT}",
+    ),
+    ":context": ("SetGearRatio, SetRotorInertia", f"{_GEARED}{_OTHERS}{_DONE}{_CONTEXT}{_SET}"),
+    ":copied context": ("SetGearRatio, Context.Clone", f"{_GEARED}{_OTHERS}{_DONE}{_CONTEXT}{_SET}c = c.Clone()\n"),
+    ":Clone": ("set_default_gear_ratio after Finalize, Clone", f"{_GEARED}{_DONE}{_DEFAULTS}p = p.Clone()\n{_CONTEXT}"),
+    ":SetDefaultContext": (
+        "SetDefaultContext",
+        f"{_GEARED}{_DONE}{_DEFAULTS}{_CONTEXT}motor.SetGearRatio(c, 7.0)\np.SetDefaultContext(c)\n",
+    ),
+}
+_SCALARS = {
+    ":AutoDiffXd": ("ToAutoDiffXd", "value = [x.value() for x in p.ToAutoDiffXd().CalcMassMatrix(d)[0]]"),
+    ":symbolic": ("ToSymbolic", "value = [x.Evaluate() for x in p.ToSymbolic().CalcMassMatrix(d)[0]]"),
+}
+WAYS = {f"mass_with_rotor{way}": Way(name, text + _M) for way, (name, text) in _BY_GEAR.items()}
+WAYS |= {
+    f"mass_with_rotor{way}": Way(
+        f"set_default_gear_ratio after Finalize, {name}",
+        f"{_GEARED}{_DONE}{_DEFAULTS}ad = p.{name}()\nd = ad.CreateDefaultContext()\n"
+        + code.replace(f"p.{name}()", "ad"),
+    )
+    for way, (name, code) in _SCALARS.items()
+}
+WAYS |= {
+    f"acceleration_with_rotor{way}": Way(
+        f"EvalTimeDerivatives, {name}",
+        f"{text}p.get_actuation_input_port().FixValue(c, tau[:1])\nvalue = p.EvalTimeDerivatives(c).CopyToVector()[1:]",
+    )
+    for way, (name, text) in _BY_GEAR.items()
+}
+WAYS |= {
+    "rotor_and_gear": Way(
+        "rotor_inertia, gear_ratio, calc_reflected_inertia",
+        f"{_BY_GEAR[':context'][1]}value = [motor.rotor_inertia(c), "
+        "motor.gear_ratio(c), motor.calc_reflected_inertia(c)]",
+    ),
+    "rotor_and_gear:default": Way(
+        "default_rotor_inertia, default_gear_ratio, default_reflected_inertia",
+        f"{_BY_GEAR[':after Finalize'][1]}"
+        "value = [motor.default_rotor_inertia(), motor.default_gear_ratio(), motor.default_reflected_inertia()]",
+    ),
+}
+
+# Bodies of the two models are made in turns.
+_SLIDES = f"""p = drake.MultibodyPlant(TIME)
+p.mutable_gravity_field().set_gravity_vector({list(GRAVITY)})
+one, two = p.AddModelInstance('one'), p.AddModelInstance('two')
+def slide(name, model, mass, axis, parent):
+    b = p.AddRigidBody(name, model, drake.SpatialInertia(mass, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0)))
+    return p.AddJoint(drake.PrismaticJoint(name, parent, b.body_frame(), axis)), b
+(jx, bx), (jz, bz) = slide('x', one, {MASSES[0]}, [1, 0, 0], W), slide('z', two, {MASSES[2]}, [0, 0, 1], W)
+jy, by = slide('y', one, {MASSES[1]}, [0, 1, 0], bx.body_frame())
+jj = (jx, jy, jz)
+""".replace("W)", "p.world_frame())")
+_MOTORS = "my, mz, mx = (p.AddJointActuator('m' + j.name(), j) for j in (jy, jz, jx))\n"
+_STATE = "for j, q, u in zip(jj, v, a): j.set_translation(c, q); j.set_translation_rate(c, u)\n"
+_READ = "value = [j.get_translation(c) for j in jj]"
+_PLACES = "qs, vs = ([getattr(j, name)() for j in jj] for name in ('position_start', 'velocity_start'))\n"
+_PLANT = _SLIDES.replace("TIME", "0.0")
+_MADE = f"{_PLANT}{_DONE}{_CONTEXT}{_PLACES}"
+_FORCED = "f = np.zeros(3)\nf[vs] = tau\np.get_applied_generalized_force_input_port().FixValue(c, f)\n"
+_ACCELERATION = "value = p.EvalTimeDerivatives(c).CopyToVector()[3:][vs]"
+_BY_INSTANCE = "np.r_[p.GetPositions(c, one), p.GetPositions(c, two)]"
+_FORCES = "f = drake.MultibodyForces(p)\n"
+_INERTIA = "drake.SpatialInertia(y, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
+WAYS |= {
+    "coordinates_set": Way("PrismaticJoint.set_translation", f"{_MADE}{_STATE}value = p.GetPositions(c)[qs]"),
+    **{
+        f"coordinates_set:{way}": Way(name, f"{text}value = {_BY_INSTANCE}")
+        for way, name, text in (
+            (
+                "instances",
+                "SetPositions of a model instance",
+                f"{_MADE}p.SetPositions(c, two, v[2:])\np.SetPositions(c, one, v[:2])\n",
+            ),
+            (
+                "array",
+                "SetPositionsInArray",
+                f"{_MADE}x = np.zeros(3)\nx[qs] = 7.0\np.SetPositionsInArray(one, v[:2], x)\n"
+                "p.SetPositionsInArray(two, v[2:], x)\np.SetPositions(c, x)\n",
+            ),
+            (
+                "default",
+                "PrismaticJoint.set_default_translation after Finalize",
+                f"{_MADE}for j, y in zip(jj, v): j.set_default_translation(y)\n{_CONTEXT}",
+            ),
+            (
+                "default before Finalize",
+                "PrismaticJoint.set_default_translation",
+                f"{_PLANT}for j, y in zip(jj, v): j.set_default_translation(y)\n{_DONE}{_CONTEXT}",
+            ),
+            (
+                "default of instances",
+                "SetDefaultPositions of a model instance",
+                f"{_MADE}p.SetDefaultPositions(two, v[2:])\np.SetDefaultPositions(one, v[:2])\n{_CONTEXT}",
+            ),
+            (
+                "default positions",
+                "Joint.set_default_positions, SetDefaultContext",
+                f"{_MADE}for j, y in zip(jj, v): j.set_default_positions([y])\np.SetDefaultContext(c)\n",
+            ),
+            (
+                "Clone",
+                "SetDefaultPositions, Clone",
+                f"{_MADE}p.SetDefaultPositions(two, v[2:])\n"
+                f"p.SetDefaultPositions(one, v[:2])\np = p.Clone()\n{_CONTEXT}",
+            ),
+        )
+    },
+    "coordinates_set:GetDefaultPositions": Way(
+        "GetDefaultPositions",
+        f"{_MADE}p.SetDefaultPositions(two, v[2:])\np.SetDefaultPositions(one, v[:2])\n"
+        "value = np.r_[p.GetDefaultPositions(one), p.GetDefaultPositions(two)]",
+    ),
+    "speeds_set": Way(
+        "SetVelocities of a model instance",
+        f"{_MADE}p.SetVelocities(c, two, a[2:])\np.SetVelocities(c, one, a[:2])\n"
+        "value = [j.get_translation_rate(c) for j in jj]",
+    ),
+    "speeds_set:array": Way(
+        "SetVelocitiesInArray",
+        f"{_MADE}x = np.zeros(3)\np.SetVelocitiesInArray(one, a[:2], x)\np.SetVelocitiesInArray(two, a[2:], x)\n"
+        "p.SetVelocities(c, x)\nvalue = p.GetVelocities(c)[vs]",
+    ),
+    "speeds_set:GetVelocitiesFromArray": Way(
+        "GetVelocitiesFromArray",
+        f"{_MADE}{_STATE}x = p.GetVelocities(c)\n"
+        "value = np.r_[p.GetVelocitiesFromArray(one, x), p.GetVelocitiesFromArray(two, x)]",
+    ),
+    "coordinates_set:GetPositionsFromArray": Way(
+        "GetPositionsFromArray",
+        f"{_MADE}{_STATE}x = p.GetPositions(c)\n"
+        "value = np.r_[p.GetPositionsFromArray(one, x), p.GetPositionsFromArray(two, x)]",
+    ),
+    "states_of_models": Way(
+        "GetPositionsAndVelocities of a model instance",
+        f"{_MADE}{_STATE}value = np.r_[p.GetPositionsAndVelocities(c, one), p.GetPositionsAndVelocities(c, two)]",
+    ),
+    "states_of_models:SetPositionsAndVelocities": Way(
+        "SetPositionsAndVelocities of a model instance",
+        f"{_MADE}p.SetPositionsAndVelocities(c, two, [v[2], a[2]])\n"
+        "p.SetPositionsAndVelocities(c, one, [*v[:2], *a[:2]])\n"
+        "x = np.c_[[j.get_translation(c) for j in jj], [j.get_translation_rate(c) for j in jj]]\n"
+        "value = [*x[:2, 0], *x[:2, 1], *x[2]]",
+    ),
+    "states_of_models:port": Way(
+        "get_state_output_port of a model instance",
+        f"{_MADE}{_STATE}value = np.r_[p.get_state_output_port(one).Eval(c), p.get_state_output_port(two).Eval(c)]",
+    ),
+    "states_of_models:MakeStateSelectorMatrix": Way(
+        "MakeStateSelectorMatrix",
+        f"{_MADE}{_STATE}x = p.MakeStateSelectorMatrix([j.index() for j in jj]) @ p.GetPositionsAndVelocities(c)\n"
+        "value = [x[0], x[1], x[3], x[4], x[2], x[5]]",
+    ),
+    "sums_of_models": Way(
+        "CalcTotalMass, CalcCenterOfMassPositionInWorld of model instances",
+        f"{_MADE}{_STATE}of = p.CalcCenterOfMassPositionInWorld\n"
+        "value = np.r_[p.CalcTotalMass(c), p.CalcTotalMass(c, [one]), p.CalcTotalMass(c, [two]),"
+        " of(c), of(c, [one]), of(c, [two]), p.CalcCenterOfMassTranslationalVelocityInWorld(c, [one])]",
+    ),
+    "momenta_of_models": Way(
+        "CalcSpatialMomentumInWorldAboutPoint of model instances",
+        f"{_MADE}{_STATE}L = p.CalcSpatialMomentumInWorldAboutPoint(c, [one], tau)\n"
+        "value = [*L.translational(), *L.rotational()]",
+    ),
+    "accelerations_forced": Way("applied_generalized_force input port", f"{_MADE}{_FORCED}{_ACCELERATION}"),
+    "accelerations_forced:AddInOneForce": Way(
+        "Joint.AddInOneForce",
+        f"{_MADE}{_FORCES}for j, y in zip(jj, tau): j.AddInOneForce(c, 0, y, f)\n"
+        "p.CalcForceElementsContribution(c, g := drake.MultibodyForces(p))\nf.AddInForces(g)\n"
+        "value = np.linalg.solve(p.CalcMassMatrix(c), -p.CalcInverseDynamics(c, np.zeros(3), f))[vs]",
+    ),
+    "accelerations_forced:actuation": Way(
+        "get_actuation_input_port of a model instance",
+        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}"
+        "x = np.zeros(3)\nx[[m.input_start() for m in (mx, my, mz)]] = tau\n"
+        "for i in (one, two): p.get_actuation_input_port(i).FixValue(c, p.GetActuationFromArray(i, x))\n"
+        f"{_ACCELERATION}",
+    ),
+    "accelerations_forced:SetActuationInArray": Way(
+        "SetActuationInArray, MakeActuationMatrix",
+        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)\n"
+        "p.SetActuationInArray(two, tau[2:], x)\np.SetActuationInArray(one, tau[1::-1], x)\n"
+        f"p.get_applied_generalized_force_input_port().FixValue(c, p.MakeActuationMatrix() @ x)\n{_ACCELERATION}",
+    ),
+    "accelerations_forced:MakeActuatorSelectorMatrix": Way(
+        "MakeActuatorSelectorMatrix",
+        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}"
+        "x = p.MakeActuatorSelectorMatrix([m.index() for m in (mx, my, mz)]) @ tau\n"
+        f"p.get_actuation_input_port().FixValue(c, x)\n{_ACCELERATION}",
+    ),
+    "accelerations_forced:set_actuation_vector": Way(
+        "JointActuator.set_actuation_vector",
+        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)\n"
+        "for m, y in zip((mx, my, mz), tau): m.set_actuation_vector([y], x)\n"
+        f"p.get_actuation_input_port().FixValue(c, x)\n{_ACCELERATION}",
+    ),
+    "masses_set": Way(
+        "RigidBody.SetMass",
+        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)\nvalue = p.CalcMassMatrix(c)[np.ix_(vs, vs)]",
+    ),
+    "masses_set:SetSpatialInertiaInBodyFrame": Way(
+        "RigidBody.SetSpatialInertiaInBodyFrame",
+        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetSpatialInertiaInBodyFrame(c, {_INERTIA})\n"
+        "value = p.CalcMassMatrix(c)[np.ix_(vs, vs)]",
+    ),
+    "masses_set:AutoDiffXd": Way(
+        "RigidBody.SetMass, ToAutoDiffXd",
+        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)\nad = p.ToAutoDiffXd()\n"
+        "d = ad.CreateDefaultContext()\nd.SetTimeStateAndParametersFrom(c)\n"
+        "value = np.array([[y.value() for y in row] for row in ad.CalcMassMatrix(d)])[np.ix_(vs, vs)]",
+    ),
+    "damping_set": Way(
+        "PrismaticJoint.SetDamping, AddInDamping",
+        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)\n{_FORCES}"
+        "for j in jj: j.AddInDamping(c, f)\nvalue = f.generalized_forces()[vs]",
+    ),
+    "power_of_damping": Way(
+        "CalcNonConservativePower",
+        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)\nvalue = [p.CalcNonConservativePower(c)]",
+    ),
+    "damping_set:SetDampingVector": Way(
+        "Joint.SetDampingVector",
+        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDampingVector(c, [y])\n"
+        f"{_FORCES}p.CalcForceElementsContribution(c, f)\ng = p.CalcGravityGeneralizedForces(c)\n"
+        "value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]",
+    ),
+    "damping_set:default": Way(
+        "PrismaticJoint.set_default_damping",
+        f"{_X}{_PLANT}for j, y in zip(jj, x): j.set_default_damping(y)\n{_DONE}{_CONTEXT}{_PLACES}{_STATE}"
+        f"{_FORCES}p.CalcForceElementsContribution(c, f)\ng = p.CalcGravityGeneralizedForces(c)\n"
+        "value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]",
+    ),
+}
+_SPRING = f"""{_X}p = drake.MultibodyPlant(0.0)
+p.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
+b = p.AddRigidBody('b', {_UNIT})
+j = p.AddJoint(drake.KINDJoint('j', p.world_frame(), b.body_frame(), [0, 0, 1]))
+k = p.AddForceElement(drake.KINDSpring(j, REST, STIFFNESS))
+{_DONE}{_CONTEXT}p.SetPositions(c, v[2:])
+"""
+_FORCE_OF_SPRING = (
+    f"{_FORCES}p.CalcForceElementsContribution(c, f)\n"
+    "value = [-p.CalcInverseDynamics(c, np.zeros(1), f)[0], p.CalcPotentialEnergy(c)]"
+)
+
+
+def _spring(kind: str, rest: str, stiffness: str) -> str:
+    return _SPRING.replace("KIND", kind).replace("REST", rest).replace("STIFFNESS", stiffness)
+
+
+WAYS |= {
+    "spring_set": Way("PrismaticSpring", _spring("Prismatic", "x[1]", "x[0]") + _FORCE_OF_SPRING),
+    "spring_set:RevoluteSpring": Way("RevoluteSpring", _spring("Revolute", "x[1]", "x[0]") + _FORCE_OF_SPRING),
+    "spring_set:SetStiffness": Way(
+        "RevoluteSpring.SetStiffness, SetNominalAngle",
+        f"{_spring('Revolute', '7.0', '3.0')}k.SetStiffness(c, x[0])\nk.SetNominalAngle(c, x[1])\n{_FORCE_OF_SPRING}",
+    ),
+}
+
+# Of a plant with a time step.
+_DISCRETE = _SLIDES.replace("TIME", str(STEP)).replace(str(list(GRAVITY)), "[0.0, 0.0, 0.0]")
+_SAP = "\n".join(SAP) + "\nsap(p)\n"
+_RUN = "sim = drake.Simulator(p)\nc = sim.get_mutable_context()\n"
+_STEPPED = f"sim.AdvanceTo({STEP})\n"
+_BOTH = "value = [*(j.get_translation(c) for j in jj), *(j.get_translation_rate(c) for j in jj)]"
+_LOCK = f"{_DONE}{_RUN}{_PLACES}{_STATE}{_FORCED}"
+_BETWEEN = f"p.AddDistanceConstraint(bx, np.zeros(3), bz, np.zeros(3), {REST}, {STIFFNESS}, {DAMPING})"
+_ON_X = """jx.set_translation(c, v[2]); jz.set_translation(c, v[2] + abs(v[0]) + 1)
+jx.set_translation_rate(c, a[0]); jz.set_translation_rate(c, a[2])
+"""
+_X_ALONE = f"{_DISCRETE}{_SAP}".replace("jy, by = slide('y', one, 3.0, [0, 1, 0], bx.body_frame())", "jy = jz")
+_ONE_LINE = _X_ALONE.replace("[0, 0, 1]", "[1, 0, 0]")
+_PUSHED = (
+    "f = np.zeros(2)\nf[jx.velocity_start()], f[jz.velocity_start()] = tau[0], tau[2]\n"
+    "p.get_applied_generalized_force_input_port().FixValue(c, f)\n"
+)
+_OF_TWO = "value = [*(j.get_translation(c) for j in (jx, jz)), *(j.get_translation_rate(c) for j in (jx, jz))]"
+WAYS |= {
+    "step_of_locked": Way("Joint.Lock", f"{_DISCRETE}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}"),
+    "step_of_locked:sap": Way("Joint.Lock, SAP", f"{_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}"),
+    "step_of_unlocked": Way("Joint.Unlock", f"{_DISCRETE}{_LOCK}jx.Lock(c)\njx.Unlock(c)\n{_STATE}{_STEPPED}{_BOTH}"),
+    "step_of_unlocked:RigidBody": Way(
+        "RigidBody.Unlock, SAP", f"{_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)\njy.Unlock(c)\n{_STATE}{_STEPPED}{_BOTH}"
+    ),
+    "step_of_held_distance": Way(
+        "AddDistanceConstraint", f"{_ONE_LINE}{_BETWEEN}\n{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}"
+    ),
+    "step_of_held_distance:SetDistanceConstraintParams": Way(
+        "SetDistanceConstraintParams",
+        f"{_ONE_LINE}k = p.AddDistanceConstraint(bx, np.zeros(3), bz, np.zeros(3), 7.0, 5.0, 3.0)\n"
+        f"{_DONE}{_RUN}o = p.GetDistanceConstraintParams(c, k)\n"
+        "p.SetDistanceConstraintParams(c, k, drake.DistanceConstraintParams("
+        f"o.bodyA(), o.p_AP(), o.bodyB(), o.p_BQ(), {REST}, {STIFFNESS}, {DAMPING}))\n"
+        f"{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
+    ),
+    "step_of_freed_distance": Way(
+        "SetConstraintActiveStatus",
+        f"{_ONE_LINE}k = {_BETWEEN}\n{_DONE}{_RUN}p.SetConstraintActiveStatus(c, k, False)\n"
+        f"{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
+    ),
+    "step_of_freed_distance:RemoveConstraint": Way(
+        "RemoveConstraint",
+        f"{_ONE_LINE}k = {_BETWEEN}\np.RemoveConstraint(k)\n{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
+    ),
+    # SAP's solver in the near-rigid regime, as for `step_bound`.
+    "step_of_coupled": Way(
+        "AddCouplerConstraint",
+        f"{_X_ALONE}p.AddCouplerConstraint(jx, jz, {COUPLED[0]}, {COUPLED[1]})\n{_DONE}{_RUN}"
+        f"jz.set_translation(c, v[2])\njx.set_translation(c, {COUPLED[0]} * v[2] + {COUPLED[1]})\n"
+        f"jz.set_translation_rate(c, a[2])\njx.set_translation_rate(c, {COUPLED[0]} * a[2])\n"
+        f"{_PUSHED}{_STEPPED}value = [jx.get_translation_rate(c), jz.get_translation_rate(c)]",
+        1e-3,
+    ),
+}
