@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import numpy as np
 import pytest
 from scipy.integrate import quad_vec
@@ -11,7 +13,7 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation, Slerp
 
 from tests.late import needs_extra
-from validation.engines.functions import FUNCTIONS
+from validation.engines.functions import FUNCTIONS, suiting
 from validation.engines.interface import STEP, Array, Slot, State
 from validation.engines.matrix import cells
 from validation.engines.models.drake_files import files
@@ -39,6 +41,12 @@ def _of(function: TruthOf, state: State = _STATE) -> Array:
 def _time() -> float:
     w = _STATE.v2[0]
     return float(1.5 + 1.25 * w / (1 + abs(w)))
+
+
+def test_no_function_hides_another() -> None:
+    tables = [rows for name, rows in vars(suiting).items() if name.isupper() and isinstance(rows, dict)]
+    names = Counter(name for rows in tables for name in rows if rows is not FUNCTIONS)
+    assert max(names.values()) == 1
 
 
 def test_each_feature_has_a_tree_and_a_function() -> None:
@@ -157,7 +165,7 @@ def test_what_is_locked_moves_with_what_carries_it() -> None:
 @pytest.mark.parametrize(
     ("name", "answer"),
     [
-        ("drive_servo_from_limit", [drives.LIMIT, 0.0]),
+        ("slide_servo_from_limit", [drives.LIMIT, 0.0]),
         ("mass_with_rotor", [1.0]),
         ("convex_hull_of_mesh", _of(bodies.mesh(bodies.DENTED)).tolist()),
     ],
@@ -181,7 +189,7 @@ def test_engines_are_right_but_for_what_is_stated(name: str) -> None:
         pytest.skip(needs_extra(f"engine-{name}", OWN[name].package))
     known = {
         "drake": {"coordinates_set:Clone", "power_of_damping", "wing_force"},
-        "dart": {"drive_servo_from_limit"},
+        "dart": {"slide_servo_from_limit"},
     }[name]
     asked = trees()
     red = {

@@ -152,7 +152,7 @@ def _systems() -> dict[str, Function]:
 def _drives() -> dict[str, Function]:
     """A slide of 2 kg at tau[0] that moves with a[0], commanded v[0], without gravity (`drives`)."""
     rows: dict[str, tuple[str, TruthOf]] = {
-        f"drive_{name}": (f"coordinate and speed after a step {words} (2)", truth)
+        f"slide_{name}": (f"coordinate and speed after a step {words} (2)", truth)
         for name, (words, truth) in drives.DRIVES.items()
     }
     return functions_of(rows, "servos, motors, dry friction and joints at limits")

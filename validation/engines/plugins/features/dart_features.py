@@ -37,49 +37,49 @@ def _bound(what: str, size: float) -> str:
 
 
 WAYS = {
-    "drive_force": Way("setActuatorType FORCE, setCommand", _driven("FORCE")),
-    "drive_force:setForce": Way("Joint.setForce", f"{_FREE}{_AT}j.setForce(0, v[0])\n{_STEP}"),
-    "drive_force:setCommands": Way("Skeleton.setCommands", f"{_FREE}{_AT}s.setCommands(v[:1])\n{_STEP}"),
-    "drive_force:DegreeOfFreedom": Way(
+    "slide_force": Way("setActuatorType FORCE, setCommand", _driven("FORCE")),
+    "slide_force:setForce": Way("Joint.setForce", f"{_FREE}{_AT}j.setForce(0, v[0])\n{_STEP}"),
+    "slide_force:setCommands": Way("Skeleton.setCommands", f"{_FREE}{_AT}s.setCommands(v[:1])\n{_STEP}"),
+    "slide_force:DegreeOfFreedom": Way(
         "DegreeOfFreedom.setCommand", f"{_FREE}{_AT}s.getDof(0).setCommand(v[0])\n{_STEP}"
     ),
-    "drive_force:clone": Way(
+    "slide_force:clone": Way(
         "World.clone",
         f"{_FREE}{_AT}world = world.clone()\nj = world.getSkeleton(0).getJoint(0)\n{_COMMAND}{_STEP}",
     ),
-    "drive_force_bounded": Way("setForceUpperLimit", _driven("FORCE", _bound("Force", FORCE))),
-    "drive_passive": Way("setActuatorType PASSIVE", _driven("PASSIVE", command="")),
-    "drive_velocity": Way("setActuatorType VELOCITY", _driven("VELOCITY")),
-    "drive_velocity_bounded": Way(
+    "slide_force_bounded": Way("setForceUpperLimit", _driven("FORCE", _bound("Force", FORCE))),
+    "slide_passive": Way("setActuatorType PASSIVE", _driven("PASSIVE", command="")),
+    "slide_velocity": Way("setActuatorType VELOCITY", _driven("VELOCITY")),
+    "slide_velocity_bounded": Way(
         "setActuatorType VELOCITY, setVelocityUpperLimit", _driven("VELOCITY", _bound("Velocity", SPEED))
     ),
-    "drive_acceleration": Way("setActuatorType ACCELERATION", _driven("ACCELERATION")),
-    "drive_acceleration_bounded": Way(
+    "slide_acceleration": Way("setActuatorType ACCELERATION", _driven("ACCELERATION")),
+    "slide_acceleration_bounded": Way(
         "setActuatorType ACCELERATION, setAccelerationUpperLimit",
         _driven("ACCELERATION", _bound("Acceleration", ACCELERATION)),
     ),
-    "drive_locked": Way("setActuatorType LOCKED", _driven("LOCKED", command="")),
-    "drive_servo": Way("setActuatorType SERVO, step", _driven("SERVO", _bound("Force", 1e9)), _MIXED),
-    "drive_servo_bounded": Way(
+    "slide_locked": Way("setActuatorType LOCKED", _driven("LOCKED", command="")),
+    "slide_servo": Way("setActuatorType SERVO, step", _driven("SERVO", _bound("Force", 1e9)), _MIXED),
+    "slide_servo_bounded": Way(
         "setActuatorType SERVO, setForceUpperLimit, step", _driven("SERVO", _bound("Force", FORCE)), _MIXED
     ),
-    "drive_friction": Way("setCoulombFriction", f"{_FREE}j.setCoulombFriction(0, {FRICTION})\n{_AT}{_STEP}", _MIXED),
-    "drive_at_limit": Way(
+    "slide_friction": Way("setCoulombFriction", f"{_FREE}j.setCoulombFriction(0, {FRICTION})\n{_AT}{_STEP}", _MIXED),
+    "slide_at_limit": Way(
         "setLimitEnforcement",
         f"{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setVelocity(0, abs(a[0]))\n{_STEP}",
         _MIXED,
     ),
-    "drive_from_limit": Way(
+    "slide_from_limit": Way(
         "setLimitEnforcement",
         f"{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setVelocity(0, -abs(a[0]))\n{_STEP}",
         _MIXED,
     ),
-    "drive_held_at_limit": Way(
+    "slide_held_at_limit": Way(
         "setLimitEnforcement, under a force",
         f"{_SLIDE.replace('PULL', '9.0')}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setForce(0, abs(v[0]))\n{_STEP}",
         _MIXED,
     ),
-    "drive_servo_from_limit": Way(
+    "slide_servo_from_limit": Way(
         "setCommand of a SERVO at a limit, step",
         f"{_SLIDE.replace('PULL', '9.0')}j.setActuatorType(dart.dynamics.ActuatorType.SERVO)\n{_bound('Force', 1e9)}"
         f"{_ON_LIMIT}j.setPosition(0, {LIMIT})\nfor _ in range(8): j.setCommand(0, 1.0); world.step()\n"
