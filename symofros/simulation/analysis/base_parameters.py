@@ -4,18 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
-from symofros.errors import ArgumentError, Problem
+from symofros.errors import ArgumentError, AssemblyError, Problem
+from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import JointTerm, Model
+from symofros.simulation.analysis.kinematics.assembly import assemble
 
 # Of the largest pivot: what is left of a column that others determine.
 _RANK = 1e-9
-# Of the largest column: smaller ones are zero but for rounding.
+# Of the largest column with as high a power of length, or a lower one: smaller ones are zero but for rounding.
 _ROUNDING = 1e-12
+# The same on constraints, whose postures close to 1e-10: near singular ones speeds err by a thousand times that.
+_RANK_CLOSED = 1e-6
+# Guesses for each closed posture of a mechanism with loops.
+_GUESSES = 20
+# Power of length in an effort over a mass and over first moments, by the beginnings of columns' names; zero of others.
+_LENGTHS = {"m": 2, "mx": 1, "my": 1, "mz": 1}
 # Share of the largest effort that is left, worth a note.
 _LEFT_OUT = 1e-6
 # Largest number of samples and seed.
@@ -24,7 +33,7 @@ _MOST = 1_000_000
 
 @dataclass(frozen=True)
 class BaseParameters:
-    """M a + h = Y pi = Y[:, independent] (combine pi).
+    """M a + h = Y pi = Y[:, independent] (combine pi); with constraints N^T of it, where G N = 0.
 
     Attributes:
         independent: Columns of Y that are linearly independent (b).
@@ -65,10 +74,12 @@ class BaseParameters:
 def base_parameters(
     model: Model, samples: int | None = None, seed: int = 0, joint_terms: Sequence[JointTerm] = ()
 ) -> BaseParameters:
-    """Find the base parameters of a rigid tree by a pivoted factorisation of its regressor at random states.
+    """Find the base parameters of rigid bodies by a pivoted factorisation of their regressor at random states.
 
     `print(sf.base_parameters(model))` names them: the combinations of masses, first and second moments that motions and
-    efforts of the joints reveal, which are all that an experiment can identify.
+    efforts of the joints reveal, which are all that an experiment can identify. Of a mechanism with constraints they
+    are fewer: its motions keep the constraints, and of the efforts count those along the speeds that these leave free,
+    N^T (M a + h), in which no multiplier stands.
 
     Args:
         model: Model that has the function `regressor`.
@@ -79,6 +90,7 @@ def base_parameters(
 
     Raises:
         ArgumentError: samples or seed is out of range, or samples are too few to tell.
+        AssemblyError: No postures are found that keep the constraints.
     """
     model = model.with_precision("double")
     for name, value, least in (("samples", samples, 1), ("seed", seed, 0)):
@@ -87,14 +99,16 @@ def base_parameters(
             raise ArgumentError(Problem(what, f"{value:g}" if value < _MOST else "more", rule, "leave it out"))
     rng = np.random.default_rng(seed)
     columns = model.regressor_columns(joint_terms)
-    count = samples or max(20, 3 * len(columns) // model.nv)
-    states = [model.random_state(rng) for _ in range(count)]
-    q, v = (np.array(x) for x in zip(*states, strict=True))
-    a = rng.normal(size=v.shape)
-    Y = model.regressor(q, v, a, joint_terms=joint_terms).reshape(-1, len(columns))
-    scale = np.abs(Y).max(axis=0)
-    seen = np.flatnonzero(scale > _ROUNDING * scale.max(initial=0.0))
-    order = _independent(Y[:, seen] / scale[seen])
+    moved = [_motion(model, rng)]
+    count = samples or max(20, 3 * len(columns) // max(moved[0].along.shape[1], 1))
+    moved += [_motion(model, rng) for _ in range(count - 1)]
+    q, v, a = (np.array(x) for x in zip(*(motion[:3] for motion in moved), strict=True))
+    along = [motion.along for motion in moved]
+    Y = _along(along, model.regressor(q, v, a, joint_terms=joint_terms))
+    scale = np.abs(Y).max(axis=0, initial=0.0)
+    seen = np.flatnonzero(scale > _ROUNDING * _largest_comparable(columns, scale))
+    rank = _RANK_CLOSED if model.nc else _RANK
+    order = _independent(Y[:, seen] / scale[seen], rank)
     if len(order) == len(Y):
         what, rule = (
             "base_parameters: samples are too few",
@@ -103,18 +117,65 @@ def base_parameters(
         found = f"{count} samples give {len(Y)} equations, all independent"
         raise ArgumentError(Problem(what, found, rule, "more samples, or leave it out"))
     independent = sorted(int(seen[i]) for i in order)
-    combine, *_ = np.linalg.lstsq(Y[:, independent], Y, rcond=None)
-    combine[np.abs(combine) < _RANK] = 0.0
-    notes = _left_out_notes(model, (q, v, a), Y[:, independent])
+    # Columns of one size: lengths may be of micrometres or megametres, whose powers stand in Y and in `combine`.
+    sizes = np.where(scale > 0.0, scale, 1.0)
+    combine, *_ = np.linalg.lstsq(Y[:, independent] / sizes[independent], Y / sizes, rcond=None)
+    combine[np.abs(combine) < rank] = 0.0
+    combine *= sizes / sizes[independent, None]
+    notes = _left_out_notes(model, (q, v, a), along, Y[:, independent] / sizes[independent])
     return BaseParameters(tuple(independent), np.asarray(combine, dtype=np.float64), columns, notes)
 
 
-def _left_out_notes(model: Model, states: tuple[Array, Array, Array], Y: Array) -> tuple[str, ...]:
-    """A note on efforts at the samples (count nv) that no base parameters give (count nv, b)."""
+class _Motion(NamedTuple):
+    """A state and its accelerations, on the constraints, and a basis of the speeds that these leave free (nv, n)."""
+
+    q: Array
+    v: Array
+    a: Array
+    along: Array
+
+
+def _motion(model: Model, rng: np.random.Generator) -> _Motion:
+    if not model.nc:
+        q, v = model.random_state(rng)
+        return _Motion(q, v, rng.normal(size=model.nv), np.eye(model.nv))
+    for left in reversed(range(_GUESSES)):
+        q, v = model.random_state(rng)
+        try:
+            on = assemble(model, q, v)
+        except AssemblyError:
+            if left:
+                continue
+            raise
+        q, v = on.q, on.v
+        G, measures = model.constraint_jacobian(q), model.record.measures
+        along = null_space(G, measures)
+        a = pseudo_inverse(G, measures) @ model.constraint_bias(q, v) + along @ rng.normal(size=along.shape[1])
+        return _Motion(q, v, a, along)
+    raise AssertionError("unreachable: the last guess returns or raises")
+
+
+def _along(along: list[Array], rows: Array) -> Array:
+    """N^T of what has a row a speed (count, nv, ...), one state below the other."""
+    return np.concatenate([N.T @ of_state for N, of_state in zip(along, rows, strict=True)])
+
+
+def _largest_comparable(columns: Sequence[str], scale: Array) -> Array:
+    """Of each column the largest size among those with as high a power of length in their unit, or a lower one.
+
+    Efforts by a second moment have none, by a first moment one, by a mass two: of a mechanism of a gigametre those by
+    second moments are small beside the others, and are no rounding.
+    """
+    powers = np.array([_LENGTHS.get(name.split("(")[0], 0) for name in columns])
+    return np.array([scale[powers <= power].max(initial=0.0) for power in powers])
+
+
+def _left_out_notes(model: Model, states: tuple[Array, Array, Array], along: list[Array], Y: Array) -> tuple[str, ...]:
+    """A note on efforts at the samples that no base parameters give, by their columns Y (equations, b)."""
     if not (model.has("mass_matrix") and model.has("bias")):
         return ()
     q, v, a = states
-    efforts = (np.einsum("...ij,...j->...i", model.mass_matrix(q), a) + model.bias(q, v)).ravel()
+    efforts = _along(along, np.einsum("...ij,...j->...i", model.mass_matrix(q), a) + model.bias(q, v))
     missed = float(np.abs(efforts - Y @ np.linalg.lstsq(Y, efforts)[0]).max(initial=0.0))
     share = missed / max(float(np.abs(efforts).max(initial=0.0)), 1e-300)
     if share <= _LEFT_OUT:
@@ -125,8 +186,8 @@ def _left_out_notes(model: Model, states: tuple[Array, Array, Array], Y: Array) 
     )
 
 
-def _independent(Y: Array) -> list[int]:
-    """Columns in the order of a Gram-Schmidt process that takes each column that brings something new."""
+def _independent(Y: Array, least: float) -> list[int]:
+    """Columns in the order of a Gram-Schmidt process that takes each one that brings a new share, `least` or more."""
     independent: list[int] = []
     basis: list[Array] = []
     for i in range(Y.shape[1]):
@@ -135,7 +196,7 @@ def _independent(Y: Array) -> list[int]:
             for b in basis:
                 left -= (b @ left) * b
         size = float(np.linalg.norm(left))
-        if size > _RANK * float(np.linalg.norm(Y[:, i])):
+        if size > least * float(np.linalg.norm(Y[:, i])):
             independent.append(i)
             basis.append(left / size)
     return independent

@@ -62,6 +62,42 @@ def test_base_parameters_are_named_by_masses_and_moments() -> None:
     assert str(base).splitlines() == list(base.names)
 
 
+@pytest.mark.parametrize("length", [1e-6, 1e6, 1e9])
+def test_base_parameters_of_mechanisms_of_any_size(length: float) -> None:
+    """The same by hand: coefficients are lengths and their squares, of a micrometre as of a gigametre."""
+    inertia = sf.Inertia(1.5, (length / 2, 0, 0), (0, length**2, length**2))
+    joints = [
+        sf.Joint("q1", "revolute", axis=(0, 1, 0)),
+        sf.Joint("q2", "revolute", "upper", "elbow", axis=(0, 1, 0)),
+    ]
+    elbow = (sf.Frame("elbow", (length, 0, 0)),)
+    bodies = [sf.RigidBody(name, joint, inertia, elbow) for name, joint in zip(("upper", "lower"), joints, strict=True)]
+    base = sf.base_parameters(sf.compile(sf.System("sized", bodies), FUNCTIONS))
+    by_hand = f"mx(upper) + {length:.6g} m(lower)", "mz(upper)", f"Iyy(upper) + {length**2:.6g} m(lower)"
+    assert base.names == (*by_hand, "mx(lower)", "mz(lower)", "Iyy(lower)") and not base.notes
+
+
+def test_base_parameters_of_a_loop_are_those_of_its_motions() -> None:
+    """By hand: the slider counts as a point at the rod's end, and the rod's mass as a point at the crank's."""
+    m = sf.compile(MODELS["slider_crank"])
+    base = sf.base_parameters(m)
+    assert base.names == (
+        "Izz(crank) + 0.0225 m(rod) + 0.0225 m(slider)",
+        "mx(rod) + 0.3 m(slider)",
+        "my(rod)",
+        "Izz(rod) + 0.09 m(slider)",
+    )
+    on = sf.assemble(m, [0.7, -0.5, 0.3], np.ones(3))
+    a = np.asarray(m.forward_dynamics(on.q, on.v, [0.4]))
+    M, h, _ = m.dynamics(on.q, on.v, [0.4])
+    allowed = np.linalg.svd(m.constraint_jacobian(on.q))[2][-1]
+    masses = {"m(rod)": 0.151104, "mx(rod)": 0.151104 * 0.15, "m(slider)": 0.075552}
+    masses |= {"Izz(crank)": 0.36 * 0.0075, "Izz(rod)": 0.151104 * 0.03}
+    pi = np.array([masses.get(name, 0.0) for name in base.columns])
+    efforts = allowed @ m.regressor(on.q, on.v, a)[:, base.independent] @ base.combine @ pi
+    assert efforts == pytest.approx(allowed @ (M @ a + h), rel=1e-9) and abs(efforts) > 1e-3
+
+
 def test_terms_of_joints_complete_inverse_dynamics(rng: np.random.Generator) -> None:
     """Y pi with viscous and Coulomb friction and armatures is what the motion takes, M a + h - Q."""
     inertia = sf.Inertia(1.3, (0.1, 0.2, -0.1), (0.3, 0.4, 0.5))
