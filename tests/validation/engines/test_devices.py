@@ -10,6 +10,7 @@ from validation.engines.interface import Slot
 from validation.engines.matrix import SEED, Judged, Truths, asked, judged
 from validation.engines.models import single
 from validation.engines.plugins import OWN
+from validation.engines.plugins.mujoco.devices import together
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.devices import DEVICES as GROUPS
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
@@ -54,6 +55,26 @@ def test_mujoco_does_as_it_documents(group: str) -> None:
     found = _judged(group)
     assert set(found) == set(GROUPS[group])
     assert {name for name, one in found.items() if one.cell.verdict != "right"} <= _OFF
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "mjx", "mujoco-warp"])
+@pytest.mark.parametrize("group", GROUPS)
+def test_engines_are_asked_by_text_that_compiles(engine: str, group: str) -> None:
+    plugin, tree = OWN[engine], _TREES[group]
+    written = plugin.write(tree)  # type: ignore[attr-defined]
+    names = asked(plugin, tree)
+    assert len(names) > 5 and not tree.demands - set(plugin.demands)  # type: ignore[attr-defined]
+    for name in names:
+        compile(written.script((plugin.ways[name], _STATE)), name, "exec")  # type: ignore[attr-defined]
+
+
+def test_models_of_one_set_of_options_are_put_together() -> None:
+    made: dict[str, object] = {}
+    exec(together("drives", GROUPS["drives"]).partition("def joined")[0], made)
+    lots = made["LOTS"]
+    assert isinstance(lots, list) and max(map(len, lots)) > 15
+    assert sum(map(len, lots)) == len({one.model for one in GROUPS["drives"].values()})
+    assert all(len(lot) == 1 for lot in lots if "<flag" in lot[0])
 
 
 def test_an_answer_that_is_off_is_wrong() -> None:

@@ -15,10 +15,10 @@ import pytest
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Medium, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
-from validation.engines.models import acting, formats, loops, single, transformed
+from validation.engines.models import acting, formats, hostile, loops, single, transformed
 from validation.engines.models.kinds import tree_of, turned
 from validation.engines.plugins import OWN
-from validation.engines.plugins.mujoco import plugin
+from validation.engines.plugins.mujoco import plugin, stages
 from validation.engines.plugins.mujoco.elements import quaternion_of
 from validation.engines.verdicts import judge
 from validation.engines.workers import Job
@@ -153,3 +153,12 @@ def test_what_is_attached_is_not_attached_again() -> None:
 
 def test_every_second_way_is_one_to_a_function() -> None:
     assert {name.partition(":")[0] for name in MUJOCO.functions} <= set(FUNCTIONS)
+
+
+def test_stages_one_by_one_do_what_all_do() -> None:
+    found: set[str] = set()
+    for tree in (hostile.trees()["six oblique hinges"], acting.driven()["actuators of all kinds"]):
+        names = [name for name in asked(MUJOCO, tree) if name in stages.WAYS]
+        assert {one.cell.verdict for one in _judged(tree, *names).values()} == {"right"}
+        found.update(names)
+    assert len(found) > 18

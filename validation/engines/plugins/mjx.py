@@ -5,19 +5,26 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..interface import STEP, Convention, Tree, Unsupported
+from ..truth.devices import DEVICES
+from ..truth.devices.bound import SOLVED
+from ..truth.devices.device import model
 from . import mujoco
+from .mujoco import elsewhere
 from .mujoco.elements import BOUND, KINDS, SOFT_FORCES
 from .writing import copies
 from .writing.source import Source, SourcePlugin, Way
 
 # What is compiled is asked a few times: the time is that of compiling. MJX's own functions are compiled, with the model
 # as an argument: trees of one structure share what is compiled.
-_SETUP = """import os
+_STARTED = """import os
 os.environ['XLA_FLAGS'] = os.environ.get('XLA_FLAGS', '') + ' --xla_backend_optimization_level=0'
 import jax
 jax.config.update("jax_enable_x64", True)
 from mujoco import mjx
-mx, empty = mjx.put_model(m), mjx.make_data(m)
+def got(e, name): return np.array(getattr(e, name) if hasattr(e, name) else getattr(e._impl, name))"""
+_SETUP = (
+    f"{_STARTED}\n"
+    + """mx, empty = mjx.put_model(m), mjx.make_data(m)
 if m.nu: empty = empty.replace(ctrl=jax.numpy.array(d.ctrl))
 if m.na: empty = empty.replace(act=jax.numpy.array(states))
 def forward(q, v, tau):
@@ -29,7 +36,6 @@ def read(q, v, a):
     calls = (mjx.fwd_position, mjx.fwd_velocity, mjx.sensor_pos, mjx.sensor_vel, mjx.sensor_acc)
     for one in calls: e = jax.jit(one)(mx, e)
     return e
-def got(e, name): return np.array(getattr(e, name) if hasattr(e, name) else getattr(e._impl, name))
 def stepped(q, v, tau, **options):
     from copy import copy
     n = copy(m)
@@ -49,6 +55,41 @@ def of_links(call, e):
     return [np.vstack([np.array(J).T for J in point(mx, e, b)]) for b in links]
 steps = {}
 links = [m.body(name).id for name in LINKS]"""
+)
+_ANSWER = (
+    f"{_STARTED}\n"
+    + """def prepared(m): return mjx.put_model(m), mjx.make_data(m)
+def answer(text, field, steps, **given):
+    (model, data), places = found(text, prepared)
+    for name, numbers in given.items():
+        values = np.array(getattr(data, name))
+        values[places(name)] = numbers
+        data = data.replace(**{name: jax.numpy.array(values)})
+    if not steps: data = jax.jit(mjx.forward)(model, data)
+    for _ in range(steps): data = jax.jit(mjx.step)(model, data)
+    return got(data, field)[places(field)].ravel()"""
+)
+# Devices that it says it does not support, and those whose options or steps would be compiled by themselves.
+_UNSUPPORTED = (
+    *(
+        "drive_pid",
+        "drive_dc_motor",
+        "ball_oriented",
+        "adhesion",
+        "sensed_limit",
+        "sensed_tendon_limit",
+        "sensed_inside",
+    ),
+    *("sensed_distance", "sensed_contact", "sensed_range", "limit_force", "fluid"),
+)
+_PLAIN, _SOLVED = (model("", option=one).partition("<worldbody>")[0] for one in ("", SOLVED))
+_UNKNOWN = {
+    name
+    for devices in DEVICES.values()
+    for name, one in devices.items()
+    if one.steps or name.startswith(_UNSUPPORTED) or not (_PLAIN in one.model or _SOLVED in one.model)
+} - {"springs_disabled", "dampers_disabled"}
+_DEVICES = elsewhere.ways(_UNKNOWN)
 _SENSED = (
     "sensed = range({count})",
     "def data(e, kind, k):\n    one = m.sensor(f'{{kind}}{{k}}')\n"
@@ -164,6 +205,8 @@ WAYS |= copies.of_model(WAYS, {"put_data": _PUT}, (*_FIELDS, "actuator_arms")) |
 
 def write(tree: Tree) -> Source | Unsupported:
     """The text that builds the tree in MuJoCo, and puts it into JAX."""
+    if tree.asked in DEVICES:
+        return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
     source = mujoco.write(tree)
     if isinstance(source, Unsupported):
         return source
@@ -188,10 +231,10 @@ PLUGIN = SourcePlugin(
         Convention("precision", "single unless JAX is told otherwise"),
     ),
     kinds=mujoco.PLUGIN.kinds,
-    ways=WAYS,
+    ways=WAYS | _DEVICES,
     write=write,
     constraints=KINDS,
-    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, *_HELD, "a medium")},
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, *_HELD, *DEVICES, "a medium")},
     statements=tuple(one for one in mujoco.PLUGIN.statements if "constraint" in one.functions),
     calls=4,
 )

@@ -6,32 +6,54 @@ from dataclasses import replace
 
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
 from ..tree import SOFT_LIMITS
+from ..truth.devices import DEVICES
 from . import mujoco
-from .mujoco import rebuilt
+from .mujoco import elsewhere, rebuilt
 from .mujoco.elements import KINDS, SOFT, SOFT_FORCES
 from .mujoco.forces import COPY, EXPLICIT, SPARSE
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
 # Trees without constraints need no memory for their rows; Warp then compiles no kernels of the solver.
-_SETUP = f"""import warp as wp
+_STARTED = f"""import warp as wp
 {QUIET}
 import mujoco_warp as mjw
+wp.set_device('cpu')
 def put(data, **fields):
     for name, value in fields.items():
         getattr(data, name).assign(np.asarray(value, np.float32)[None])
-def got(data, name): return getattr(data, name).numpy()[0]
-def fresh(model, **sizes):
+def got(data, name): return getattr(data, name).numpy()[0]"""
+_SETUP = (
+    f"{_STARTED}\n"
+    + """def fresh(model, **sizes):
     data = mjw.make_data(model, **sizes)
     if model.nu: put(data, ctrl=d.ctrl)
     if model.na: put(data, act=states)
     return data
 def made(model, **sizes): return mjw.put_model(model), fresh(model, **sizes)
 def sense(kind, b=None):
-    one = m.sensor(f'{{kind}}:{{m.body(b).name}}' if b else kind)
+    one = m.sensor(f'{kind}:{m.body(b).name}' if b else kind)
     return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]
-wp.set_device('cpu')
 mw, dw = made(m, njmax=0, nconmax=0)"""
+)
+_ANSWER = (
+    f"{_STARTED}\n"
+    + """def prepared(m): return m, mjw.put_model(m)
+def answer(text, field, steps, **given):
+    (m, model), places = found(text, prepared)
+    data = mjw.make_data(m, njmax=256, nconmax=16)
+    for name, numbers in given.items():
+        values = got(data, name)
+        values[places(name)] = numbers
+        put(data, **{name: values})
+    if not steps: mjw.forward(model, data)
+    for _ in range(steps): mjw.step(model, data)
+    return got(data, field)[places(field)].ravel()"""
+)
+_UNKNOWN = {name for name in DEVICES["drives"] if name.startswith("drive_pid")} | {
+    name for name in DEVICES["transmissions"] if name.startswith("ball_oriented")
+}
+_DEVICES = elsewhere.ways(_UNKNOWN)
 _SENSED = (
     "sensed = range({count})",
     "def data(kind, k):\n    one = m.sensor(f'{{kind}}{{k}}')\n"
@@ -248,6 +270,8 @@ WAYS = {
 
 def write(tree: Tree) -> Source | Unsupported:
     """The text that builds the tree in MuJoCo, and puts it into Warp."""
+    if tree.asked in DEVICES:
+        return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
     source = mujoco.write(tree)
     if isinstance(source, Unsupported):
         return source
@@ -280,7 +304,7 @@ def made(model, **sizes):
     mjw.set_const(model, data)
     return model, data
 mw, dw = made(m, njmax=64, nconmax=0)"""
-_UNOFFERED = ("flexible bodies", "a lone body", "turns", "sensors of bound links", SOFT_LIMITS)
+_UNOFFERED = ("flexible bodies", "a lone body", "turns", "vectors", "sensors of bound links", SOFT_LIMITS)
 PLUGIN = SourcePlugin(
     name="mujoco-warp",
     package="mujoco-warp",
@@ -291,7 +315,7 @@ PLUGIN = SourcePlugin(
         Convention("precision", "single"),
     ),
     kinds=mujoco.PLUGIN.kinds,
-    ways=WAYS,
+    ways=WAYS | _DEVICES,
     write=write,
     constraints=KINDS,
     demands={name: words for name, words in mujoco.PLUGIN.demands.items() if name not in _UNOFFERED},

@@ -12,7 +12,7 @@ from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, devices, flex, forces, framed, functions, rebuilt, soft, turns, vectors
+from . import besides, devices, flex, forces, framed, functions, rebuilt, soft, stages, turns, vectors
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -172,6 +172,7 @@ _WAYS = (
     | besides.WAYS
     | framed.WAYS
     | soft.WAYS
+    | stages.WAYS
     | turns.WAYS
     | vectors.WAYS
     | devices.WAYS
@@ -240,6 +241,13 @@ PLUGIN = SourcePlugin(
             "https://mujoco.readthedocs.io/en/stable/computation/index.html#reference-acceleration",
             "constraint_(velocity|residual)_products(:.*)?|constrained_acceleration(:.*)?|constraint_forces",
             lambda tree, text: any(one.kind in ("path", "polynomial") for one in tree.constraints),
+        ),
+        Statement(
+            "precondition",
+            "mj_crb leaves the armature of tendons out, which mj_makeM adds",
+            "mujoco, include/mujoco/mujoco.h: mj_crb, composite rigid bodies; mj_makeM, the inertia matrix",
+            "mass_matrix:mj_crb",
+            lambda tree, text: any(one.armature for one in tree.tendons),
         ),
         UNIT_AXIS,
     ),

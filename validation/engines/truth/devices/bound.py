@@ -55,6 +55,8 @@ class _Row(NamedTuple):
         return a0 if is_limit and wanted <= a0 else (1 - d) * a0 + d * wanted
 
 
+# Options by which a solver leaves nothing of its conditions.
+SOLVED = 'solver="Newton" tolerance="0" iterations="20"'
 _DRIVEN = "qpos=v[:1], qvel=a[:1], qfrc_applied=tau[:1]"
 _Of = Callable[[Exact, Exact, Exact], object]
 _ROWS = {
@@ -71,7 +73,7 @@ _ROWS = {
 
 def _slide(about: str, attributes: str, of: _Of, rest: str = "", inside: str = "", read: str = "qacc") -> Device:
     """A slide that tau drives; its acceleration of x, x', a0."""
-    text = model(slide(attributes), rest, 'solver="Newton" tolerance="0" iterations="20"', inside)
+    text = model(slide(attributes), rest, SOLVED, inside)
     return Device(about, text, _DRIVEN, read, lambda s: of(s.v[0], s.a[0], s.tau[0] / MASS))
 
 
@@ -169,7 +171,7 @@ def _ball() -> dict[str, Device]:
         before = inward @ a0
         return a0 + inward * (row.held(before, number(0.5) - angle, inward @ s.a, True) - before)
 
-    text = model(body(joint), option='solver="Newton" tolerance="0" iterations="20"')
+    text = model(body(joint), option=SOLVED)
     return {"limit_of_ball": Device("joint ball range", text, "qpos=q, qvel=a, qfrc_applied=tau", "qacc", acceleration)}
 
 
