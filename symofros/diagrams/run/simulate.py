@@ -23,7 +23,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan, blamed
 from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
-from symofros.diagrams.run.examination.examined import Energies, Examined
+from symofros.diagrams.run.examination.examined import BY_RK4, Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
@@ -163,7 +163,9 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     def repeat(i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
         o = task.options
         once = replace(o, realtime=False)
-        if refinements and h:
+        if refinements == BY_RK4:
+            once = replace(once, method="rk4", dt=h)
+        elif refinements and h:
             once = replace(once, dt=0.5**refinements * h)
         elif refinements:
             rtol, atol = tolerances(o.rtol, o.atol, refinements)

@@ -19,7 +19,7 @@ from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.energy_balance import EXPLODED
-from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states
+from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states, percent
 from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.run import MOST_STEPS
 from symofros.simulation.results.examination.switched_motion import SwitchedMotion, whole_run_note
@@ -41,7 +41,8 @@ _MOMENT = 1e-3
 
 # The records of a run that goes on from a record (its number) to a time, by steps that are refined so many times: they
 # are half as long each time, or have a hundredth of the tolerances; of less than none longer, or with wider tolerances;
-# None where it does not get there.
+# as many as BY_RK4: as long, by that method. None where it does not get there.
+BY_RK4 = 99
 Repeat = Callable[[int, float, int], States | None]
 # Records (n, m) of a vector -> its size.
 Norm = Callable[[Array], float]
@@ -280,7 +281,22 @@ def whole_note(run: Examined) -> str:
     """
     if not run.spacing or run.external or not (run.tight or run.steps <= MOST_STEPS):
         return ""
-    return whole_run_note(run)[0]
+    return whole_run_note(run)[0] or _decisions_note(run)
+
+
+def _decisions_note(run: Examined) -> str:
+    """Note on a run of order 1 with samples that rk4 changes by the same steps: half of them may decide as wrongly."""
+    sampled = any(piece.block.period is not None for piece in run.energies.resolved.pieces.values())
+    if not sampled or not run.h or run.method_order > 1 or run.steps > MOST_STEPS:
+        return ""
+    states, exact = run.coarse(run.window, 1), run.fine(run.window, BY_RK4, 1)
+    share, name = run.change(states, exact, "whole") if states is not None and exact is not None else (0.0, "")
+    if not share > run.tolerance:
+        return ""
+    return (
+        f"steps of {run.h:.4g} s do not determine the motion of '{name}', in which what samples decide follows from"
+        f" less than they err by: 'rk4' by the same steps changes it by {percent(share)}; method='rk4', or a much smaller dt"
+    )
 
 
 def _whole_change(layout: Layout, block: str, coarse: States, fine: States) -> float:

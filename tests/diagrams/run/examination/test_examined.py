@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 import symofros as sf
 from symofros import blocks
@@ -128,3 +129,28 @@ def test_speeds_count_at_the_end_and_in_the_mean_displacements_at_any_instant() 
     assert change(q, v * (1.0 + 0.25 * last)) == pytest.approx(0.25 / 1.25)
     assert change(q, v * (1.0 + 0.1 * ~last)) == pytest.approx(0.1 * v[:-1].sum() / 11 / 2.09, rel=0.01)
     assert change(q + 0.5 * (t == 3.0)[:, np.newaxis], v) == pytest.approx(0.5 / (q[-1, 0] - q[0, 0]))
+
+
+@pytest.mark.parametrize("method", ["euler", "semi_implicit_euler"])
+def test_wrong_decisions_at_samples_that_half_the_step_repeats_are_noted(method: str) -> None:
+    """A relay that is sampled, started so near its level that steps of order 1 decide otherwise, however halved."""
+    joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(9.0), sf.Damper(0.6)), actuated=True)
+    system = sf.System("mass", (sf.RigidBody("mass", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0))
+    period, steps = 0.05, 10
+    exact = expm(np.array([[0.0, 1.0], [-9.0, -0.6]]) * period)
+    # While it is off, the highest sample of the exact motion is nearer to the level than steps err by.
+    rest, x, highest = np.array([-0.5, 0.0]), np.array([0.3, 2.0]), -np.inf
+    for _ in range(40):
+        x = rest + exact @ (x - rest)
+        highest = max(highest, float(x[0]))
+    level = highest + (1e-5 if method == "euler" else -1e-5)
+    runs = []
+    for chosen in (method, "rk4"):
+        diagram = sf.Diagram("sampled")
+        diagram.add_model("m", system, start={"x": 0.3, "dx": 2.0})
+        diagram.add(blocks.ForwardDynamics(name="plant", model="m"), u="relay")
+        diagram.add(blocks.Relay(name="relay", lower=-2.0, upper=level, on=4.5, off=-4.5, period=period), u="plant.q")
+        runs.append(sf.Simulation(diagram).run(2.0, method=chosen, dt=period / steps, record=period))
+    wrong, right = runs
+    assert np.abs(wrong["plant.q"] - right["plant.q"]).max() > 0.2 and not right.outcome.notes
+    assert any("in which what samples decide follows from" in note for note in wrong.outcome.notes)
