@@ -295,7 +295,7 @@ def _decisions_note(run: Examined) -> str:
         return ""
     return (
         f"steps of {run.h:.4g} s do not determine the motion of '{name}', in which what samples decide follows from"
-        f" less than they err by: 'rk4' by the same steps changes it by {percent(share)}; method='rk4', or a much smaller dt"
+        f" less than they err by: 'rk4' by the same steps changes it by {percent(share)}; method='rk4', or a smaller dt"
     )
 
 
