@@ -9,6 +9,8 @@ from ...interface import Slot
 from ...truth.devices import DEVICES
 from ..writing.source import Source, Way
 
+# The tree stands for the numbers that devices are given.
+SLOTS = ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),)
 _COMPILED = "def compiled(text): return mj.MjModel.from_xml_string(text)"
 # Models with geoms meet each other, and one has one set of options: the others of a group are attached to one another.
 _OPTIONS = re.compile("<option.*</option>")
@@ -32,7 +34,7 @@ def found(text, prepared=lambda m: m):
     return whole, places
 lots = {}"""
 # `answer` keeps the models, each by its text.
-_ANSWER = """models = {}
+ANSWER = """models = {}
 def answer(text, field, steps, **given):
     if text not in models: models[text] = compiled(text)
     m = models[text]
@@ -101,5 +103,4 @@ WAYS = ways()
 
 def write() -> Source:
     """Text that answers of any device: the tree stands for its numbers, a turn is a quaternion."""
-    slots = ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),)
-    return Source(("import numpy as np", "import mujoco as mj", _COMPILED, *_ANSWER.split("\n")), slots, 4, 3)
+    return Source(("import numpy as np", "import mujoco as mj", _COMPILED, *ANSWER.split("\n")), SLOTS, 4, 3)

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from ...interface import Slot
 from ...truth.devices import DEVICES
 from ..writing.source import Source, Way
-from .devices import together
-
-_SLOTS = ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),)
+from .devices import SLOTS, together
 
 
 def ways(without: Collection[str]) -> dict[str, Way]:
@@ -27,4 +24,4 @@ def write(group: str, offered: Collection[str], lines: tuple[str, ...]) -> Sourc
         lines: Statements that define `answer` by `found`.
     """
     made = together(group, offered).split("\n")
-    return Source(("import numpy as np", "import mujoco as mj", *made, *lines), _SLOTS, 4, 3)
+    return Source(("import numpy as np", "import mujoco as mj", *made, *lines), SLOTS, 4, 3)
