@@ -6,6 +6,7 @@ import re
 
 from ..tree import Tree
 from ..truth.attitudes import ATTITUDES
+from ..truth.connectors import CONNECTORS
 from ..truth.guidance import GUIDANCE
 from ..truth.orbits import ORBITS
 from ..truth.spacecraft import SPACECRAFT
@@ -41,7 +42,7 @@ FUNCTIONS: dict[str, Function] = (
     | VECTORS
     | DEVICES
 )
-FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE, "turns") | functions_of(SPACECRAFT, "spacecraft")
+FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE | CONNECTORS, "turns") | functions_of(SPACECRAFT, "spacecraft")
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.

@@ -88,6 +88,49 @@ WAYS = {
     # Newton's method ends at a relative residual of 1e-8, which the equation's condition makes larger in the speeds.
     "step_trapezoidal": _step("TrapezoidalIndex2")._replace(slack=1e-7),
 }
+# Trees in Python, of links without springs, dampers and armature.
+_PARTS = """from exudyn import kinematicTree as kt, rigidBodyUtilities as rbu
+short = [name[0] + name[-1].lower() for name in types]
+turned, moved = [np.array(R) for R in rotations], [np.array(p) for p in offsets]
+"""
+_TREE66 = f"""{_PARTS}shifts = [rbu.RotationTranslation2T66Inverse(R, p) for R, p in zip(turned, moved)]
+bodies = [kt.MassCOMinertia2T66(m, c, np.array(J)) for m, c, J in zip(masses, coms, inertias)]
+python = kt.KinematicTree66(short, shifts, bodies, parents, gravity)
+"""
+_TREE33 = f"""{_PARTS}full = [np.array(J) + m * (np.dot(c, c) * np.eye(3) - np.outer(c, c))
+    for J, m, c in zip(inertias, masses, coms)]
+python = kt.KinematicTree33(short, turned, moved, full, [np.array(c) for c in coms], masses, parents, gravity)
+"""
+_ROBOT = f"""{_PARTS}from exudyn.robotics import Robot, RobotLink
+python = Robot(gravity=gravity)
+for m, c, J, kind, parent, R, p in zip(masses, coms, inertias, short, parents, turned, moved):
+    python.AddLink(RobotLink(m, c, np.array(J), jointType=kind, parent=parent,
+        preHT=rbu.HomogeneousTransformation(R, p)))
+frames = python.JointHT(q)
+"""
+_IN_PYTHON = {
+    f"{name}:{tree}": Way(f"{tree}.{native}", f"{text}value = python.{native}({call}{place}")
+    for tree, text in (("KinematicTree66", _TREE66), ("KinematicTree33", _TREE33))
+    for name, native, call, place in (
+        ("mass_matrix", "ComputeMassMatrixAndForceTerms", "q, 0 * q)", "[0]"),
+        ("bias", "ComputeMassMatrixAndForceTerms", "q, v)", "[1]"),
+        ("forward_dynamics", "ForwardDynamicsCRB", "q, v, tau)", ""),
+    )
+} | {
+    "link_poses:Robot": Way(
+        "Robot.JointHT",
+        f"{_ROBOT}at = [(np.array(rbu.HT2rotationMatrix(X)), np.array(rbu.HT2translation(X))) for X in frames]\n"
+        "value = [[*(at[k][1] + at[k][0] @ p), *(at[k][0] @ np.array(T).T).flat] if k >= 0 else"
+        " [*p, *np.array(T).T.flat] for k, p, T in zip(links, places, turns)]",
+    ),
+    "link_jacobians:Robot": Way(
+        "Robot.Jacobian",
+        f"{_ROBOT}value = np.zeros((len(links), 6, n))\nfor i, (k, p) in enumerate(zip(links, places)):\n"
+        "    if k >= 0:\n        R, x = rbu.HT2rotationMatrix(frames[k]), rbu.HT2translation(frames[k])\n"
+        "        value[i] = python.Jacobian(frames, toolPosition=np.array(x) + np.array(R) @ p, linkIndex=k)",
+    ),
+}
+WAYS |= _IN_PYTHON
 _KEPT = (
     "state(q, v)\n",
     "kept = mbs.systemData.GetSystemState()\nstate(0 * q)\nmbs.systemData.SetSystemState(kept)\n",
@@ -186,7 +229,9 @@ def write(tree: Tree) -> Source | Unsupported:
         f"turns = [{', '.join(map(_plain, turns))}]",
         _SETUP,
     )
-    return Source(lines, tuple(made.slots), len(made.types), len(made.types))
+    is_plain = not any(made.armatures) and not any(any(row[:2]) for row in made.forces)
+    lacks = () if is_plain else tuple(_IN_PYTHON)
+    return Source(lines, tuple(made.slots), len(made.types), len(made.types), lacks=lacks)
 
 
 PLUGIN = SourcePlugin(

@@ -24,5 +24,9 @@ SPACECRAFT: dict[str, tuple[str, TruthOf]] = {
     "craft_accelerations_coasting": ("M^-1 (Q - h) (nv)", lambda t, s: t.FD(s.q, s.v, 0 * s.tau)),
     "craft_energy": ("kinetic energy and what springs store (1)", _energy),
     "craft_angular_momentum": ("about the mass centre (3)", lambda t, s: (derived.centroidal_matrix(t, s.q) @ s.v)[3:]),
+    "craft_logs_against_states": (
+        "1 + what poses that are logged after that step are off those of the states then (L, 12)",
+        lambda t, s: 0 * t.kinematics.flat_poses(s.q) + 1,
+    ),
     "craft_poses_after_step": ("link_poses after a step of `interface.STEP` from the speeds v2 (L, 12)", _after_step),
 }

@@ -39,6 +39,11 @@ _CODES = {
         "c = Craft(classes)\nc.rates(q, v, tau)\nvalue = np.ravel(c.totals().totRotAngMomPntC_N)",
         0.0,
     ),
+    "craft_logs_against_states": (
+        "spinningBodyConfigLogOutMsgs, translatingBodyConfigLogOutMsgs",
+        f"value = Craft(classes).logs_against_states(q, v2, tau, {STEP})",
+        0.0,
+    ),
     # Attitudes are integrated as other parameters than ours.
     "craft_poses_after_step": ("ConfigLogOutMsg", f"value = Craft(classes).moved(q, v2, tau, {STEP})", 1e-6),
 }
@@ -52,7 +57,7 @@ def _ways() -> dict[str, Way]:
         ways[name] = Way(f"SpinningBodyNDOF, LinearTranslationNDOF: {native}", code, slack)
         for other, (kind, effector, _) in _OTHERS.items():
             if (other in _UNDRIVEN and name != "craft_accelerations_coasting") or (
-                other in _UNLOGGED and name == "craft_poses_after_step"
+                other in _UNLOGGED and name in ("craft_poses_after_step", "craft_logs_against_states")
             ):
                 continue
             built = ((f"'{kind}': {_NAMES[kind]}", f"'{kind}': {effector}"),)

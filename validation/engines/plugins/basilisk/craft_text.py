@@ -171,6 +171,7 @@ class Craft:
         self.outside = extForceTorque.ExtForceTorque()
         craft.addDynamicEffector(self.outside)
         craft.Reset(0)
+        for part in self.parts: part.effector.Reset(0)
     def state(self, name): return self.craft.dynManager.getStateObject(name)
     def each(self):
         at = 0
@@ -212,6 +213,17 @@ class Craft:
         self.craft.UpdateState(time)
         for part in self.parts: part.effector.UpdateState(time)
         return self.poses()
+    def logs_against_states(self, q, v, tau, step):
+        logged = np.array(self.moved(q, v, tau, step))
+        made, states = [logged[0]], iter(np.concatenate(
+            [np.ravel(self.state(place).getState()) for _, place, _, _ in self.each()] or [np.zeros(0)]))
+        for kind, bodies in chains:
+            p, R = logged[0][:3], logged[0][3:].reshape(3, 3)
+            for turned_by, moved_by, axis, *_ in bodies:
+                x, p, R = next(states), p + R @ moved_by, R @ turned_by
+                p, R = (p + x * R @ axis, R) if kind == 'slide' else (p, R @ about(axis, x))
+                made.append(np.array([*p, *R.flat]))
+        return 1 + logged - made
     def totals(self):
         self.craft.computeEnergyMomentum(0.0)
         return self.craft"""

@@ -334,7 +334,7 @@ PLUGIN = SourcePlugin(
     ways=WAYS,
     write=write,
     demands={
-        "turns": "CreateRigidBody, rigidBodyUtilities, lieGroupBasics",
+        "turns": "CreateRigidBody, rigidBodyUtilities, lieGroupBasics, connectors, loads, sensors, AddLidar",
         "dampers": "TorsionalSpringDamper, LinearSpringDamper, RigidBodySpringDamper",
         "springs": "TorsionalSpringDamper, LinearSpringDamper",
         "tendons": "SpringDamper",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...truth.poses import CENTRE, MASS, MOMENTS
 from ..writing.source import HALF_TURNS, ON_END, Way
-from . import solids
+from . import exudyn_items, solids
 
 IMPORTS = ("from exudyn import lieGroupBasics as lie", "from exudyn import rigidBodyUtilities as rbu")
 _R = "R, Q = rbu.EulerParameters2RotationMatrix(q), rbu.EulerParameters2RotationMatrix(q2)\n"
@@ -153,4 +153,61 @@ _PLACEMENTS = {
     "spatial_inertia_sum": Way("RigidBodyInertia +", f"{_X}{_INERTIA}I = I.Transformed(X) + I\n{_MOMENTUM}"),
     "spatial_inertia_sum:+=": Way("RigidBodyInertia +=", f"{_X}{_INERTIA}K = I.Transformed(X)\nI += K\n{_MOMENTUM}"),
 }
-WAYS = _ROTATIONS | _ROLLED | _PLACEMENTS | solids.EXUDYN
+_TREES = "from exudyn import kinematicTree as kt\n"
+_BODY66 = f"{_TREES}A = kt.MassCOMinertia2T66({MASS}, {list(CENTRE)}, np.array({[list(row) for row in MOMENTS]}))\n"
+_TURNED = "value = [np.ravel({of}(x){part}) for {of}, x in zip(({names}), v)]"
+
+
+def _elementary(names: str, part: str = "") -> Way:
+    listed = ", ".join(f"rbu.{name}" for name in names.split(", "))
+    return Way(names, _TURNED.format(of="turned", part=part, names=listed))
+
+
+def _semidirect(parameters: str, make: str, back: str) -> Way:
+    """X Y by the rule for a set of parameters, with the twist that leads along Y."""
+    rule = f"CompositionRuleSemiDirectProductR3And{parameters}"
+    return Way(
+        rule,
+        f"{_X}T = lie.LogSE3(Y)\nx = lie.{rule}(np.r_[a, {make}], np.r_[T[:3, 3], rbu.Skew2Vec(T[:3, :3])])\n"
+        f"value = [*x[:3], *rbu.{back}(x[3:]).flat]",
+    )
+
+
+_MORE = {
+    "quaternion_rates:EulerParameters2G": Way(
+        "EulerParameters2G", f"{_R}value = rbu.EulerParameters2G(q).T @ R @ v / 4"
+    ),
+    "rotations_elementary": _elementary("RotationMatrixX, RotationMatrixY, RotationMatrixZ"),
+    "rotations_elementary:T66": _elementary("RotationX2T66, RotationY2T66, RotationZ2T66", "[:3, :3]"),
+    "rotations_elementary:T66, moments": _elementary("RotationX2T66, RotationY2T66, RotationZ2T66", "[3:, 3:]"),
+    "rotation_exponential:ExpR3xSO3": Way(
+        "ExpR3xSO3", "value = lie.R3xSO3Matrix2RotationMatrix(lie.ExpR3xSO3(np.r_[a, v])).ravel()"
+    ),
+    "rotation_vector_speeds:TExpR3xSO3": Way("TExpR3xSO3", "value = lie.TExpR3xSO3(np.r_[a, tau])[3:, 3:]"),
+    "rotation_vector_rates:TExpR3xSO3Inv": Way("TExpR3xSO3Inv", "value = lie.TExpR3xSO3Inv(np.r_[a, tau])[3:, 3:]"),
+    "pose_composed:S3": _semidirect("S3", "q", "EulerParameters2RotationMatrix"),
+    "pose_composed:R3RotVec": _semidirect(
+        "R3RotVec", "rbu.RotationMatrix2RotationVector(R)", "RotationVector2RotationMatrix"
+    ),
+    "pose_composed:R3RotXYZAngles": _semidirect(
+        "R3RotXYZAngles", "rbu.RotationMatrix2RotXYZ(R)", "RotXYZ2RotationMatrix"
+    ),
+    "twist_cross": Way("CRM", f"{_TREES}{_SWAPPED.format(of='kt.CRM(np.r_[v2, v])')}"),
+    "spatial_inertia:MassCOMinertia2T66": Way("MassCOMinertia2T66", _BODY66 + _SWAPPED.format(of="A")),
+    "spatial_inertia:Inertia2T66": Way("Inertia2T66", _TREES + _INERTIA + _SWAPPED.format(of="kt.Inertia2T66(I)")),
+    "spatial_inertia:Inertia66toMassCOMinertia": Way(
+        "Inertia66toMassCOMinertia",
+        _BODY66 + _SWAPPED.format(of="kt.MassCOMinertia2T66(*kt.Inertia66toMassCOMinertia(A))"),
+    ),
+    "spatial_momentum": Way("MassCOMinertia2T66", f"{_BODY66}value = np.roll(A @ np.r_[v2, v], 3)"),
+    "spatial_momentum_cross": Way("CRF", f"{_BODY66}u = np.r_[v2, v]\nvalue = np.roll(kt.CRF(u) @ A @ u, 3)"),
+    **{
+        f"moments_cylinder:along {axis}": Way(
+            f"InertiaCylinder, axis {k}",
+            f"x = np.abs(v) + 0.5\nI = rbu.InertiaCylinder({MASS} / (np.pi * x[0] ** 2 * x[1]), x[1], x[0], {k})\n"
+            f"value = np.roll(np.diag(I.inertiaTensor), {2 - k})",
+        )
+        for k, axis in enumerate("xy")
+    },
+}
+WAYS = _ROTATIONS | _ROLLED | _PLACEMENTS | solids.EXUDYN | _MORE | exudyn_items.WAYS
