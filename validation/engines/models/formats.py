@@ -19,6 +19,7 @@ from . import (
     mjcf_lines,
     mjcf_scopes,
     sdf_files,
+    skel_files,
     urdf_files,
     usd_files,
     usd_masses,
@@ -73,7 +74,7 @@ def formats() -> dict[str, Reading]:
     mjcf_stated |= mjcf_lines.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
     read = mjcf_scopes.files() | sdf_files.files() | usd_files.files() | usd_masses.files() | coupled_files.files()
-    read |= drake_files.files()
+    read |= drake_files.files() | skel_files.files()
     return urdf_stated | mjcf_stated | read | made | dict(map(_written, written))
 
 

@@ -271,6 +271,10 @@ _READERS = {
         "world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))",
         "s = world and world.getSkeleton(0)",
     ),
+    "skel": (
+        "world = dart.utils.SkelParser.readWorldXML(TEXT, dart.common.Uri(''))",
+        "s = world and world.getSkeleton(0)",
+    ),
 }
 
 
@@ -289,7 +293,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         *_IMPORTS,
         *(line.replace("TEXT", repr(text)) for line in _READERS[form]),
         "if s is None: raise ValueError('no skeleton: see the log')",
-        *([] if form == "mjcf" else _gravity(tree)),
+        *([] if form in ("mjcf", "skel") else _gravity(tree)),
     ]
     # A body that it has not read has no pose to answer with.
     links = f"links = [b for name in {names!r} if (b := s.getBodyNode(name))]"

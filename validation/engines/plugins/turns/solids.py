@@ -284,23 +284,39 @@ _GROUP = (
     "result = dart.collision.DistanceResult()\n"
     "group.distance(dart.collision.DistanceOption(False, -100.0), result)\nvalue = [result.unclampedMinDistance]"
 )
+_TOUCHING = _GROUP.replace("FCL", "KIND").partition("result = ")[0] + (
+    "result = dart.collision.CollisionResult()\n"
+    "group.collide(dart.collision.CollisionOption(True, 100), result)\n"
+    "value = [-max(one.penetrationDepth for one in result.getContacts())]"
+)
 _DART_R = "R, Q = (dart.math.Quaternion(*x).to_rotation_matrix() for x in (q, q2))\n"
-DART = _distances(
-    "CollisionGroup.distance",
-    _DART,
-    f"{_DART_R}X, Y = dart.math.Isometry3(R, a), dart.math.Isometry3(Q, {_BEYOND})\n{_GROUP}",
-) | {
-    f"moments_{one}": Way(
-        f"{of.partition('(')[0]}.computeInertia", f"{_X}value = np.diag(dart.dynamics.{of}.computeInertia({MASS}))"
+DART = (
+    _distances(
+        "CollisionGroup.distance",
+        _DART,
+        f"{_DART_R}X, Y = dart.math.Isometry3(R, a), dart.math.Isometry3(Q, {_BEYOND})\n{_GROUP}",
     )
-    for one, of in {
-        "box": "BoxShape(x)",
-        "ellipsoid": "EllipsoidShape(2 * x)",
-        "ball": "SphereShape(x[0])",
-        "cylinder": "CylinderShape(x[0], x[1])",
-        "capsule": "CapsuleShape(x[0], x[1])",
-    }.items()
-}
+    | {
+        f"distance_ball_in_box:{name}": Way(
+            f"{name}CollisionDetector, CollisionGroup.collide",
+            f"{_DART_R}X, Y = dart.math.Isometry3(R, a + R @ {list(NEAR_FACE)}), dart.math.Isometry3(R, a)\n"
+            + _TOUCHING.replace("ONE", _DART["ball"]).replace("OTHER", _DART["box"]).replace("KIND", name),
+        )
+        for name in ("DART", "Bullet", "FCL", "Ode")
+    }
+    | {
+        f"moments_{one}": Way(
+            f"{of.partition('(')[0]}.computeInertia", f"{_X}value = np.diag(dart.dynamics.{of}.computeInertia({MASS}))"
+        )
+        for one, of in {
+            "box": "BoxShape(x)",
+            "ellipsoid": "EllipsoidShape(2 * x)",
+            "ball": "SphereShape(x[0])",
+            "cylinder": "CylinderShape(x[0], x[1])",
+            "capsule": "CapsuleShape(x[0], x[1])",
+        }.items()
+    }
+)
 
 # PyBullet: bodies in a world of their own.
 _BULLET = {
