@@ -32,7 +32,7 @@ class Reading:
     """A file and the tree that it states.
 
     Attributes:
-        form: Format: "urdf", "mjcf", "sdf", "usd" or "skel"; "urdf from shapes" for readers that work out inertias anew,
+        form: Format: "urdf", "mjcf", "sdf", "usd" or "skel"; "urdf from shapes" for readers that work out inertias,
             "urdf of drake" and "sdf of drake" for elements of Drake's own.
         text: The file; its links are named as the tree's.
         tree: The tree.
