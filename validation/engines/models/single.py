@@ -10,7 +10,7 @@ import numpy as np
 
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
 from ..tree import FEATURES
-from ..truth.devices import DEVICES
+from ..truth.devices import COMPILED, DEVICES
 from .readers import IDENTITY, TURNED
 
 
@@ -82,7 +82,7 @@ def trees() -> dict[str, Tree]:
         _held("distance within its bounds", 0.0625, 8.0),
         turns,
         replace(turns, name="vectors", asked="vectors"),
-        *(replace(turns, name=group, asked=group) for group in DEVICES),
+        *(replace(turns, name=group, asked=group) for group in (DEVICES | COMPILED)),
         *(replace(turns, name=name, asked=name) for name in FEATURES),
         *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),

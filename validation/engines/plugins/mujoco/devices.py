@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection
 
 from ...interface import Slot
-from ...truth.devices import DEVICES
+from ...truth.devices import COMPILED, DEVICES
 from ..writing.source import Source, Way
 
 # The tree stands for the numbers that devices are given.
@@ -42,7 +42,7 @@ def answer(text, field, steps, **given):
     for name, numbers in given.items(): getattr(d, name)[:] = numbers
     if not steps: mj.mj_forward(m, d)
     for _ in range(steps): mj.mj_step(m, d)
-    return np.array(getattr(d, field), float).ravel()"""
+    return np.array(getattr(d if hasattr(d, field) else m, field), float).ravel()"""
 # MuJoCo writes six digits: of these models numbers take more.
 _LONG = ("drive_cylinder_of_diameter",)
 _MADE = {
@@ -82,12 +82,16 @@ def together(group: str, names: Collection[str]) -> str:
 
 def ways() -> dict[str, Way]:
     """A way of each device, and those of models that are made in other ways."""
-    first = {name: Way(device.about, device.code) for devices in DEVICES.values() for name, device in devices.items()}
+    first = {
+        name: Way(device.about, device.code)
+        for devices in (DEVICES | COMPILED).values()
+        for name, device in devices.items()
+    }
     others = {
         f"{name}:{how}": way._replace(native=f"{how}, {way.native}", built=((_COMPILED, text),))
         for how, text in _MADE.items()
         for name, way in first.items()
-        if how != "to_xml" or name not in _LONG
+        if (how != "to_xml" or name not in _LONG) and (how != "attach" or not name.startswith("compiled_"))
     }
     for group, devices in DEVICES.items():
         built = ((_COMPILED, f"{_COMPILED}\n{together(group, devices)}{_AMONG}"),)

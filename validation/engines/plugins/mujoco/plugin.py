@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...interface import Convention, End, Statement, Tendon, Tree, Unsupported
 from ...tree import SOFT_LIMITS
-from ...truth.devices import DEVICES
+from ...truth.devices import COMPILED, DEVICES
 from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
@@ -40,7 +40,7 @@ def write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree."""
     if tree.asked == "flexible bodies":
         return flex.write(tree)
-    if tree.asked in DEVICES:
+    if tree.asked in (DEVICES | COMPILED):
         return devices.write()
     if tree.asked in ("turns", "vectors"):
         return turns.write()
@@ -198,7 +198,7 @@ PLUGIN = SourcePlugin(
         "attached": "MjSpec, attach_body",
         "turns": "rotations as quaternions and matrices",
         "vectors": "functions of vectors and matrices",
-        **dict.fromkeys(DEVICES, "small models of MJCF"),
+        **dict.fromkeys(DEVICES | COMPILED, "small models of MJCF"),
         "fused": "fusestatic",
         **{f"changed {name}": f"{', '.join(fields)}; mj_setConst" for name, fields in CHANGED.items()},
         "dampers": "damping",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from . import bound, drives, sensors, springs, transmissions
+from . import bound, compiled, drives, sensors, springs, transmissions
 from .device import Device as Device
 
 # What a tree is asked about that stands for some of them (`Tree.asked`) -> name of a function -> device.
@@ -13,3 +13,5 @@ DEVICES: dict[str, dict[str, Device]] = {
     "sensors of all kinds": sensors.DEVICES,
     "solver's parameters": bound.DEVICES,
 }
+# The same of what MuJoCo's compiler makes of them.
+COMPILED = {"compiled models": compiled.DEVICES}
