@@ -214,7 +214,7 @@ def starts_off(
 ) -> npt.NDArray[np.bool_]:
     """Whether each initial state is off the constraints (n); arrays have a row per state, or one for all."""
     exact = model.with_precision("double")  # As states are.
-    off = np.zeros(max(len(q), len(v), len(u)), dtype=np.bool_)
+    off = np.zeros(max(map(len, (q, v, u, par))), dtype=np.bool_)
     for facing in facings(exact, q, u, par):
         off |= facing.cosines < 0.0
     if settings.stabilisation == "baumgarte":

@@ -116,6 +116,19 @@ def test_each_trajectory_may_have_its_own_parameters() -> None:
         assert_same(many[i], sf.simulate(m, q[i], v[i], 0.1, par=par[i], u=law, dt=5e-3, output=[0.1]))
 
 
+def test_one_start_on_constraints_serves_many_parameters() -> None:
+    """Masses leave a start on the constraints, a length takes it off them."""
+    m = sf.compile(MODELS["slider_crank"])
+    on = sf.assemble(m, [0.7, -0.5, 0.3], np.ones(3))
+    par = np.tile(m.parameter_values, (3, 1))
+    par[:, m.names.par.index("m3")] *= [0.5, 1.0, 2.0]
+    par[1, m.names.par.index("L1")] *= 1.1
+    many = sf.simulate_batch(m, on.q, on.v, 0.1, par=par, dt=5e-3)
+    assert list(many.ok) == [True, False, True]
+    for i in (0, 2):
+        assert_same(many[i], sf.simulate(m, on.q, on.v, 0.1, par=par[i], dt=5e-3, output=[0.1]))
+
+
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
 def test_a_bad_trajectory_affects_no_other(method: str) -> None:
     m = model("cart_pole")
