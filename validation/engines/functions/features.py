@@ -83,6 +83,7 @@ def _parameters() -> dict[str, Function]:
         "accelerations_forced": ("accelerations under tau and gravity (3)", parameters.accelerations),
         "impulsive_speeds": ("speeds after the impulses tau (3)", parameters.after_impulse),
         "masses_set": ("mass matrix with the masses x (3, 3)", parameters.set_masses),
+        "limits_set": ("limits of coordinates, speeds, accelerations (6, 3)", parameters.limits),
         "damping_set": ("forces of the dampers x (3)", parameters.damped),
         "power_of_damping": ("power of these (1)", parameters.lost_power),
         "spring_set": ("force and energy of a spring of stiffness x[0], rest x[1], at v[2] (2)", parameters.sprung),

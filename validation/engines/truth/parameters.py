@@ -93,6 +93,11 @@ def set_masses(t: Truth, s: Point) -> Exact:
     return np.diag(np.array([x[0] + x[1], x[1], x[2]], dtype=object)) + zeros(3, 3)
 
 
+def limits(t: Truth, s: Point) -> Exact:
+    """Bounds of slides: coordinates -x and 2 x, speeds -3 x and 4 x, accelerations -5 x and 6 x (6, 3)."""
+    return np.outer(exact((-1.0, 2.0, -3.0, 4.0, -5.0, 6.0)), sizes(s))
+
+
 def damped(t: Truth, s: Point) -> Exact:
     """Forces of dampers of x = |v| + 1/2 at the speeds a (3)."""
     return -sizes(s) * s.a

@@ -136,6 +136,32 @@ WAYS |= {
     "masses_set": Way(
         "BodyNode.setMass", f"{_X}{_SLIDES}for b, y in zip(bodies, x): b.setMass(y)\nvalue = s.getMassMatrix()"
     ),
+    **{
+        f"limits_set{way}": Way(
+            name,
+            f"{_X}{_SLIDES}kinds = ('Position', 'Velocity', 'Acceleration')\n"
+            "names = [of + end for of in kinds for end in ('Lower', 'Upper')]\n"
+            "for name, k in zip(names, (-1, 2, -3, 4, -5, 6)):\n"
+            f"    {setting}\nvalue = [getattr(s, f'get{{name}}Limits')() for name in names]",
+        )
+        for way, name, setting in (
+            (
+                "",
+                "Joint.setPositionLowerLimit, setVelocityUpperLimit",
+                "for j, y in zip(slides, x): getattr(j, f'set{name}Limit')(0, k * y)",
+            ),
+            (
+                ":DegreeOfFreedom",
+                "DegreeOfFreedom.setPositionLowerLimit, setVelocityUpperLimit",
+                "for i, y in enumerate(x): getattr(s.getDof(i), f'set{name}Limit')(k * y)",
+            ),
+            (
+                ":Skeleton",
+                "Skeleton.setPositionLowerLimits, setVelocityUpperLimits",
+                "getattr(s, f'set{name}Limits')(k * x)",
+            ),
+        )
+    },
     "impulsive_speeds": Way(
         "setJointConstraintImpulses, computeImpulseForwardDynamics",
         f"{_SLIDES}{_STATE}s.setJointConstraintImpulses(tau)\ns.computeImpulseForwardDynamics()\n{_SPEEDS}",

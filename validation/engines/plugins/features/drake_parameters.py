@@ -88,6 +88,14 @@ _FORCED = "f = np.zeros(3)\nf[vs] = tau\np.get_applied_generalized_force_input_p
 _ACCELERATION = "value = p.EvalTimeDerivatives(c).CopyToVector()[3:][vs]"
 _BY_INSTANCE = "np.r_[p.GetPositions(c, one), p.GetPositions(c, two)]"
 _FORCES = "f = drake.MultibodyForces(p)\n"
+_LIMITS = """for j, y in zip(jj, x):
+    j.set_position_limits([-y], [2 * y]); j.set_velocity_limits([-3 * y], [4 * y])
+    j.set_acceleration_limits([-5 * y], [6 * y])
+"""
+_TOLD = (
+    "value = [getattr(p, f'Get{of}{end}Limits')()[vs] for of in ('Position', 'Velocity', 'Acceleration')"
+    " for end in ('Lower', 'Upper')]"
+)
 _INERTIA = "drake.SpatialInertia(y, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
 WAYS |= {
     "coordinates_set": Way("PrismaticJoint.set_translation", f"{_MADE}{_STATE}value = p.GetPositions(c)[qs]"),
@@ -240,6 +248,24 @@ WAYS |= {
         "PrismaticJoint.SetDamping, AddInDamping",
         f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)\n{_FORCES}"
         "for j in jj: j.AddInDamping(c, f)\nvalue = f.generalized_forces()[vs]",
+    ),
+    "limits_set": Way(
+        "Joint.set_position_limits, set_velocity_limits, set_acceleration_limits",
+        f"{_X}{_PLANT}{_LIMITS}{_DONE}{_CONTEXT}{_PLACES}{_TOLD}",
+    ),
+    "limits_set:after Finalize": Way("Joint.set_position_limits after Finalize", f"{_X}{_MADE}{_LIMITS}{_TOLD}"),
+    "limits_set:Clone": Way(
+        "Joint.set_position_limits, Clone", f"{_X}{_PLANT}{_LIMITS}{_DONE}{_PLACES}p = p.Clone()\n{_TOLD}"
+    ),
+    "limits_set:joint": Way(
+        "Joint.position_lower_limits, velocity_upper_limits, acceleration_lower_limits",
+        f"{_X}{_MADE}{_LIMITS}value = [[getattr(j, f'{{of}}_{{end}}_limits')()[0] for j in jj]"
+        " for of in ('position', 'velocity', 'acceleration') for end in ('lower', 'upper')]",
+    ),
+    "accelerations_forced:MakeActuationMatrixPseudoinverse": Way(
+        "MakeActuationMatrixPseudoinverse",
+        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}f = np.zeros(3)\nf[vs] = tau\n"
+        f"p.get_actuation_input_port().FixValue(c, p.MakeActuationMatrixPseudoinverse() @ f)\n{_ACCELERATION}",
     ),
     "power_of_damping": Way(
         "CalcNonConservativePower",

@@ -107,6 +107,16 @@ _PLACED = {
             "Joint.SetDefaultPose",
             f"{_JOINED.format('RpyFloating')}j.SetDefaultPose(X)\n{_DONE}",
         ),
+        (
+            "default of a floating base",
+            "SetDefaultFloatingBaseBodyPose after Finalize",
+            "p.Finalize()\np.SetDefaultFloatingBaseBodyPose(b, X)\nc = p.CreateDefaultContext()\n",
+        ),
+        (
+            "SetFloatingBaseBodyPoseInWorldFrame",
+            "SetFloatingBaseBodyPoseInWorldFrame",
+            f"{_DONE}p.SetFloatingBaseBodyPoseInWorldFrame(c, b, X)\n",
+        ),
         ("WeldJoint", "WeldFrames", f"p.WeldFrames(p.world_frame(), b.body_frame(), X)\n{_DONE}"),
     )
 }
