@@ -124,6 +124,10 @@ def _measured() -> dict[str, Function]:
             sensed.applied_wrenches,
         ),
         "applied_wrenches_dq": ("derivative of applied_wrenches by q (nv, nv)", sensed.applied_wrenches_dq),
+        "pushed_forces": ("M a + h less applied_wrenches (nv)", sensed.pushed_forces),
+        "pushed_accelerations": ("accelerations by tau and applied_wrenches (nv)", sensed.pushed),
+        "pushed_accelerations_dq": ("their derivative by q (nv, nv)", sensed.pushed_dq),
+        "pushed_accelerations_dv": ("their derivative by v (nv, nv)", sensed.pushed_dv),
         "wrench_sensors": (
             "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
             sensed.wrench_sensors,

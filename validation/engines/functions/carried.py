@@ -15,6 +15,14 @@ def _wholes() -> dict[str, Function]:
         "subtree_masses": ("masses of each link with all it carries (L)", carried.subtree_masses),
         "subtree_centres": ("their mass centres (L, 3)", carried.subtree_centres),
         "subtree_centre_jacobians": ("their Jacobians (L, 3, nv)", carried.subtree_jacobians),
+        "subtree_centre_velocities": ("their velocities (L, 3)", carried.subtree_velocities),
+        "subtree_centre_accelerations": ("their accelerations (L, 3)", carried.subtree_accelerations),
+        "total_mass": ("mass of the tree (1)", carried.total_mass),
+        "centroidal_inertia": (
+            "momentum of all links, as one body, about the mass centre for twists there, along the world's axes (6, 6)",
+            carried.centroidal_inertia,
+        ),
+        "link_distances": (f"distances of the links' origins from {carried.AFAR} (L)", carried.distances),
         "carried_inertias": (
             "momentum of each link with all it carries, as one body, for twists of its frame along its axes (L, 6, 6)",
             carried.carried_inertias,
@@ -41,6 +49,7 @@ def _wholes() -> dict[str, Function]:
             lambda t, s: derived.velocities(t, s.q, s.v, "aligned")[:, 3:],
         ),
         "coordinates_of_links": ("q, of the poses that the links have there (nq)", lambda t, s: s.q),
+        "coordinates_normalized": ("q, of q with those doubled that have unit length (nq)", lambda t, s: s.q),
         "speeds_of_links": ("v, of the velocities that the links have there (nv)", lambda t, s: s.v),
         "squared_distance": ("the square of v2, of q and where v2 leads (1)", carried.squared_distance),
     }

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..interface import Actuator, Tendon
-from ..truth import carried
+from ..truth import carried, sensed
 from ..truth.arithmetic import Exact, exact
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth
@@ -16,6 +16,10 @@ from .function import Function, functions_of
 
 def _ranges(t: Truth, s: Point) -> Exact:
     return t.own.ranges
+
+
+def _none(t: Truth, s: Point) -> Exact:
+    return exact(np.zeros(1))
 
 
 def _of_joints() -> dict[str, Function]:
@@ -31,6 +35,8 @@ def _of_joints() -> dict[str, Function]:
             "mass, mass times mass centre, moments about it xx, yy, zz, xy, xz, yz along the link's axes (L, 10)",
             carried.bodies,
         ),
+        "shape_poses": ("positions and rows of R of what links collide by, in the world (n, 12)", sensed.frame_poses),
+        "frames_beside_links": ("number of frames that are none of links, where sensors are to be none (1)", _none),
         "joint_stiffnesses": ("force of springs for a unit of a coordinate (nv)", lambda t, s: t.own.stiffness),
         "joint_drives": ("stiffness, damping, coordinate of drives (nv, 3)", lambda t, s: t.own.drives),
     }

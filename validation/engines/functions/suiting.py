@@ -11,6 +11,7 @@ from ..truth.guidance import GUIDANCE
 from ..truth.orbits import ORBITS
 from ..truth.spacecraft import SPACECRAFT
 from .acting import ACTING, MEASURED
+from .algebra import ALGEBRA
 from .arms import ARMS
 from .beside import LONE, TURNS
 from .carried import CARRIED
@@ -36,6 +37,7 @@ FUNCTIONS: dict[str, Function] = (
     | STATED
     | TURNS
     | POSES
+    | ALGEBRA
     | SHAPES
     | ARMS
     | FEATURES

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import ORIGIN, Array, Joint, Link, Vector, rows
+from ..interface import ORIGIN, Array, End, Joint, Link, Vector, rows
 from . import readers
 from .readers import (
     ASKEW,
@@ -22,6 +22,7 @@ from .readers import (
     PASSIVE,
     PRINCIPAL,
     PRODUCTS,
+    TURNED,
     Reading,
     along,
     diagonal,
@@ -36,6 +37,12 @@ _A = f'<link name="a"><inertial><origin xyz="0.1 -0.2 0.3"/><mass value="2"/>{_I
 _B = f'<link name="b"><inertial><origin xyz="0 0.1 0.2"/><mass value="1"/>{_INERTIA}</inertial></link>'
 _C = _B.replace('"b"', '"c"')
 _ASKEW_A = _A.replace('xyz="0.1 -0.2 0.3"', 'xyz="0.1 -0.2 0.3" rpy="0.5 0.6 0.7"')
+_ASKEW_TWO = tuple(one.replace("/><mass", ' rpy="0.5 0.6 0.7"/><mass') for one in (_A, _B))
+_SHAPED = (
+    '<geometry><box size="0.4 0.6 1.2"/></geometry>',
+    '<geometry><cylinder radius="0.2" length="0.7"/></geometry>',
+    '<geometry><sphere radius="0.25"/></geometry>',
+)
 _LIMIT = '<limit lower="-9" upper="9" effort="9" velocity="9"/>'
 _AT = '<origin xyz="0.1 0.2 0.3" rpy="0.3 -0.4 0.5"/>'
 _FIRST = f'revolute|{_AT}<axis xyz="0 0 1"/>{_LIMIT}'
@@ -280,8 +287,51 @@ def _from_shapes() -> Iterator[tuple[str, Reading]]:
     yield readers.reading("urdf from shapes", "box", stated, *of_box)
 
 
+def _shaped() -> Iterator[tuple[str, Reading]]:
+    """Where the shapes of links stand, along which axes."""
+    frames = End("a", ASKEW, (0.25, -0.5, 0.125)), End("b", rows(np.eye(3)), (0.0, 0.5, -0.25)), End("b", TURNED)
+    placed = (
+        '<origin xyz="0.25 -0.5 0.125" rpy="0.5 0.6 0.7"/>',
+        '<origin xyz="0 0.5 -0.25"/>',
+        '<origin rpy="0.3 -0.4 0.5"/>',
+    )
+    for name, a, b in (("shapes", _A, _B), ("shapes of links with turned inertia", *_ASKEW_TWO)):
+        one, two, three = (f"<collision>{at}{shape}</collision>" for at, shape in zip(placed, _SHAPED, strict=True))
+        stated = a.replace("</link>", f"{one}</link>"), b.replace("</link>", f"{two}{three}</link>")
+        title, read = _of(name, _chain(_FIRST, _SECOND, links=stated), BODY, NEXT, asked=("shape_poses",))
+        yield title, replace(read, tree=replace(read.tree, sensors=frames))
+
+
+def _sensed() -> Iterator[tuple[str, Reading]]:
+    """Sensors on links and joints, by iDynTree's elements: frames, if they are wanted."""
+    frames = End("a", ASKEW, (0.25, -0.5, 0.125)), End("b", TURNED, (0.0, 0.5, -0.25))
+    stated = _chain(
+        _FIRST,
+        _SECOND,
+        more='<sensor name="o0" type="accelerometer"><parent link="a"/>'
+        '<origin xyz="0.25 -0.5 0.125" rpy="0.5 0.6 0.7"/></sensor>'
+        '<sensor name="o1" type="gyroscope"><parent link="b"/><origin xyz="0 0.5 -0.25" rpy="0.3 -0.4 0.5"/></sensor>'
+        '<sensor name="o2" type="force_torque"><parent joint="joint_b"/><force_torque><frame>child</frame>'
+        "<measure_direction>child_to_parent</measure_direction></force_torque></sensor>",
+    )
+    for form, asked in (("urdf", ("frames_beside_links",)), ("urdf with frames of sensors", ("frame_poses",))):
+        title, read = readers.reading(form, "sensors", stated, BODY, NEXT, asked=asked)
+        yield title, replace(read, tree=replace(read.tree, sensors=frames))
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name."""
     return dict(
-        [*_inertias(), *_placements(), *_kinds(), *_planes(), *_losses(), *_limits(), *_trees(), *_from_shapes()]
+        [
+            *_inertias(),
+            *_placements(),
+            *_kinds(),
+            *_planes(),
+            *_losses(),
+            *_limits(),
+            *_trees(),
+            *_from_shapes(),
+            *_shaped(),
+            *_sensed(),
+        ]
     )

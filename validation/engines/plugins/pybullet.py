@@ -6,6 +6,8 @@ import re
 from dataclasses import replace
 
 from ..interface import STEP, Convention, Statement, Tree, Unsupported
+from ..truth.points import POINT
+from ..truth.sensed import WRENCH
 from . import turns
 from .turns import pybullet as turning
 from .writing import copies
@@ -31,6 +33,13 @@ _LOADS = {
     "urdf from shapes": "p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_MAINTAIN_LINK_ORDER)",
     "sdf": "p.loadSDF(file.name)[0]",
 }
+_LOADS["urdf written"] = _LOADS["urdf"]
+# What was read, written by the editor of URDF and read again.
+_EDITED = """from pybullet_utils.urdfEditor import UrdfEditor
+editor, written = UrdfEditor(), NamedTemporaryFile("r", suffix=".urdf")
+editor.initializeFromBulletBody(robot, 0)
+editor.saveUrdf(written.name)
+robot = LOAD"""
 _MASSLESS = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
 _STATES = """joints
 for k, position, speed in zip(moving, q, {v}): p.resetJointState(robot, k, position, speed)
@@ -135,6 +144,66 @@ _FREE = {
     "zip(moving, q, v)": "zip(moving, q[7:], v[6:])",
     f"[{_LINK} for k in links]": f"[stand(q, v), *({_LINK} for k in links[1:])]",
 }
+# Links that don't move as one with those they hang on; a base that is turned and shifted.
+_MERGED = (("p.URDF_USE_INERTIA_FROM_FILE", "p.URDF_MERGE_FIXED_LINKS | p.URDF_USE_INERTIA_FROM_FILE"),)
+_BASED = (
+    ("useFixedBase=True", "basePosition=[0.5, -0.25, 1.0], baseOrientation=[0.1, -0.7, 0.5, 0.5], useFixedBase=True"),
+)
+# A step's change of speeds, for a unit of time.
+_CHANGE = _STEP[: _STEP.index("states = p.getJointStates")].replace("p.stepSimulation()", "{}p.stepSimulation()") + (
+    f"value = (np.array([p.getJointState(robot, k)[1] for k in moving]) - v) / {STEP!r}"
+)
+_IN_LINK = f"for k in sensed:\n    p.applyExternalForce(robot, k, {list(WRENCH[:3])}, [0, 0, 0], p.LINK_FRAME)\n" + (
+    f"    p.applyExternalTorque(robot, k, {list(WRENCH[3:])}, p.LINK_FRAME)\n"
+)
+_IN_WORLD = f"""for k in sensed:
+    x, turn = p.getLinkState(robot, k, computeForwardKinematics=1)[4:6]
+    R = np.reshape(p.getMatrixFromQuaternion(turn), (3, 3))
+    p.applyExternalForce(robot, k, R @ {list(WRENCH[:3])}, x, p.WORLD_FRAME)
+    p.applyExternalTorque(robot, k, R @ {list(WRENCH[3:])}, p.WORLD_FRAME)
+"""
+_POINTS = f"""joints
+zero, value = [0.0] * len(q), []
+for k in links:
+    own = np.reshape(p.getMatrixFromQuaternion(p.getDynamicsInfo(robot, k)[4]), (3, 3))
+    value.append(p.calculateJacobian(robot, k, list(own.T @ {list(POINT)}), q.tolist(), zero, zero)[0])"""
+WAYS |= {
+    "total_mass": Way(
+        "getDynamicsInfo", "value = [sum(p.getDynamicsInfo(robot, k)[0] for k in range(-1, p.getNumJoints(robot)))]"
+    ),
+    "link_poses:getLinkStates": Way(
+        "getLinkStates",
+        f"{_STATES.format(v='0 * q')}states = p.getLinkStates(robot, links, computeForwardKinematics=1)\n"
+        "value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]",
+    ),
+    "link_poses:basePosition": Way(
+        "loadURDF: basePosition, baseOrientation",
+        f"{_STATES.format(v='0 * q')}base = p.invertTransform([0.5, -0.25, 1.0], [0.1, -0.7, 0.5, 0.5])\n"
+        "at = [p.multiplyTransforms(*base, *s[4:6]) for s in states]\n"
+        "value = [[*x, *p.getMatrixFromQuaternion(turn)] for x, turn in at]",
+        0.0,
+        _BASED,
+    ),
+    "mass_matrix:URDF_MERGE_FIXED_LINKS": WAYS["mass_matrix"]._replace(
+        native="URDF_MERGE_FIXED_LINKS, calculateMassMatrix", built=_MERGED
+    ),
+    "bias:URDF_MERGE_FIXED_LINKS": WAYS["bias"]._replace(
+        native="URDF_MERGE_FIXED_LINKS, calculateInverseDynamics", built=_MERGED
+    ),
+    # Shapes are stated in the frame of the link's inertia.
+    "shape_poses": Way(
+        "getCollisionShapeData",
+        f"{_STATES.format(v='0 * q')}value = []\nfor k, s in zip(links, states):\n"
+        "    for shape in p.getCollisionShapeData(robot, k):\n"
+        "        x, turn = p.multiplyTransforms(s[0], s[1], *shape[5:7])\n"
+        "        value.append([*x, *p.getMatrixFromQuaternion(turn)])",
+    ),
+    "point_jacobians": Way("calculateJacobian", _POINTS),
+    "pushed_accelerations": Way("applyExternalForce, applyExternalTorque, LINK_FRAME", _CHANGE.format(_IN_LINK)),
+    "pushed_accelerations:WORLD_FRAME": Way(
+        "applyExternalForce, applyExternalTorque, WORLD_FRAME", _CHANGE.format(_IN_WORLD)
+    ),
+}
 # What is asked of free bases.
 _OF_FREE = ("mass_matrix", "inverse_dynamics", "bias", "gravity", "link_poses", "link_velocities")
 
@@ -172,6 +241,8 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     if isinstance(described, Unsupported):
         return described
     free = described.floating
+    if form == "urdf written" and re.search(r"<visual|<collision|\.\d{6}", text):
+        return Unsupported("the editor is asked of bodies and joints in five decimals, which it writes", offered=False)
     if 'type="floating"' in text:
         return Unsupported("floating joints of files are made fixed, with a warning", offered=False)
     if free and not tree.links[0].mass:
@@ -188,10 +259,19 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
         optional |= {"links": (_LINKS.format(links=list(described.links)),)}
     slots = slots_of(tree, described, described.moving, "free xyzw, body speeds")
-    # Its reader of SDF takes no joint with the world: one function asked says so.
-    asked = ("link_poses",) if form == "sdf" else _OF_FREE if free else tuple(WAYS)
+    # Its reader of SDF takes no joint with the world: one function asked says so. Five decimals, as its editor of URDF
+    # writes them, are enough for joints, not for axes of inertia.
+    asked = ("link_poses",) if form in ("sdf", "urdf written") else _OF_FREE if free else tuple(WAYS)
     lacks = tuple(name for name in WAYS if name not in asked)
+    if form == "urdf written":
+        setup += "\n" + _EDITED.replace("LOAD", _LOADS[form].replace("file.name", "written.name"))
     lines = tuple(setup.split("\n"))
+    if tree.sensors:
+        frames = [f"o{k}" for k in range(len(tree.sensors))]
+        optional["sensed"] = (
+            _JOINTS,
+            f"sensed = [joint[0] for name in {frames} for joint in joints if joint[12].decode() == name]",
+        )
     if not free:
         return Source(lines, slots, count, count, optional, lacks)
     optional["about"] = tuple(_BASE.split("\n"))
@@ -224,6 +304,7 @@ PLUGIN = SourcePlugin(
     write_reading=write_reading,
     demands={
         "turns": "rotations and placements",
+        "sensors": "links without mass",
         "dampers": "dynamics, damping",
         "changed mass": "changeDynamics: mass",
     },

@@ -6,8 +6,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, exact, eye, orthonormal, skew, zeros
-from .derived import Frame, TruthOf, classical, com_jacobian, joint_wrenches, unit_inertias
+from .arithmetic import Exact, cross, exact, eye, orthonormal, root, skew, zeros
+from .derived import Frame, TruthOf, classical, com, com_jacobian, joint_wrenches, unit_inertias
 from .dynamics import Point, Truth
 
 
@@ -50,6 +50,43 @@ def subtree_centres(truth: Truth, s: Point) -> Exact:
 def subtree_jacobians(truth: Truth, s: Point) -> Exact:
     """Their Jacobians (L, 3, nv)."""
     return truth.kinematics.tangent(lambda q: _centres(truth, q), s.q)
+
+
+def subtree_velocities(truth: Truth, s: Point) -> Exact:
+    """Velocities of these mass centres (L, 3)."""
+    return subtree_jacobians(truth, s) @ s.v
+
+
+def subtree_accelerations(truth: Truth, s: Point) -> Exact:
+    """Their accelerations (L, 3)."""
+    return (
+        subtree_jacobians(truth, s) @ s.a
+        + truth.kinematics.along(lambda q: subtree_jacobians(truth, s._replace(q=q)), s.q, s.v) @ s.v
+    )
+
+
+def total_mass(truth: Truth, s: Point) -> Exact:
+    """Mass of the tree (1)."""
+    return np.array([sum(inertia.mass for inertia in truth.inertias)])
+
+
+def centroidal_inertia(truth: Truth, s: Point) -> Exact:
+    """Momentum of the tree as one body about its mass centre for twists there, along the world's axes (6, 6)."""
+    centre, total = com(truth, s.q), zeros(6, 6)
+    for inertia, (R, p) in zip(truth.inertias, truth.kinematics.poses(s.q), strict=True):
+        shift = np.block([[eye(3), -skew(p - centre)], [zeros(3, 3), eye(3)]])
+        total = total + shift.T @ inertia.turned(R).matrix() @ shift
+    return total
+
+
+# A point of the world that distances are from.
+AFAR = (4.0, -8.0, 8.0)
+
+
+def distances(truth: Truth, s: Point) -> Exact:
+    """Distances of the links' origins from `AFAR` (L)."""
+    apart = [p - exact(AFAR) for _, p in truth.kinematics.poses(s.q)]
+    return np.array([root(x @ x) for x in apart])
 
 
 def carried_inertias(truth: Truth, s: Point) -> Exact:

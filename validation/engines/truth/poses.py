@@ -40,97 +40,96 @@ MASS, CENTRE = 2.0, (0.25, -0.5, 0.125)
 MOMENTS = ((0.5, 0.0625, -0.03125), (0.0625, 0.375, 0.125), (-0.03125, 0.125, 0.625))
 
 
-def _flat(R: Exact, p: Exact) -> Exact:
+def flat(R: Exact, p: Exact) -> Exact:
     """Position and rows of R (12)."""
     return np.concatenate([p, R.reshape(9)])
 
 
-def _first(t: Truth, s: Point) -> tuple[Exact, Exact]:
+def first(t: Truth, s: Point) -> tuple[Exact, Exact]:
+    """X."""
     return turn(t, s.q), s.a
 
 
-def _second(t: Truth, s: Point) -> tuple[Exact, Exact]:
+def second(t: Truth, s: Point) -> tuple[Exact, Exact]:
+    """Y."""
     return turn(t, s.q2), s.tau
 
 
 def _apart(t: Truth, s: Point) -> tuple[Exact, Exact]:
     """X^-1 Y."""
-    (R, p), (Q, r) = _first(t, s), _second(t, s)
+    (R, p), (Q, r) = first(t, s), second(t, s)
     return R.T @ Q, R.T @ (r - p)
 
 
 def composed(t: Truth, s: Point) -> Exact:
     """X Y (12)."""
-    (R, p), (Q, r) = _first(t, s), _second(t, s)
-    return _flat(R @ Q, p + R @ r)
+    (R, p), (Q, r) = first(t, s), second(t, s)
+    return flat(R @ Q, p + R @ r)
 
 
 def unset(t: Truth, s: Point) -> Exact:
     """A placement that nobody has set (12)."""
-    return _flat(eye(3), zeros(3))
+    return flat(eye(3), zeros(3))
 
 
 def inverse(t: Truth, s: Point) -> Exact:
     """X^-1 (12)."""
-    R, p = _first(t, s)
-    return _flat(R.T, -R.T @ p)
+    R, p = first(t, s)
+    return flat(R.T, -R.T @ p)
 
 
 def relative(t: Truth, s: Point) -> Exact:
     """X^-1 Y (12)."""
-    return _flat(*_apart(t, s))
+    return flat(*_apart(t, s))
 
 
 def placed(t: Truth, s: Point) -> Exact:
     """The point v of X in the frame before (3)."""
-    R, p = _first(t, s)
+    R, p = first(t, s)
     return p + R @ s.v
 
 
-def _leading(twist: Exact) -> tuple[Exact, Exact]:
+def leading(twist: Exact) -> tuple[Exact, Exact]:
     """Where a twist leads in unit time, eq. (6)."""
     return turned_by(twist[3:]), speeds(twist[3:]).T @ twist[:3]
 
 
-def _leads(R: Exact, p: Exact) -> Exact:
+def leads(R: Exact, p: Exact) -> Exact:
     """The twist that leads to a placement (6)."""
     r = rotation_vector(R)
     return np.concatenate([solve(speeds(r).T, p), r])
 
 
-def _twist(s: Point) -> Exact:
+def twist(s: Point) -> Exact:
+    """(v; v2) (6)."""
     return np.concatenate([s.v, s.v2])
 
 
 def logarithm(t: Truth, s: Point) -> Exact:
     """The twist that leads to X (6)."""
-    return _leads(*_first(t, s))
+    return leads(*first(t, s))
 
 
 def difference(t: Truth, s: Point) -> Exact:
     """The twist that leads from X to Y, along the axes of X (6)."""
-    return _leads(*_apart(t, s))
+    return leads(*_apart(t, s))
 
 
 def exponential(t: Truth, s: Point) -> Exact:
     """Where the twist (v; v2) leads (12), eq. (6)."""
-    return _flat(*_leading(_twist(s)))
+    return flat(*leading(twist(s)))
 
 
 def between(t: Truth, s: Point) -> Exact:
     """A quarter of the way from X to Y, along the screw (12)."""
-    (R, p), (step, way) = _first(t, s), _leading(difference(t, s) / 4)
-    return _flat(R @ step, p + R @ way)
+    (R, p), (step, way) = first(t, s), leading(difference(t, s) / 4)
+    return flat(R @ step, p + R @ way)
 
 
 def between_apart(t: Truth, s: Point) -> Exact:
     """A quarter of the way from X to Y: of the positions along their line, of the rotations the shorter way (12)."""
-    (R, p), (Q, r) = _first(t, s), _second(t, s)
-    return _flat(R @ turned_by(rotation_vector(R.T @ Q) / 4), p + (r - p) / 4)
-
-
-def _inverse(R: Exact, p: Exact) -> tuple[Exact, Exact]:
-    return R.T, -R.T @ p
+    (R, p), (Q, r) = first(t, s), second(t, s)
+    return flat(R @ turned_by(rotation_vector(R.T @ Q) / 4), p + (r - p) / 4)
 
 
 def _body_rates(pose: tuple[Exact, Exact], rates: Exact) -> Exact:
@@ -142,12 +141,12 @@ def _body_rates(pose: tuple[Exact, Exact], rates: Exact) -> Exact:
 
 def exponential_speeds(t: Truth, s: Point) -> Exact:
     """J with the twist J x' of exp x in its own frame, at x = (v; v2) (6, 6)."""
-    return _exponential_speeds(_twist(s))
+    return _exponential_speeds(twist(s))
 
 
 def _exponential_speeds(twist: Exact) -> Exact:
-    pose, unit = _leading(twist), eye(6)
-    return stack([_body_rates(pose, rate(lambda x: _flat(*_leading(x)), twist, unit[k])) for k in range(6)])
+    pose, unit = leading(twist), eye(6)
+    return stack([_body_rates(pose, rate(lambda x: flat(*leading(x)), twist, unit[k])) for k in range(6)])
 
 
 def logarithm_rates(t: Truth, s: Point) -> Exact:
@@ -157,14 +156,18 @@ def logarithm_rates(t: Truth, s: Point) -> Exact:
 
 def wrench_transform(t: Truth, s: Point) -> Exact:
     """Wrenches (force; moment) of the frame X in the frame it is in (6, 6)."""
-    R, p = _first(t, s)
+    R, p = first(t, s)
     return np.block([[R, zeros(3, 3)], [skew(p) @ R, R]])
 
 
 def twist_transform_back(t: Truth, s: Point) -> Exact:
     """Twists of the frame that X is in, in X (6, 6)."""
-    R, p = _inverse(*_first(t, s))
-    return np.block([[R, skew(p) @ R], [zeros(3, 3), R]])
+    return of_twists(*first(t, s))
+
+
+def of_twists(R: Exact, p: Exact) -> Exact:
+    """Twists of the frame that a placement (R, p) is in, in the placed one (6, 6)."""
+    return np.block([[R.T, -R.T @ skew(p)], [zeros(3, 3), R.T]])
 
 
 def twist_cross(t: Truth, s: Point) -> Exact:
@@ -272,7 +275,8 @@ def of_two_axes(t: Truth, s: Point) -> Exact:
     return np.stack([x, cross(z, x), z], axis=1).reshape(9)
 
 
-def _inertia() -> Inertia:
+def inertia() -> Inertia:
+    """The body of MASS, CENTRE, MOMENTS."""
     centre = skew(exact(CENTRE))
     mass = exact(MASS)[()]
     return Inertia(mass, mass * exact(CENTRE), exact(MOMENTS) - mass * (centre @ centre))
@@ -280,13 +284,13 @@ def _inertia() -> Inertia:
 
 def inertia_matrix(t: Truth, s: Point) -> Exact:
     """Momentum (linear; angular, about the frame's origin) of the body of MASS, CENTRE, MOMENTS for a twist (6, 6)."""
-    return _inertia().matrix()
+    return inertia().matrix()
 
 
 def inertia_placed(t: Truth, s: Point) -> Exact:
     """The same of that body, given in X, in the frame that X is in (6, 6)."""
     back = twist_transform_back(t, s)
-    return back.T @ _inertia().matrix() @ back
+    return back.T @ inertia().matrix() @ back
 
 
 def inertia_sum(t: Truth, s: Point) -> Exact:
@@ -296,7 +300,7 @@ def inertia_sum(t: Truth, s: Point) -> Exact:
 
 def momentum(t: Truth, s: Point) -> Exact:
     """Its momentum for the twist (v; v2) (6)."""
-    return _inertia().matrix() @ _twist(s)
+    return inertia().matrix() @ twist(s)
 
 
 def momentum_cross(t: Truth, s: Point) -> Exact:
@@ -306,5 +310,5 @@ def momentum_cross(t: Truth, s: Point) -> Exact:
 
 def inertia_rate(t: Truth, s: Point) -> Exact:
     """Rate of the matrix of momentum as the body moves with the twist (v; v2) (6, 6)."""
-    product, matrix = twist_cross(t, s), _inertia().matrix()
+    product, matrix = twist_cross(t, s), inertia().matrix()
     return -product.T @ matrix - matrix @ product

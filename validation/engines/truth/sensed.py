@@ -127,6 +127,26 @@ def applied_wrenches_dq(truth: Truth, s: Point) -> Exact:
     return truth.kinematics.tangent(lambda q: applied_wrenches(truth, s._replace(q=q)), s.q)
 
 
+def pushed_forces(truth: Truth, s: Point) -> Exact:
+    """Forces (nv) that inverse dynamics find beside these wrenches."""
+    return truth.ID(s.q, s.v, s.a) - applied_wrenches(truth, s)
+
+
+def pushed(truth: Truth, s: Point) -> Exact:
+    """Accelerations (nv) that the forces and these wrenches make."""
+    return truth.FD(s.q, s.v, s.tau + applied_wrenches(truth, s))
+
+
+def pushed_dq(truth: Truth, s: Point) -> Exact:
+    """Derivative of these accelerations by q (nv, nv), the wrenches constant along the links' axes."""
+    return truth.kinematics.tangent(lambda q: pushed(truth, s._replace(q=q)), s.q)
+
+
+def pushed_dv(truth: Truth, s: Point) -> Exact:
+    """Derivative of these accelerations by v (nv, nv)."""
+    return truth.along_speeds(lambda v: pushed(truth, s._replace(v=v)), s.v)
+
+
 def wrench_sensors(truth: Truth, s: Point) -> Exact:
     """Wrench (force; moment) of each sensor's link's joint on its subtree, at the sensor, along its axes (n, 6)."""
     held, places = joint_wrenches(truth, s), [link.name for link in truth.tree.links]

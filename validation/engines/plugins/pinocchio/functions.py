@@ -267,9 +267,40 @@ for _frame, _rf in FRAMES.items():
     }
 
 _DATA = "d = m.createData()\n"
+_FILED = (
+    "from tempfile import TemporaryDirectory\nn = pin.Model()\n"
+    "with TemporaryDirectory() as folder:\n    m.saveTo{0}(folder + '/model'{1})\n"
+    "    n.loadFrom{0}(folder + '/model'{1})\nm = n\n"
+)
+# Of the geometry that is made along with it nothing is asked here.
+_SHAPED = (
+    "import coal\ng = pin.GeometryModel()\n"
+    "g.addGeometryObject(pin.GeometryObject('ball', 0, 0, pin.SE3.Identity(), coal.Sphere(0.25)))\n"
+)
 _MADE = {
     "copied": f"m = pin.Model(m)\n{_DATA}",
+    "copy": f"m = m.copy()\n{_DATA}",
+    "pickle": f"import pickle\nm = pickle.loads(pickle.dumps(m))\n{_DATA}",
+    "saveToXML": _FILED.format("XML", ", 'model'") + _DATA,
+    "saveToText": _FILED.format("Text", "") + _DATA,
+    "saveToBinary": _FILED.format("Binary", "") + _DATA,
+    "StreamBuffer": (
+        "kept, n = pin.serialization.StreamBuffer(), pin.Model()\nm.saveToBinary(kept)\nn.loadFromBinary(kept)\n"
+        f"m = n\n{_DATA}"
+    ),
+    "buildReducedModel with geometry": (f"{_SHAPED}m, g = pin.buildReducedModel(m, g, [], pin.neutral(m))\n{_DATA}"),
+    "appendModel to nothing": f"m = pin.appendModel(pin.Model(), m, 0, pin.SE3.Identity())\n{_DATA}",
+    "appendModel with geometry": (
+        f"{_SHAPED}m, g = pin.appendModel(m, pin.Model(), g, pin.GeometryModel(), 0, pin.SE3.Identity())\n{_DATA}"
+    ),
     "saveToString": f"n = pin.Model()\nn.loadFromString(m.saveToString())\nm = n\n{_DATA}",
     "buildReducedModel": f"m = pin.buildReducedModel(m, [], pin.neutral(m))\n{_DATA}",
 }
-WAYS |= copies.of_model(WAYS, _MADE)
+_PLAIN = ("copied", "saveToString", "buildReducedModel")
+WAYS |= copies.of_model(WAYS, {name: _MADE[name] for name in _PLAIN})
+# What may keep other numbers of joints and frames: links are asked by their masses and by what forces make.
+WAYS |= copies.of_model(
+    WAYS,
+    {name: made for name, made in _MADE.items() if name not in _PLAIN},
+    ("mass_matrix", "bias", "forward_dynamics"),
+)

@@ -107,8 +107,8 @@ class _ModelText:
             values = f"{link.mass!r}, {_array(link.com)}, {_array(link.inertia)}"
             self.lines += ["b = pin.Inertia.Zero()", f"b.mass, b.lever, b.inertia = {values}"]
             inertia = "b"
-        if name == "0" and k in self.own_model:  # What the joints that it is attached to will carry.
-            body = f"pin.Frame('b{k}', 0, 0, {_placement(R, p)}, pin.FrameType.BODY, {inertia})"
+        if not models and k in self.own_model:  # A frame's inertia is its joint's, or that of what the model hangs on.
+            body = f"pin.Frame('b{k}', {name}, 0, {_placement(R, p)}, pin.FrameType.BODY, {inertia})"
             self.lines.append(f"m2.addFrame({body})")
         else:
             self.lines.append(f"{self._model_of(k)}.appendBodyToJoint({name}, {inertia}, {_placement(R, p)})")
@@ -227,9 +227,10 @@ def write(tree: Tree) -> Source | Unsupported:
 
 
 # Ways of a model that was written and read again.
-READ_AGAIN = tuple(f"{name}:saveToString" for name in copies.OF_MODELS)
+_ARCHIVES = ("saveToString", "saveToXML", "saveToText", "saveToBinary", "StreamBuffer", "pickle")
+READ_AGAIN = tuple(f"{name}:{how}" for name in copies.OF_MODELS for how in _ARCHIVES)
 # Of these no joint moves by itself, as their data have it.
-_MIMICS_LACK = (*READ_AGAIN, *(f"{name}:JointData" for name in objects.FROM_DATA))
+_MIMICS_LACK = (*READ_AGAIN, *(f"{name}:JointData" for name in objects.FROM_DATA), "jacobian_world:J")
 _NAMED_FRAMES = "fs = [m.getFrameId(f'f{{k}}') for k in range({})]"
 
 

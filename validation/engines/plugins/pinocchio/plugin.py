@@ -6,7 +6,7 @@ from ...interface import Convention, Statement, Tree, Unsupported
 from ..writing.numbering import is_depth_first, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS
-from . import again, constraints, functions, objects, poses
+from . import again, algebra, constraints, data, functions, objects, poses
 from .model import CLOSING, MODELS, write
 
 
@@ -56,7 +56,7 @@ PLUGIN = SourcePlugin(
         Convention("armature", "m.armature; rotorInertia and rotorGearRatio have no effect on rnea, crba, aba"),
     ),
     kinds={},
-    ways=functions.WAYS | again.WAYS | objects.WAYS | constraints.WAYS | poses.WAYS,
+    ways=functions.WAYS | again.WAYS | objects.WAYS | constraints.WAYS | poses.WAYS | algebra.WAYS | data.WAYS,
     write=write,
     constraints=constraints.KINDS,
     demands={

@@ -29,6 +29,16 @@ WAYS = {
         "getQuaternionFromAxisAngle",
         "n = np.linalg.norm(v)\n" + _OF.format(of="p.getQuaternionFromAxisAngle(v if n else [1, 0, 0], n)"),
     ),
+    "rotation_difference": Way(
+        "calculateVelocityQuaternion",
+        "R = np.reshape(p.getMatrixFromQuaternion(q), (3, 3))\nvalue = R.T @ p.calculateVelocityQuaternion(q, q2, 1.0)",
+    ),
+    "rotation_inverse": Way("invertTransform", _OF.format(of="p.invertTransform([0, 0, 0], q)[1]")),
+    "turned_vector": Way("rotateVector", "value = p.rotateVector(q, v)"),
+    "pose_relative": Way(
+        "invertTransform, multiplyTransforms",
+        _FLAT.format(of="p.multiplyTransforms(*p.invertTransform(a, q), tau, q2)"),
+    ),
     "rotation_halfway": Way("getQuaternionSlerp", _OF.format(of="p.getQuaternionSlerp(q, q2, 0.25)")),
     "rotation_of_rpy": Way("getQuaternionFromEuler", _OF.format(of="p.getQuaternionFromEuler(v)")),
     "rotation_to_rpy": Way("getEulerFromQuaternion", "value = p.getEulerFromQuaternion(q)"),

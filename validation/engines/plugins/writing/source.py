@@ -25,6 +25,7 @@ OPTIONAL = {
     "axes": "not for trees without constraints",
     "sensed": "not for trees without sensors",
     "held_by": "not for trees without constraints",
+    "ends": "not for links without a joint of their own",
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from ..interface import Convention, Tree
-from ..truth.sensed import WRENCH
-from .writing.source import Source, SourcePlugin, Way
-from .writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
+from functools import partial
+
+from ...interface import Convention, Tree, Unsupported
+from ...truth.sensed import WRENCH
+from .. import turns
+from ..turns import idyntree as turning
+from ..writing.source import Source, SourcePlugin, Way
+from ..writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
+from . import further
 
 _SETUP = """import numpy as np
 import idyntree.bindings as iDynTree
 loader = iDynTree.ModelLoader()
 options = loader.parsingOptions()
-options.addSensorFramesAsAdditionalFrames = False
+options.addSensorFramesAsAdditionalFrames = {frames}
 loader.setParsingOptions(options)
 if not loader.loadReducedModelFromString({text!r}, {joints}): raise ValueError('no model: see the log')
 robot = iDynTree.KinDynComputations()
@@ -19,7 +24,7 @@ assert robot.loadRobotModel(loader.model())
 robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
 assert robot.setFloatingBase("{root}"), "the reader has dropped the link {root}\""""
 _FLOATING_STATE = (
-    "def state(q, v):",
+    "def state(q, v, robot):",
     "    x, y, z, w = q[3:7]",
     "    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])",
     "    pose = np.eye(4)",
@@ -30,10 +35,13 @@ _FLOATING_STATE = (
 _FIXED = {
     "state(q, v)": "robot.setRobotState(np.eye(4), q, np.zeros(6), v, {gravity})",
     "*rates(a)": "iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a)",
+    "rates(a)": "(iDynTree.Vector6.FromPython(np.zeros(6)), iDynTree.VectorDynSize.FromPython(a))",
     "cut": "6",
 }
 _FLOATING = {
+    "state(q, v)": "state(q, v, robot)",
     "*rates(a)": "iDynTree.Vector6.FromPython(a[:6]), iDynTree.VectorDynSize.FromPython(a[6:])",
+    "rates(a)": "(iDynTree.Vector6.FromPython(a[:6]), iDynTree.VectorDynSize.FromPython(a[6:]))",
     "[cut:, cut:]": "",
     "[:, cut:]": "",
     "[cut:]": "",
@@ -185,8 +193,6 @@ _STATE = "state(q, v)\n"
 _MATRIX = "J = iDynTree.MatrixDynSize(6, n)\nassert robot.{}(J)\n"
 # Momentum about the mass centre by the inertia of all links as one body there, and by what velocity that has.
 _LOCKED = "I = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()\n"
-# Its parameters: m, m c, Ixx, Ixy, Ixz, Iyy, Iyz, Izz.
-_PARAMETERS = (0, 1, 2, 3, 4, 5, 7, 6, 8, 9)
 WAYS |= {
     "mass_centre_velocity": Way(
         "getCenterOfMassVelocity", f"{_STATE}value = robot.getCenterOfMassVelocity().toNumPy()"
@@ -210,30 +216,34 @@ for name in links:
         "inverseDynamicsInertialParametersRegressor",
         f"""{_STATE}Y = iDynTree.MatrixDynSize(n, 10 * robot.getNrOfLinks())
 assert robot.inverseDynamicsInertialParametersRegressor(*rates(a), Y)
-own = [10 * j + k for j in js for k in {_PARAMETERS}]
+own = [10 * j + k for j in js for k in {turning.PARAMETERS}]
 value = Y.toNumPy()[:, own][cut:]""",
     ),
 }
 _BASE = "free xyzw, linear and angular before"
 
 
-def read(tree: Tree, described: Described) -> Source:
-    """A file through iDynTree's reader of URDF."""
+def read(tree: Tree, described: Described, frames: bool = False) -> Source:
+    """A file through iDynTree's reader of URDF; `frames`: with frames of sensors."""
     count, floating = len(described.moving), described.floating
     root = described.links[0] if floating else base(described.text)
-    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root)
+    setup = _SETUP.format(text=described.text, joints=list(described.moving), root=root, frames=frames)
     gravity = f"np.array({list(tree.gravity)!r})"
     spelling = _FLOATING if floating else _FIXED
     optional = {
         "links": (f"links = {list(described.links)}",),
         "n": ("n = 6 + robot.getNrOfDegreesOfFreedom()",),
         "state": tuple(line.replace("{gravity}", gravity) for line in _FLOATING_STATE),
+        "gravity": (f"gravity = {gravity}",),
+        "joints": (f"joints = {list(described.moving)}",),
     }
     if tree.sensors:
         optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
     # Links that don't move are frames of others, and nothing holds a floating base.
-    if not floating and all(joint.kind != "fixed" for link in tree.links for joint in link.joints):
-        optional["js"] = (f"js = [robot.model().getLinkIndex(name) for name in {list(described.links)}]",)
+    if all(joint.kind != "fixed" for link in tree.links for joint in link.joints):
+        optional["ends"] = (f"ends = {[end.link for end in tree.sensors]}",)
+        if not floating:
+            optional["js"] = (f"js = [robot.model().getLinkIndex(name) for name in {list(described.links)}]",)
     return Source(
         tuple(setup.split("\n")),
         slots_of(tree, described, described.moving, _BASE),
@@ -242,6 +252,19 @@ def read(tree: Tree, described: Described) -> Source:
         optional=optional,
         spelling={general: own.replace("{gravity}", gravity) for general, own in spelling.items()},
     )
+
+
+_build = through_reader(read)
+
+
+def write(tree: Tree) -> Source | Unsupported:
+    """The tree through iDynTree's reader of URDF."""
+    return turns.source(*turning.IMPORTS) if tree.asked == "turns" else _build(tree)
+
+
+def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
+    """Text that has iDynTree read a file."""
+    return of_files(partial(read, frames="frames of sensors" in form))(tree, form, text)
 
 
 PLUGIN = SourcePlugin(
@@ -259,12 +282,12 @@ PLUGIN = SourcePlugin(
         Convention("gravity", "an argument of the state"),
     ),
     kinds=KINDS | {"free": "floating base"},
-    ways=WAYS,
-    write=through_reader(read),
-    formats=("urdf",),
-    write_reading=of_files(read),
+    ways=WAYS | further.WAYS | further.again(WAYS) | turning.WAYS,
+    write=write,
+    formats=("urdf", "urdf with frames of sensors"),
+    write_reading=write_reading,
     # Its reader returns no model, and writes why to the log.
     refusals=("no model: see the log",),
-    demands={"sensors": "frames"},
+    demands={"sensors": "frames", "turns": "Rotation, Transform"},
     statements=(UNIT_AXIS,),
 )

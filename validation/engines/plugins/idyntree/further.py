@@ -1,0 +1,256 @@
+"""What iDynTree offers a second time: in other representations, by its algorithms, of models made of others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from ..writing import copies
+from ..writing.source import Way
+
+_STATE = "state(q, v)\n"
+# Of the base's speeds along the world's axes at its origin: those of a representation. Where it stands still it is cut.
+_BODY = (
+    "robot.setFrameVelocityRepresentation(iDynTree.BODY_FIXED_REPRESENTATION)\n"
+    "H = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()\n"
+    "R, T = H[:3, :3], np.eye(n)\nT[:3, :3] = T[3:6, 3:6] = R.T\n"
+)
+_WORLD = (
+    "robot.setFrameVelocityRepresentation(iDynTree.INERTIAL_FIXED_REPRESENTATION)\n"
+    "H = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()\n"
+    "T = np.eye(n)\nT[:3, 3:6] = np.cross(np.eye(3), H[:3, 3])\n"
+)
+_BACK = "robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)\n"
+_VELOCITIES = "value = [robot.getFrameVel(name).toNumPy() for name in links]\n"
+_JACOBIANS = (
+    "J, value = iDynTree.MatrixDynSize(6, n), []\nfor name in links:\n"
+    "    assert robot.getFrameFreeFloatingJacobian(name, J)\n    value.append((J.toNumPy() @ T)[:, cut:])\n"
+)
+_MATRIX = (
+    "M = iDynTree.MatrixDynSize(n, n)\nassert robot.getFreeFloatingMassMatrix(M)\n"
+    "value = (T.T @ M.toNumPy() @ T)[cut:, cut:]\n"
+)
+_GRAVITY = "value = np.zeros(n)\nassert robot.generalizedGravityForces(value)\nvalue = (T.T @ value)[cut:]\n"
+
+
+def _represented(name: str, before: str) -> dict[str, Way]:
+    """Functions in a representation of frames' velocities."""
+    rows = {
+        f"velocity_{name}": ("getFrameVel", _VELOCITIES),
+        f"jacobian_{name}": ("getFrameFreeFloatingJacobian", _JACOBIANS),
+        f"mass_matrix:{name}": ("getFreeFloatingMassMatrix", _MATRIX),
+        f"gravity:{name}": ("generalizedGravityForces", _GRAVITY),
+    }
+    if name == "local":
+        rows["centroidal_momentum:body"] = (
+            "getCentroidalTotalMomentum",
+            "value = (robot.getCentroidalTotalMomentum().asVector().toNumPy().reshape(2, 3) @ R.T).ravel()\n",
+        )
+    return {way: Way(f"{native}, {name}", f"{_STATE}{before}{code}{_BACK}") for way, (native, code) in rows.items()}
+
+
+# Momentum and inertia of all links about the base's origin, along the world's axes, taken at the mass centre.
+_AT_CENTRE = (
+    "base = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]\n"
+    "arm = robot.getCenterOfMassPosition().toNumPy() - base\n"
+    "S = np.cross(np.eye(3), arm)\nB = np.block([[np.eye(3), np.zeros((3, 3))], [-S, np.eye(3)]])\n"
+)
+_RELATIVE = (
+    "value, J = [], iDynTree.MatrixDynSize(6, n - 6)\nfirst = robot.getFrameIndex(links[0])\nfor name in links:\n"
+)
+# What the algorithms take: model, order of links, base and joints; forces of the world on the base are cut.
+_RAW = """state(q, v)
+model, traversal = robot.model(), iDynTree.Traversal()
+model.computeFullTreeTraversal(traversal, model.getLinkIndex(robot.getFloatingBase()))
+H = robot.getWorldBaseTransform()
+x, R = H.getPosition().toNumPy(), H.getRotation().toNumPy()
+pos, vel, acc = iDynTree.FreeFloatingPos(model), iDynTree.FreeFloatingVel(model), iDynTree.FreeFloatingAcc(model)
+pos.worldBasePos = H
+robot.getJointPos(pos.jointPos), robot.getJointVel(vel.jointVel)
+robot.setFrameVelocityRepresentation(iDynTree.BODY_FIXED_REPRESENTATION)
+u = robot.getBaseTwist().toNumPy()
+robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
+vel.baseVel = iDynTree.Twist.FromPython(u)
+own = np.array([one.toNumPy() for one in rates(a)][0])
+rest = np.array([one.toNumPy() for one in rates(a)][1])
+for k, one in enumerate(rest): acc.jointAcc.setVal(k, one)
+def base_acceleration(world):
+    return iDynTree.SpatialAcc.FromPython(np.r_[R.T @ world[:3] - np.cross(u[3:], u[:3]), R.T @ world[3:]])
+acc.baseAcc = base_acceleration(own)
+at, moving, changing = iDynTree.LinkPositions(model), iDynTree.LinkVelArray(model), iDynTree.LinkAccArray(model)
+assert iDynTree.ForwardPosVelAccKinematics(model, traversal, pos, vel, acc, at, moving, changing)
+ks = [model.getLinkIndex(name) for name in links]
+"""
+_LINK_ACCELERATION = "changing(k).asVector().toNumPy()"
+_SENSOR = """value = []
+for end, frame in zip(ends, sensed):
+    k = model.getLinkIndex(end)
+    sensor = iDynTree.KIND()
+    sensor.setName('s'), sensor.setParentLink(end), sensor.setParentLinkIndex(k)
+    sensor.setLinkSensorTransform(robot.getRelativeTransform(end, f'o{frame}'))
+    value.append(sensor.predictMeasurement(READING).toNumPy())
+"""
+# Accelerations less gravity's, along each link's axes.
+_PROPER = """def proper(k):
+    turned = at(k).getRotation().toNumPy().T @ gravity
+    return iDynTree.SpatialAcc.FromPython(changing(k).asVector().toNumPy() - np.r_[turned, 0, 0, 0])
+"""
+_EXPORTED = """from tempfile import TemporaryDirectory
+exporter, given = iDynTree.ModelExporter(), iDynTree.ModelExporterOptions()
+given.baseLink = robot.getFloatingBase()
+assert exporter.init(robot.model(), given)
+loader = iDynTree.ModelLoader()
+with TemporaryDirectory() as folder:
+    assert exporter.exportModelToFile(f'{folder}/model.urdf')
+    assert loader.loadReducedModelFromFile(f'{folder}/model.urdf', joints)"""
+_AGAIN = """
+kept, robot = robot, iDynTree.KinDynComputations()
+assert robot.loadRobotModel({})
+robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
+assert robot.setFloatingBase(kept.getFloatingBase())"""
+_MADE = {
+    "ModelExporter": _EXPORTED + _AGAIN.format("loader.model()"),
+    "updateInertialParameters": (
+        "model, given = robot.model().copy(), iDynTree.VectorDynSize()\nassert model.getInertialParameters(given)\n"
+        "assert model.updateInertialParameters(iDynTree.VectorDynSize.FromPython(2.0 * given.toNumPy()))\n"
+        "assert model.updateInertialParameters(given)" + _AGAIN.format("model")
+    ),
+    "createReducedModel": (
+        "model = iDynTree.Model()\nassert iDynTree.createReducedModel(robot.model(), joints, model)"
+        + _AGAIN.format("model")
+    ),
+}
+
+
+def again(first: Mapping[str, Way]) -> dict[str, Way]:
+    """Functions of models that are made of the model that was read."""
+    return copies.of_model(first, _MADE, ("mass_matrix", "bias", "link_poses", "link_velocities"))
+
+
+WAYS = (
+    _represented("local", _BODY)
+    | _represented("world", _WORLD)
+    | {
+        "shape_poses": Way(
+            "collisionSolidShapes, getLink_H_geometry",
+            f"{_STATE}value, shapes = [], robot.model().collisionSolidShapes().getLinkSolidShapes()\n"
+            "for name in links:\n"
+            "    at = robot.getWorldTransform(name)\n    for shape in shapes[robot.model().getLinkIndex(name)]:\n"
+            "        H = (at * shape.getLink_H_geometry()).asHomogeneousTransform().toNumPy()\n"
+            "        value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
+        ),
+        "frames_beside_links": Way(
+            "setParsingOptions, addSensorFramesAsAdditionalFrames, getNrOfFrames",
+            "value = [robot.model().getNrOfFrames() - robot.model().getNrOfLinks()]",
+        ),
+        "frame_poses": Way(
+            "getWorldTransform",
+            f"{_STATE}value = []\nfor k in sensed:\n"
+            "    H = robot.getWorldTransform(f'o{k}').asHomogeneousTransform().toNumPy()\n"
+            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
+        ),
+        "frame_velocities": Way(
+            "getFrameVel", f"{_STATE}value = [robot.getFrameVel(f'o{{k}}').toNumPy() for k in sensed]"
+        ),
+        "frame_accelerations": Way(
+            "getFrameAcc", f"{_STATE}value = [robot.getFrameAcc(f'o{{k}}', *rates(a)).toNumPy() for k in sensed]"
+        ),
+        "frame_velocity_products": Way(
+            "getFrameBiasAcc", f"{_STATE}value = [robot.getFrameBiasAcc(f'o{{k}}').toNumPy() for k in sensed]"
+        ),
+        "frame_jacobians": Way(
+            "getFrameFreeFloatingJacobian",
+            f"{_STATE}J, value = iDynTree.MatrixDynSize(6, n), []\nfor k in sensed:\n"
+            "    assert robot.getFrameFreeFloatingJacobian(f'o{k}', J)\n    value.append(J.toNumPy()[:, cut:].copy())",
+        ),
+        "total_mass": Way("getTotalMass", "value = [robot.model().getTotalMass()]"),
+        "link_poses:getWorldTransformsAsHomogeneous": Way(
+            "getWorldTransformsAsHomogeneous",
+            f"{_STATE}made = robot.getWorldTransformsAsHomogeneous(iDynTree.StringVector(links))\n"
+            "value = [np.r_[one.toNumPy()[:3, 3], one.toNumPy()[:3, :3].ravel()] for one in made]",
+        ),
+        "centroidal_inertia": Way(
+            "getCentroidalRobotLockedInertia",
+            f"{_STATE}value = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()",
+        ),
+        "centroidal_inertia:getRobotLockedInertia": Way(
+            "getRobotLockedInertia",
+            f"{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ B.T",
+        ),
+        "centroidal_momentum:getLinearAngularMomentum": Way(
+            "getLinearAngularMomentum",
+            f"{_STATE}{_AT_CENTRE}value = B @ robot.getLinearAngularMomentum().asVector().toNumPy()",
+        ),
+        "centroidal_matrix:getLinearAngularMomentumJacobian": Way(
+            "getLinearAngularMomentumJacobian",
+            f"{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)\n"
+            "assert robot.getLinearAngularMomentumJacobian(J)\nvalue = (B @ J.toNumPy())[:, cut:]",
+        ),
+        "centroidal_momentum:getAverageVelocity": Way(
+            "getAverageVelocity, getRobotLockedInertia",
+            f"{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy()"
+            " @ robot.getAverageVelocity().asVector().toNumPy()",
+        ),
+        "centroidal_matrix:getAverageVelocityJacobian": Way(
+            "getAverageVelocityJacobian, getRobotLockedInertia",
+            f"{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)\nassert robot.getAverageVelocityJacobian(J)\n"
+            "value = (B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ J.toNumPy())[:, cut:]",
+        ),
+        "relative_jacobians": Way(
+            "getRelativeJacobian",
+            f"{_STATE}{_RELATIVE}    assert robot.getRelativeJacobian(first, robot.getFrameIndex(name), J)\n"
+            "    value.append(np.hstack([np.zeros((6, 6)), J.toNumPy()])[:, cut:])",
+        ),
+        "relative_poses:getRelativeTransformExplicit": Way(
+            "getRelativeTransformExplicit",
+            f"{_STATE}value = []\nfor name in links:\n    i, j = map(robot.getFrameIndex, (links[0], name))\n"
+            "    H = robot.getRelativeTransformExplicit(i, i, j, j).asHomogeneousTransform().toNumPy()\n"
+            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
+        ),
+        "mass_matrix:getCoriolisAndMassMatrices": Way(
+            "getCoriolisAndMassMatrices",
+            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
+            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\nvalue = M.toNumPy()[cut:, cut:]",
+        ),
+        "coriolis_symmetry:rate of M": Way(
+            "getCoriolisAndMassMatrices",
+            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
+            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\nvalue = M_rate.toNumPy()[cut:, cut:]",
+        ),
+        "coriolis_symmetry": Way(
+            "getCoriolisAndMassMatrices",
+            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
+            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\n"
+            "value = (C.toNumPy() + C.toNumPy().T)[cut:, cut:]",
+        ),
+        "link_poses:ForwardPosVelAccKinematics": Way(
+            "ForwardPosVelAccKinematics",
+            f"{_RAW}value = []\nfor k in ks:\n    H = at(k).asHomogeneousTransform().toNumPy()\n"
+            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
+        ),
+        "velocity_local:ForwardPosVelAccKinematics": Way(
+            "ForwardPosVelAccKinematics", f"{_RAW}value = [moving(k).toNumPy() for k in ks]"
+        ),
+        "acceleration_local": Way("ForwardPosVelAccKinematics", f"{_RAW}value = [{_LINK_ACCELERATION} for k in ks]"),
+        "mass_matrix:CompositeRigidBodyAlgorithm": Way(
+            "CompositeRigidBodyAlgorithm",
+            f"{_RAW}carried, M = iDynTree.LinkInertias(model), iDynTree.FreeFloatingMassMatrix(model)\n"
+            "assert iDynTree.CompositeRigidBodyAlgorithm(model, traversal, pos.jointPos, carried, M)\n"
+            "T = np.eye(n)\nT[:3, :3] = T[3:6, 3:6] = R.T\nvalue = (T.T @ M.toNumPy() @ T)[cut:, cut:]",
+        ),
+        "accelerometers": Way(
+            "AccelerometerSensor.predictMeasurement",
+            _RAW + _PROPER + _SENSOR.replace("KIND", "AccelerometerSensor").replace("READING", "proper(k), moving(k)"),
+        ),
+        "gyroscopes": Way(
+            "GyroscopeSensor.predictMeasurement",
+            _RAW + _SENSOR.replace("KIND", "GyroscopeSensor").replace("READING", "moving(k)"),
+        ),
+        "angular_accelerations": Way(
+            "ThreeAxisAngularAccelerometerSensor.predictMeasurement",
+            _RAW
+            + _SENSOR.replace("KIND", "ThreeAxisAngularAccelerometerSensor").replace("READING", "changing(k)")
+            + "value = [(robot.getWorldTransform(f'o{frame}').getRotation().toNumPy() @ one)"
+            " for frame, one in zip(sensed, value)]",
+        ),
+    }
+)
