@@ -168,10 +168,10 @@ def _by_harness(wanted: Sequence[Release], folder: Path, smoke: bool) -> dict[Re
 
 
 def stated_by(plugin: EnginePlugin, asked: Questions) -> dict[str, Stated]:
-    """Names of trees -> what an engine calls what they state."""
+    """Names of trees and files -> what an engine calls what they state, and what it does to them."""
     known: Mapping[str, str] = getattr(plugin, "demands", {})
     constraints: Mapping[str, str] = getattr(plugin, "constraints", {})
-    stated = {}
+    stated = {name: Stated(known.get(one.form, "")) for name, one in asked.items() if not isinstance(one, Tree)}
     for name, tree in ((name, one) for name, one in asked.items() if isinstance(one, Tree)):
         done = [known.get(one, "") for one in sorted(tree.transformations)]
         called = [known.get(one, "") for one in sorted(tree.demands)]

@@ -52,6 +52,8 @@ def test_trees_are_called_as_the_engine_calls_what_they_state() -> None:
     called = measure.stated_by(OWN["mujoco"], questions())
     assert called["attached chain"].done == "MjSpec, attach_body" and not called["revolute x"].done
     assert "equality/connect" in called["point between branches"].called
+    written = measure.stated_by(OWN["pybullet"], questions())
+    assert written["urdf: plain, written"].done == "UrdfEditor.saveUrdf" and not written["urdf: plain"].done
 
 
 def test_a_half_has_its_own_faults_alone() -> None:

@@ -11,6 +11,7 @@ from ..truth.sensed import WRENCH
 from . import turns
 from .turns import pybullet as turning
 from .writing import copies
+from .writing.numbering import is_depth_first
 from .writing.source import Source, SourcePlugin, Way
 from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
@@ -214,7 +215,10 @@ def write(tree: Tree) -> Source | Unsupported:
         return turns.source(*turning.IMPORTS, scalar_last=True)
     if tree.changed:
         first = write(tree.before)
-        return first if isinstance(first, Unsupported) else replace(first, closing=_weighing(tree, first.nv))
+        if isinstance(first, Unsupported):
+            return first
+        lacks = (*first.lacks, *(name for name in WAYS if ":URDF_MERGE" in name))
+        return replace(first, closing=_weighing(tree, first.nv), lacks=lacks)
     described = describe(tree)
     if isinstance(described, Unsupported):
         return described
@@ -262,7 +266,9 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
     # Its reader of SDF takes no joint with the world: one function asked says so. Five decimals, as its editor of URDF
     # writes them, are enough for joints, not for axes of inertia.
     asked = ("link_poses",) if form in ("sdf", "urdf written") else _OF_FREE if free else tuple(WAYS)
-    lacks = tuple(name for name in WAYS if name not in asked)
+    # Merged links are numbered anew.
+    merged = is_depth_first(tree) and not free
+    lacks = tuple(name for name in WAYS if name not in asked or (":URDF_MERGE" in name and not merged))
     if form == "urdf written":
         setup += "\n" + _EDITED.replace("LOAD", _LOADS[form].replace("file.name", "written.name"))
     lines = tuple(setup.split("\n"))
@@ -304,6 +310,7 @@ PLUGIN = SourcePlugin(
     write_reading=write_reading,
     demands={
         "turns": "rotations and placements",
+        "urdf written": "UrdfEditor.saveUrdf",
         "sensors": "links without mass",
         "dampers": "dynamics, damping",
         "changed mass": "changeDynamics: mass",

@@ -43,14 +43,15 @@ def _represented(name: str, before: str) -> dict[str, Way]:
     if name == "local":
         rows["centroidal_momentum:body"] = (
             "getCentroidalTotalMomentum",
-            "value = (robot.getCentroidalTotalMomentum().asVector().toNumPy().reshape(2, 3) @ R.T).ravel()\n",
+            "ks\nvalue = (robot.getCentroidalTotalMomentum().asVector().toNumPy().reshape(2, 3) @ R.T).ravel()\n",
         )
     return {way: Way(f"{native}, {name}", f"{_STATE}{before}{code}{_BACK}") for way, (native, code) in rows.items()}
 
 
+# Where each link, and so the base, is one by itself and no frame of another (`ks`).
 # Momentum and inertia of all links about the base's origin, along the world's axes, taken at the mass centre.
 _AT_CENTRE = (
-    "base = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]\n"
+    "ks\nbase = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]\n"
     "arm = robot.getCenterOfMassPosition().toNumPy() - base\n"
     "S = np.cross(np.eye(3), arm)\nB = np.block([[np.eye(3), np.zeros((3, 3))], [-S, np.eye(3)]])\n"
 )
@@ -60,25 +61,20 @@ _RELATIVE = (
 # What the algorithms take: model, order of links, base and joints; forces of the world on the base are cut.
 _RAW = """state(q, v)
 model, traversal = robot.model(), iDynTree.Traversal()
-model.computeFullTreeTraversal(traversal, model.getLinkIndex(robot.getFloatingBase()))
-H = robot.getWorldBaseTransform()
-x, R = H.getPosition().toNumPy(), H.getRotation().toNumPy()
+base = model.getLinkName(model.getFrameLink(model.getFrameIndex(robot.getFloatingBase())))
+assert model.computeFullTreeTraversal(traversal, model.getLinkIndex(base))
+H = robot.getWorldTransform(base)
+R = H.asHomogeneousTransform().toNumPy()[:3, :3]
 pos, vel, acc = iDynTree.FreeFloatingPos(model), iDynTree.FreeFloatingVel(model), iDynTree.FreeFloatingAcc(model)
 pos.worldBasePos = H
 robot.getJointPos(pos.jointPos), robot.getJointVel(vel.jointVel)
-robot.setFrameVelocityRepresentation(iDynTree.BODY_FIXED_REPRESENTATION)
-u = robot.getBaseTwist().toNumPy()
-robot.setFrameVelocityRepresentation(iDynTree.MIXED_REPRESENTATION)
+u, rate = robot.getFrameVel(base).toNumPy(), robot.getFrameAcc(base, *rates(a)).toNumPy()
+u = np.r_[R.T @ u[:3], R.T @ u[3:]]
 vel.baseVel = iDynTree.Twist.FromPython(u)
-own = np.array([one.toNumPy() for one in rates(a)][0])
-rest = np.array([one.toNumPy() for one in rates(a)][1])
-for k, one in enumerate(rest): acc.jointAcc.setVal(k, one)
-def base_acceleration(world):
-    return iDynTree.SpatialAcc.FromPython(np.r_[R.T @ world[:3] - np.cross(u[3:], u[:3]), R.T @ world[3:]])
-acc.baseAcc = base_acceleration(own)
+for k, one in enumerate(rates(a)[1].toNumPy()): acc.jointAcc.setVal(k, one)
+acc.baseAcc = iDynTree.SpatialAcc.FromPython(np.r_[R.T @ rate[:3] - np.cross(u[3:], u[:3]), R.T @ rate[3:]])
 at, moving, changing = iDynTree.LinkPositions(model), iDynTree.LinkVelArray(model), iDynTree.LinkAccArray(model)
 assert iDynTree.ForwardPosVelAccKinematics(model, traversal, pos, vel, acc, at, moving, changing)
-ks = [model.getLinkIndex(name) for name in links]
 """
 _LINK_ACCELERATION = "changing(k).asVector().toNumPy()"
 _SENSOR = """value = []
@@ -94,7 +90,8 @@ _PROPER = """def proper(k):
     turned = at(k).getRotation().toNumPy().T @ gravity
     return iDynTree.SpatialAcc.FromPython(changing(k).asVector().toNumPy() - np.r_[turned, 0, 0, 0])
 """
-_EXPORTED = """from tempfile import TemporaryDirectory
+_EXPORTED = """ks
+from tempfile import TemporaryDirectory
 exporter, given = iDynTree.ModelExporter(), iDynTree.ModelExporterOptions()
 given.baseLink = robot.getFloatingBase()
 assert exporter.init(robot.model(), given)
@@ -235,7 +232,10 @@ WAYS = (
             "CompositeRigidBodyAlgorithm",
             f"{_RAW}carried, M = iDynTree.LinkInertias(model), iDynTree.FreeFloatingMassMatrix(model)\n"
             "assert iDynTree.CompositeRigidBodyAlgorithm(model, traversal, pos.jointPos, carried, M)\n"
-            "T = np.eye(n)\nT[:3, :3] = T[3:6, 3:6] = R.T\nvalue = (T.T @ M.toNumPy() @ T)[cut:, cut:]",
+            "x = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]\n"
+            "T, arm = np.eye(n), H.asHomogeneousTransform().toNumPy()[:3, 3] - x\n"
+            "T[:3, :3], T[:3, 3:6], T[3:6, 3:6] = R.T, -R.T @ np.cross(np.eye(3), arm), R.T\n"
+            "value = (T.T @ M.toNumPy() @ T)[cut:, cut:]",
         ),
         "accelerometers": Way(
             "AccelerometerSensor.predictMeasurement",

@@ -241,6 +241,7 @@ def read(tree: Tree, described: Described, frames: bool = False) -> Source:
         optional["sensed"] = (f"sensed = range({len(tree.sensors)})",)
     # Links that don't move are frames of others, and nothing holds a floating base.
     if all(joint.kind != "fixed" for link in tree.links for joint in link.joints):
+        optional["ks"] = ("ks = [robot.model().getLinkIndex(name) for name in links]",)
         optional["ends"] = (f"ends = {[end.link for end in tree.sensors]}",)
         if not floating:
             optional["js"] = (f"js = [robot.model().getLinkIndex(name) for name in {list(described.links)}]",)

@@ -289,7 +289,9 @@ _MADE = {
         f"m = n\n{_DATA}"
     ),
     "buildReducedModel with geometry": (f"{_SHAPED}m, g = pin.buildReducedModel(m, g, [], pin.neutral(m))\n{_DATA}"),
-    "appendModel to nothing": f"m = pin.appendModel(pin.Model(), m, 0, pin.SE3.Identity())\n{_DATA}",
+    "appendModel to nothing": (
+        f"n = pin.Model()\nn.gravity = m.gravity\nm = pin.appendModel(n, m, 0, pin.SE3.Identity())\n{_DATA}"
+    ),
     "appendModel with geometry": (
         f"{_SHAPED}m, g = pin.appendModel(m, pin.Model(), g, pin.GeometryModel(), 0, pin.SE3.Identity())\n{_DATA}"
     ),

@@ -17,6 +17,7 @@ from ...interface import CALLS, DOUBLE, Array, Convention, EngineModel, Slot, St
 # Names that not every tree's source defines -> why it may not.
 OPTIONAL = {
     "js": "not for links without a joint of their own",
+    "ks": "not for links without a joint of their own",
     "bs": "not for links without a joint of their own",
     "points": "not for constraints of this kind",
     "loops": "not for constraints of this kind",
@@ -249,7 +250,7 @@ class SourcePlugin:
         write_reading: Tree, format, file's text -> text that has the engine read the file.
         find: Version of an engine that is no Python distribution.
         constraints: Kinds of constraints that it has of its own -> what it calls them.
-        demands: What it knows of `Tree.demands` -> what it calls that.
+        demands: What it knows of `Tree.demands`, and how it writes a format anew -> what it calls that.
         refusals: Patterns of exceptions ("Type: message") by which the engine refuses, where it is not seen by where
             they are raised.
         statements: See `interface.Statement`.
