@@ -124,7 +124,7 @@ def test_moments_are_a_quadratic_form() -> None:
     S, v = np.array(MOMENTS), _STATE.v
     np.testing.assert_allclose(_of("moments_product"), S @ v)
     np.testing.assert_allclose(_of("moments_along"), [v @ S @ v])
-    np.testing.assert_allclose(_of("moments_turned"), _R @ S @ _R.T)
+    np.testing.assert_allclose(_of("moments_rotated"), _R @ S @ _R.T)
 
 
 def _log(R: Array) -> Array:

@@ -27,7 +27,7 @@ ALGEBRA = functions_of(
         "logarithmic_derivatives": (f"derivatives of these {_LOG} (10, 10)", algebra.logarithmic_derivatives),
         "moments_product": (f"S v of the moments S about the mass centre {_BODY} (3)", algebra.moments_product),
         "moments_along": ("v^T S v (1)", algebra.moments_along),
-        "moments_turned": ("R S R^T (3, 3)", algebra.moments_turned),
+        "moments_rotated": ("R S R^T (3, 3)", algebra.moments_turned),
         "cross_matrix": ("[v x] (3, 3)", algebra.cross_matrix),
         "cross_matrices": ("[v x] [a x] (3, 3)", algebra.cross_matrices),
         "turned_vector": ("R v (3)", algebra.turned_vector),

@@ -3,12 +3,12 @@
 The second moments of a body, int (r; 1) (r; 1)^T dm, are its pseudo inertia (4, 4): with the inertia I about the
 frame's origin, mass m and first moments h,
 
-    P = [[tr(I) / 2 - I, h], [h^T, m]]                                                                            (9)
+    P = [[tr(I) / 2 - I, h], [h^T, m]]                                                                            (11)
 
 By logarithmic Cholesky parameters x = (alpha, d1, d2, d3, s12, s23, s13, t1, t2, t3) (Rucker, Wensing, "Smooth
 parameterization of rigid-body inertia", 2022) P = U U^T,
 
-    U = e^alpha [[e^d1, s12, s13, t1], [0, e^d2, s23, t2], [0, 0, e^d3, t3], [0, 0, 0, 1]]                          (10)
+    U = e^alpha [[e^d1, s12, s13, t1], [0, e^d2, s23, t2], [0, 0, e^d3, t3], [0, 0, 0, 1]]                          (12)
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def _parameters(body: Inertia) -> Exact:
 
 
 def _pseudo(body: Inertia) -> Exact:
-    """Pseudo inertia (4, 4), eq. (9)."""
+    """Pseudo inertia (4, 4), eq. (11)."""
     sigma = np.trace(body.second) / 2 * eye(3) - body.second
     return np.block([[sigma, body.first[:, None]], [body.first[None], np.array([[body.mass]])]])
 
@@ -95,7 +95,7 @@ def _logarithmic(s: Point) -> Exact:
 
 
 def _of_logarithmic(x: Exact) -> Inertia:
-    """The inertia of logarithmic Cholesky parameters, eqs. (9), (10)."""
+    """The inertia of logarithmic Cholesky parameters, eqs. (11), (12)."""
     scale, d1, d2, d3 = (one.exp() for one in x[:4])
     zero, one = Decimal(0), Decimal(1)
     rows = [[d1, x[4], x[6], x[7]], [zero, d2, x[5], x[8]], [zero, zero, d3, x[9]], [zero, zero, zero, one]]
