@@ -11,7 +11,10 @@ from scipy.optimize import minimize
 
 from validation.engines.functions.shapes import SHAPES
 from validation.engines.interface import Slot, State
+from validation.engines.matrix import cells
 from validation.engines.models import single
+from validation.engines.plugins import OWN
+from validation.engines.plugins.mujoco import rays
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.engines.truth.poses import MASS
@@ -137,3 +140,10 @@ def test_principal_moments_and_those_of_a_shell() -> None:
     state = _STATES[0]
     np.testing.assert_allclose(_of("principal_moments", state), np.sort(1 + state.v**2 / (1 + state.v**2)), rtol=1e-15)
     np.testing.assert_allclose(_of("moments_shell", state), MASS * 2 / 3 * (abs(state.v[0]) + 0.5) ** 2, rtol=1e-15)
+
+
+def test_mujocos_rays_meet_boxes_of_triangles_skins_and_heights() -> None:
+    pytest.importorskip("mujoco")
+    tree = single.trees()["rotations"]
+    verdicts = {cell.function: cell.verdict for cell in cells(OWN["mujoco"], tree, tuple(rays.WAYS))}
+    assert set(verdicts.values()) == {"right"} and len(verdicts) == 7

@@ -12,7 +12,7 @@ from ..writing import copies
 from ..writing.numbering import attached, numbered
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import UNIT_AXIS, has_bare_shape
-from . import besides, devices, flex, forces, framed, functions, rebuilt, soft, stages, turns, vectors
+from . import besides, devices, flex, forces, framed, functions, rays, rebuilt, soft, stages, turns, vectors
 from . import elements as beside
 from .document import CHARTS, document
 
@@ -176,6 +176,8 @@ _WAYS = (
     | turns.WAYS
     | vectors.WAYS
     | devices.WAYS
+    | rays.WAYS
+    | rays.WITHIN_SITES
 )
 PLUGIN = SourcePlugin(
     name="mujoco",
