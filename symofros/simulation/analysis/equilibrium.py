@@ -168,7 +168,7 @@ def _no_balance(balance: Balance, end: Search, tolerance: float, remarks: tuple[
         )
         found = f"{found}; {loads}"
         rule = (
-            f"{rule}; friction is smooth here through zero speed and holds nothing at rest: under a load, joints creep"
+            f"{rule}; friction is smooth through zero speed and holds nothing at rest: under a load, joints creep"
         )
         remedy = f"hold what friction is to hold, held={[name for name, _, _ in creeping]}; or {remedy}"
     return Problem(f"model '{model.record.name}': no equilibrium was found from this guess", found, rule, remedy)
