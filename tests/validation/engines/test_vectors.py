@@ -29,7 +29,8 @@ def test_truths_of_vectors_and_matrices_are_those_of_numpy() -> None:
     u, B = v + AWAY, np.array([v, a, tau])
     A = B @ B.T + np.eye(3)
     band = A * (np.abs(np.subtract.outer(range(3), range(3))) < 2)
-    turned = np.arctan2(u[0], u[1])
+    u_m, w = abs(v[0]) / (1 + abs(v[0])), abs(a[0]) / 2
+    slower, turned = 0.5 + 1.5 * w, np.arctan2(u[0], u[1])
     wanted = {
         "vector_cross": np.cross(v, a),
         "vector_distance": [np.linalg.norm(u - a)],
@@ -44,6 +45,8 @@ def test_truths_of_vectors_and_matrices_are_those_of_numpy() -> None:
         "matrix_between_vectors": [u @ B @ a],
         "band_times_vector": band @ u,
         "quaternion_normalised": q,
+        "history_of_control_interpolated": [(v[1] + v[2]) / 2],
+        "muscle_rate": [(u_m - w) / (0.0625 * slower if u_m > w else 0.25 / slower)],
     }
     for name, value in wanted.items():
         np.testing.assert_allclose(_value(name), value, rtol=1e-14, err_msg=name)

@@ -62,6 +62,22 @@ def _aligned(v: Exact, u: Exact) -> list[Exact]:
     return [cosine * x + sine * y, -sine * x + cosine * y, z]
 
 
+def _of_times() -> dict[str, Function]:
+    """Samples v at -3 h, -2 h, -h, read at -3/2 h; what muscles' activations do."""
+    between = ("linear interpolation of these (1)", lambda s: [(s.v[1] + s.v[2]) / 2])
+    table = {
+        "history_of_control_held": ("the last of the samples before that (1)", lambda s: [s.v[1]]),
+        "history_of_control_interpolated": between,
+        "history_of_sensor_held": ("the last of the samples before that (1)", lambda s: [s.v[1]]),
+        "history_of_sensor_interpolated": between,
+        "muscle_rate": (
+            f"rate of a muscle's activation |a[0]| / 2 at the control |v[0]| / (1 + |v[0]|), times {vectors.TIMES} (1)",
+            vectors.muscle_rate,
+        ),
+    }
+    return functions_of({name: (text, of_state(of)) for name, (text, of) in table.items()}, ASKED)
+
+
 def _of_matrices() -> dict[str, Function]:
     table = {
         "matrix_product": ("B (B B^T + 1) (3, 3)", lambda s: rows(s) @ gram(s)),
@@ -92,4 +108,4 @@ def _of_matrices() -> dict[str, Function]:
     return functions_of({name: (text, of_state(of)) for name, (text, of) in table.items()}, ASKED)
 
 
-VECTORS = _of_vectors() | _of_matrices()
+VECTORS = _of_vectors() | _of_matrices() | _of_times()

@@ -20,6 +20,8 @@ from .poses import AWAY
 # Time of a spring's decay [s]; damping and stiffness of its roots.
 DECAY = 0.25
 ROOTS = {"complex": (2.0, 5.0), "equal": (4.0, 4.0), "real": (5.0, 4.0)}
+# Time constants of a muscle that is activated, and that is not any more [s].
+TIMES = (0.0625, 0.25)
 # Friction of the two tangents of a contact.
 FRICTION = (0.5, 0.25)
 
@@ -86,6 +88,14 @@ def decayed(s: Point, roots: str) -> object:
         grown, shrunk = (turning * h).exp(), (-turning * h).exp()
         cosine, sine = (grown + shrunk) / 2, (grown - shrunk) / 2
     return faded * (x * cosine + slope / turning * sine)
+
+
+def muscle_rate(s: Point) -> object:
+    """(u - w) / T, T = T0 (1/2 + 3/2 w) as w grows and T1 / (1/2 + 3/2 w) as it falls (`interface.Activation`)."""
+    control, state = abs(s.v[0]) / (1 + abs(s.v[0])), abs(s.a[0]) / 2
+    grows, falls = exact(TIMES)
+    slower = (1 + 3 * state) / 2
+    return (control - state) / (grows * slower if control > state else falls / slower)
 
 
 def contact_force(s: Point) -> Exact:

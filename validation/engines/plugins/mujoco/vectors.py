@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.poses import AWAY
-from ...truth.vectors import DECAY, FRICTION, ROOTS
+from ...truth.vectors import DECAY, FRICTION, ROOTS, TIMES
 from ..writing.source import Way
 
 _U = f"u = v + {list(AWAY)}\n"
@@ -69,8 +69,29 @@ def _pairs() -> dict[str, Way]:
     return made
 
 
+_KEPT = """m = mj.MjModel.from_xml_string('<mujoco><option timestep="0.25"/><worldbody><body>'
+    '<joint name="j" type="slide"/><geom size="1"/></body></worldbody>'
+    '<actuator><motor joint="j" nsample="3"/></actuator><sensor><jointpos joint="j" nsample="3"/></sensor></mujoco>')
+d, value, times, values = mj.MjData(m), np.zeros(1), np.array([-0.75, -0.5, -0.25]), v.reshape(3, 1)
+"""
+
+
+def _histories() -> dict[str, Way]:
+    """Samples that are set and read."""
+    made = {}
+    for kind, call, more in (("control", "Ctrl", ""), ("sensor", "Sensor", ", 0.0")):
+        stored = f"mj.mj_init{call}History(m, d, 0, times, values{more})\n"
+        for how, order in (("held", 0), ("interpolated", 1)):
+            made[f"history_of_{kind}_{how}"] = Way(
+                f"mj_init{call}History, mj_read{call}",
+                f"{_KEPT}{stored}value = mj.mj_read{call}(m, d, 0, -0.375, value, {order})",
+            )
+    return made
+
+
 WAYS = (
     _pairs()
+    | _histories()
     | {
         "vector_fill": _vector("mju_fill(value, tau[0])"),
         "vector_cross": _vector("mju_cross(value, v, a)"),
@@ -91,6 +112,9 @@ WAYS = (
         ),
         "radical_inverse": Way(
             "mju_Halton", "value = [mj.mju_Halton(k, base) for k, base in ((1, 3), (5, 3), (11, 3), (6, 2))]"
+        ),
+        "muscle_rate": _number(
+            f"mju_muscleDynamics(abs(v[0]) / (1 + abs(v[0])), abs(a[0]) / 2, np.array([*{list(TIMES)}, 0.0]))"
         ),
         "matrix_product": _matrix("mju_mulMatMat(value, B, A)"),
         "matrix_product_first_transposed": _matrix("mju_mulMatTMat(value, B, A)"),
