@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..interface import STEP, Array, Convention, Link, Slot, Tree, Unsupported
+from .turns.exudyn_items import QUIET
 from .writing import copies
 from .writing.source import Source, SourcePlugin, Way, series
 
 _SETUP = """import numpy as np
 import exudyn as exu
 from exudyn import itemInterface as items
-mbs = exu.SystemContainer().AddSystem()
+container = exu.SystemContainer()
+mbs = container.AddSystem()
 n = len(types)
 still = [0.0] * n
 node = mbs.AddNode(items.NodeGenericODE2(referenceCoordinates=still, initialCoordinates=still,
@@ -35,7 +37,7 @@ def read(k): return [[*mbs.GetSensorValues(s[k]), *mbs.GetSensorValues(s[k + 1])
 mbs.Assemble()
 solver = exu.MainSolverImplicitSecondOrder()
 settings = exu.SimulationSettings()
-settings.solution.file.write, settings.solution.file.name = False, ""
+{quiet}
 solver.InitializeSolver(mbs, settings)
 def state(q, v=None, a=None):
     now = exu.ConfigurationType.Current
@@ -44,7 +46,7 @@ def state(q, v=None, a=None):
     mbs.systemData.SetODE2Coordinates_tt(np.zeros(n) if a is None else a, configuration=now)
 def forces():
     solver.ComputeODE2RHS(mbs)
-    return np.array(solver.GetSystemResidual()[:n])"""
+    return np.array(solver.GetSystemResidual()[:n])""".replace("{quiet}", QUIET)
 
 
 def _step(kind: str) -> Way:

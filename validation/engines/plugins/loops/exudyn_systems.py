@@ -33,7 +33,13 @@ def moved(q, v):
                 Jw[:, k:k + 3] += R
         frames.append((R, p, Jp, Jw, a, c))
     return frames"""
-SYSTEM = """class System:
+SYSTEM = """def names_of(item): return item.__init__.__code__.co_varnames
+def body_of(number, mass, com, J):
+    # Older releases have longer names.
+    named = ("mass", "centerOfMass", "inertia")
+    if named[0] not in names_of(items.ObjectRigidBody): named = ("physicsMass", "physicsCenterOfMass", "physicsInertia")
+    return items.ObjectRigidBody(nodeNumber=number, **dict(zip(named, (mass, com, J))))
+class System:
     def __init__(self, node, joints):
         self.node, self.container = node, exu.SystemContainer()
         self.mbs = mbs = self.container.AddSystem()
@@ -42,18 +48,25 @@ SYSTEM = """class System:
         self.bodies = []
         for _, _, mass, com, J in links:
             number = mbs.AddNode(getattr(items, "NodeRigidBody" + node)(referenceCoordinates=still))
-            body = items.ObjectRigidBody(mass=mass, inertia=J, centerOfMass=com, nodeNumber=number)
-            self.bodies.append(mbs.AddObject(body))
+            self.bodies.append(mbs.AddObject(body_of(number, mass, com, J)))
             at = mbs.AddMarker(items.MarkerBodyMass(bodyNumber=self.bodies[-1]))
             mbs.AddLoad(items.LoadMassProportional(markerNumber=at, loadVector=gravity))
         self.joints = []
         for name, ends, arguments in joints:
-            markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=self.bodies[k] if k >= 0 else ground,
-                localHT=exu.HT(rotation=R, translation=p))) for k, R, p in ends]
-            self.joints.append(mbs.AddObject(getattr(items, name)(markerNumbers=markers, **arguments)))
+            kind, turned = getattr(items, name), {}
+            if hasattr(exu, "HT"):
+                places = [{"localHT": exu.HT(rotation=R, translation=p)} for _, R, p in ends]
+            else:
+                places = [{"localPosition": p} for _, _, p in ends]
+                turned = {f"rotationMarker{k}": R for k, (_, R, _) in enumerate(ends)}
+                turned = {one: R for one, R in turned.items() if one in names_of(kind)}
+            markers = [mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=self.bodies[k] if k >= 0 else ground, **place))
+                for (k, _, _), place in zip(ends, places)]
+            self.joints.append(mbs.AddObject(kind(markerNumbers=markers, **turned, **arguments)))
         mbs.Assemble()
         settings = exu.SimulationSettings()
-        settings.solution.file.write, settings.solution.file.name = False, ""
+        if hasattr(settings, 'solution'): settings.solution.file.write, settings.solution.file.name = False, ''
+        else: settings.solutionSettings.writeSolutionToFile = False
         settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
         self.solver = exu.MainSolverImplicitSecondOrder()
         self.solver.InitializeSolver(mbs, settings)

@@ -21,25 +21,32 @@ from ...truth.connectors import (
 from ...truth.shapes import BEYOND
 from ..writing.source import Way
 
+# No files are written; older releases have another name for that.
+QUIET = """if hasattr(settings, 'solution'): settings.solution.file.write, settings.solution.file.name = False, ''
+else: settings.solutionSettings.writeSolutionToFile = False"""
+
 # Two bodies whose speeds are velocities before and angular velocities along their axes; their points' markers.
 _TWO = f"""from exudyn import itemInterface as items
 container = exu.SystemContainer()
 mbs = container.AddSystem()
 bodies = []
+# Older releases have other names.
+named = ("mass", "inertia")
+if named[0] not in items.ObjectRigidBody.__init__.__code__.co_varnames: named = ("physicsMass", "physicsInertia")
+numbers = dict(zip(named, (1.0, [1.0] * 3 + [0.0] * 3)))
 for place, turned, speeds in ((a, q, np.r_[v, tau]), (tau + {list(BEYOND)}, q2, np.r_[v2, v])):
     r = rbu.RotationMatrix2RotationVector(rbu.EulerParameters2RotationMatrix(turned))
     node = mbs.AddNode(items.NodeRigidBodyRotVecLG(
         referenceCoordinates=[0.0] * 6, initialCoordinates=[*place, *r], initialVelocities=list(speeds)))
-    bodies.append(mbs.AddObject(items.ObjectRigidBody(
-        mass=1.0, inertia=[1.0, 1.0, 1.0, 0.0, 0.0, 0.0], nodeNumber=node)))
+    bodies.append(mbs.AddObject(items.ObjectRigidBody(nodeNumber=node, **numbers)))
 markers = [mbs.AddMarker(items.MarkerBody{{marker}}(bodyNumber=body, localPosition=place))
     for body, place in zip(bodies, ({list(FIRST)}, {list(SECOND)}))]
 """
 # What acts, less the bodies' own gyroscopic forces, which these moments have none of.
-_FORCES = """
+_FORCES = f"""
 mbs.Assemble()
 settings = exu.SimulationSettings()
-settings.solution.file.write, settings.solution.file.name = False, ""
+{QUIET}
 settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
 solver = exu.MainSolverImplicitSecondOrder()
 solver.InitializeSolver(mbs, settings)
