@@ -148,6 +148,8 @@ FAULTS = [
         "SE3.Identity())",
         "SE3.Identity()); m.gravity.linear = -m.gravity.linear",
     ),
+    ("pinocchio", "point between branches", "constrained_acceleration_dtau:data", "value = d.ddq", "value = 2 * d.ddq"),
+    ("spatialmath", "rotations", "turn_about_line", "exp(tau[0])", "exp(-tau[0])"),
     ("idyntree", "rotations", "rpy_rates_rate", "(*v, *a)", "(*v, *v)"),
     ("idyntree", "rotations", "wrench_transform", "asAdjointTransformWrench", "asAdjointTransform"),
     ("idyntree", "free", "jacobian_world", "H[:3, 3])", "-H[:3, 3])"),

@@ -127,6 +127,36 @@ WAYS |= {
         "value = cls.UnitQuaternion(q).interp(cls.UnitQuaternion(q2), 0.25, shortest=True).R.ravel()",
     ),
     "are_rotations": Way("isR", f"{_R}F = R * [1, 1, -1]\nvalue = [float(sm.isR(A)) for A in (R, F, 1.25 * R)]"),
+    "cross_matrix": Way("skew", "value = sm.skew(v)"),
+    "cross_matrix:vex": Way("vex", "value = np.cross(np.eye(3), sm.vex(sm.skew(v)))"),
+    "turned_vector": Way("qvmul", "value = sm.qvmul(q, v)"),
+    "turned_vector:SO3": Way("SO3 * vector", f"import spatialmath as cls\n{_R}value = np.ravel(cls.SO3(R) * v)"),
+    "turned_vector:UnitQuaternion": Way(
+        "UnitQuaternion * vector", "import spatialmath as cls\nvalue = np.ravel(cls.UnitQuaternion(q) * v)"
+    ),
+    "rotation_inverse": Way("qconj", "value = sm.q2r(sm.qconj(q)).ravel()"),
+    "rotation_inverse:SO3": Way("SO3.inv", f"import spatialmath as cls\n{_R}value = cls.SO3(R).inv().A.ravel()"),
+    "rotation_inverse:UnitQuaternion": Way(
+        "UnitQuaternion.inv", "import spatialmath as cls\nvalue = cls.UnitQuaternion(q).inv().R.ravel()"
+    ),
+    "rotation_integrated": Way("trexp", f"{_R}value = (R @ sm.trexp(v)).ravel()"),
+    "wrench_transform_back": Way("SE3.Ad, transposed", f"{_X}value = X.Ad().T"),
+    "pose_integrated": Way("SE3 * Twist3.exp", f"{_X}{_flat('(X * cls.Twist3(np.r_[v, v2]).exp()).A')}"),
+    "wrench_cross:SpatialVelocity": Way(
+        "SpatialVelocity.cross of forces",
+        f"import spatialmath as cls\n{_TWIST}"
+        "value = np.stack([V.cross(cls.SpatialForce(e)).A for e in np.eye(6)], axis=1)",
+    ),
+    "twist_about_line": Way(
+        "Twist3.UnitRevolute",
+        f"import spatialmath as cls\n{_AXES}S = cls.Twist3.UnitRevolute((v + away) / np.linalg.norm(v + away), a)\n"
+        "value = S.S",
+    ),
+    "turn_about_line": Way(
+        "Twist3.UnitRevolute.exp",
+        f"import spatialmath as cls\n{_AXES}S = cls.Twist3.UnitRevolute((v + away) / np.linalg.norm(v + away), a)\n"
+        f"{_flat('S.exp(tau[0]).A')}",
+    ),
     "rotation_of_two_axes": Way("oa2r", f"{_AXES}value = sm.oa2r(v2 + aside, v + away).ravel()"),
     "line": Way("Line3.PointDir", f"{_LINE}{_MOMENT.format(of='L')}"),
     "line:Join": Way("Line3.Join", f"{_LINE}L = cls.Line3.Join(a + unit(v + away), a)\n{_MOMENT.format(of='L')}"),

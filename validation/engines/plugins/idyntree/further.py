@@ -159,6 +159,19 @@ WAYS = (
             f"{_STATE}J, value = iDynTree.MatrixDynSize(6, n), []\nfor k in sensed:\n"
             "    assert robot.getFrameFreeFloatingJacobian(f'o{k}', J)\n    value.append(J.toNumPy()[:, cut:].copy())",
         ),
+        **{
+            name: Way(
+                native,
+                "own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]\n"
+                f"value = [one.{native}(0) for one in own if one.getNrOfDOFs()]",
+            )
+            for name, native in {
+                "joint_dampings": "getDamping",
+                "joint_frictions": "getStaticFriction",
+                "joint_speed_limits": "getVelocityLimit",
+                "joint_force_limits": "getEffortLimit",
+            }.items()
+        },
         "total_mass": Way("getTotalMass", "value = [robot.model().getTotalMass()]"),
         "link_poses:getWorldTransformsAsHomogeneous": Way(
             "getWorldTransformsAsHomogeneous",

@@ -184,3 +184,32 @@ WAYS |= {
         "value = pin.getKKTContactDynamicMatrixInverse(m, d, J)",
     ),
 }
+
+# Points and welds along the world's axes: where they hold, accelerations, speeds and their derivatives are the same.
+_ALIGNED = (("pin.LOCAL)", "pin.LOCAL_WORLD_ALIGNED)"),)
+_KEPT = (
+    "value = np.concatenate([one.contact_force.vector[: 3 if c.type == pin.ContactType.CONTACT_3D else 6]"
+    " for one, c in zip(cd, cm)])"
+)
+WAYS |= {
+    f"{name}:aligned": WAYS[name]._replace(native=f"{WAYS[name].native}, LOCAL_WORLD_ALIGNED", built=_ALIGNED)
+    for name in (
+        "constrained_acceleration",
+        "impact_velocity",
+        "impact_velocity_rebound",
+        "constrained_acceleration_dtau",
+    )
+}
+WAYS |= {
+    f"{name}:data": Way(f"data.{kept}", f"{_DERIVATIVES}\nvalue = d.{kept}")
+    for name, kept in {
+        "constrained_acceleration": "ddq",
+        "constrained_acceleration_dv": "ddq_dv",
+        "constrained_acceleration_dtau": "ddq_dtau",
+        "constraint_forces_dv": "dlambda_dv",
+        "constraint_forces_dtau": "dlambda_dtau",
+    }.items()
+} | {
+    "constraint_forces:contact_force": Way("RigidConstraintData.contact_force", f"{_DYNAMICS}{_KEPT}"),
+    "impact_velocity:dq_after": Way("data.dq_after", f"{_IMPACT}0.0, ps)\nvalue = d.dq_after", _REGULAR),
+}
