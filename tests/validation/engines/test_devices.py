@@ -82,6 +82,24 @@ def test_models_of_one_set_of_options_are_put_together() -> None:
     assert all(len(lot) == 1 for lot in lots if "<flag" in lot[0])
 
 
+def test_what_a_release_does_not_know_leaves_the_others_together() -> None:
+    mujoco = pytest.importorskip("mujoco")
+    made: dict[str, object] = {"mj": mujoco}
+    exec(together("springs and dampers", GROUPS["springs and dampers"]), made)
+    first, second = made["LOTS"][0][:2]  # type: ignore[index]
+
+    def prepared(m: object) -> object:
+        if m.jnt_stiffnesspoly.any():  # type: ignore[attr-defined]
+            raise NotImplementedError("polynomials")
+        return m
+
+    known = next(x for x in made["LOTS"][0] if made["known"](x, prepared))  # type: ignore[index, operator]
+    whole, places = made["found"](known, prepared)  # type: ignore[operator]
+    assert whole.nv > 1 and places("qpos").stop <= whole.nq
+    with pytest.raises(NotImplementedError, match="polynomials"):
+        made["found"](next(x for x in (first, second) if x != known), prepared)  # type: ignore[operator]
+
+
 def test_an_answer_that_is_off_is_wrong() -> None:
     for name, one in _judged("drives").items():
         assert one.want is not None and isinstance(one.answer.value, np.ndarray)

@@ -22,14 +22,25 @@ def joined(texts):
         if not k: parent.option = child.option
         parent.attach(child, prefix=f'd{k}_', frame=parent.worldbody.add_frame())
     return parent.compile(), [mj.MjData(part) for part in parts]
+def known(text, prepared):
+    try: prepared(mj.MjModel.from_xml_string(text))
+    except Exception: return False
+    return True
+def all_known(lot, prepared):
+    try:
+        m, parts = joined(lot)
+        return lot, prepared(m), parts
+    except Exception:
+        lot = [one for one in lot if known(one, prepared)]  # Releases that know less.
+        m, parts = joined(lot)
+        return lot, prepared(m), parts
 def found(text, prepared=lambda m: m):
     lot = next(one for one in LOTS if text in one)
-    if lot[0] not in lots:
-        m, parts = joined(lot)
-        lots[lot[0]] = prepared(m), parts
-    whole, parts = lots[lot[0]]
+    if lot[0] not in lots: lots[lot[0]] = all_known(lot, prepared)
+    texts, whole, parts = lots[lot[0]]
+    if text not in texts: prepared(mj.MjModel.from_xml_string(text))  # Says why.
     def places(field):
-        sizes = [len(getattr(part, field)) for part in parts[:lot.index(text) + 1]]
+        sizes = [len(getattr(part, field)) for part in parts[:texts.index(text) + 1]]
         return slice(sum(sizes[:-1]), sum(sizes))
     return whole, places
 lots = {}"""
