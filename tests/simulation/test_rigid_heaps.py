@@ -66,12 +66,6 @@ def test_a_pyramid_stands_by_friction(base: int, lifted: float) -> None:
     """
     model = pyramid(0.8 if base == 5 else 0.5, base)
     run = sf.simulate(model, piled(model, base, lifted), t_end=0.2, dt=1e-3)
-    if (base, lifted) == (
-        5,
-        0.05,
-    ):  # A ring of five that carries nothing: ten contacts of one part, five without force.
-        assert "no forces of rigid contacts were found" in str(run.outcome)
-        return
     assert run.outcome.kind == "finished"
     assert run.q[-1].reshape(base + 1, 7)[:, :3] == pytest.approx(heap(base), abs=1e-12)
     found = run.contact_forces()

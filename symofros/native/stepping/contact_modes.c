@@ -1,7 +1,7 @@
 /* Which modes the balls of a contact problem take: by parts that do not act on each other, from guesses on
  * (docs/theory/constraints.md, section 15, (46), (47b)). */
 
-enum { SYM_UNIQUE_UP_TO = 4, SYM_ALL_UP_TO = 8, SYM_MOST_SETS = 6561, SYM_GUESS_SWEEPS = 1000 };
+enum { SYM_UNIQUE_UP_TO = 4, SYM_ALL_UP_TO = 8, SYM_MOST_SETS = 6561, SYM_GUESS_SWEEPS = 1000, SYM_FIRST_SETS = 4 };
 /* Share by which two motions differ; shares down to which a guess tells forces and motions from none. */
 #define SYM_DIFFERENT 1e-6
 #define SYM_GUESSED 1e-6
@@ -42,8 +42,9 @@ static double sym_relax_ball(const sym_contact_problem *p, int32_t i, const doub
     return fabs(f[0] - was[0]) + fabs(f[1] - was[1]) + fabs(f[2] - was[2]);
 }
 
-/* Guess of the modes, and of the directions of balls that begin to slide: ball by ball, (47b), until forces rest. */
-static void sym_guess_modes(const sym_contact_problem *p, double *mode, double *d) {
+/* Guess of the modes, and of the directions of balls that begin to slide: ball by ball, (47b), until forces rest. Balls without force
+ * and motion are in contact there; in freed they are open. */
+static void sym_guess_modes(const sym_contact_problem *p, double *mode, double *freed, double *d) {
     double f[SYM_MOST_FORCES] = {0.0}, c[3], largest = 0.0;
     int32_t sweep, i;
     for (sweep = 0; sweep < SYM_GUESS_SWEEPS; ++sweep) {
@@ -58,21 +59,23 @@ static void sym_guess_modes(const sym_contact_problem *p, double *mode, double *
     }
     for (i = 0; i < p->n; ++i) {
         const double *force = f + 3 * i, drag = hypot(force[0], force[1]);
+        const int32_t pressed = force[2] > SYM_GUESSED * largest;
         mode[i] = sym_most_contact(p, i);
         sym_motion_of_ball(p, f, i, c);
-        if (!(force[2] > SYM_GUESSED * largest)) {
+        if (!pressed) {
             if (c[2] > SYM_GUESSED * p->size) mode[i] = SYM_OPEN;
         } else if (mode[i] == SYM_STICKS && drag >= (1.0 - SYM_GUESSED) * p->mu[i] * force[2] && hypot(c[0], c[1]) > SYM_GUESSED * p->size) {
             mode[i] = SYM_SLIDES, d[2 * i] = -force[0] / drag, d[2 * i + 1] = -force[1] / drag;
         }
+        freed[i] = pressed ? mode[i] : SYM_OPEN;
     }
 }
 
-/* Sets of modes in the order in which they are tried: most contact, the last modes, the guess, then by how many balls differ from the
- * guess, of those that differ by as many the ones with more contact of the first balls before. less: by how much each ball has less
- * contact than it may have. */
+/* Sets of modes in the order in which they are tried: most contact, the last modes, the guess, the same with balls without force
+ * open, then by how many balls differ from the guess, of those that differ by as many the ones with more contact of the first
+ * balls before. less: by how much each ball has less contact than it may have. */
 typedef struct sym_order_of_modes {
-    double first[3][SYM_MOST_CONTACTS]; /* modes */
+    double first[SYM_FIRST_SETS][SYM_MOST_CONTACTS]; /* modes */
     int32_t given, differing;
     int32_t less[SYM_MOST_CONTACTS];
 } sym_order_of_modes;
@@ -109,7 +112,7 @@ static int32_t sym_next_differing(const sym_contact_problem *p, sym_order_of_mod
 static int32_t sym_next_modes(const sym_contact_problem *p, sym_order_of_modes *at, double *mode) {
     const size_t size = (size_t)p->n * sizeof *mode;
     int32_t i, known = 1, found;
-    while (at->given < 3) {
+    while (at->given < SYM_FIRST_SETS) {
         const int32_t k = at->given++;
         memcpy(mode, at->first[k], size);
         for (i = 0; i < k && memcmp(mode, at->first[i], size) != 0; ++i) {}
@@ -120,7 +123,7 @@ static int32_t sym_next_modes(const sym_contact_problem *p, sym_order_of_modes *
         while (!found && at->differing < p->n) found = sym_first_differing(p, at, 0, ++at->differing);
         if (!found) return 0;
         for (i = 0; i < p->n; ++i) mode[i] = (double)(sym_most_contact(p, i) - at->less[i]);
-        for (i = 0, known = 0; i < 3; ++i) known |= memcmp(mode, at->first[i], size) == 0;
+        for (i = 0, known = 0; i < SYM_FIRST_SETS; ++i) known |= memcmp(mode, at->first[i], size) == 0;
     }
     return 1;
 }
@@ -145,7 +148,7 @@ static int32_t sym_solve_coupled(sym_contact_problem *p, int32_t unique) {
         if (!p->slides[i]) p->d[2 * i] = drag > 0.0 ? -x / drag : 1.0, p->d[2 * i + 1] = drag > 0.0 ? -y / drag : 0.0;
     }
     memcpy(d[0], p->d, sizeof d[0]), memcpy(d[1], p->d, sizeof d[1]);
-    sym_guess_modes(p, order.first[2], d[1]);
+    sym_guess_modes(p, order.first[2], order.first[3], d[1]);
     for (i = 0; i < p->n; ++i) order.first[1][i] = fmin(p->last[i], order.first[0][i]);
     unique = unique && p->n <= SYM_UNIQUE_UP_TO && sym_normals_are_determined(p);
     while (tried++ < most && sym_next_modes(p, &order, mode))
