@@ -31,6 +31,8 @@ for b in bs:
     moment, force = d.cfrc_int[b].reshape(2, 3)
     R, arm = d.xmat[b].reshape(3, 3), d.subtree_com[m.body_rootid[b]] - d.xpos[b]
     value.append([*(R.T @ force), *(R.T @ (moment + np.cross(arm, force)))])"""
+# First it took the numbers of M.
+FULL = "try: mj.mj_fullM(m, d, value)\nexcept TypeError: mj.mj_fullM(m, value, d.qM if hasattr(d, 'qM') else d.M)"
 SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
 COPY = "from copy import copy\nn = copy(m)\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...interface import Steps
 from ..writing.source import Way
-from .forces import COPY, EXPLICIT, QV, QVA, SQUARE, Q, transition
+from .forces import COPY, EXPLICIT, FULL, QV, QVA, SQUARE, Q, transition
 
 _TWISTS = "value = np.zeros((len(bs), 6))\nfor k, b in enumerate(bs):\n    "
 _JACOBIANS = "value = np.zeros((len(bs), 6, m.nv))\nfor k, b in enumerate(bs):\n    "
@@ -17,7 +17,7 @@ _FORWARD_STEPS = Steps("forward_dynamics", 1e-6, 1e-9)
 
 WAYS = {
     "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
-    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}mj.mj_fullM(m, *((value, d.qM) if hasattr(d, 'qM') else (d, value)))"),
+    "mass_matrix": Way("mj_fullM", f"{Q}{SQUARE}{FULL}"),
     "mass_matrix:mj_mulM": Way(
         "mj_mulM", f"{Q}{SQUARE}for row, unit in zip(value, np.eye(m.nv)):\n    mj.mj_mulM(m, d, row, unit)"
     ),

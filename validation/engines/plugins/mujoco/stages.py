@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from ...interface import STEP
 from ..writing.source import Way
-from .forces import COPY, EXPLICIT, SQUARE, Q
+from .forces import COPY, EXPLICIT, FULL, SQUARE, Q
 
 _PLACED = "d.qpos[:] = q\nmj.mj_kinematics(m, d)\nmj.mj_comPos(m, d)\nmj.mj_tendon(m, d)\n"
 _WHOLE = f"{_PLACED}mj.mj_makeM(m, d)\n"
-_FULL = "mj.mj_fullM(m, *((value, d.qM) if hasattr(d, 'qM') else (d, value)))"
 _SET = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
 _POSITIONS = (
     *("fwdKinematics", "makeM", "factorM", "collision", "makeConstraint", "island", "projectConstraint"),
@@ -33,8 +32,8 @@ def _step(integrator: str, call: str, settings: str = "") -> Way:
 
 
 WAYS = {
-    "mass_matrix:mj_makeM": Way("mj_kinematics, mj_comPos, mj_makeM", f"{_WHOLE}{SQUARE}{_FULL}"),
-    "mass_matrix:mj_crb": Way("mj_kinematics, mj_comPos, mj_crb", f"{_PLACED}mj.mj_crb(m, d)\n{SQUARE}{_FULL}"),
+    "mass_matrix:mj_makeM": Way("mj_kinematics, mj_comPos, mj_makeM", f"{_WHOLE}{SQUARE}{FULL}"),
+    "mass_matrix:mj_crb": Way("mj_kinematics, mj_comPos, mj_crb", f"{_PLACED}mj.mj_crb(m, d)\n{SQUARE}{FULL}"),
     "mass_matrix:mj_addM": Way(
         "mj_addM",
         f"{Q}rows = np.array(m.M_rownnz), np.array(m.M_rowadr), np.zeros(m.nM, np.int32)\n"
