@@ -84,8 +84,8 @@ WAYS = {
         "FULL, APPLIED = mj.mjtState.mjSTATE_FULLPHYSICS, mj.mjtState.mjSTATE_CTRL | mj.mjtState.mjSTATE_QFRC_APPLIED\n"
         "state, given = np.zeros(mj.mj_stateSize(n, FULL)), np.zeros(mj.mj_stateSize(n, APPLIED))\n"
         "mj.mj_getState(n, d, state, FULL)\nmj.mj_getState(n, d, given, APPLIED)\n"
-        "ends, _ = rollout.rollout(n, mj.MjData(n), state[None], given[None, None], control_spec=APPLIED)\n"
-        "e = mj.MjData(n)\nmj.mj_setState(n, e, ends[0, -1], FULL)\nvalue = np.r_[e.qpos, e.qvel]",
+        "reached, _ = rollout.rollout(n, mj.MjData(n), state[None], given[None, None], control_spec=APPLIED)\n"
+        "e = mj.MjData(n)\nmj.mj_setState(n, e, reached[0, -1], FULL)\nvalue = np.r_[e.qpos, e.qvel]",
     ),
     "passive_forces:parts": Way(
         "qfrc_spring, qfrc_damper, qfrc_gravcomp, qfrc_fluid",
