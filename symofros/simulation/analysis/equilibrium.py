@@ -167,9 +167,7 @@ def _no_balance(balance: Balance, end: Search, tolerance: float, remarks: tuple[
             f"friction of '{name}' carries {load:.3g} in motion only, up to {most:.3g}" for name, load, most in creeping
         )
         found = f"{found}; {loads}"
-        rule = (
-            f"{rule}; friction is smooth through zero speed and holds nothing at rest: under a load, joints creep"
-        )
+        rule = f"{rule}; friction is smooth through zero speed and holds nothing at rest: under a load, joints creep"
         remedy = f"hold what friction is to hold, held={[name for name, _, _ in creeping]}; or {remedy}"
     return Problem(f"model '{model.record.name}': no equilibrium was found from this guess", found, rule, remedy)
 
