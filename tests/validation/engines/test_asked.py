@@ -13,9 +13,10 @@ from validation.engines.matrix import SEED, cells
 from validation.engines.models import flexible, mjcf_geoms, single
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import derived, turns
+from validation.engines.truth import derived
 from validation.engines.truth.arithmetic import Exact, arc, cos_sin, exact, many_digits
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.geometry import turns
 from validation.engines.truth.kinematics import around
 from validation.engines.verdicts import expected, judge
 from validation.engines.workers import Job, answered

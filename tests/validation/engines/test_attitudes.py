@@ -14,8 +14,9 @@ from validation.engines.models.single import trees
 from validation.engines.plugins.basilisk import PLUGIN
 from validation.engines.plugins.writing.source import Source
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import attitudes, guidance, orbits
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.geometry import attitudes
+from validation.engines.truth.spaceflight import guidance, orbits
 from validation.engines.verdicts import expected, judge
 
 _TREE = trees()["rotations"]

@@ -16,8 +16,8 @@ from validation.engines.models.kinds import tree_of
 from validation.engines.models.single import trees
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import connectors
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.features import connectors
 
 _TREE = trees()["rotations"]
 _LAYOUT = Layout(4, 3, ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),))

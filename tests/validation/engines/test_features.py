@@ -23,10 +23,11 @@ from validation.engines.plugins import OWN
 from validation.engines.plugins.features import DART, DRAKE
 from validation.engines.proving.pieces import Layout
 from validation.engines.tree import FEATURES
-from validation.engines.truth import bodies, curves, drives, elements, parameters, systems
 from validation.engines.truth.derived import TruthOf
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.poses import CENTRE
+from validation.engines.truth.features import drives, elements, parameters, systems
+from validation.engines.truth.geometry import bodies, curves
+from validation.engines.truth.geometry.poses import CENTRE
 from validation.engines.verdicts import expected, judge
 
 _TREE = trees()["trajectories"]

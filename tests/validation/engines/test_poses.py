@@ -12,7 +12,7 @@ from validation.engines.interface import Slot, State
 from validation.engines.models import single
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.poses import ASIDE, AWAY, BACK, BESIDE, CENTRE, MASS, MOMENTS, SEQUENCES
+from validation.engines.truth.geometry.poses import ASIDE, AWAY, BACK, BESIDE, CENTRE, MASS, MOMENTS, SEQUENCES
 
 Array = NDArray[np.float64]
 _TURNS = single.trees()["rotations"]

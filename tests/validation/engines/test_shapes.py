@@ -17,8 +17,8 @@ from validation.engines.plugins import OWN
 from validation.engines.plugins.mujoco import rays
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.poses import MASS
-from validation.engines.truth.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
+from validation.engines.truth.geometry.poses import MASS
+from validation.engines.truth.geometry.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
 
 Array = NDArray[np.float64]
 _TURNS = single.trees()["rotations"]

@@ -10,7 +10,7 @@ import pytest
 from validation.engines.interface import Slot
 from validation.engines.models import soft as models
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import soft
+from validation.engines.truth.acting import soft
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 
 _CHARTS = {"revolute": "angle", "prismatic": "length"}

@@ -10,8 +10,8 @@ import numpy as np
 from validation.engines.interface import Slot
 from validation.engines.models import single
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import solutions
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.geometry import solutions
 
 
 def test_a_minimum_in_a_box_is_below_all_points_around_it() -> None:

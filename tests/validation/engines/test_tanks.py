@@ -10,8 +10,8 @@ import pytest
 from validation.engines.interface import Slot, State
 from validation.engines.models.single import trees
 from validation.engines.proving.pieces import Layout
-from validation.engines.truth import tanks
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.spaceflight import tanks
 from validation.engines.verdicts import expected, judge
 
 _TREE = trees()["rotations"]

@@ -12,8 +12,8 @@ from validation.engines.models import single
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.poses import AWAY
-from validation.engines.truth.vectors import DECAY, FRICTION, ROOTS
+from validation.engines.truth.geometry.poses import AWAY
+from validation.engines.truth.geometry.vectors import DECAY, FRICTION, ROOTS
 
 _TREE = single.trees()["vectors"]
 _LAYOUT = Layout(4, 3, ((Slot("quaternion wxyz, body speeds", (0, 1, 2, 3), (0, 1, 2)),),))

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from ..interface import Activation, Actuator
-from ..truth import activations, derived, sensed
+from ..truth import derived, sensed
+from ..truth.acting import activations
 from ..truth.arithmetic import Exact, solve
 from ..truth.derived import TruthOf
 from ..truth.dynamics import Point, Truth

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import algebra, poses
+from ..truth.geometry import algebra, poses
 from .function import functions_of
 
 _BODY = "of the body of 2 kg"

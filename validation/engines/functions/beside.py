@@ -6,8 +6,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..truth import constraints, derived, poses, steps, turns
+from ..truth import constraints, derived, steps
 from ..truth.arithmetic import root
+from ..truth.geometry import poses, turns
 from .function import Function, functions_of
 
 

@@ -8,7 +8,8 @@ from decimal import Decimal
 import numpy as np
 
 from ..tree import SOFT_LIMITS
-from ..truth import constraints, soft
+from ..truth import constraints
+from ..truth.acting import soft
 from ..truth.arithmetic import Exact, exact
 from ..truth.dynamics import Point, Truth
 from .function import Function, functions_of

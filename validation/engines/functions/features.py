@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from ..frames import ORIGIN
-from ..truth import bodies, curves, drives, elements, parameters, systems, tanks
 from ..truth.derived import TruthOf
-from ..truth.poses import CENTRE, MASS
+from ..truth.features import drives, elements, parameters, systems
+from ..truth.geometry import bodies, curves
+from ..truth.geometry.poses import CENTRE, MASS
+from ..truth.spaceflight import tanks
 from .function import Function, functions_of
 
 _OF_TANKS = (

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import lines, poses, solutions
+from ..truth.geometry import lines, poses, solutions
 from .function import Function, functions_of
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..truth import shapes
+from ..truth.geometry import shapes
 from .function import Function, functions_of
 
 _SOLIDS = f"of radius {shapes.RADIUS}, half length {shapes.HALF}, half sides and semi-axes {shapes.SIDES}"

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 from ..tree import Tree
-from ..truth.attitudes import ATTITUDES
-from ..truth.connectors import CONNECTORS
-from ..truth.guidance import GUIDANCE
-from ..truth.orbits import ORBITS
-from ..truth.spacecraft import SPACECRAFT
+from ..truth.features.connectors import CONNECTORS
+from ..truth.geometry.attitudes import ATTITUDES
+from ..truth.spaceflight.guidance import GUIDANCE
+from ..truth.spaceflight.orbits import ORBITS
+from ..truth.spaceflight.spacecraft import SPACECRAFT
 from .acting import ACTING, MEASURED
 from .algebra import ALGEBRA
 from .arms import ARMS

@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from ..truth import vectors
 from ..truth.arithmetic import Exact, cross, exact
-from ..truth.vectors import away, band, gram, length, of_state, product, rows
+from ..truth.geometry import vectors
+from ..truth.geometry.vectors import away, band, gram, length, of_state, product, rows
 from .function import Function, functions_of
 
 # What trees are asked about that stand for vectors (`Tree.asked`).

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Slot, Statement, Tree, Unsupported
-from ..truth.poses import CENTRE, MASS, MOMENTS
+from ..truth.geometry.poses import CENTRE, MASS, MOMENTS
 from .writing.source import HALF_TURNS, ON_END, Source, SourcePlugin, Way
 
 _R = "R, Q = sm.q2r(q), sm.q2r(q2)\n"

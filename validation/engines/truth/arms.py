@@ -8,8 +8,8 @@ import numpy as np
 
 from .arithmetic import Exact, cross, exact, solve, stack, volume
 from .dynamics import Point, Truth
-from .poses import angles_of
-from .turns import of_angles
+from .geometry.poses import angles_of
+from .geometry.turns import of_angles
 
 # A point that the last link with a joint carries: mass [kg] and place [m].
 BURDEN, AT = 2.0, (0.25, -0.5, 0.125)

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..interface import Array, HasLayout, Slot, State, Tree
+from .acting.forces import Forces
 from .arithmetic import Exact, cross, exact, eye, many_digits, rate, solve, stack, zeros
 from .charts import CHARTS, Pose
-from .forces import Forces
 from .kinematics import Inertia, Kinematics
 
 _REMEMBERED = 1000

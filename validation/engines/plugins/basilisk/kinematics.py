@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.attitudes import ANGLES, SEQUENCES
+from ...truth.geometry.attitudes import ANGLES, SEQUENCES
 from ..writing.source import HALF_TURNS, Way
 
 # Sets of attitude parameters -> how their functions are called: to and from quaternions, to matrices.

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...truth.guidance import CUBIC, DENSITY, DIPOLE, HEIGHT, LIMIT, OUTER, K, P
-from ...truth.orbits import MU
-from ...truth.poses import AWAY, MOMENTS
+from ...truth.geometry.poses import AWAY, MOMENTS
+from ...truth.spaceflight.guidance import CUBIC, DENSITY, DIPOLE, HEIGHT, LIMIT, OUTER, K, P
+from ...truth.spaceflight.orbits import MU
 from ..writing.source import Way
 from .orbits import ELEMENTS, STATE
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from ...truth.orbits import HARMONICS, MU, ZONAL
+from ...truth.spaceflight.orbits import HARMONICS, MU, ZONAL
 from ..writing.source import Way
 
 _IMPORT = "from Basilisk.utilities import orbitalMotion as om\n"
-# Elements as `truth.orbits` has them; `sign` is -1 and the eccentricity's power too for hyperbolas.
+# Elements as `truth.spaceflight.orbits` has them; `sign` is -1 and the eccentricity's power too for hyperbolas.
 ELEMENTS = """def part(x): return x / (1 + abs(x))
 e = 0.5 + part(a[1]) / 4
 oe = om.ClassicElements()

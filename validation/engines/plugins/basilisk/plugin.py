@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...interface import Convention, Slot, Tree, Unsupported
-from ...truth.tanks import LENGTH, MASS, RADIUS
+from ...truth.spaceflight.tanks import LENGTH, MASS, RADIUS
 from ..writing.source import Source, SourcePlugin, Way
 from . import craft, kinematics, modules, orbits
 

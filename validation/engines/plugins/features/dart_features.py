@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...interface import STEP
-from ...truth.drives import ACCELERATION, FORCE, FRICTION, LIMIT, MASS, SPEED
-from ...truth.parameters import GRAVITY, MASSES
-from ...truth.poses import CENTRE, MOMENTS
-from ...truth.poses import MASS as OF_BODY
+from ...truth.features.drives import ACCELERATION, FORCE, FRICTION, LIMIT, MASS, SPEED
+from ...truth.features.parameters import GRAVITY, MASSES
+from ...truth.geometry.poses import CENTRE, MOMENTS
+from ...truth.geometry.poses import MASS as OF_BODY
 from ..writing.source import Way
 
 _SLIDE = f"""world, s = dart.simulation.World(), dart.dynamics.Skeleton('s')

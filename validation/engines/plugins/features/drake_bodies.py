@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...truth.bodies import CORNERS, DENSITY, DENTED
-from ...truth.poses import ASIDE, CENTRE, MASS, MOMENTS
+from ...truth.geometry.bodies import CORNERS, DENSITY, DENTED
+from ...truth.geometry.poses import ASIDE, CENTRE, MASS, MOMENTS
 from ..writing.source import Way
 
 # Sizes x, direction u; what says of an inertia all that it has.

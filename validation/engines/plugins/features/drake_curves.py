@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.curves import BREAKS, KNOTS, ORDER
+from ...truth.geometry.curves import BREAKS, KNOTS, ORDER
 from ..writing.source import Way
 
 _BEGIN = f"""t, breaks, x = 1.5 + 1.25 * v2[0] / (1 + abs(v2[0])), {list(BREAKS)}, np.array([v, a, tau, v2])

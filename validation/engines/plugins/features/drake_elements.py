@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ...frames import ORIGIN
-from ...truth.elements import FORCES, HINGE, PROPELLERS, TORQUES, WING
-from ...truth.poses import CENTRE
+from ...truth.features.elements import FORCES, HINGE, PROPELLERS, TORQUES, WING
+from ...truth.geometry.poses import CENTRE
 from ..writing.source import Way
 
 _X = "R = drake.RotationMatrix(drake.Quaternion(q))\n"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...interface import STEP
-from ...truth.parameters import COUPLED, DAMPING, GRAVITY, MASSES, REST, STIFFNESS
+from ...truth.features.parameters import COUPLED, DAMPING, GRAVITY, MASSES, REST, STIFFNESS
 from ..loops.drake_forces import SAP
 from ..writing.source import Way
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...interface import STEP
-from ...truth.systems import GAINS, INTEGRATORS, PENDULUM, PERIOD
+from ...truth.features.systems import GAINS, INTEGRATORS, PENDULUM, PERIOD
 from ..writing.source import Way
 
 _F = "def f(x): return x / (1 + np.abs(x))\n"

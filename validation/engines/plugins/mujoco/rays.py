@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 from ...truth.devices import DEVICES
-from ...truth.shapes import BEYOND, SIDES, WITHIN
+from ...truth.geometry.shapes import BEYOND, SIDES, WITHIN
 from ..writing.source import Way
 
 _CORNERS = [[sign * side for sign, side in zip(signs, SIDES, strict=True)] for signs in product((-1, 1), repeat=3)]

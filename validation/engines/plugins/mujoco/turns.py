@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ...interface import Slot
-from ...truth.poses import BACK, SEQUENCES
-from ...truth.solutions import BOX
+from ...truth.geometry.poses import BACK, SEQUENCES
+from ...truth.geometry.solutions import BOX
 from ..turns import solids
 from ..writing.source import HALF_TURNS, Source, Way
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from ...truth.poses import AWAY
-from ...truth.vectors import DECAY, FRICTION, ROOTS, TIMES
+from ...truth.geometry.poses import AWAY
+from ...truth.geometry.vectors import DECAY, FRICTION, ROOTS, TIMES
 from ..writing.source import Way
 
 _U = f"u = v + {list(AWAY)}\n"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.poses import MOMENTS
+from ...truth.geometry.poses import MOMENTS
 from ..writing.source import Way
 from .poses import EYE, FLAT, INERTIA, TWIST, TWO
 

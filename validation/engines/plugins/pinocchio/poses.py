@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.poses import BACK, CENTRE, MASS, MOMENTS
+from ...truth.geometry.poses import BACK, CENTRE, MASS, MOMENTS
 from ..turns import solids
 from ..writing.source import ON_END, Way
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.poses import CENTRE, MASS, MOMENTS, SEQUENCES
+from ...truth.geometry.poses import CENTRE, MASS, MOMENTS, SEQUENCES
 from ..writing.source import HALF_TURNS, ON_END, Way
 from . import solids
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...truth.connectors import (
+from ...truth.features.connectors import (
     ALONG,
     DAMPING,
     FIRST,
@@ -18,7 +18,7 @@ from ...truth.connectors import (
     STIFFNESS,
     TWISTED,
 )
-from ...truth.shapes import BEYOND
+from ...truth.geometry.shapes import BEYOND
 from ..writing.source import Way
 
 # No files are written; older releases have another name for that.

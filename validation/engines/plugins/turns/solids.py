@@ -8,8 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
-from ...truth.poses import MASS
-from ...truth.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
+from ...truth.geometry.poses import MASS
+from ...truth.geometry.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
 from ..writing.source import Way
 
 # Solid -> radius and half length, half sides or semi-axes; the same with whole lengths and sides.

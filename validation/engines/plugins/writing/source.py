@@ -30,12 +30,12 @@ OPTIONAL = {
     "am": "not for constraints of this kind",
 }
 _INPUTS = ("q", "v", "a", "tau", "v2", "q2")
-# Statements that make the matrices of `truth.turns.AXES`' half turns.
+# Statements that make the matrices of `truth.geometry.turns.AXES`' half turns.
 HALF_TURNS = """from itertools import product
 turned_about = [np.array(u, float) for u in product(range(-2, 3), repeat=3) if u > (0, 0, 0)]
 half_turns = [2 * np.outer(u, u) / (u @ u) - np.eye(3) for u in turned_about]
 """
-# Statements that make the matrices of `truth.poses.on_end`: their zeros and ones are exact.
+# Statements that make the matrices of `truth.geometry.poses.on_end`: their zeros and ones are exact.
 ON_END = """(c, x), (d, z) = ((np.cos(angle), np.sin(angle)) for angle in (v[0], v[2]))
 on_end = [
     np.array([[d, -z, 0], [z, d, 0], [0, 0, 1.0]])

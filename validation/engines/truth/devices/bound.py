@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from ..arithmetic import Exact, root
 from ..dynamics import Point
-from ..turns import rotation_vector
+from ..geometry.turns import rotation_vector
 from .device import BALL, MASS, MOMENT, Device, H, body, clipped, model, number, slide, turn_of
 
 

@@ -11,7 +11,7 @@ from decimal import Decimal
 
 from ..arithmetic import Exact, exact, root
 from ..dynamics import Point
-from ..poses import AWAY
+from ..geometry.poses import AWAY
 from .device import BALL, Device, H, body, clipped, model, number, slide, turn_of
 
 _MOVED = "qpos=v[:1], qvel=a[:1]"

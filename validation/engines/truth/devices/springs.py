@@ -17,7 +17,7 @@ import numpy as np
 
 from ..arithmetic import Exact, cross, exact, root
 from ..dynamics import Point
-from ..turns import rotation_vector
+from ..geometry.turns import rotation_vector
 from .device import BALL, MASS, Device, H, body, model, number, pi, slide, turn_of
 
 _MOVED = "qpos=v[:1], qvel=a[:1]"

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from ..arithmetic import Exact, exact, root
 from ..dynamics import Point
-from ..turns import rotation_vector, turned_by
+from ..geometry.turns import rotation_vector, turned_by
 from .device import BALL, Device, body, clipped, model, pi, slide, turn_of
 
 _TURNED = "qpos=q, qvel=a, ctrl=tau[:1]"

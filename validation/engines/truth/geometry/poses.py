@@ -11,7 +11,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import (
+from ..arithmetic import (
     Exact,
     arc,
     cos_sin,
@@ -27,8 +27,8 @@ from .arithmetic import (
     stack,
     zeros,
 )
-from .dynamics import Point, Truth
-from .kinematics import Inertia
+from ..dynamics import Point, Truth
+from ..kinematics import Inertia
 from .turns import rotation_vector, speeds, turn, turned_by
 
 # What directions have added, so that they never vanish and are never along each other.

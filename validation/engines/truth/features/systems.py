@@ -12,12 +12,12 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..interface import STEP
-from .arithmetic import Exact, cos_sin, cross, exact, eye, root, rotation, solve, zeros
-from .bodies import sizes
-from .derived import TruthOf
-from .dynamics import Point, Truth
-from .turns import turn
+from ...interface import STEP
+from ..arithmetic import Exact, cos_sin, cross, exact, eye, root, rotation, solve, zeros
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
+from ..geometry.bodies import sizes
+from ..geometry.turns import turn
 
 # Weights and gains: of places, sums and rates.
 GAINS = (3.0, 0.5, 1.25)

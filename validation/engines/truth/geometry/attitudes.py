@@ -14,9 +14,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, exact, eye, quaternion_rotation, rate, rotation, solve, stack, vee
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, arc, cos_sin, exact, eye, quaternion_rotation, rate, rotation, solve, stack, vee
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .turns import turned_by
 
 ANGLES = (0.5, 1.0, -0.75)

@@ -18,24 +18,11 @@ from decimal import Decimal
 
 import numpy as np
 
+from ..arithmetic import Exact, cos_sin, cross, exact, eye, normalised, rate, rotation, skew, solve, stack, zeros
+from ..derived import TruthOf, unit_inertias
+from ..dynamics import Point, Truth
+from ..kinematics import Inertia
 from . import poses, turns
-from .arithmetic import (
-    Exact,
-    cos_sin,
-    cross,
-    exact,
-    eye,
-    normalised,
-    rate,
-    rotation,
-    skew,
-    solve,
-    stack,
-    zeros,
-)
-from .derived import TruthOf, unit_inertias
-from .dynamics import Point, Truth
-from .kinematics import Inertia
 from .turns import rotation_vector, turn, turned_by
 
 Pose = tuple[Exact, Exact]

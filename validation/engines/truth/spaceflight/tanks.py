@@ -11,9 +11,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, rate
-from .derived import TruthOf
-from .dynamics import Point
+from ..arithmetic import Exact, rate
+from ..derived import TruthOf
+from ..dynamics import Point
 
 MASS, RADIUS, LENGTH = 32.0, 0.75, 1.5
 _R, _ONE = Decimal(RADIUS), Decimal(1)

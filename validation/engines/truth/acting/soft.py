@@ -21,9 +21,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..interface import End
-from .arithmetic import Exact, exact, eye, solve, zeros
-from .dynamics import Point, Truth
+from ...interface import End
+from ..arithmetic import Exact, exact, eye, solve, zeros
+from ..dynamics import Point, Truth
 
 _FIRST, _LAST, _TIME, _WIDTH = (exact(x)[()] for x in (0.9, 0.95, 0.02, 0.001))
 

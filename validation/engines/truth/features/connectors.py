@@ -15,11 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, cross, exact, root
-from .derived import TruthOf
-from .dynamics import Point, Truth
-from .shapes import BEYOND
-from .turns import turn
+from ..arithmetic import Exact, arc, cos_sin, cross, exact, root
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
+from ..geometry.shapes import BEYOND
+from ..geometry.turns import turn
 
 FIRST, SECOND = (0.25, -0.5, 0.125), (-0.375, 0.125, 0.5)
 STIFFNESS, DAMPING, REST, FORCE = 3.0, 0.75, 0.625, 0.5

@@ -10,12 +10,12 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..frames import Vector
-from .arithmetic import Exact, cross, exact, root
-from .derived import TruthOf
-from .dynamics import Point, Truth
-from .poses import CENTRE, angles_of
-from .turns import of_angles, rotation_vector, turn, turned_by
+from ...frames import Vector
+from ..arithmetic import Exact, cross, exact, root
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
+from ..geometry.poses import CENTRE, angles_of
+from ..geometry.turns import of_angles, rotation_vector, turn, turned_by
 
 # Constants of a bushing about roll, pitch, yaw and along x, y, z: stiffness, then damping of each.
 TORQUES = ((2.0, 3.0, 5.0), (0.25, 0.5, 0.75))

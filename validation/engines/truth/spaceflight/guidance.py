@@ -11,13 +11,13 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, cross, exact, normalised, rate, root, vee
-from .attitudes import of_euler, speeds_of
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, arc, cos_sin, cross, exact, normalised, rate, root, vee
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
+from ..geometry.attitudes import of_euler, speeds_of
+from ..geometry.poses import AWAY, MOMENTS
+from ..geometry.turns import rotation_vector, turn
 from .orbits import MU, follow, moving, place
-from .poses import AWAY, MOMENTS
-from .turns import rotation_vector, turn
 
 # Gains, the inertia about the mass centre, and an outer torque.
 K, P, LIMIT, CUBIC = 3.5, 1.25, 0.5, 0.75

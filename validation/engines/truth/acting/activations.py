@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from decimal import Decimal
 
-from ..interface import STEP, Activation, Actuator
-from .arithmetic import Exact, exact
+from ...interface import STEP, Activation, Actuator
+from ..arithmetic import Exact, exact
 
 _H = Decimal(STEP)
 

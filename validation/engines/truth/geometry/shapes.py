@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arithmetic import Exact, exact, root
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, exact, root
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .poses import MASS
 from .turns import turn
 

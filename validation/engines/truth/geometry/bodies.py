@@ -11,9 +11,9 @@ from itertools import combinations
 
 import numpy as np
 
-from .arithmetic import Exact, arc, exact, eye, normalised, skew, zeros
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, arc, exact, eye, normalised, skew, zeros
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .poses import ASIDE, CENTRE, MASS, MOMENTS
 from .shapes import ball_moments, box_moments, capsule_moments, cylinder_moments, ellipsoid_moments, shell_moments
 from .turns import turn

@@ -7,8 +7,8 @@ from itertools import product
 
 import numpy as np
 
-from .arithmetic import Exact, eye, solve
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, eye, solve
+from ..dynamics import Point, Truth
 
 # Bound of each unknown, either way.
 BOX = 0.125

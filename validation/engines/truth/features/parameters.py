@@ -11,10 +11,10 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..interface import STEP
-from .arithmetic import Exact, exact, solve, zeros
-from .bodies import sizes
-from .dynamics import Point, Truth
+from ...interface import STEP
+from ..arithmetic import Exact, exact, solve, zeros
+from ..dynamics import Point, Truth
+from ..geometry.bodies import sizes
 
 # Of the slides along x, y, z.
 MASSES = (2.0, 3.0, 5.0)

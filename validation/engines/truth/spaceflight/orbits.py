@@ -15,10 +15,10 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, cross, exact, eye, normalised, rate, root
-from .attitudes import about
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, arc, cos_sin, cross, exact, eye, normalised, rate, root
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
+from ..geometry.attitudes import about
 
 MU = 4.0
 # Unnormalised coefficients of gravity's potential, by degree and order, of a body of radius 1.

@@ -12,9 +12,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, cos_sin, cross, exact, eye, root
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, cos_sin, cross, exact, eye, root
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .poses import AWAY
 
 # Time of a spring's decay [s]; damping and stiffness of its roots.

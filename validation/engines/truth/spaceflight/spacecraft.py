@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from . import derived, steps
-from .arithmetic import Exact
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from .. import derived, steps
+from ..arithmetic import Exact
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 
 
 def _energy(t: Truth, s: Point) -> Exact:

@@ -10,8 +10,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, cross, exact, normalised, root, solve
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, cross, exact, normalised, root, solve
+from ..dynamics import Point, Truth
 from .poses import ASIDE, AWAY, BESIDE
 from .turns import turn
 

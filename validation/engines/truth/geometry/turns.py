@@ -14,9 +14,9 @@ from itertools import product
 
 import numpy as np
 
-from .arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve, stack
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, arc, cos_sin, exact, eye, rate, root, rotation, skew, solve, stack
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 
 _UNIT = exact(np.eye(3))
 

@@ -6,9 +6,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..interface import End, Link, Medium
-from .arithmetic import Exact, arc, exact, root, zeros
-from .kinematics import Kinematics
+from ...interface import End, Link, Medium
+from ..arithmetic import Exact, arc, exact, root, zeros
+from ..kinematics import Kinematics
 
 
 def drag(kinematics: Kinematics, medium: Medium, q: Exact, v: Exact) -> Exact:

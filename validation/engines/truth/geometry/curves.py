@@ -13,9 +13,9 @@ from decimal import Decimal
 
 import numpy as np
 
-from .arithmetic import Exact, exact, rate, solve, zeros
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ..arithmetic import Exact, exact, rate, solve, zeros
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .turns import rotation_vector, turn, turned_by
 
 BREAKS = (0.0, 1.0, 2.25, 3.0)

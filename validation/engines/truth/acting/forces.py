@@ -16,11 +16,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..interface import Actuator, End, Muscle, Tendon, Tree
+from ...interface import Actuator, End, Muscle, Tendon, Tree
+from ..arithmetic import Exact, exact, rate, root, zeros
+from ..kinematics import Kinematics
 from .activations import clipped, driving
-from .arithmetic import Exact, exact, rate, root, zeros
 from .drag import drag
-from .kinematics import Kinematics
 
 
 class Forces:

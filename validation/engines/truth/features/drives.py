@@ -11,10 +11,10 @@ from decimal import Decimal
 
 import numpy as np
 
-from ..interface import STEP
-from .arithmetic import Exact
-from .derived import TruthOf
-from .dynamics import Point, Truth
+from ...interface import STEP
+from ..arithmetic import Exact
+from ..derived import TruthOf
+from ..dynamics import Point, Truth
 from .systems import bounded
 
 MASS, FRICTION, GRAVITY = 2.0, 3.0, 9.0

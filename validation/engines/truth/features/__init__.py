@@ -1,0 +1,1 @@
+"""What single features of engines make of small mechanisms, in many digits."""

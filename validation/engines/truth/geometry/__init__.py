@@ -1,0 +1,1 @@
+"""Rotations, placements, lines, curves and solids in many digits."""

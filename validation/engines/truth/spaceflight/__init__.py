@@ -1,0 +1,1 @@
+"""Orbits, guidance, spacecraft and their tanks in many digits."""
