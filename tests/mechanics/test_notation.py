@@ -40,6 +40,7 @@ BARE = {
     "RelativeMotion": "w_AL_L, v_ALo_L of a link in its parent, and the derivatives of their components",
     "Variation": "changes of w_WL_L, alpha_WL_L, a_WLo_L per unit of a coordinate or a speed",
     "Line": "p and v of the middle of a body's line against W, its direction a (no acceleration), in W",
+    "Triad": "p_WSo, R_WS, v_WSo_W, w_WS_W of a frame S of a solid",
     "Momentum": "linear momentum, and angular momentum about Lo, in L",
 }
 
